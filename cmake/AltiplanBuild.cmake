@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# Flags and folders of the whole build. What changes the ABI or the arithmetic is set here only.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+# The build tree is laid out as the install tree: bin/altiplan, lib/, lib/altiplan/plugins/.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(ALTIPLAN_PLUGIN_DIR ${CMAKE_BINARY_DIR}/lib/altiplan/plugins)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "$ORIGIN" "$ORIGIN/../..")
+
+option(ALTIPLAN_WERROR "Warnings are errors" ON)
+set(ALTIPLAN_SANITIZE "" CACHE STRING "Sanitizers, comma-separated (address,undefined or thread)")
+
+add_library(altiplan_flags INTERFACE)
+target_compile_options(altiplan_flags INTERFACE
+  -ffp-contract=off
+  $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>
+  # g++ 12 warns of std::string's own "text" + string (GCC bug 105651).
+  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
+  $<BUILD_INTERFACE:$<$<BOOL:${ALTIPLAN_WERROR}>:-Werror>>)
+install(TARGETS altiplan_flags EXPORT altiplan)
+if(ALTIPLAN_SANITIZE)
+  add_compile_options(-fsanitize=${ALTIPLAN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${ALTIPLAN_SANITIZE})
+endif()

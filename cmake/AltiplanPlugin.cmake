@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+# altiplan_add_plugin(KIND NAME): the library altiplan_KIND_NAME from the *.cpp files beside the
+# calling CMakeLists.txt, and its test from NAME_test.cpp where tests are built.
+# KIND: environment, constraint, planner, local_planner, smoother or tuner.
+
+set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
+
+function(altiplan_add_plugin kind name)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+  endif()
+  set(target altiplan_${kind}_${name})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+  add_library(${target} MODULE ${sources})
+  target_link_libraries(${target} PRIVATE altiplan::sdk)
+  # One exported symbol; never unloaded; -ffp-contract=off comes with altiplan::sdk.
+  set_target_properties(${target} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})
+  target_link_options(${target} PRIVATE
+    -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id)
+  if(ALTIPLAN_PLUGIN_DIR)
+    set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ALTIPLAN_PLUGIN_DIR})
+  endif()
+  include(GNUInstallDirs)
+  install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/altiplan/plugins)
+  set_property(GLOBAL APPEND PROPERTY ALTIPLAN_PLUGINS ${target})
+  if(BUILD_TESTING AND COMMAND altiplan_add_test
+     AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+    altiplan_add_test(${kind}_${name} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+    add_dependencies(test_${kind}_${name} ${target})
+  endif()
+endfunction()

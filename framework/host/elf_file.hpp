@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace altiplan::host {
+
+/// Why a file cannot be a library for this machine.
+class ElfError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A shared library read as a file; none of its code runs. The constructor holds every header
+/// against the file's size: the dynamic loader does not, and a truncated library ends the process
+/// there. Reads headers and what is asked for, not the whole file. Throws ElfError.
+class ElfFile {
+ public:
+  explicit ElfFile(const std::filesystem::path& file);
+  ~ElfFile();
+  ElfFile(const ElfFile&) = delete;
+  ElfFile& operator=(const ElfFile&) = delete;
+
+  bool has_section(std::string_view name) const { return find(name) != nullptr; }
+  /// Bytes of the section; "" where there is none.
+  std::string section(std::string_view name) const;
+  /// The GNU build id in hexadecimal, or "".
+  std::string build_id() const;
+
+ private:
+  struct Section {
+    std::string name;
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+  const Section* find(std::string_view name) const;
+  std::string read(std::uint64_t offset, std::uint64_t size, const char* what) const;
+  void check_range(std::uint64_t offset, std::uint64_t size, const char* what) const;
+  void read_headers();
+
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::vector<Section> sections_;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "altiplan/route.hpp"
+
+namespace altiplan::host {
+
+/// The route still to be flown, by metres along it.
+class FlightPath {
+ public:
+  explicit FlightPath(const Route& route) : points_(without_repeats(route)) { measure(); }
+
+  double length() const { return along_.back(); }
+  Vec3 at(double s) const {
+    const std::size_t i = leg(s);
+    if (i + 1 == points_.size()) {
+      return points_.back();
+    }
+    const double share = (s - along_[i]) / (along_[i + 1] - along_[i]);
+    return share <= 0 ? points_[i] : Vec3(points_[i] + share * (points_[i + 1] - points_[i]));
+  }
+  /// The first waypoint after s, the last where there is none.
+  const Vec3& next_waypoint(double s) const { return points_[next(s)]; }
+  double end_of_leg(double s) const { return along_[next(s)]; }
+  void append_waypoints_after(double s, std::vector<Vec3>& to) const {
+    to.insert(to.end(), points_.begin() + std::ptrdiff_t(next(s)), points_.end());
+  }
+
+  /// Calls with both ends of each piece of leg between s0 and s1.
+  template <class Call>
+  void for_each_leg(double s0, double s1, const Call& call) const {
+    s1 = std::min(s1, length());
+    while (s0 < s1) {
+      const double end = std::min(end_of_leg(s0), s1);
+      call(at(s0), end == along_[next(s0)] ? next_waypoint(s0) : at(end));
+      s0 = end;
+    }
+  }
+
+  /// Where between s0 and s1 the path comes nearest to p.
+  double nearest(const Vec3& p, double s0, double s1) const {
+    double best = s0;
+    double least = kInfinity;
+    double s = s0;
+    for_each_leg(s0, s1, [&](const Vec3& a, const Vec3& b) {
+      const Vec3 way = b - a;
+      const double run = way.norm();
+      const double share = run > 0 ? std::clamp((p - a).dot(way) / (run * run), 0.0, 1.0) : 0;
+      const double distance = (a + share * way - p).norm();
+      if (distance < least) {
+        least = distance;
+        best = s + share * run;
+      }
+      s += run;
+    });
+    return std::min(best, length());
+  }
+
+  /// From p straight to the place s, and on.
+  void rejoin(const Vec3& p, double s) {
+    Route route{p, at(s)};
+    if (s < length()) {
+      append_waypoints_after(s, route);
+    }
+    points_ = without_repeats(route);
+    measure();
+  }
+  /// The path from p, which stands for the place s, with another end.
+  void move_end(const Vec3& p, double s, const Vec3& goal) {
+    Route route{p};
+    append_waypoints_after(s, route);
+    route.back() = goal;
+    points_ = without_repeats(route);
+    measure();
+  }
+
+ private:
+  void measure() {
+    along_.assign(1, 0);
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+      along_.push_back(along_.back() + (points_[i + 1] - points_[i]).norm());
+    }
+  }
+  std::size_t next(double s) const {
+    const auto after = std::upper_bound(along_.begin(), along_.end(), s);
+    return after == along_.end() ? points_.size() - 1 : std::size_t(after - along_.begin());
+  }
+  /// Index of the waypoint that the leg at s begins with; the last beyond the end.
+  std::size_t leg(double s) const {
+    const auto after = std::upper_bound(along_.begin(), along_.end(), s);
+    return after == along_.begin() ? 0 : std::size_t(after - along_.begin()) - 1;
+  }
+
+  Route points_;
+  std::vector<double> along_;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/config.hpp"
+#include "host/run_result.hpp"
+
+namespace altiplan::host {
+
+using Json = nlohmann::ordered_json;
+
+/// result.json, format 1 (docs/result.md). Wall times stand only in keys that end in time_s.
+Json result_json(const Config& config, const RunResult& result);
+
+Json to_json(const Route& route);
+Json to_json(const CheckResult& check);
+Json to_json(const Measures& measures);
+
+/// Writes the whole file or, where that fails, throws Error and leaves what was there: it is
+/// written beside and renamed.
+void write_file(const std::filesystem::path& file, const std::string& text);
+
+/// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.
+std::string sha256(const std::filesystem::path& file);
+}  // namespace altiplan::host

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/params.hpp"
+
+namespace altiplan::host {
+
+// A scenario file as written: field for field, nothing resolved yet.
+
+/// `- terrain: {…}` with the host's keys beside it.
+struct LayerEntry {
+  std::string plugin;
+  Value parameters;
+  std::string id;
+  bool known = true;
+  void describe(Fields& f);
+};
+
+struct ConstraintEntry {
+  std::string plugin;
+  Value parameters;
+  void describe(Fields& f);
+};
+
+struct PointEntry {
+  Point point;
+  void describe(Fields& f);
+};
+
+struct GoalEntry {
+  Point point;
+  double tolerance_m = 0;
+  void describe(Fields& f);
+};
+
+struct VolumeEntry {
+  std::optional<Vec3> min_m;
+  std::optional<Vec3> max_m;
+  void describe(Fields& f);
+};
+
+struct SpeedNearEntry {
+  double within_m = 0;
+  double speed_mps = 0;
+  void describe(Fields& f);
+};
+
+struct VehicleEntry {
+  double radius_m = 0;
+  double speed_mps = 15;
+  std::optional<double> sensing_m;
+  std::vector<SpeedNearEntry> speed_near;
+  void describe(Fields& f);
+};
+
+struct FrameEntry {
+  std::string crs;
+  std::optional<std::array<double, 2>> origin_lonlat;
+  void describe(Fields& f);
+};
+
+/// `- sphere: {…, velocity_mps}` or `- random: {count, …}`.
+struct MovingEntry {
+  std::string shape;
+  Value parameters;
+  std::string id;
+  bool known = true;
+  void describe(Fields& f);
+};
+
+struct NearEntry {
+  Point point;
+  double within_m = 0;
+  void describe(Fields& f);
+};
+
+/// What is added: a layer, as under `environment`.
+struct AddEntry {
+  std::string plugin;
+  Value parameters;
+  void describe(Fields& f);
+};
+
+/// Cells that become blocked or free; only for a layer with cells of its own.
+struct SetCellsEntry {
+  std::string layer;
+  std::vector<Vec3> cells;
+  bool blocked = true;
+  void describe(Fields& f);
+};
+
+struct MoveEntry {
+  std::string layer;
+  Vec3 by_m{0, 0, 0};
+  void describe(Fields& f);
+};
+
+struct EventEntry {
+  std::optional<double> at_s;
+  std::optional<NearEntry> when_near;
+  std::optional<AddEntry> add;
+  std::string id;
+  bool known = false;
+  std::optional<std::string> remove;
+  std::optional<MoveEntry> move;
+  std::optional<SetCellsEntry> set_cells;
+  std::optional<PointEntry> move_goal;
+  void describe(Fields& f);
+};
+
+struct ScenarioFile {
+  int altiplan = 0;
+  std::string name;
+  std::vector<Path> plugins;
+  FrameEntry frame;
+  std::vector<LayerEntry> environment;
+  VolumeEntry volume;
+  VehicleEntry vehicle;
+  std::optional<double> level_flight_at_m;
+  std::optional<std::string> start_time;
+  PointEntry start;
+  std::vector<GoalEntry> via;
+  GoalEntry goal;
+  std::vector<MovingEntry> moving;
+  std::vector<EventEntry> events;
+  std::vector<ConstraintEntry> constraints;
+  void describe(Fields& f);
+};
+
+/// The format number that every file begins with.
+inline constexpr int kFileFormat = 1;
+}  // namespace altiplan::host

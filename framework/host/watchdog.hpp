@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+namespace altiplan::host {
+
+/// Ends a step that outstays its welcome. While armed, it fires the stop token when the time is
+/// over (or the process has grown by more memory than allowed), and two seconds later, when the
+/// step has still not returned, it calls `last_words`, which does not return.
+class Watchdog {
+ public:
+  /// `last_words` gets the sentence that says why.
+  explicit Watchdog(std::function<void(const std::string&)> last_words);
+  ~Watchdog();
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// Watches until disarm. The token stops the step when time or memory is used up.
+  std::stop_token arm(double seconds, std::optional<double> memory_mb);
+  void disarm();
+  /// Stops the step as if its time were over.
+  void stop_now();
+  /// Whether the last step was stopped for its memory.
+  bool out_of_memory() const { return out_of_memory_; }
+
+ private:
+  void watch(std::stop_token done);
+  using Clock = std::chrono::steady_clock;
+
+  std::function<void(const std::string&)> last_words_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  bool armed_ = false;
+  Clock::time_point stop_at_;
+  std::optional<double> memory_mb_;
+  double memory_at_start_mb_ = 0;
+  bool stopped_ = false;
+  Clock::time_point stopped_at_;
+  bool out_of_memory_ = false;
+  std::stop_source stop_;
+  std::jthread thread_;  // last: starts when all else is there
+};
+
+/// How long a step without a time budget may take.
+inline constexpr double kDefaultStepSeconds = 60;
+/// What a step has after its budget before the process is ended.
+inline constexpr double kGraceSeconds = 2;
+}  // namespace altiplan::host

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/frame.hpp"
+#include "altiplan/random.hpp"
+#include "altiplan/vehicle.hpp"
+#include "altiplan/voxel_grid.hpp"
+
+namespace altiplan {
+
+class World;
+
+/// A disc that a plane planner avoids.
+struct Threat {
+  Vec3 centre{0, 0, 0};
+  double radius = 0;
+  std::string kind;  ///< "radar", "zone", …
+  std::string id;
+};
+
+/// What a layer knows of an obstacle near a point.
+struct Nearby {
+  Vec3 point{0, 0, 0};   ///< of the obstacle's surface, nearest to the asking point
+  double distance = 0;   ///< metres, negative inside
+  Vec3 normal{0, 0, 1};  ///< unit, from the obstacle toward the asking point
+  int id = 0;            ///< of the obstacle within its layer
+};
+using NearSink = std::function<void(const Nearby&)>;
+
+/// What an environment is built from besides its parameters.
+struct ALTIPLAN_API Site {
+  Frame frame;            ///< without a position until a layer brings one
+  std::string frame_crs;  ///< asked for by the scenario's `frame: {crs: …}`, or ""
+  Box volume;             ///< infinite where the scenario leaves it to the layers
+  Vehicle vehicle;
+  const World* before = nullptr;  ///< the layers before this one; never null inside a constructor
+  std::optional<Vec3> start;      ///< where already known
+  std::optional<Vec3> goal;
+  double start_time_s = 0;  ///< of the scenario, seconds since 1970-01-01 UTC; 0 where not given
+  bool has_start_time = false;
+  RandomStream random;
+
+  /// A user's point in local metres; throws Error saying what is missing (a frame with a position,
+  /// ground below it, a layer with cells).
+  Vec3 resolve(const Point& point) const;
+};
+
+/// A layer of the world: terrain, buildings, zones, radars. Immutable; a solid, closed set.
+///
+/// Laws, held by every environment and tested by the conformance suite:
+///  1. Pure: built from (parameters, Site) alone; const functions may run on many threads.
+///  2. clearance is signed (negative inside), 1-Lipschitz, and never more than the true distance.
+///  3. blocked(a, b, r) is true whenever the least distance between the leg and the layer is below
+///     r - 1e-6 m; it may be true up to slack() metres above r; touching is free.
+///  4. blocked is symmetric in a and b, and monotone in r.
+///  5. ground(x, y) is the height of the ground that this layer brings, if any; ground_gap is the
+///     least height of a leg above it, exact within 1e-6 m.
+///  6. rasterize never leaves a cell free that the grid's rule blocks.
+class ALTIPLAN_API Environment {
+ public:
+  virtual ~Environment();
+
+  /// Where the layer's obstacles and ground are; unbounded directions are infinite.
+  Box bounds() const { return do_bounds(); }
+  double clearance(const Vec3& p) const;
+  bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  /// Calls the sink once for each obstacle whose distance from p is at most `reach`.
+  void near(const Vec3& p, double reach, const NearSink& sink) const;
+  void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
+  std::optional<double> ground(double x, double y) const { return do_ground(x, y); }
+  /// Whether the layer brings a ground at all.
+  bool has_ground() const { return do_has_ground(); }
+  /// Least height of the leg above this layer's ground; -infinity where it has none below part of
+  /// the leg; any value of at least `enough` once the leg is known to be that high.
+  double ground_gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
+  /// Greatest height of the leg above this layer's ground; +infinity where it has none below part
+  /// of the leg.
+  double ground_gap_max(const Vec3& a, const Vec3& b) const { return do_ground_gap_max(a, b); }
+  /// Steepest slope (rise over run) of this layer's ground within the horizontal box, an upper
+  /// bound; infinite where it is not known or the ground has holes there.
+  double ground_slope(const Box& box) const { return do_ground_slope(box); }
+  std::vector<Threat> threats() const { return do_threats(); }
+  double slack() const { return do_slack(); }
+  std::optional<GridSpec> native_grid() const { return do_native_grid(); }
+  /// Centre of a cell as the layer's file counts it.
+  std::optional<Vec3> cell_centre(const std::array<double, 3>& cell) const {
+    return do_cell_centre(cell);
+  }
+  /// The frame that this layer's files fix, where the world has none yet.
+  std::optional<Frame> frame() const { return do_frame(); }
+  /// What a user should know of what was read ("403 x 344 posts, 236 to 1076 m"), a line each.
+  std::vector<std::string> notes() const { return do_notes(); }
+
+ private:
+  virtual Box do_bounds() const = 0;
+  virtual double do_clearance(const Vec3& p) const = 0;
+  /// Default: sphere tracing on clearance in steps of at least slack().
+  virtual bool do_blocked(const Vec3& a, const Vec3& b, double r) const;
+  /// Default: one obstacle, by clearance and its gradient.
+  virtual void do_near(const Vec3& p, double reach, const NearSink& sink) const;
+  /// Default: by clearance at cell centres, blocking every cell in doubt.
+  virtual void do_rasterize(VoxelGrid& grid) const;
+  virtual bool do_has_ground() const;
+  virtual std::optional<double> do_ground(double x, double y) const;
+  /// To be given by a layer with ground.
+  virtual double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const;
+  virtual double do_ground_gap_max(const Vec3& a, const Vec3& b) const;
+  virtual double do_ground_slope(const Box& box) const;
+  virtual std::vector<Threat> do_threats() const;
+  /// Default 0.05 m.
+  virtual double do_slack() const;
+  virtual std::optional<GridSpec> do_native_grid() const;
+  virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;
+  virtual std::optional<Frame> do_frame() const;
+  virtual std::vector<std::string> do_notes() const;
+};
+}  // namespace altiplan

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "altiplan/api.hpp"
+
+namespace altiplan {
+
+/// A place in a file that the user wrote, or the command-line override that took its place.
+struct Location {
+  std::string file;
+  int line = 0;  ///< from 1; 0 where only the file is known
+  int column = 0;
+  std::string override_text;  ///< "--set KEY=VALUE" where the value came from the command line
+
+  /// "file:line:column", or the override.
+  ALTIPLAN_API std::string text() const;
+};
+
+/// One thing that is wrong in a file: where, at which key ("steps.0.with.cell_m"), what was
+/// expected.
+struct Problem {
+  Location where;
+  std::string key;
+  std::string message;
+
+  ALTIPLAN_API std::string text() const;
+};
+
+/// Base of everything that the framework throws.
+class ALTIPLAN_API Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  ~Error() override;
+};
+
+/// Files or parameters are wrong; holds every problem found, in file order.
+class ALTIPLAN_API ConfigError : public Error {
+ public:
+  explicit ConfigError(std::vector<Problem> problems);
+  ConfigError(Location where, std::string key, std::string message);
+  ~ConfigError() override;
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// A parameter does not fit the problem at hand (a lattice larger than the memory allowed): thrown
+/// by a plugin at run time, reported by the host at the parameter's place in the file, exit code 3.
+class ALTIPLAN_API ParameterError : public Error {
+ public:
+  ParameterError(std::string key, const std::string& message)
+      : Error(message), key_(std::move(key)) {}
+  ~ParameterError() override;
+  /// Name of the parameter within the plugin's own ("cell_m").
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// A plugin threw, broke a law of its interface, or could not be loaded; the text names it.
+class ALTIPLAN_API PluginError : public Error {
+ public:
+  using Error::Error;
+  ~PluginError() override;
+};
+
+/// The candidate nearest to `word` by edit distance, or "" when none is near.
+ALTIPLAN_API std::string nearest_name(std::string_view word,
+                                      const std::vector<std::string>& candidates);
+}  // namespace altiplan

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "altiplan/geometry.hpp"
+
+namespace altiplan {
+
+/// A map projection that a layer brings along (GDAL stays in the plugin that read the file).
+/// Laws: 1. to_lonlat(to_local(p)) = p within 1e-6 m. 2. May be called from many threads.
+class ALTIPLAN_API Projection {
+ public:
+  virtual ~Projection();
+  /// Longitude and latitude (WGS 84, degrees) to local east and north (metres).
+  virtual std::array<double, 2> to_local(double lon, double lat) const = 0;
+  virtual std::array<double, 2> to_lonlat(double x, double y) const = 0;
+};
+
+/// The local east-north-up frame of a world, and how it is tied to the Earth, if at all.
+class ALTIPLAN_API Frame {
+ public:
+  Frame() = default;
+
+  /// Affine frame of a geographic elevation model: east = Δlon N(φ₀) cos φ₀, north = Δlat M(φ₀)
+  /// with the WGS 84 radii of curvature at `middle_lat` (φ₀); (lon, lat) is the origin, degrees.
+  static Frame geographic(double lon, double lat, double middle_lat);
+  static Frame projected(std::shared_ptr<const Projection> projection, std::string crs);
+
+  bool has_position() const { return projection_ != nullptr; }
+  /// Coordinate system in words, "" without a position.
+  const std::string& crs() const { return crs_; }
+  /// Throws Error without a position.
+  std::array<double, 2> to_local(double lon, double lat) const;
+  std::array<double, 2> to_lonlat(double x, double y) const;
+  /// Greatest relative error of a horizontal length within the box, against the WGS 84 ellipsoid
+  /// (0.005 = half a per cent); 0 without a position.
+  double scale_error(const Box& box) const;
+
+ private:
+  std::shared_ptr<const Projection> projection_;
+  std::string crs_;
+};
+
+/// Origin, cell sizes (m) and counts are a grid's business; this is a point as a user writes it:
+/// `at_m`, `at_lonlat` or `at_cell`, the height given or above the ground.
+struct Point {
+  enum class Form { none, metres, lonlat, cell };
+  Form form = Form::none;
+  /// Two or three numbers, in the form's units; metres for the third of lonlat.
+  std::array<double, 3> at{0, 0, 0};
+  bool has_height = false;
+  std::optional<double> above_ground_m;
+};
+}  // namespace altiplan

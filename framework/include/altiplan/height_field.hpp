@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "altiplan/geometry.hpp"
+
+namespace altiplan {
+
+/// Ground heights at the posts of a regular grid, bilinear between them. Heights are metres above
+/// sea level; a void is NaN, and the four cells around it have no ground.
+class ALTIPLAN_API HeightField {
+ public:
+  /// Posts in rows from the south, each from the west: post (i, j) stands at
+  /// (origin x + i dx, origin y + j dy) and has heights[j * columns + i]. Throws Error unless
+  /// columns, rows >= 2, dx, dy > 0 and the number of heights fits.
+  HeightField(std::array<double, 2> origin, std::array<double, 2> spacing, int columns, int rows,
+              std::vector<float> heights);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  const std::array<double, 2>& origin() const { return origin_; }
+  const std::array<double, 2>& spacing() const { return spacing_; }
+  float post(int i, int j) const { return heights_[std::size_t(j) * std::size_t(columns_) + i]; }
+  double max_height() const { return max_height_; }
+  double min_height() const { return min_height_; }
+  std::size_t void_posts() const { return void_posts_; }
+  /// Steepest slope anywhere (rise over run).
+  double max_slope() const { return max_slope_; }
+  /// Steepest slope within the horizontal box.
+  double max_slope(double x0, double y0, double x1, double y1) const;
+  /// Highest ground within the horizontal box; +infinity where part of it has none.
+  double max_height(double x0, double y0, double x1, double y1) const;
+
+  /// Height of the ground; none outside the posts and in a cell with a void.
+  std::optional<double> at(double x, double y) const;
+
+  /// Least height of the leg a–b above the ground: exact, cell by cell (over a bilinear cell it is
+  /// a quadratic); -infinity where part of the leg has no ground below. May return any value of at
+  /// least `enough` once the leg is known to be that high everywhere.
+  double gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
+
+  /// Greatest height of the leg above the ground, likewise exact; +infinity where there is none.
+  double gap_max(const Vec3& a, const Vec3& b) const;
+
+ private:
+  std::array<double, 2> origin_;
+  std::array<double, 2> spacing_;
+  int columns_;
+  int rows_;
+  std::vector<float> heights_;
+  double max_height_ = -kInfinity;
+  double min_height_ = kInfinity;
+  double max_slope_ = 0;
+  std::size_t void_posts_ = 0;
+  // Greatest height and slope of blocks of kBlock × kBlock cells.
+  static constexpr int kBlock = 16;
+  int block_columns_ = 0;
+  std::vector<float> block_max_;
+  std::vector<float> block_slope_;
+};
+}  // namespace altiplan

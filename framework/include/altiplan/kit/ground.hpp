@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "altiplan/voxel_grid.hpp"
+
+/// \file What layers with ground share, given two functions of theirs: ground(x, y), the height,
+/// and highest(x0, y0, x1, y1), an upper bound of the heights in a closed box, +infinity where part
+/// of it has no ground.
+namespace altiplan::kit {
+
+/// Blocks each column of cells up to the highest ground in its footprint (rule touched), or in the
+/// column's middle (rule centre), both grown by the inflation on every side.
+template <class Highest>
+void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
+  const GridSpec& spec = grid.spec();
+  const bool centre = spec.rule == GridSpec::Rule::centre;
+  const Vec3 half = centre ? Vec3(Vec3::Zero()) : Vec3(spec.cell / 2);
+  const double grown_x = half.x() + spec.inflation;
+  const double grown_y = half.y() + spec.inflation;
+  std::vector<int> blocked_levels(std::size_t(spec.counts[0]));
+  for (int j = 0; j < spec.counts[1]; ++j) {
+    int most = 0;
+    for (int i = 0; i < spec.counts[0]; ++i) {
+      const Vec3 c = spec.centre({i, j, 0});
+      const double top =
+          highest(c.x() - grown_x, c.y() - grown_y, c.x() + grown_x, c.y() + grown_y) +
+          spec.inflation;
+      const double levels = (top - spec.origin.z()) / spec.cell.z();
+      // Touched: the open cell lies below the top in part; centre: its centre does, or on it.
+      const double count = centre ? std::floor(levels - 0.5) + 1 : std::ceil(levels);
+      blocked_levels[std::size_t(i)] = int(std::clamp(count, 0.0, double(spec.counts[2])));
+      most = std::max(most, blocked_levels[std::size_t(i)]);
+    }
+    for (int k = 0; k < most; ++k) {
+      for (int i = 0; i < spec.counts[0]; ++i) {
+        const int first = i;
+        while (i < spec.counts[0] && blocked_levels[std::size_t(i)] > k) {
+          ++i;
+        }
+        if (i > first) {
+          grid.block_run(first, i - 1, j, k);
+        }
+      }
+    }
+  }
+}
+
+/// Height above the ground that keeps a distance from it, where its slope is at most `slope`.
+inline double height_for(double distance, double slope) {
+  return distance > 0 ? distance * std::hypot(1, slope) : distance;
+}
+
+/// Whether the leg is lower than the ground's slope allows for a sphere of radius r: true wherever
+/// the ground is nearer than r - 1e-6 m. The leg is halved, down to parts of `shortest` metres, for
+/// as long as a part may be free by the slope near it. gap(a, b, enough): as
+/// Environment::ground_gap; slope(a, b, r): at least the steepest within r of the leg, and no less
+/// than for any part of it; enough: the height that serves everywhere.
+template <class Gap, class Slope>
+bool too_near_ground(const Vec3& a, const Vec3& b, double r, double enough, double shortest,
+                     const Gap& gap, const Slope& slope) {
+  const double keep = r - kLengthTolerance;
+  const double height = gap(a, b, enough);
+  if (height >= enough) {
+    return false;
+  }
+  const double need = height_for(keep, slope(a, b, r));
+  if (height >= need) {
+    return false;
+  }
+  if (height < keep || std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(r, shortest)) {
+    return true;
+  }
+  const Vec3 middle = (a + b) / 2;
+  const double least = std::min(enough, need);
+  return too_near_ground(a, middle, r, least, shortest, gap, slope) ||
+         too_near_ground(middle, b, r, least, shortest, gap, slope);
+}
+
+/// A point of the ground, within `over` (horizontally), whose distance from p is the least there is
+/// to within 5 %, and least among its neighbours to within 0.1 %. p must lie more than 1e-6 m above
+/// the ground.
+template <class Ground, class Highest>
+class NearestGround {
+ public:
+  NearestGround(const Vec3& p, const Box& over, const Ground& ground, const Highest& highest)
+      : p_(p), over_(over), ground_(ground), highest_(highest) {
+    try_at(p.x(), p.y());
+    const double reach = best_;
+    const Box box = Box{p, p}.grown(reach).intersected(over);
+    search(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+    refine();
+  }
+  const Vec3& point() const { return point_; }
+  double distance() const { return best_; }
+
+ private:
+  static constexpr double kPrune = 0.95;
+  static constexpr double kSmallest = 0.02;  ///< of the distance: not split any more
+  static constexpr double kFine = 1e-4;
+
+  bool try_at(double x, double y) {
+    const Vec3 q(x, y, ground_(x, y));
+    const double distance = (p_ - q).norm();
+    if (!(distance < best_)) {
+      return false;
+    }
+    best_ = distance;
+    point_ = q;
+    return true;
+  }
+
+  void search(double x0, double y0, double x1, double y1) {
+    const double dx = std::max({x0 - p_.x(), p_.x() - x1, 0.0});
+    const double dy = std::max({y0 - p_.y(), p_.y() - y1, 0.0});
+    if (std::hypot(dx, dy) >= kPrune * best_) {
+      return;
+    }
+    const double dz = std::max(p_.z() - highest_(x0, y0, x1, y1), 0.0);
+    if (std::hypot(dx, dy, dz) >= kPrune * best_) {
+      return;
+    }
+    const double x = (x0 + x1) / 2;
+    const double y = (y0 + y1) / 2;
+    try_at(x, y);
+    if (std::max(x1 - x0, y1 - y0) < kSmallest * best_) {
+      return;
+    }
+    // The quarter towards p first: the best so far prunes the others.
+    const bool east = p_.x() >= x;
+    const bool north = p_.y() >= y;
+    for (const bool to_east : {east, !east}) {
+      for (const bool to_north : {north, !north}) {
+        search(to_east ? x : x0, to_north ? y : y0, to_east ? x1 : x, to_north ? y1 : y);
+      }
+    }
+  }
+
+  void refine() {
+    double step = kSmallest * best_;
+    while (step > kFine * best_) {
+      const Vec3 from = point_;
+      bool better = false;
+      for (const double side : {-step, step}) {
+        better |= try_at(std::clamp(from.x() + side, over_.min.x(), over_.max.x()), from.y());
+        better |= try_at(from.x(), std::clamp(from.y() + side, over_.min.y(), over_.max.y()));
+      }
+      step = better ? step : step / 2;
+    }
+  }
+
+  Vec3 p_;
+  Box over_;
+  const Ground& ground_;
+  const Highest& highest_;
+  double best_ = kInfinity;
+  Vec3 point_{0, 0, 0};
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "altiplan/api.hpp"
+
+namespace altiplan::kit {
+
+/// Seconds since 1970-01-01 UTC of an ISO 8601 time: a date, or date and time of day, seconds and
+/// their fraction optional, ending in Z or an offset (+02:00); none where the text is no such time.
+ALTIPLAN_API std::optional<double> parse_iso_time(std::string_view text);
+}  // namespace altiplan::kit

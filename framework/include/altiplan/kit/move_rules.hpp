@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "altiplan/kit/lattice.hpp"
+
+namespace altiplan::kit {
+
+/// How a step of a lattice is held to the obstacles.
+enum class MoveCheck {
+  exact,  ///< the straight leg, by the world's exact queries
+  cells,  ///< by the cells that it leads through: cells that an obstacle overlaps are closed
+};
+
+/// Whether the limits on turns hold where a leg in direction `outgoing` follows one of `incoming`.
+ALTIPLAN_API bool turn_kept(const Vec3& incoming, const Vec3& outgoing, const Limits& limits);
+
+/// The judge's rules for the steps of a lattice, sorted by what they depend on: what depends on the
+/// direction alone (climb, leg length) or on two directions (turns) is answered from masks, what
+/// depends on the place by few queries of the world. A step is accepted if and only if leg_ok
+/// accepts it (with `cells`: and its cells are free).
+/// Belongs to one search; counts what each rule refused.
+class ALTIPLAN_API MoveRules {
+ public:
+  /// All of it must outlive the rules. With `cells` the occupancy is asked for here.
+  MoveRules(const Request& request, const Lattice& lattice, MoveCheck check, CornerRule corner);
+
+  /// Directions out of c, reached in direction `in` (kHere: not by a step), that keep the rules
+  /// answered from masks; the others still have to pass `leg_free`.
+  DirectionMask candidates(const Cell& c, int in) {
+    DirectionMask open = steps_ & lattice_.inside(c);
+    if (grid_ != nullptr) {
+      const DirectionMask free = free_steps(blocked_around(*grid_, c), corner_);
+      refused_[kCells] += __builtin_popcount(open & ~free);
+      open &= free;
+    }
+    refused_[kTurn] += __builtin_popcount(open & ~after_[std::size_t(in)]);
+    return open & after_[std::size_t(in)];
+  }
+
+  /// Whether the step a–b keeps the rules that depend on the place. The clearances are lower bounds
+  /// of the world's at a and b (-infinity: not known): where they suffice, no obstacle is asked
+  /// for.
+  bool leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length,
+                double clearance_a, double clearance_b);
+
+  /// Whether clearances of the nodes are of use to leg_free.
+  bool wants_clearance() const { return wants_clearance_; }
+
+  /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
+  /// that has a heading), counted by rule.
+  bool any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+
+  /// Whether a rule that looks at the leg before refused anything: then one parent a cell may be
+  /// too few, and finding nothing proves nothing.
+  bool parent_mattered() const { return refused_[kTurn] > 0 || admit_needed_parent_; }
+  std::int64_t moves_checked() const { return moves_checked_; }
+  /// Whether the cell itself is closed, which only moves by cells know.
+  bool cell_blocked(const Cell& c) {
+    const bool blocked = grid_ != nullptr && grid_->blocked(c);
+    refused_[kCells] += blocked;
+    return blocked;
+  }
+  /// The rules that refused moves, the busiest first: "ground_clearance (120), turn_angle (7)", and
+  /// what no step can do; "" if nothing was refused.
+  std::string refusals() const;
+
+ private:
+  enum Rule { kCells, kTurn, kClearance, kGround, kAltitude, kConstraint, kLink, kRules };
+  DirectionMask directions_kept();
+  bool keeps_ground(const Vec3& a, const Vec3& b);
+  bool admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+
+  const Request& request_;
+  const Lattice& lattice_;
+  CornerRule corner_;
+  double needed_;
+  double spare_;  ///< clearance beyond half a leg that makes it free for certain
+  bool wants_clearance_ = false;
+  bool has_ground_rules_ = false;
+  std::vector<const Constraint*> constraints_;
+  std::shared_ptr<const VoxelGrid> grid_;
+  DirectionMask steps_ = 0;
+  std::array<DirectionMask, kDirections> after_{};  ///< by incoming direction
+  std::array<std::int64_t, kRules> refused_{};
+  std::string refused_constraint_;
+  std::string refused_layer_;
+  std::string refused_link_;
+  std::string steps_refused_by_;
+  std::int64_t moves_checked_ = 0;
+  bool admit_needed_parent_ = false;
+};
+}  // namespace altiplan::kit

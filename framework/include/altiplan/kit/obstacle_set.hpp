@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "altiplan/environment.hpp"
+#include "altiplan/shape.hpp"
+
+namespace altiplan::kit {
+
+/// A set of solid shapes with exact queries, each O(log n) through FCL's broadphase. FCL stays
+/// inside (a pimpl); where its narrow phase cannot decide within 1e-6 m, closed forms do.
+class ALTIPLAN_API ObstacleSet {
+ public:
+  explicit ObstacleSet(std::vector<Shape> shapes);
+  ~ObstacleSet();
+  ObstacleSet(ObstacleSet&&) noexcept;
+  ObstacleSet& operator=(ObstacleSet&&) noexcept;
+
+  const std::vector<Shape>& shapes() const { return shapes_; }
+  const Box& bounds() const { return bounds_; }
+  /// Signed distance to the nearest shape's surface, negative inside (minus the greatest depth);
+  /// infinite for an empty set.
+  double clearance(const Vec3& p) const;
+  /// Whether the leg comes nearer than r - 1e-6 m to a shape; touching is free.
+  bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  void near(const Vec3& p, double reach, const NearSink& sink) const;
+  void rasterize(VoxelGrid& grid) const;
+
+ private:
+  struct Impl;
+  std::vector<Shape> shapes_;
+  Box bounds_;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// An environment that is a set of shapes.
+class ALTIPLAN_API ShapeLayer : public Environment {
+ public:
+  explicit ShapeLayer(std::vector<Shape> shapes) : set_(std::move(shapes)) {}
+  const ObstacleSet& set() const { return set_; }
+
+ private:
+  Box do_bounds() const override { return set_.bounds(); }
+  double do_clearance(const Vec3& p) const override { return set_.clearance(p); }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    return set_.blocked(a, b, r);
+  }
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
+    set_.near(p, reach, sink);
+  }
+  void do_rasterize(VoxelGrid& grid) const override { set_.rasterize(grid); }
+  double do_slack() const override { return 0; }
+
+  ObstacleSet set_;
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/geometry.hpp"
+
+namespace altiplan {
+
+/// Heights that a route keeps to.
+struct AltitudeBand {
+  enum class Datum { sea, ground };
+  Datum datum = Datum::sea;
+  double min = -kInfinity;  ///< metres above the datum
+  double max = kInfinity;
+};
+
+/// The standard limits, tightened by constraints; planners check them inline. Metres, radians.
+struct Limits {
+  double min_clearance = 0;  ///< route to obstacles; at least the vehicle's radius
+  std::optional<double> min_ground_clearance;  ///< vertical, above ground
+  std::vector<AltitudeBand> altitude;
+  double min_leg = 0;
+  double max_leg = kInfinity;
+  double max_turn_horizontal = kPi;
+  double max_turn_space = kPi;
+  double min_turn_radius = 0;  ///< of the circle through a waypoint and its neighbours
+  double max_climb = kPi / 2;
+  double max_route_length = kInfinity;
+};
+}  // namespace altiplan

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "altiplan/plan_result.hpp"
+#include "altiplan/request.hpp"
+
+namespace altiplan {
+
+/// A moving obstacle as the sensor shows it.
+struct SensedObstacle {
+  std::string_view id;
+  Vec3 position{0, 0, 0};        ///< centre
+  double radius = 0;             ///< of the sphere around it
+  std::optional<Vec3> velocity;  ///< where observed, m/s
+};
+
+/// What a pilot is told before each step.
+struct Observation {
+  State state;  ///< as it is, which may not be where the last step meant to go
+  Vec3 local_target{0, 0, 0};
+  Goal goal;
+  std::span<const Vec3> rest;  ///< route points still ahead, the goal's last; may be empty
+  const World* world = nullptr;
+  std::span<const Change> changes;  ///< since the last step
+  std::span<const SensedObstacle> moving;
+  double max_dt_s = 1;  ///< the step may be shorter
+};
+
+struct PilotStep {
+  enum class Outcome { flying, arrived, stuck };
+  State next;
+  Outcome outcome = Outcome::flying;
+  std::string_view why;  ///< lives until the next step
+};
+
+/// Flies from observation to observation; holds one flight's memory.
+/// Laws: 1. continues from the observed state. 2. 0 < next.time - state.time <= max_dt, and the
+/// speed kept is the vehicle's at most. 3. No allocation in a step. 4. Equal observations in equal
+/// order give equal steps.
+class ALTIPLAN_API Pilot {
+ public:
+  virtual ~Pilot();
+  PilotStep step(const Observation& seen);
+  /// Obstacles farther away than this do not move it; the host hands over within it.
+  double reach_m() const { return do_reach_m(); }
+  Counters counters() const { return do_counters(); }
+
+ private:
+  virtual PilotStep do_step(const Observation& seen) = 0;
+  virtual double do_reach_m() const = 0;
+  virtual Counters do_counters() const;
+};
+
+/// Makes pilots. As a `plan` step the host rolls one out until it arrives, is stuck, or the budget
+/// ends; as a `fly` step it commands near what the route did not know. One step of a pilot is one
+/// iteration.
+class ALTIPLAN_API LocalPlanner {
+ public:
+  virtual ~LocalPlanner();
+  std::unique_ptr<Pilot> begin(const Request& request) const;
+  Traits traits() const { return do_traits(); }
+
+ private:
+  virtual std::unique_ptr<Pilot> do_begin(const Request& request) const = 0;
+  virtual Traits do_traits() const;
+};
+}  // namespace altiplan

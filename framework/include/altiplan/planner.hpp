@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "altiplan/plan_result.hpp"
+#include "altiplan/request.hpp"
+
+namespace altiplan {
+
+/// A plan that goes on while the vehicle flies: knows its last result and takes changes.
+/// Laws: 1. update continues from the given state; the first point of its route is that position.
+/// 2. After an update, result() is what update returned.
+class ALTIPLAN_API Session {
+ public:
+  virtual ~Session();
+  const PlanResult& result() const { return do_result(); }
+  /// The world is the known world after `changes` (since the last call).
+  const PlanResult& update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
+                           std::span<const Change> changes, const Budget& budget);
+
+ private:
+  virtual const PlanResult& do_result() const = 0;
+  virtual const PlanResult& do_update(const State& state, const Goal& goal,
+                                      std::shared_ptr<const World> world,
+                                      std::span<const Change> changes, const Budget& budget) = 0;
+};
+
+/// Plans a whole route. Constructed from its parameters; const and shareable.
+///
+/// Laws, checked by the public functions where they can be, else by the conformance suite:
+///  1. The route starts at request.start.position exactly and ends within the goal's tolerance.
+///  2. Every leg satisfies leg_ok of check.hpp.
+///  3. `solved` if and only if a route is returned; no route is a status, never an exception.
+///  4. The budget is kept, the stop token honoured within 1,024 iterations.
+///  5. Two calls with equal requests give equal results, on any threads, in any order.
+class ALTIPLAN_API Planner {
+ public:
+  virtual ~Planner();
+  PlanResult plan(const Request& request) const;
+  /// Plans, and keeps what it knows for updates. By default a session plans afresh.
+  std::unique_ptr<Session> begin(const Request& request) const;
+  Traits traits() const { return do_traits(); }
+
+ private:
+  virtual PlanResult do_plan(const Request& request) const = 0;
+  virtual std::unique_ptr<Session> do_begin(const Request& request) const;
+  virtual Traits do_traits() const = 0;
+};
+}  // namespace altiplan

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+#include "altiplan/constraint.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/params.hpp"
+#include "altiplan/planner.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
+
+namespace altiplan {
+
+/// What a library says of itself, read from its file before any of its code runs: plain data in the
+/// ELF section `altiplan_manifest`, one record a plugin. The host compares it with its own and
+/// refuses with both sides printed; compiler and optimisation are information.
+struct Manifest {
+  static constexpr char kMagic[16] = "altiplan plugin";
+  static constexpr std::size_t kLayouts = 20;
+
+  char magic[16];
+  std::uint32_t struct_size;
+  std::uint16_t api_major;
+  std::uint16_t api_minor;
+  std::uint8_t cxx11_abi;
+  std::uint8_t glibcxx_debug;
+  std::uint8_t sanitizers;  ///< 1 address, 2 thread, 4 memory
+  std::uint8_t optimised;
+  std::uint32_t layouts[kLayouts];  ///< size × 64 + alignment of the structs in kLayoutNames
+  char compiler[64];
+  char kind[24];
+  char name[64];
+  char sentence[256];
+};
+
+inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
+    "Vec3",    "Box",        "std::string", "std::vector", "std::function",
+    "Value",   "FieldSpec",  "BoundField",  "Point",       "Frame",
+    "Site",    "Nearby",     "VoxelGrid",   "World",       "Limits",
+    "Request", "PlanResult", "Observation", "PilotStep",   "Vehicle"};
+
+template <class T>
+constexpr std::uint32_t layout_of() {
+  return std::uint32_t(sizeof(T) * 64 + alignof(T));
+}
+
+/// The manifest of a plugin compiled here and now.
+constexpr Manifest make_manifest(const char* kind, const char* name, const char* sentence) {
+  Manifest m{};
+  const auto copy = [](char* to, std::size_t room, const char* from) {
+    for (std::size_t i = 0; i + 1 < room && from[i] != '\0'; ++i) {
+      to[i] = from[i];
+    }
+  };
+  copy(m.magic, sizeof m.magic, Manifest::kMagic);
+  m.struct_size = sizeof(Manifest);
+  m.api_major = ALTIPLAN_API_MAJOR;
+  m.api_minor = ALTIPLAN_API_MINOR;
+#ifdef _GLIBCXX_USE_CXX11_ABI
+  m.cxx11_abi = _GLIBCXX_USE_CXX11_ABI;
+#endif
+#ifdef _GLIBCXX_DEBUG
+  m.glibcxx_debug = 1;
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+  m.sanitizers |= 1;
+#endif
+#if defined(__SANITIZE_THREAD__)
+  m.sanitizers |= 2;
+#endif
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  m.sanitizers |= 1;
+#endif
+#if __has_feature(thread_sanitizer)
+  m.sanitizers |= 2;
+#endif
+#if __has_feature(memory_sanitizer)
+  m.sanitizers |= 4;
+#endif
+#endif
+#ifdef __OPTIMIZE__
+  m.optimised = 1;
+#endif
+  const std::uint32_t layouts[Manifest::kLayouts] = {layout_of<Vec3>(),
+                                                     layout_of<Box>(),
+                                                     layout_of<std::string>(),
+                                                     layout_of<std::vector<int>>(),
+                                                     layout_of<std::function<void()>>(),
+                                                     layout_of<Value>(),
+                                                     layout_of<FieldSpec>(),
+                                                     layout_of<BoundField>(),
+                                                     layout_of<Point>(),
+                                                     layout_of<Frame>(),
+                                                     layout_of<Site>(),
+                                                     layout_of<Nearby>(),
+                                                     layout_of<VoxelGrid>(),
+                                                     layout_of<World>(),
+                                                     layout_of<Limits>(),
+                                                     layout_of<Request>(),
+                                                     layout_of<PlanResult>(),
+                                                     layout_of<Observation>(),
+                                                     layout_of<PilotStep>(),
+                                                     layout_of<Vehicle>()};
+  for (std::size_t i = 0; i < Manifest::kLayouts; ++i) {
+    m.layouts[i] = layouts[i];
+  }
+  copy(m.compiler, sizeof m.compiler, __VERSION__);
+  copy(m.kind, sizeof m.kind, kind);
+  copy(m.name, sizeof m.name, name);
+  copy(m.sentence, sizeof m.sentence, sentence);
+  return m;
+}
+
+/// How the host makes objects of a plugin; the function of its kind is set, the others are null.
+/// `describe` reads parameters (null: defaults) and never throws; the makers throw Error.
+struct PluginEntry {
+  const char* kind;
+  const char* name;
+  const char* sentence;
+  ParamReport (*describe)(const Value* parameters, const std::string& path);
+  std::unique_ptr<Environment> (*environment)(const Value* parameters, const Site& site);
+  std::unique_ptr<Constraint> (*constraint)(const Value* parameters);
+  std::unique_ptr<Planner> (*planner)(const Value* parameters);
+  std::unique_ptr<LocalPlanner> (*local_planner)(const Value* parameters);
+  std::unique_ptr<Smoother> (*smoother)(const Value* parameters);
+  std::unique_ptr<Tuner> (*tuner)(const Value* parameters);
+};
+
+/// The one symbol that a plugin library exports.
+using PluginList = const PluginEntry* const* (*)(std::size_t* count);
+inline constexpr const char* kPluginListSymbol = "altiplan_plugins";
+/// For a plugin without parameters.
+struct NoParams {
+  void describe(Fields&) {}
+};
+
+namespace detail {
+
+/// Makes a plugin's object; an exception that is not the framework's stops here.
+template <class Interface, class Class, class Params, class... Site>
+std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
+  try {
+    Params params;
+    ParamReport report = bind(params, parameters);
+    if (!report.problems.empty()) {
+      throw ConfigError(std::move(report.problems));
+    }
+    return std::make_unique<Class>(params, site...);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw PluginError(error.what());
+  } catch (...) {
+    throw PluginError("threw something that is not a std::exception");
+  }
+}
+
+template <class Params>
+ParamReport describe(const Value* parameters, const std::string& path) {
+  Params params;
+  return bind(params, parameters, path);
+}
+
+template <class Interface>
+struct Kind;
+template <>
+struct Kind<Environment> {
+  static constexpr const char* kName = "environment";
+};
+template <>
+struct Kind<Constraint> {
+  static constexpr const char* kName = "constraint";
+};
+template <>
+struct Kind<Planner> {
+  static constexpr const char* kName = "planner";
+};
+template <>
+struct Kind<LocalPlanner> {
+  static constexpr const char* kName = "local_planner";
+};
+template <>
+struct Kind<Smoother> {
+  static constexpr const char* kName = "smoother";
+};
+template <>
+struct Kind<Tuner> {
+  static constexpr const char* kName = "tuner";
+};
+
+template <class Interface, class Class, class Params>
+constexpr PluginEntry make_entry(const char* name, const char* sentence) {
+  PluginEntry entry{};
+  entry.kind = Kind<Interface>::kName;
+  entry.name = name;
+  entry.sentence = sentence;
+  entry.describe = &describe<Params>;
+  if constexpr (std::is_same_v<Interface, Environment>) {
+    entry.environment = &make<Interface, Class, Params, Site>;
+  } else if constexpr (std::is_same_v<Interface, Constraint>) {
+    entry.constraint = &make<Interface, Class, Params>;
+  } else if constexpr (std::is_same_v<Interface, Planner>) {
+    entry.planner = &make<Interface, Class, Params>;
+  } else if constexpr (std::is_same_v<Interface, LocalPlanner>) {
+    entry.local_planner = &make<Interface, Class, Params>;
+  } else if constexpr (std::is_same_v<Interface, Smoother>) {
+    entry.smoother = &make<Interface, Class, Params>;
+  } else {
+    entry.tuner = &make<Interface, Class, Params>;
+  }
+  return entry;
+}
+}  // namespace detail
+}  // namespace altiplan

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "altiplan/constraint.hpp"
+#include "altiplan/random.hpp"
+#include "altiplan/trace.hpp"
+#include "altiplan/vehicle.hpp"
+#include "altiplan/world.hpp"
+
+namespace altiplan {
+
+struct Goal {
+  Vec3 position{0, 0, 0};
+  double tolerance_m = 0;
+
+  bool reached_at(const Vec3& p) const {
+    return (p - position).norm() <= tolerance_m + kLengthTolerance;
+  }
+};
+
+/// What a call may use up. One iteration is one unit of the planner's `expanded` counter.
+struct Budget {
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> deadline;
+  std::uint64_t max_iterations = ~std::uint64_t{0};
+  std::size_t max_memory_bytes = ~std::size_t{0};
+  std::stop_token stop;
+};
+
+/// Asked once an iteration: iterations are compared every time, the stop token and the clock every
+/// 64th, so that a budget of iterations alone is deterministic.
+class BudgetWatch {
+ public:
+  explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
+  bool spent(std::uint64_t iterations) {
+    if (iterations >= budget_.max_iterations) {
+      return true;
+    }
+    if ((calls_++ & 63) != 0) {
+      return false;
+    }
+    cancelled_ = budget_.stop.stop_requested();
+    return cancelled_ || (budget_.deadline && Budget::Clock::now() >= *budget_.deadline);
+  }
+  /// Whether the stop token, not a budget, ended it.
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  const Budget& budget_;
+  std::uint64_t calls_ = 0;
+  bool cancelled_ = false;
+};
+
+/// A planning problem: all that a planner, local planner or smoother is told.
+struct Request {
+  std::shared_ptr<const World> world;  ///< the known world
+  Vehicle vehicle;
+  State start;  ///< a velocity other than zero gives the heading that the first leg is held to
+  Goal goal;
+  Limits limits;
+  std::vector<NamedConstraint> constraints;
+  Box volume;                     ///< bounded
+  std::optional<double> level_m;  ///< level flight: z of every waypoint
+  Budget budget;
+  int threads = 1;
+  RandomStream random;
+  Trace* trace = nullptr;
+
+  /// A point that the vehicle comes from, where it has a heading: one second back.
+  std::optional<Vec3> before_start() const {
+    if (start.velocity.squaredNorm() == 0) {
+      return std::nullopt;
+    }
+    return Vec3(start.position - start.velocity);
+  }
+};
+}  // namespace altiplan

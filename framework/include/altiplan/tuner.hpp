@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "altiplan/random.hpp"
+
+namespace altiplan {
+
+/// A number to be tuned. Those of one `group` are weights that sum to 1.
+struct Dimension {
+  std::string name;
+  double min = 0;
+  double max = 1;
+  int group = -1;
+};
+
+/// One optimisation under way. Laws: 1. ask returns points inside the space, all groups summing to
+/// 1; an empty batch ends the search. 2. tell follows ask, a score a point, lower is better,
+/// infinity a failure. 3. Equal spaces, streams and scores give equal batches.
+class ALTIPLAN_API Search {
+ public:
+  virtual ~Search();
+  std::vector<std::vector<double>> ask() { return do_ask(); }
+  void tell(std::span<const double> scores) { do_tell(scores); }
+
+ private:
+  virtual std::vector<std::vector<double>> do_ask() = 0;
+  virtual void do_tell(std::span<const double> scores) = 0;
+};
+
+class ALTIPLAN_API Tuner {
+ public:
+  virtual ~Tuner();
+  std::unique_ptr<Search> begin(std::vector<Dimension> space, RandomStream random) const;
+
+ private:
+  virtual std::unique_ptr<Search> do_begin(std::vector<Dimension> space,
+                                           RandomStream random) const = 0;
+};
+}  // namespace altiplan

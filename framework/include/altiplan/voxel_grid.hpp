@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/geometry.hpp"
+
+namespace altiplan {
+
+/// Index of a cell on each axis.
+using Cell = std::array<int, 3>;
+
+/// Which cells and what blocks one.
+struct ALTIPLAN_API GridSpec {
+  /// touched: an obstacle, grown by `inflation`, overlaps the open cell; centre: it covers the
+  /// cell's centre; native: the layer's own cells, taken as they are.
+  enum class Rule { touched, centre, native };
+
+  Vec3 origin{0, 0, 0};  ///< lower corner of cell (0, 0, 0), metres
+  Vec3 cell{1, 1, 1};    ///< edge lengths, metres
+  Cell counts{1, 1, 1};
+  double inflation = 0;  ///< metres
+  Rule rule = Rule::touched;
+
+  Vec3 centre(const Cell& c) const {
+    return origin + cell.cwiseProduct(Vec3(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5));
+  }
+  /// The cell that holds p (on a face: the one above); may lie outside the grid.
+  Cell cell_of(const Vec3& p) const;
+  bool holds(const Cell& c) const {
+    return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < counts[0] && c[1] < counts[1] &&
+           c[2] < counts[2];
+  }
+  std::size_t cell_count() const {
+    return std::size_t(counts[0]) * std::size_t(counts[1]) * std::size_t(counts[2]);
+  }
+  Box box() const {
+    return {origin, origin + cell.cwiseProduct(Vec3(counts[0], counts[1], counts[2]))};
+  }
+  /// Box of one cell.
+  Box cell_box(const Cell& c) const {
+    const Vec3 low = origin + cell.cwiseProduct(Vec3(c[0], c[1], c[2]));
+    return {low, low + cell};
+  }
+  friend bool operator==(const GridSpec&, const GridSpec&) = default;
+};
+
+/// Occupancy of a box of cells, a bit each, x fastest, with a border of blocked cells all around:
+/// indices from -1 to counts may be asked for.
+class ALTIPLAN_API VoxelGrid {
+ public:
+  explicit VoxelGrid(const GridSpec& spec);
+
+  const GridSpec& spec() const { return spec_; }
+  bool blocked(const Cell& c) const { return blocked(c[0], c[1], c[2]); }
+  bool blocked(int i, int j, int k) const {
+    const std::size_t bit = std::size_t(i + 1);
+    return (words_[row(j, k) + bit / 64] >> (bit % 64)) & 1;
+  }
+  void set(const Cell& c, bool is_blocked);
+  /// Blocks cells i0..i1 (both included, clipped to the grid) of row (j, k).
+  void block_run(int i0, int i1, int j, int k);
+  /// Blocks what `other`, of the same spec, blocks.
+  void merge(const VoxelGrid& other);
+  std::size_t blocked_count() const;
+  std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
+
+  /// Bits of row (j, k), cell -1 first; `words_per_row()` words.
+  const std::uint64_t* row_words(int j, int k) const { return words_.data() + row(j, k); }
+  std::size_t words_per_row() const { return words_per_row_; }
+
+  /// Cells whose state differs between two grids of one spec.
+  static std::vector<Cell> diff(const VoxelGrid& a, const VoxelGrid& b);
+
+ private:
+  std::size_t row(int j, int k) const {
+    return (std::size_t(k + 1) * rows_per_level_ + std::size_t(j + 1)) * words_per_row_;
+  }
+  GridSpec spec_;
+  std::size_t words_per_row_;
+  std::size_t rows_per_level_;
+  std::vector<std::uint64_t> words_;
+};
+}  // namespace altiplan

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/geometry.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace altiplan {
+
+double turn_angle_horizontal(const Vec3& before, const Vec3& after) {
+  const double cross = before.x() * after.y() - before.y() * after.x();
+  const double dot = before.x() * after.x() + before.y() * after.y();
+  return std::atan2(std::abs(cross), dot);  // atan2(0, 0) = 0: a vertical direction
+}
+
+double turn_angle_in_space(const Vec3& before, const Vec3& after) {
+  return std::atan2(before.cross(after).norm(), before.dot(after));
+}
+
+double climb_angle(const Vec3& direction) {
+  return std::atan2(std::abs(direction.z()), std::hypot(direction.x(), direction.y()));
+}
+
+double radius_through(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a;
+  const Vec3 v = c - b;
+  const double twice_area = u.cross(v).norm();
+  if (twice_area == 0) {
+    return u.dot(v) < 0 ? 0 : kInfinity;  // straight back is no circle at all
+  }
+  return u.norm() * v.norm() * (c - a).norm() / (2 * twice_area);
+}
+
+double point_leg_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double square = along.squaredNorm();
+  const double t = square > 0 ? std::clamp((p - a).dot(along) / square, 0.0, 1.0) : 0.0;
+  return (a + t * along - p).norm();
+}
+}  // namespace altiplan

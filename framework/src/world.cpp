@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/world.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan {
+
+/// Grids of this snapshot, and those of an earlier one with the layers that they show.
+struct World::Cache {
+  struct Earlier {
+    std::shared_ptr<const VoxelGrid> grid;
+    std::vector<Layer> layers;
+  };
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const VoxelGrid>> grids;
+  std::vector<Earlier> earlier;
+};
+
+World::World() : cache_(std::make_shared<Cache>()) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::World(const World&) = default;
+World& World::operator=(const World&) = default;
+
+const Layer* World::find(std::string_view id) const {
+  const auto found = std::find_if(layers_.begin(), layers_.end(),
+                                  [&](const Layer& layer) { return layer.id == id; });
+  return found == layers_.end() ? nullptr : &*found;
+}
+
+World World::next() const {
+  World world(*this);
+  world.revision_ = revision_ + 1;
+  world.cache_ = std::make_shared<Cache>();
+  const std::lock_guard lock(cache_->mutex);
+  world.cache_->earlier = cache_->earlier;
+  for (const auto& grid : cache_->grids) {
+    std::erase_if(world.cache_->earlier, [&](const Cache::Earlier& earlier) {
+      return earlier.grid->spec() == grid->spec();
+    });
+    world.cache_->earlier.push_back({grid, layers_});
+  }
+  return world;
+}
+
+World World::with_frame(Frame frame) const {
+  World world(*this);
+  world.frame_ = std::move(frame);
+  return world;
+}
+
+World World::with(Layer layer) const {
+  if (find(layer.id) != nullptr) {
+    throw Error("the world has a layer '" + layer.id + "' already");
+  }
+  World world = next();
+  world.layers_.push_back(std::move(layer));
+  return world;
+}
+
+World World::with_replaced(Layer layer) const {
+  World world = next();
+  for (Layer& old : world.layers_) {
+    if (old.id == layer.id) {
+      old = std::move(layer);
+      return world;
+    }
+  }
+  throw Error("the world has no layer '" + layer.id + "'");
+}
+
+World World::without(std::string_view id) const {
+  World world = next();
+  std::erase_if(world.layers_, [&](const Layer& layer) { return layer.id == id; });
+  return world;
+}
+
+World World::with_moving(std::vector<MovingObstacle> moving) const {
+  World world(*this);  // moving obstacles are never rasterized: the grids stay
+  world.revision_ = revision_ + 1;
+  world.moving_ = std::move(moving);
+  return world;
+}
+
+Box World::bounds() const {
+  Box all = Box::empty();
+  for (const Layer& layer : layers_) {
+    const Box box = layer.environment->bounds();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::isfinite(box.min[axis]) && std::isfinite(box.max[axis])) {
+        all.min[axis] = std::min(all.min[axis], box.min[axis]);
+        all.max[axis] = std::max(all.max[axis], box.max[axis]);
+      }
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (all.min[axis] > all.max[axis]) {
+      all.min[axis] = -kInfinity;
+      all.max[axis] = kInfinity;
+    }
+  }
+  return all;
+}
+
+double World::clearance(const Vec3& p) const {
+  double least = kInfinity;
+  for (const Layer& layer : layers_) {
+    least = std::min(least, layer.environment->clearance(p));
+  }
+  return least;
+}
+
+const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
+  for (const Layer& layer : layers_) {
+    if (layer.environment->blocked(a, b, r)) {
+      return &layer;
+    }
+  }
+  return nullptr;
+}
+
+void World::near(const Vec3& p, double reach,
+                 const std::function<void(const Layer&, const Nearby&)>& sink) const {
+  for (const Layer& layer : layers_) {
+    layer.environment->near(p, reach, [&](const Nearby& nearby) { sink(layer, nearby); });
+  }
+}
+
+bool World::has_ground() const {
+  return std::any_of(layers_.begin(), layers_.end(),
+                     [](const Layer& layer) { return layer.environment->has_ground(); });
+}
+
+std::optional<double> World::ground(double x, double y) const {
+  std::optional<double> highest;
+  for (const Layer& layer : layers_) {
+    if (const auto ground = layer.environment->ground(x, y)) {
+      highest = highest ? std::max(*highest, *ground) : *ground;
+    }
+  }
+  return highest;
+}
+
+namespace {
+/// Part of the leg over the horizontal extent of a box; t0 > t1 where there is none.
+std::pair<double, double> part_over(const Box& box, const Vec3& a, const Vec3& b) {
+  double t0 = 0;
+  double t1 = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double d = b[axis] - a[axis];
+    if (d == 0) {
+      if (a[axis] < box.min[axis] || a[axis] > box.max[axis]) {
+        return {1, 0};
+      }
+      continue;
+    }
+    const double enter = (box.min[axis] - a[axis]) / d;
+    const double leave = (box.max[axis] - a[axis]) / d;
+    t0 = std::max(t0, std::min(enter, leave));
+    t1 = std::min(t1, std::max(enter, leave));
+  }
+  return {t0, t1};
+}
+}  // namespace
+
+double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
+  const auto is_ground = [](const Layer& layer) { return layer.environment->has_ground(); };
+  const auto first = std::find_if(layers_.begin(), layers_.end(), is_ground);
+  if (first == layers_.end()) {
+    return kInfinity;
+  }
+  if (std::none_of(first + 1, layers_.end(), is_ground)) {
+    return first->environment->ground_gap(a, b, enough);
+  }
+  // Neighbouring tiles: each answers for its part of the leg, and together they must cover it.
+  double least = kInfinity;
+  std::vector<std::pair<double, double>> parts;
+  for (const Layer& layer : layers_) {
+    const auto [t0, t1] = part_over(layer.environment->bounds(), a, b);
+    if (!is_ground(layer) || t0 > t1) {
+      continue;
+    }
+    const Vec3 from = t0 > 0 ? Vec3(a + t0 * (b - a)) : a;
+    const Vec3 to = t1 < 1 ? Vec3(a + t1 * (b - a)) : b;
+    least = std::min(least, layer.environment->ground_gap(from, to, enough));
+    parts.emplace_back(t0, t1);
+  }
+  std::sort(parts.begin(), parts.end());
+  double covered = 0;
+  for (const auto& [t0, t1] : parts) {
+    if (t0 > covered + 1e-12) {
+      return -kInfinity;
+    }
+    covered = std::max(covered, t1);
+  }
+  return !parts.empty() && covered >= 1 ? least : -kInfinity;
+}
+
+double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
+  double most = -kInfinity;
+  bool covered = false;
+  for (const Layer& layer : layers_) {
+    if (layer.environment->has_ground()) {
+      const auto [t0, t1] = part_over(layer.environment->bounds(), a, b);
+      if (t0 <= t1) {
+        covered = true;
+        most =
+            std::max(most, layer.environment->ground_gap_max(a + t0 * (b - a), a + t1 * (b - a)));
+      }
+    }
+  }
+  return covered ? most : kInfinity;
+}
+
+std::vector<Threat> World::threats() const {
+  std::vector<Threat> all;
+  for (const Layer& layer : layers_) {
+    for (Threat& threat : layer.environment->threats()) {
+      all.push_back(std::move(threat));
+    }
+  }
+  return all;
+}
+
+double World::slack() const {
+  double greatest = 0;
+  for (const Layer& layer : layers_) {
+    greatest = std::max(greatest, layer.environment->slack());
+  }
+  return greatest;
+}
+
+std::optional<GridSpec> World::native_grid() const {
+  for (const Layer& layer : layers_) {
+    if (auto spec = layer.environment->native_grid()) {
+      return spec;
+    }
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+bool shows(const std::vector<Layer>& layers, const Layer& layer) {
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const Layer& other) { return other.environment == layer.environment; });
+}
+
+/// Cells that may touch the box, clipped to the grid.
+std::pair<Cell, Cell> cells_touching(const GridSpec& spec, const Box& box) {
+  Cell low{};
+  Cell high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = [&](double at, double margin) {
+      const double cell = std::floor((at - spec.origin[axis]) / spec.cell[axis]) + margin;
+      return int(std::clamp(cell, -1.0, double(spec.counts[axis])));
+    };
+    low[axis] = std::max(0, index(box.min[axis], -1));
+    high[axis] = std::min(spec.counts[axis] - 1, index(box.max[axis], 1));
+  }
+  return {low, high};
+}
+
+/// The earlier grid brought up to date: added layers are drawn over it; where a layer went, the box
+/// that it filled is drawn anew from all layers.
+std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::vector<Layer>& then,
+                                         const std::vector<Layer>& now) {
+  auto grid = std::make_shared<VoxelGrid>(earlier);
+  const GridSpec& spec = grid->spec();
+  Box gone = Box::empty();
+  for (const Layer& layer : then) {
+    if (!shows(now, layer)) {
+      gone = gone.united(layer.environment->bounds().grown(spec.inflation));
+    }
+  }
+  if (!gone.is_empty()) {
+    VoxelGrid fresh(spec);
+    for (const Layer& layer : now) {
+      if (layer.environment->bounds().grown(spec.inflation + spec.cell.norm()).overlaps(gone)) {
+        layer.environment->rasterize(fresh);
+      }
+    }
+    const auto [low, high] = cells_touching(spec, gone);
+    for (int k = low[2]; k <= high[2]; ++k) {
+      for (int j = low[1]; j <= high[1]; ++j) {
+        for (int i = low[0]; i <= high[0]; ++i) {
+          grid->set({i, j, k}, fresh.blocked(i, j, k));
+        }
+      }
+    }
+  }
+  for (const Layer& layer : now) {
+    if (!shows(then, layer)) {
+      layer.environment->rasterize(*grid);
+    }
+  }
+  return grid;
+}
+}  // namespace
+
+std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
+  const std::lock_guard lock(cache_->mutex);
+  for (const auto& grid : cache_->grids) {
+    if (grid->spec() == spec) {
+      return grid;
+    }
+  }
+  for (const Cache::Earlier& earlier : cache_->earlier) {
+    if (earlier.grid->spec() == spec) {
+      cache_->grids.push_back(patched(*earlier.grid, earlier.layers, layers_));
+      return cache_->grids.back();
+    }
+  }
+  auto grid = std::make_shared<VoxelGrid>(spec);
+  for (const Layer& layer : layers_) {
+    layer.environment->rasterize(*grid);
+  }
+  cache_->grids.push_back(std::move(grid));
+  return cache_->grids.back();
+}
+
+namespace {
+/// The flight's ends as the obstacle sees them, standing still as it is at since_s.
+std::pair<Vec3, Vec3> relative(const MovingObstacle& obstacle, const Vec3& a, double t0,
+                               const Vec3& b, double t1) {
+  return {a - obstacle.velocity * (t0 - obstacle.since_s),
+          b - obstacle.velocity * (t1 - obstacle.since_s)};
+}
+}  // namespace
+
+bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b, double t1,
+          double r) {
+  const auto [from, to] = relative(obstacle, a, t0, b, t1);
+  return leg_distance(obstacle.shape, from, to) < r - kLengthTolerance;
+}
+
+double separation(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,
+                  double t1) {
+  const auto [from, to] = relative(obstacle, a, t0, b, t1);
+  return leg_distance(obstacle.shape, from, to);
+}
+}  // namespace altiplan

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
+#include "altiplan/plugin.hpp"
+
+namespace {
+using namespace altiplan;
+
+enum class Datum { sea, ground, start };
+
+struct Params {
+  std::optional<double> min_m;
+  std::optional<double> max_m;
+  Datum datum = Datum::sea;
+
+  void describe(Fields& f) {
+    f("min_m", min_m).unit("m").range(-20000, 100000).doc("lowest height above the datum");
+    f("max_m", max_m).unit("m").range(-20000, 100000).doc("greatest height above the datum");
+    f("datum", datum, {{"sea", Datum::sea}, {"ground", Datum::ground}, {"start", Datum::start}})
+        .doc("what heights count from: the sea, the ground below, or the start of the route");
+    f.check(min_m || max_m, "altitude needs min_m, max_m or both");
+    f.check(!min_m || !max_m || *min_m <= *max_m, "min_m must not exceed max_m");
+  }
+};
+
+class Altitude final : public Constraint {
+ public:
+  explicit Altitude(const Params& params) : params_(params) {}
+
+ private:
+  void do_tighten(Limits& limits, const Request& request) const override {
+    // The start's height turns the third datum into the first.
+    const double shift = params_.datum == Datum::start ? request.start.position.z() : 0;
+    AltitudeBand band;
+    if (params_.datum == Datum::ground) {
+      band.datum = AltitudeBand::Datum::ground;
+    }
+    band.min = params_.min_m.value_or(-kInfinity) + shift;
+    band.max = params_.max_m.value_or(kInfinity) + shift;
+    limits.altitude.push_back(band);
+  }
+
+  Params params_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Constraint, "altitude", Altitude, Params,
+                "Keeps the route between two heights over the sea, the ground or the start")

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The hills of paper 002, given peak by peak or drawn from a seed:
+//   alt(x, y) = min(cap, base + Σ h exp(-((x - x0)/sx)²/2 - ((y - y0)/sy)²/2)).
+// A smooth surface: every answer is certified by bounds of its first and second derivatives, none
+// by samples.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "altiplan/kit/ground.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/world.hpp"
+#include "surface.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct PeakParams {
+  std::array<double, 2> at_m{0, 0};
+  double height_m = 1000;
+  std::array<double, 2> sigma_m{5000, 5000};
+
+  void describe(Fields& f) {
+    f("at_m", at_m).unit("m").doc("where the peak stands").required();
+    f("height_m", height_m).unit("m").at_least(0).doc("of the peak alone, above base_m").required();
+    f("sigma_m", sigma_m)
+        .unit("m")
+        .at_least(1)
+        .doc("half widths east and north, where the peak is at 0.61 of its height")
+        .required();
+  }
+};
+
+struct Params {
+  double base_m = 500;
+  double cap_m = 4000;
+  std::vector<PeakParams> peaks;
+  std::optional<int> count;
+  std::optional<std::int64_t> seed;
+  double extent_m = 100000;
+
+  void describe(Fields& f) {
+    f("base_m", base_m).unit("m").doc("height of the ground far from all peaks");
+    f("cap_m", cap_m).unit("m").doc("no ground is higher: what would be is a plateau");
+    f("peaks", peaks).doc("the peaks; left out, they are drawn");
+    f("count", count).range(1, 1000).doc("how many peaks are drawn (16 where left out)");
+    f("seed", seed).at_least(0).doc("of the draw; left out, the run's seed");
+    f("extent_m", extent_m)
+        .unit("m")
+        .at_least(100)
+        .doc("side of the square, from the origin, that peaks are drawn in; widths go with it");
+    f.check(peaks.empty() || (!count && !seed), "give either peaks, or count and seed");
+    f.check(cap_m > base_m, "cap_m must be greater than base_m");
+  }
+};
+
+/// The published generator; all peaks are drawn again while the start or goal is not above ground.
+/// Zones over them are left to the judge: they do not depend on the peaks, and no draw helps.
+hills::Surface draw(const Params& params, const Site& site) {
+  RandomStream of_run = site.random;
+  SplitMix64 random(params.seed ? std::uint64_t(*params.seed) : of_run());
+  const double unit = params.extent_m / 100;
+  constexpr double kHeightUnit = 100;  // metres
+  constexpr int kDraws = 10000;
+  for (int n = 0; n < kDraws; ++n) {
+    std::vector<hills::Peak> peaks(std::size_t(params.count.value_or(16)));
+    for (hills::Peak& peak : peaks) {
+      peak.x = random.integer(5, 95) * unit;
+      peak.y = random.integer(5, 95) * unit;
+      peak.height = random.integer(10, 38) * kHeightUnit;
+      peak.sx = random.integer(3, 8) * unit;
+      peak.sy = random.integer(3, 8) * unit;
+    }
+    const auto covers = [&](const std::optional<Vec3>& p) {
+      return p &&
+             std::min(params.cap_m, params.base_m + hills::bells(peaks, p->x(), p->y())) >= p->z();
+    };
+    if (!covers(site.start) && !covers(site.goal)) {
+      return hills::Surface(params.base_m, params.cap_m, std::move(peaks));
+    }
+  }
+  throw Error("hills: the ground covers the start or the goal in " + std::to_string(kDraws) +
+              " draws; expected a start and goal above base_m, and not too many peaks");
+}
+
+hills::Surface make(const Params& params, const Site& site) {
+  if (params.peaks.empty()) {
+    return draw(params, site);
+  }
+  std::vector<hills::Peak> peaks;
+  for (const PeakParams& p : params.peaks) {
+    peaks.push_back({p.at_m[0], p.at_m[1], p.height_m, p.sigma_m[0], p.sigma_m[1]});
+  }
+  return hills::Surface(params.base_m, params.cap_m, std::move(peaks));
+}
+
+class Hills final : public Environment {
+ public:
+  Hills(const Params& params, const Site& site)
+      : ground_(make(params, site)),
+        count_(params.peaks.empty() ? std::size_t(params.count.value_or(16)) : params.peaks.size()),
+        vehicle_radius_(site.vehicle.radius_m) {}
+
+ private:
+  // The ground goes on for ever; a scenario says how much of it is flown over (volume).
+  Box do_bounds() const override {
+    return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, ground_.top()}};
+  }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double x, double y) const override {
+    return ground_.height(x, y);
+  }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    return ground_.gap(a, b, enough);
+  }
+  double do_ground_slope(const Box&) const override { return ground_.max_slope(); }
+  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+    return ground_.gap_max(a, b);
+  }
+
+  double do_clearance(const Vec3& p) const override {
+    const double above = p.z() - ground_.height(p.x(), p.y());
+    return std::max(above / std::hypot(1, ground_.max_slope()), p.z() - ground_.top());
+  }
+
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    constexpr double kShortest = 1;  // metres
+    if (std::min(a.z(), b.z()) - ground_.top() >= r - kLengthTolerance) {
+      return false;
+    }
+    const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
+      return ground_.gap(from, to, enough);
+    };
+    const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
+      const Vec3 middle = (from + to) / 2;
+      const double half = std::hypot(to.x() - from.x(), to.y() - from.y()) / 2;
+      return ground_.max_slope(middle.x(), middle.y(), half + within);
+    };
+    const double enough = kit::height_for(r - kLengthTolerance, ground_.max_slope());
+    return kit::too_near_ground(a, b, r, enough, kShortest, gap, slope);
+  }
+
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
+    if (p.z() - ground_.top() > reach) {
+      return;
+    }
+    const double gap = p.z() - ground_.height(p.x(), p.y());
+    if (gap <= kLengthTolerance) {
+      // The way out is up; the depth is a lower bound, as clearance has it.
+      sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
+      return;
+    }
+    const auto ground = [&](double x, double y) { return ground_.height(x, y); };
+    const auto highest = [&](double x0, double y0, double x1, double y1) {
+      return ground_.height_bound(x0, y0, x1, y1);
+    };
+    const kit::NearestGround nearest(p, Box{}, ground, highest);
+    if (nearest.distance() <= reach) {
+      sink({nearest.point(), nearest.distance(), (p - nearest.point()) / nearest.distance(), 0});
+    }
+  }
+
+  void do_rasterize(VoxelGrid& grid) const override {
+    kit::rasterize_ground(grid, [this](double x0, double y0, double x1, double y1) {
+      return ground_.max_height(x0, y0, x1, y1);
+    });
+  }
+
+  // As the terrain's: a sphere of the vehicle's size may be kept off by the slope though the ground
+  // is a little farther away than its radius.
+  double do_slack() const override {
+    return vehicle_radius_ * (std::hypot(1, ground_.max_slope()) - 1);
+  }
+
+  std::vector<std::string> do_notes() const override {
+    return {std::to_string(count_) + " peaks, steepest slope " +
+            std::to_string(degrees(std::atan(ground_.max_slope()))) + " degrees"};
+  }
+
+  hills::Surface ground_;
+  std::size_t count_;
+  double vehicle_radius_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Environment, "hills", Hills, Params,
+                "smooth hills, peak by peak or drawn from a seed (paper 002)")

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace hills {
+namespace {
+
+using altiplan::kInfinity;
+using altiplan::Vec3;
+
+constexpr double square(double v) { return v * v; }
+
+// (w² - 1) exp(-w² / 2), the second derivative of a bell: from -1 at its middle up to kMostBend at
+// w = √3, then down to 0.
+double bell_bend(double w) { return (w * w - 1) * std::exp(-w * w / 2); }
+const double kMostBendAt = std::sqrt(3.0);
+const double kMostBend = bell_bend(kMostBendAt);
+
+/// The ground along a leg, over the share t of the leg: a sum of one-dimensional bells.
+class Profile {
+ public:
+  Profile(const Vec3& a, const Vec3& b, double base, const std::vector<Peak>& peaks) : base_(base) {
+    // So low on the leg that all of them together stay far below the tolerance.
+    const double negligible = 1e-9 / double(peaks.size() + 1);
+    for (const Peak& peak : peaks) {
+      const double u = (a.x() - peak.x) / peak.sx;
+      const double v = (a.y() - peak.y) / peak.sy;
+      const double du = (b.x() - a.x()) / peak.sx;
+      const double dv = (b.y() - a.y()) / peak.sy;
+      const double steep = du * du + dv * dv;
+      const double middle = -(u * du + v * dv) / steep;
+      const double off = square(u + middle * du) + square(v + middle * dv);
+      const double height = peak.height * std::exp(-off / 2);
+      if (height > negligible) {
+        bells_.push_back({height, middle, 1 / std::sqrt(steep)});
+      }
+    }
+  }
+
+  double at(double t) const {
+    double sum = base_;
+    for (const Bell& bell : bells_) {
+      sum += bell.height * std::exp(-square((t - bell.middle) / bell.width) / 2);
+    }
+    return sum;
+  }
+
+  /// Greatest of sign × second derivative on [from, to], or more; never below 0.
+  double bend(double sign, double from, double to) const {
+    double bound = 0;
+    for (const Bell& bell : bells_) {
+      const double w0 = std::abs(from - bell.middle) / bell.width;
+      const double w1 = std::abs(to - bell.middle) / bell.width;
+      const bool over_middle = from < bell.middle && bell.middle < to;
+      const double near = over_middle ? 0 : std::min(w0, w1);
+      const double far = std::max(w0, w1);
+      double most = 0;
+      if (sign < 0) {
+        most = -std::min(bell_bend(near), bell_bend(far));
+      } else if (far < kMostBendAt) {
+        most = bell_bend(far);
+      } else {
+        most = near > kMostBendAt ? bell_bend(near) : kMostBend;
+      }
+      bound += bell.height / square(bell.width) * most;
+    }
+    return std::max(bound, 0.0);
+  }
+
+ private:
+  struct Bell {
+    double height, middle, width;
+  };
+  double base_;
+  std::vector<Bell> bells_;
+};
+
+/// Least over t in [0, 1] of max(line(t), sign (z(t) - ground(t))), by branch and bound: between
+/// its ends a function falls below the chord by at most bend L² / 8.
+struct Least {
+  const Profile& profile;
+  double sign;
+  double z0, z1;        // the leg's heights
+  double line0, line1;  // of the straight lower bound
+  double enough;
+  double best = kInfinity;
+
+  static constexpr double kTolerance = 1e-7;
+
+  double line(double t) const { return line0 + t * (line1 - line0); }
+  double height(double t) const { return sign * (z0 + t * (z1 - z0) - profile.at(t)); }
+  void take(double t, double at) { best = std::min(best, std::max(line(t), at)); }
+
+  double find() {
+    const double first = height(0);
+    const double last = height(1);
+    take(0, first);
+    take(1, last);
+    search(0, 1, first, last);
+    return best;
+  }
+
+  void search(double from, double to, double at_from, double at_to) {
+    const double sag = profile.bend(-sign, from, to) * square(to - from) / 8;
+    const double bound = std::max(std::min(line(from), line(to)), std::min(at_from, at_to) - sag);
+    if (bound >= std::min(best - kTolerance, enough) || to - from < 1e-13) {
+      return;
+    }
+    const double middle = (from + to) / 2;
+    const double at = height(middle);
+    take(middle, at);
+    if (at_from < at_to) {
+      search(from, middle, at_from, at);
+      search(middle, to, at, at_to);
+    } else {
+      search(middle, to, at, at_to);
+      search(from, middle, at_from, at);
+    }
+  }
+};
+
+constexpr double kNoLine = -1e300;
+
+/// Whether the leg is, for all that the ground can tell, a point of the map.
+bool is_vertical(const Vec3& a, const Vec3& b) {
+  return std::hypot(b.x() - a.x(), b.y() - a.y()) < 1e-9;
+}
+
+/// Part of the plane, with what may be the greatest value in it.
+struct Part {
+  double x, y, half_x, half_y, bound;
+  bool operator<(const Part& other) const { return bound < other.bound; }
+};
+
+/// An upper bound, within `relative` and `absolute`, of the greatest value over a box.
+/// look(x, y, half_x, half_y) gives {a value in that part, an upper bound for it}.
+template <class Look>
+double greatest(Part whole, double relative, double absolute, const Look& look) {
+  double best = -kInfinity;
+  std::priority_queue<Part> parts;
+  const auto add = [&](Part part) {
+    const auto [value, bound] = look(part.x, part.y, part.half_x, part.half_y);
+    best = std::max(best, value);
+    part.bound = bound;
+    parts.push(part);
+  };
+  add(whole);
+  while (parts.top().bound > best + std::max(absolute, relative * std::abs(best))) {
+    const Part part = parts.top();
+    parts.pop();
+    const bool wide = part.half_x > part.half_y;
+    const double half_x = wide ? part.half_x / 2 : part.half_x;
+    const double half_y = wide ? part.half_y : part.half_y / 2;
+    for (const double side : {-1.0, 1.0}) {
+      add({part.x + (wide ? side * half_x : 0), part.y + (wide ? 0 : side * half_y), half_x, half_y,
+           0});
+    }
+  }
+  return std::max(best, parts.top().bound);
+}
+}  // namespace
+
+double bells(const std::vector<Peak>& peaks, double x, double y) {
+  double sum = 0;
+  for (const Peak& peak : peaks) {
+    sum += peak.height *
+           std::exp(-square((x - peak.x) / peak.sx) / 2 - square((y - peak.y) / peak.sy) / 2);
+  }
+  return sum;
+}
+
+Surface::Surface(double base, double cap, std::vector<Peak> peaks)
+    : base_(base), cap_(cap), peaks_(std::move(peaks)), top_(base) {
+  for (const Peak& peak : peaks_) {
+    top_ += std::max(peak.height, 0.0);
+  }
+  top_ = std::min(top_, cap_);
+  max_slope_ = steepest();
+}
+
+Surface::Local Surface::local(double x, double y) const {
+  Local at{base_, 0, 0};
+  for (const Peak& peak : peaks_) {
+    const double u = (x - peak.x) / peak.sx;
+    const double v = (y - peak.y) / peak.sy;
+    const double bell = peak.height * std::exp(-u * u / 2 - v * v / 2);
+    at.sum += bell;
+    at.dx -= bell * u / peak.sx;
+    at.dy -= bell * v / peak.sy;
+  }
+  return at;
+}
+
+// Bound of the second derivative in any direction within r of (x, y). In the peak's own units it is
+// max(1, |w² - 1|) exp(-w² / 2) at most, which only falls with the distance w.
+double Surface::bend(double x, double y, double r) const {
+  double bound = 0;
+  for (const Peak& peak : peaks_) {
+    const double narrow = std::min(peak.sx, peak.sy);
+    const double w =
+        std::max(std::hypot((x - peak.x) / peak.sx, (y - peak.y) / peak.sy) - r / narrow, 0.0);
+    const double most = w > kMostBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMostBend);
+    bound += peak.height / square(narrow) * most;
+  }
+  return bound;
+}
+
+double Surface::max_slope(double x, double y, double r) const {
+  const Local at = local(x, y);
+  return std::min(max_slope_, std::hypot(at.dx, at.dy) + bend(x, y, r) * r);
+}
+
+double Surface::height_bound(double x0, double y0, double x1, double y1) const {
+  const double half_x = (x1 - x0) / 2;
+  const double half_y = (y1 - y0) / 2;
+  const double x = x0 + half_x;
+  const double y = y0 + half_y;
+  const Local at = local(x, y);
+  const double r = std::hypot(half_x, half_y);
+  return std::min(top_, at.sum + std::abs(at.dx) * half_x + std::abs(at.dy) * half_y +
+                            bend(x, y, r) * r * r / 2);
+}
+
+double Surface::max_height(double x0, double y0, double x1, double y1) const {
+  constexpr double kWithin = 0.01;  // metres
+  const auto look = [&](double x, double y, double half_x, double half_y) {
+    Local at = local(x, y);
+    const double most_bend = bend(x, y, std::hypot(half_x, half_y));
+    const double turn = most_bend * std::hypot(half_x, half_y);
+    const bool east_west = std::abs(at.dx) > turn;
+    const bool north_south = std::abs(at.dy) > turn;
+    // Where the slope along an axis keeps its sign, the highest ground lies on that side.
+    if (east_west || north_south) {
+      x += east_west ? std::copysign(half_x, at.dx) : 0;
+      y += north_south ? std::copysign(half_y, at.dy) : 0;
+      half_x = east_west ? 0 : half_x;
+      half_y = north_south ? 0 : half_y;
+      at = local(x, y);
+    }
+    const double value = height(x + std::copysign(half_x, at.dx), y + std::copysign(half_y, at.dy));
+    const double bound = at.sum + std::abs(at.dx) * half_x + std::abs(at.dy) * half_y +
+                         most_bend * (half_x * half_x + half_y * half_y) / 2;
+    return std::pair(value, std::min(bound, top_));
+  };
+  return greatest({(x0 + x1) / 2, (y0 + y1) / 2, (x1 - x0) / 2, (y1 - y0) / 2, 0}, 0, kWithin,
+                  look);
+}
+
+// A bell is steepest at one width from its middle: beyond ten widths from all of them the slope is
+// no matter.
+double Surface::steepest() const {
+  constexpr double kWidths = 10;
+  altiplan::Box box = altiplan::Box::empty();
+  for (const Peak& peak : peaks_) {
+    const Vec3 reach(kWidths * peak.sx, kWidths * peak.sy, 0);
+    const Vec3 middle(peak.x, peak.y, 0);
+    box = box.with(middle - reach).with(middle + reach);
+  }
+  if (peaks_.empty()) {
+    return 0;
+  }
+  const auto look = [&](double x, double y, double half_x, double half_y) {
+    const Local at = local(x, y);
+    const double r = std::hypot(half_x, half_y);
+    const double slope = std::hypot(at.dx, at.dy);
+    const double most_bend = bend(x, y, r);
+    const bool capped = at.sum - slope * r - most_bend * r * r / 2 >= cap_;
+    return std::pair(at.sum < cap_ ? slope : 0.0, capped ? 0.0 : slope + most_bend * r);
+  };
+  const Vec3 middle = (box.min + box.max) / 2;
+  const Vec3 half = (box.max - box.min) / 2;
+  return greatest({middle.x(), middle.y(), half.x(), half.y(), 0}, 0.01, 1e-6, look);
+}
+
+double Surface::gap(const Vec3& a, const Vec3& b, double enough) const {
+  const double low = std::min(a.z(), b.z());
+  if (is_vertical(a, b)) {
+    return low - height(a.x(), a.y());
+  }
+  if (low - top_ >= enough) {
+    return low - top_;
+  }
+  const Profile profile(a, b, base_, peaks_);
+  return Least{profile, 1, a.z(), b.z(), a.z() - cap_, b.z() - cap_, enough}.find();
+}
+
+double Surface::gap_max(const Vec3& a, const Vec3& b) const {
+  const double high = std::max(a.z(), b.z());
+  if (is_vertical(a, b)) {
+    return high - height(a.x(), a.y());
+  }
+  // z - min(cap, sum) = max(z - cap, z - sum), and the greatest of each may be taken alone.
+  const Profile profile(a, b, base_, peaks_);
+  const double below = Least{profile, -1, a.z(), b.z(), kNoLine, kNoLine, kInfinity}.find();
+  return std::max(high - cap_, -below);
+}
+}  // namespace hills

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "altiplan/geometry.hpp"
+
+namespace hills {
+
+/// A bell: height exp(-((x - x0) / sx)² / 2 - ((y - y0) / sy)² / 2), metres.
+struct Peak {
+  double x, y;
+  double height;
+  double sx, sy;
+};
+
+double bells(const std::vector<Peak>& peaks, double x, double y);
+
+/// The ground min(cap, base + Σ bells), and certified bounds of it.
+class Surface {
+ public:
+  Surface(double base, double cap, std::vector<Peak> peaks);
+
+  double height(double x, double y) const { return std::min(cap_, base_ + bells(peaks_, x, y)); }
+  /// No ground is higher.
+  double top() const { return top_; }
+  /// No ground is steeper; within 1 % of the steepest.
+  double max_slope() const { return max_slope_; }
+  /// No ground within r of (x, y) is steeper.
+  double max_slope(double x, double y, double r) const;
+  /// No ground in the closed box is higher; one evaluation, loose in a large box.
+  double height_bound(double x0, double y0, double x1, double y1) const;
+  /// The same, within a centimetre of the highest ground.
+  double max_height(double x0, double y0, double x1, double y1) const;
+
+  /// Least height of the leg above the ground, within 1e-7 m; any value of at least `enough` once
+  /// it is known to be that high.
+  double gap(const altiplan::Vec3& a, const altiplan::Vec3& b, double enough) const;
+  /// Greatest height of the leg above the ground, likewise.
+  double gap_max(const altiplan::Vec3& a, const altiplan::Vec3& b) const;
+
+ private:
+  struct Local {
+    double sum, dx, dy;
+  };
+  Local local(double x, double y) const;
+  double bend(double x, double y, double r) const;
+  double steepest() const;
+
+  double base_;
+  double cap_;
+  std::vector<Peak> peaks_;
+  double top_;
+  double max_slope_ = altiplan::kInfinity;
+};
+}  // namespace hills

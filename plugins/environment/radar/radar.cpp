@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/world.hpp"
+#include "radar_equation.hpp"
+
+namespace altiplan::radar {
+namespace {
+
+struct Params {
+  Point at;
+  std::optional<double> range_m;
+  std::optional<RadarEquation> equation;
+  bool masking = false;
+
+  void describe(Fields& f) {
+    f.point(at).doc("the antenna");
+    f("range_m", range_m).unit("m").greater_than(0).doc("detection range; or give `equation`");
+    f("equation", equation).doc("the quantities of the radar equation, paper 000, eq. (1)");
+    f("masking", masking).doc("whether ground between the antenna and a point hides the point");
+    f.check(range_m.has_value() != equation.has_value(), "give either range_m or equation");
+  }
+};
+
+Vec3 antenna(const Params& params, const Site& site) {
+  Vec3 at = site.resolve(params.at);
+  if (!params.at.has_height && !params.at.above_ground_m && params.at.form != Point::Form::cell) {
+    if (site.volume.min.z() != site.volume.max.z()) {
+      throw Error("a radar needs the height of its antenna: a third number or above_ground_m");
+    }
+    at.z() = site.volume.min.z();  // level flight
+  }
+  return at;
+}
+
+/// A ball around the antenna; with masking, without what the ground hides.
+///
+/// A point's line of sight has the gap g, its least height above the ground: the point is covered
+/// where g >= 0. Moving the point by d changes g by at most √(1 + s²) d, s the steepest slope of
+/// the ground, so -g / √(1 + s²) is a 1-Lipschitz lower bound of the distance to what is covered.
+class Radar final : public Environment {
+ public:
+  Radar(const Params& params, const Site& site)
+      : at_(antenna(params, site)),
+        range_(params.range_m ? *params.range_m : params.equation->range_m()),
+        ball_({Sphere{at_, range_}}) {
+    if (params.masking) {
+      find_ground(*site.before);
+    }
+  }
+
+ private:
+  void find_ground(const World& before) {
+    for (const Layer& layer : before.layers()) {
+      if (layer.environment->has_ground()) {
+        if (ground_) {
+          throw ParameterError("masking", "needs one layer with ground before the radar, found '" +
+                                              ground_id_ + "' and '" + layer.id + "'");
+        }
+        ground_ = layer.environment;
+        ground_id_ = layer.id;
+      }
+    }
+    if (!ground_) {
+      throw ParameterError("masking", "needs a layer with ground (terrain) before the radar");
+    }
+    area_ = ground_->bounds();
+    area_.min.z() = -kInfinity;
+    area_.max.z() = kInfinity;
+    const auto height = ground_->ground(at_.x(), at_.y());
+    if (!height || at_.z() < *height) {
+      throw Error(height ? "the antenna stands below the ground"
+                         : "masking: there is no ground below the antenna");
+    }
+    const double slope = ground_->ground_slope(ball_.bounds().intersected(area_));
+    steepness_ = std::hypot(1, slope);
+    if (!std::isfinite(slope)) {
+      ground_.reset();  // nothing can be said about what is hidden
+    }
+  }
+
+  // Signed distance of p from what the ground does not hide, a lower bound; where there is no
+  // ground nothing is hidden.
+  double to_covered(const Vec3& p) const {
+    const double to_edge = (p - area_.min).cwiseMin(area_.max - p).head<2>().minCoeff();
+    if (to_edge <= 0) {
+      return to_edge;
+    }
+    const double hidden = -ground_->ground_gap(at_, p) / steepness_;
+    return std::min(to_edge, std::max(hidden, -to_edge));
+  }
+
+  Box do_bounds() const override { return ball_.bounds(); }
+
+  double do_clearance(const Vec3& p) const override {
+    const double to_ball = ball_.clearance(p);
+    return ground_ ? std::max(to_ball, to_covered(p)) : to_ball;
+  }
+
+  // Masked: looks at places along the leg no further apart than the slack; a place speaks for half
+  // the slack to both sides.
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    if (!ball_.blocked(a, b, r)) {
+      return false;
+    }
+    if (!ground_) {
+      return true;
+    }
+    // A flagged place must not depend on how it was found, else the answer would not be monotone
+    // in r; places nearer than the spare clearance need no look.
+    const double total = (b - a).norm();
+    const double count = std::max(1.0, std::ceil(total / kMaskedSlack));
+    for (double n = 0; n <= count;) {
+      const double spare =
+          do_clearance(a + n / count * (b - a)) - (r - kLengthTolerance + kMaskedSlack / 2);
+      if (spare < 0) {
+        return true;
+      }
+      n += total > 0 ? std::max(1.0, std::floor(spare / total * count)) : count + 1;
+    }
+    return false;
+  }
+
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
+    const double distance = do_clearance(p);
+    if (distance <= reach) {
+      const Vec3 out = p - at_;
+      const double length = out.norm();
+      const Vec3 normal = length > 0 ? Vec3(out / length) : Vec3(0, 0, 1);
+      sink({p - normal * distance, distance, normal, 0});
+    }
+  }
+
+  void do_rasterize(VoxelGrid& grid) const override {
+    if (!ground_) {
+      ball_.rasterize(grid);
+      return;
+    }
+    const GridSpec& spec = grid.spec();
+    const double reach =
+        spec.inflation +
+        (spec.rule == GridSpec::Rule::centre ? kLengthTolerance : spec.cell.norm() / 2);
+    VoxelGrid ball(spec);
+    ball_.rasterize(ball);
+    for (int j = 0; j < spec.counts[1]; ++j) {
+      for (int i = 0; i < spec.counts[0]; ++i) {
+        // A line of sight rises with its end: what is hidden lies below what is not.
+        int low = 0;
+        int high = spec.counts[2];
+        while (low < high) {
+          const int middle = (low + high) / 2;
+          if (to_covered(spec.centre({i, j, middle})) <= reach) {
+            high = middle;
+          } else {
+            low = middle + 1;
+          }
+        }
+        for (int k = low; k < spec.counts[2]; ++k) {
+          if (ball.blocked(i, j, k)) {
+            grid.block_run(i, i, j, k);
+          }
+        }
+      }
+    }
+  }
+
+  double do_slack() const override { return ground_ ? kMaskedSlack : 0; }
+  std::vector<Threat> do_threats() const override { return {{at_, range_, "radar", ""}}; }
+  std::vector<std::string> do_notes() const override {
+    std::string note = "range " + std::to_string(std::lround(range_)) + " m";
+    if (!ground_id_.empty()) {
+      note += ground_ ? ", masked by '" + ground_id_ + "'"
+                      : ", not masked: '" + ground_id_ + "' has holes or an unknown slope in range";
+    }
+    return {note};
+  }
+
+  static constexpr double kMaskedSlack = 1;  // metres
+
+  Vec3 at_;
+  double range_;
+  kit::ObstacleSet ball_;
+  std::shared_ptr<const Environment> ground_;  ///< none: no masking
+  std::string ground_id_;
+  Box area_;  ///< of the ground, unbounded in z
+  double steepness_ = 1;
+};
+}  // namespace
+}  // namespace altiplan::radar
+
+ALTIPLAN_PLUGIN(Environment, "radar", altiplan::radar::Radar, altiplan::radar::Params,
+                "Radar coverage: a range or the radar equation, with terrain masking")

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gdal.h>
+#include <gdal_frmts.h>
+#include <ogr_srs_api.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <type_traits>
+
+namespace gdal {
+
+/// The C functions of GDAL that an elevation model needs. The library is opened at the first call
+/// of `api()` and stays open: linking it would cost every start of a program 20 to 60 ms.
+struct Api {
+#define ALTIPLAN_GDAL_FUNCTIONS(X)      \
+  X(GDALRegister_GTiff)                 \
+  X(GDALRegister_SRTMHGT)               \
+  X(GDALRegister_AAIGrid)               \
+  X(GDALRegister_DTED)                  \
+  X(GDALRegister_ENVI)                  \
+  X(GDALOpenEx)                         \
+  X(GDALClose)                          \
+  X(GDALGetRasterXSize)                 \
+  X(GDALGetRasterYSize)                 \
+  X(GDALGetRasterCount)                 \
+  X(GDALGetRasterBand)                  \
+  X(GDALGetGeoTransform)                \
+  X(GDALGetSpatialRef)                  \
+  X(GDALGetRasterDataType)              \
+  X(GDALDataTypeIsComplex)              \
+  X(GDALGetRasterNoDataValue)           \
+  X(GDALGetRasterUnitType)              \
+  X(GDALGetRasterScale)                 \
+  X(GDALGetRasterOffset)                \
+  X(GDALGetDataCoverageStatus)          \
+  X(GDALRasterIO)                       \
+  X(CPLPushErrorHandler)                \
+  X(CPLPopErrorHandler)                 \
+  X(CPLQuietErrorHandler)               \
+  X(CPLErrorReset)                      \
+  X(CPLGetLastErrorMsg)                 \
+  X(OSRNewSpatialReference)             \
+  X(OSRDestroySpatialReference)         \
+  X(OSRClone)                           \
+  X(OSRImportFromEPSG)                  \
+  X(OSRSetAxisMappingStrategy)          \
+  X(OSRIsGeographic)                    \
+  X(OSRIsProjected)                     \
+  X(OSRIsSame)                          \
+  X(OSRIsSameGeogCS)                    \
+  X(OSRGetLinearUnits)                  \
+  X(OSRGetName)                         \
+  X(OCTNewCoordinateTransformation)     \
+  X(OCTDestroyCoordinateTransformation) \
+  X(OCTTransform)
+#define ALTIPLAN_GDAL_MEMBER(name) decltype(&::name) name;
+  ALTIPLAN_GDAL_FUNCTIONS(ALTIPLAN_GDAL_MEMBER)
+#undef ALTIPLAN_GDAL_MEMBER
+};
+
+/// Throws altiplan::Error where the library cannot be opened. Registers the five drivers above and
+/// no other: a VRT may read any file, and others go to the network.
+const Api& api();
+
+/// Keeps GDAL's messages off stderr; they are read with `last_error`. Per thread.
+class Quiet {
+ public:
+  Quiet();
+  ~Quiet();
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+};
+std::string last_error();
+
+struct CloseDataset {
+  void operator()(void* dataset) const { api().GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<void, CloseDataset>;
+
+struct DestroyReference {
+  void operator()(OGRSpatialReferenceH reference) const {
+    api().OSRDestroySpatialReference(reference);
+  }
+};
+/// A coordinate system with x east (or longitude) first, whatever its authority says.
+using Reference = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, DestroyReference>;
+
+/// From "EPSG:4326"; null where that is not its form or the code is unknown.
+Reference reference(const std::string& crs);
+Reference copy(OGRSpatialReferenceH reference);
+
+/// From one coordinate system to another; one thread at a time. Throws altiplan::Error where there
+/// is no way between the two, or none for a point.
+class Transform {
+ public:
+  Transform(const Reference& from, const Reference& to);
+  std::array<double, 2> operator()(double x, double y) const;
+
+ private:
+  struct Destroy {
+    void operator()(OGRCoordinateTransformationH transform) const {
+      api().OCTDestroyCoordinateTransformation(transform);
+    }
+  };
+  std::unique_ptr<std::remove_pointer_t<OGRCoordinateTransformationH>, Destroy> transform_;
+};
+}  // namespace gdal

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "place.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "altiplan/error.hpp"
+
+namespace terrain {
+namespace {
+
+using altiplan::Frame;
+using altiplan::HeightField;
+using altiplan::ParameterError;
+using XY = std::array<double, 2>;
+
+/// Between a coordinate system (x, y in its own units) and WGS 84. GDAL's transformations serve
+/// one thread at a time.
+class ToWgs84 {
+ public:
+  explicit ToWgs84(const gdal::Reference& crs)
+      : wgs84_(gdal::reference("EPSG:4326")), there_(crs, wgs84_), back_(wgs84_, crs) {}
+  XY lonlat(const XY& p) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return there_(p[0], p[1]);
+  }
+  XY native(double lon, double lat) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return back_(lon, lat);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  gdal::Reference wgs84_;
+  gdal::Transform there_;
+  gdal::Transform back_;
+};
+
+/// The axes of a projected system, with an origin of our own and in metres.
+class MapProjection final : public altiplan::Projection {
+ public:
+  MapProjection(std::shared_ptr<const ToWgs84> map, const XY& origin, double unit_m)
+      : map_(std::move(map)), origin_(origin), unit_m_(unit_m) {}
+  XY to_local(double lon, double lat) const override {
+    const XY p = map_->native(lon, lat);
+    return {(p[0] - origin_[0]) * unit_m_, (p[1] - origin_[1]) * unit_m_};
+  }
+  XY to_lonlat(double x, double y) const override {
+    return map_->lonlat({origin_[0] + x / unit_m_, origin_[1] + y / unit_m_});
+  }
+
+ private:
+  std::shared_ptr<const ToWgs84> map_;
+  XY origin_;
+  double unit_m_;
+};
+
+/// Longitude and latitude of another datum are shifted as a whole, by what is right in the middle.
+XY datum_shift(const Dem& dem) {
+  if (gdal::api().OSRIsSameGeogCS(dem.crs.get(), gdal::reference("EPSG:4326").get())) {
+    return {0, 0};
+  }
+  const XY middle{dem.south_west[0] + (dem.columns - 1) * dem.step[0] / 2,
+                  dem.south_west[1] + (dem.rows - 1) * dem.step[1] / 2};
+  const XY there = ToWgs84(dem.crs).lonlat(middle);
+  return {there[0] - middle[0], there[1] - middle[1]};
+}
+
+Placed in_own_frame(Dem dem) {
+  Frame frame;
+  XY spacing;
+  if (dem.geographic) {
+    const XY shift = datum_shift(dem);
+    const double lon = dem.south_west[0] + shift[0];
+    const double lat = dem.south_west[1] + shift[1];
+    const double height_deg = (dem.rows - 1) * dem.step[1];
+    frame = Frame::geographic(lon, lat, lat + height_deg / 2);
+    // By one post's step: a model may span more than half of the Earth.
+    spacing = frame.to_local(lon + dem.step[0], lat + dem.step[1]);
+  } else {
+    frame = Frame::projected(std::make_shared<MapProjection>(std::make_shared<ToWgs84>(dem.crs),
+                                                             dem.south_west, dem.unit_m),
+                             dem.crs_name);
+    spacing = {dem.step[0] * dem.unit_m, dem.step[1] * dem.unit_m};
+  }
+  return {HeightField({0, 0}, spacing, dem.columns, dem.rows, std::move(dem.heights)), frame};
+}
+
+/// The model seen from a frame: posts are (column, row) from the south-west, as fractions.
+class View {
+ public:
+  View(const Dem& dem, const Frame& frame) : dem_(dem), map_(dem.crs), frame_(frame) {}
+
+  XY local(double column, double row) const {
+    const XY lonlat = map_.lonlat(
+        {dem_.south_west[0] + column * dem_.step[0], dem_.south_west[1] + row * dem_.step[1]});
+    return frame_.to_local(lonlat[0], lonlat[1]);
+  }
+  XY post(double x, double y) const {
+    const XY lonlat = frame_.to_lonlat(x, y);
+    const XY p = map_.native(lonlat[0], lonlat[1]);
+    return {(p[0] - dem_.south_west[0]) / dem_.step[0], (p[1] - dem_.south_west[1]) / dem_.step[1]};
+  }
+  /// Bilinear; positions that rounding puts beyond the last post belong to it.
+  float height(const XY& post) const {
+    const double u = std::clamp(post[0], 0.0, double(dem_.columns - 1));
+    const double v = std::clamp(post[1], 0.0, double(dem_.rows - 1));
+    const int i = std::min(int(u), dem_.columns - 2);
+    const int j = std::min(int(v), dem_.rows - 2);
+    const float* h = dem_.heights.data() + std::size_t(j) * std::size_t(dem_.columns) + i;
+    const double s = u - i;
+    const double w = v - j;
+    return float((1 - w) * ((1 - s) * h[0] + s * h[1]) +
+                 w * ((1 - s) * h[dem_.columns] + s * h[dem_.columns + 1]));
+  }
+
+ private:
+  const Dem& dem_;
+  ToWgs84 map_;
+  const Frame& frame_;
+};
+
+/// The rectangle between the images of the model's edges, and the spacing in its middle.
+struct Footprint {
+  XY low;
+  XY high;
+  XY spacing;
+  bool is_grid = true;  ///< the posts' images are a grid along the frame's axes
+};
+
+Footprint footprint(const Dem& dem, const View& view) {
+  const double last_i = dem.columns - 1;
+  const double last_j = dem.rows - 1;
+  Footprint print{
+      {-altiplan::kInfinity, -altiplan::kInfinity}, {altiplan::kInfinity, altiplan::kInfinity}, {}};
+  constexpr int kPoints = 64;
+  for (int k = 0; k <= kPoints; ++k) {
+    const double i = last_i * k / kPoints;
+    const double j = last_j * k / kPoints;
+    print.low[0] = std::max(print.low[0], view.local(0, j)[0]);
+    print.high[0] = std::min(print.high[0], view.local(last_i, j)[0]);
+    print.low[1] = std::max(print.low[1], view.local(i, 0)[1]);
+    print.high[1] = std::min(print.high[1], view.local(i, last_j)[1]);
+  }
+  const XY middle = view.local(last_i / 2, last_j / 2);
+  print.spacing = {std::abs(view.local(last_i / 2 + 1, last_j / 2)[0] - middle[0]),
+                   std::abs(view.local(last_i / 2, last_j / 2 + 1)[1] - middle[1])};
+  const XY origin = view.local(0, 0);
+  constexpr double kSame = 1e-4;  // metres: what transformations there and back may leave
+  for (const XY& share : {XY{0, 1}, XY{1, 0}, XY{1, 1}, XY{0.5, 0.5}, XY{0.25, 0.75}}) {
+    const XY p = view.local(share[0] * last_i, share[1] * last_j);
+    print.is_grid =
+        print.is_grid &&
+        std::hypot(p[0] - origin[0] - share[0] * (print.high[0] - print.low[0]),
+                   p[1] - origin[1] - share[1] * (print.high[1] - print.low[1])) < kSame;
+  }
+  return print;
+}
+
+/// Exact positions are asked for every kNet posts and interpolated between: a projection bends by
+/// less than 0.001 of a post's spacing over so few, and costs a microsecond a point.
+std::vector<float> resample(const View& view, const Footprint& print, int columns, int rows) {
+  constexpr int kNet = 16;
+  const int knots = (columns - 1) / kNet + 2;
+  const auto knot_row = [&](int j) {
+    std::vector<XY> row;
+    for (int k = 0; k < knots; ++k) {
+      row.push_back(view.post(print.low[0] + k * kNet * print.spacing[0],
+                              print.low[1] + j * print.spacing[1]));
+    }
+    return row;
+  };
+  const auto between = [](const XY& a, const XY& b, double share) {
+    return XY{a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+  };
+  std::vector<float> heights;
+  heights.reserve(std::size_t(columns) * std::size_t(rows));
+  std::vector<XY> south;
+  std::vector<XY> north = knot_row(0);
+  for (int j = 0; j < rows; ++j) {
+    if (j % kNet == 0) {
+      south = std::move(north);
+      north = knot_row(j + kNet);
+    }
+    for (int i = 0; i < columns; ++i) {
+      const std::size_t k = std::size_t(i / kNet);
+      const double share = double(i % kNet) / kNet;
+      heights.push_back(
+          view.height(between(between(south[k], south[k + 1], share),
+                              between(north[k], north[k + 1], share), double(j % kNet) / kNet)));
+    }
+  }
+  return heights;
+}
+
+Placed in_frame(Dem dem, const Frame& frame, const Params& params) {
+  const View view(dem, frame);
+  const Footprint print = footprint(dem, view);
+  const double width = print.high[0] - print.low[0];
+  const double height = print.high[1] - print.low[1];
+  if (!(width > 2 * print.spacing[0] && height > 2 * print.spacing[1])) {
+    throw ParameterError("file", params.file.text +
+                                     ": its rows are turned too far against the "
+                                     "world's frame (" +
+                                     frame.crs() + ") to be brought into it");
+  }
+  if (print.is_grid) {
+    const XY spacing{width / (dem.columns - 1), height / (dem.rows - 1)};
+    return {HeightField(print.low, spacing, dem.columns, dem.rows, std::move(dem.heights)), frame};
+  }
+  const double columns = std::floor(width / print.spacing[0]) + 1;
+  const double rows = std::floor(height / print.spacing[1]) + 1;
+  if (columns * rows > double(params.max_posts)) {
+    throw ParameterError("max_posts", params.file.text + ": would need more than max_posts (" +
+                                          std::to_string(params.max_posts) +
+                                          ") in the world's frame");
+  }
+  return {HeightField(print.low, print.spacing, int(columns), int(rows),
+                      resample(view, print, int(columns), int(rows))),
+          frame, true};
+}
+
+/// The scenario's `frame: {crs: …}`, its origin where the model's south-west corner will be.
+Frame asked_frame(const Dem& dem, const std::string& crs) {
+  const gdal::Reference reference = gdal::reference(crs);
+  if (!reference || !gdal::api().OSRIsProjected(reference.get())) {
+    throw altiplan::Error(
+        "frame.crs: expected EPSG: and the code of a projected coordinate system "
+        "(EPSG:32616), found " +
+        crs);
+  }
+  const double unit_m = gdal::api().OSRGetLinearUnits(reference.get(), nullptr);
+  const auto map = std::make_shared<ToWgs84>(reference);
+  const Frame at_zero =
+      Frame::projected(std::make_shared<MapProjection>(map, XY{0, 0}, unit_m), crs);
+  const Footprint print = footprint(dem, View(dem, at_zero));
+  const XY origin{print.low[0] / unit_m, print.low[1] / unit_m};
+  return Frame::projected(std::make_shared<MapProjection>(map, origin, unit_m), crs);
+}
+}  // namespace
+
+Placed place(Dem dem, const altiplan::Site& site, const Params& params) {
+  if (site.frame.has_position()) {
+    return in_frame(std::move(dem), site.frame, params);
+  }
+  const gdal::Reference asked = gdal::reference(site.frame_crs);
+  if (site.frame_crs.empty() ||
+      (asked && gdal::api().OSRIsSame(asked.get(), dem.crs.get()) && !dem.geographic)) {
+    return in_own_frame(std::move(dem));
+  }
+  const Frame frame = asked_frame(dem, site.frame_crs);
+  return in_frame(std::move(dem), frame, params);
+}
+}  // namespace terrain

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "altiplan/kit/obstacle_set.hpp"
+
+namespace altiplan::zones {
+
+/// What is left outside of keep-in zones. A sphere is allowed where it lies wholly inside one of
+/// them; so the depth of a point is its greatest depth in a zone, and the layer is as far away.
+class KeepIn {
+ public:
+  explicit KeepIn(std::vector<Shape> zones) : zones_(std::move(zones)) {}
+
+  bool empty() const { return zones_.shapes().empty(); }
+  double clearance(const Vec3& p) const { return -zones_.clearance(p); }
+  /// Exact: whether some point of the leg is less than r - 1e-6 m deep in every zone.
+  bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  Nearby nearest(const Vec3& p) const;
+  /// Frees no cell that is not allowed; exact for convex zones.
+  void rasterize(VoxelGrid& grid) const;
+
+ private:
+  kit::ObstacleSet zones_;
+};
+}  // namespace altiplan::zones

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace altiplan::zones {
+
+using Point2 = std::array<double, 2>;
+using Ring = std::vector<Point2>;
+
+/// An outline and its holes; rings are not closed by a repeated point.
+struct Polygon {
+  Ring outline;
+  std::vector<Ring> holes;
+};
+
+/// Drops points that repeat the one before (and the last, where it repeats the first).
+Ring without_repeats(const Ring& ring);
+
+/// What is wrong with a polygon (a ring that meets itself or another one, a hole outside, no area),
+/// with the place in the ring's own units; "" where nothing is.
+std::string polygon_problem(const Polygon& polygon);
+}  // namespace altiplan::zones

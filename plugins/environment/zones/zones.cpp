@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/kit/iso_time.hpp"
+#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/world.hpp"
+#include "geojson.hpp"
+#include "keep_in.hpp"
+
+namespace altiplan::zones {
+namespace {
+
+using Rings = std::vector<Ring>;
+enum class Kind { keep_out, keep_in };
+
+double seconds(const std::string& time) {
+  const std::optional<double> result = kit::parse_iso_time(time);
+  if (!result) {
+    throw Error("expected a time such as 2026-06-17T05:00:00Z (ISO 8601), found '" + time + "'");
+  }
+  return *result;
+}
+
+struct CylinderParams {
+  Point at;
+  double radius_m = 0;
+
+  void describe(Fields& f) {
+    f.point(at).doc("the axis; a height does not matter here");
+    f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius");
+  }
+};
+
+struct PolygonParams {
+  Ring outline_m;
+  Ring outline_lonlat;
+  Rings holes_m;
+  Rings holes_lonlat;
+
+  void describe(Fields& f) {
+    f("outline_m", outline_m).unit("m").doc("corners [x, y], in either sense");
+    f("outline_lonlat", outline_lonlat).unit("deg").doc("corners [longitude, latitude] instead");
+    f("holes_m", holes_m).unit("m").doc("rings inside the outline that the zone leaves out");
+    f("holes_lonlat", holes_lonlat).unit("deg").doc("the same in longitude and latitude");
+    f.check(outline_m.empty() != outline_lonlat.empty(),
+            "a polygon has either outline_m or outline_lonlat");
+    f.check(holes_lonlat.empty() || !outline_lonlat.empty(),
+            "holes_lonlat goes with outline_lonlat, holes_m with outline_m");
+    f.check(holes_m.empty() || !outline_m.empty(),
+            "holes_m goes with outline_m, holes_lonlat with outline_lonlat");
+  }
+};
+
+struct ZoneParams {
+  std::string id;
+  Kind kind = Kind::keep_out;
+  std::optional<CylinderParams> cylinder;
+  std::optional<PolygonParams> polygon;
+  std::optional<double> floor_m;
+  std::optional<double> ceiling_m;
+  std::string from;
+  std::string until;
+
+  void describe(Fields& f) {
+    f("id", id).doc("name for messages");
+    f("kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
+        .doc("what is forbidden: the inside, or everything outside of all keep_in zones");
+    f("cylinder", cylinder).doc("an upright cylinder");
+    f("polygon", polygon).doc("an upright prism");
+    f("floor_m", floor_m).unit("m").doc("lowest height above sea level; left out: no floor");
+    f("ceiling_m", ceiling_m).unit("m").doc("greatest height above sea level; left out: no end");
+    f("from", from).doc("start of the time window (2026-06-17T05:00:00Z); left out: ever since");
+    f("until", until).doc("end of the time window; left out: for ever");
+    f.check(cylinder.has_value() != polygon.has_value(),
+            "a zone is either a cylinder or a polygon");
+    f.check(floor_m.value_or(-kInfinity) < ceiling_m.value_or(kInfinity),
+            "floor_m must be below ceiling_m");
+  }
+};
+
+struct Params {
+  std::vector<ZoneParams> list;
+  std::optional<Path> file;
+  Kind file_kind = Kind::keep_out;
+  PropertyNames names;
+  double horizon_s = 3600;
+
+  void describe(Fields& f) {
+    f("list", list).doc("zones written here");
+    f("file", file).doc("GeoJSON with more of them: Polygons and MultiPolygons in WGS 84");
+    f("file_kind", file_kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
+        .doc("kind of the file's zones");
+    f("floor_property", names.floor).doc("the file's property with the floor, m above sea level");
+    f("ceiling_property", names.ceiling).doc("the file's property with the ceiling, likewise");
+    f("from_property", names.from).doc("the file's property with the start of the time window");
+    f("until_property", names.until).doc("the file's property with its end");
+    f("horizon_s", horizon_s)
+        .unit("s")
+        .at_least(0)
+        .doc(
+            "zones count that are active at some time from the scenario's start_time to this much "
+            "later");
+    f.check(!list.empty() || file.has_value(), "give zones as list, file or both");
+  }
+};
+
+class Zones final : public Environment {
+ public:
+  Zones(const Params& params, const Site& site) : Zones(Reader(params, site)) {}
+
+ private:
+  // All that the constructor works out, in order.
+  struct Reader {
+    Site site;
+    double horizon_s;
+    std::optional<Frame> frame;
+    std::vector<Shape> shapes[2];  // by kind
+    std::size_t inactive = 0;
+    std::vector<std::string> notes;
+    std::vector<Threat> threats;
+
+    Reader(const Params& params, const Site& where) : site(where), horizon_s(params.horizon_s) {
+      if (params.file) {
+        try {
+          read_file(params);
+        } catch (const Error& error) {
+          throw ParameterError("file", error.what());
+        }
+      }
+      for (std::size_t n = 0; n < params.list.size(); ++n) {
+        try {
+          read_zone(params.list[n], n);
+        } catch (const Error& error) {
+          throw ParameterError("list." + std::to_string(n), error.what());
+        }
+      }
+      notes.push_back(std::to_string(shapes[0].size()) + " keep-out and " +
+                      std::to_string(shapes[1].size()) + " keep-in zones, " +
+                      std::to_string(inactive) + " not active");
+    }
+
+    bool is_active(const std::string& from, const std::string& until) {
+      if (from.empty() && until.empty()) {
+        return true;
+      }
+      const double start = from.empty() ? -kInfinity : seconds(from);
+      const double end = until.empty() ? kInfinity : seconds(until);
+      if (start > end) {
+        throw Error("the time window ends at " + until + ", before it starts at " + from);
+      }
+      if (!site.has_start_time) {
+        throw Error("a zone with a time window needs the scenario's start_time");
+      }
+      const bool active = start <= site.start_time_s + horizon_s && end >= site.start_time_s;
+      inactive += !active;
+      return active;
+    }
+
+    Ring local(const Ring& lonlat) const {
+      Ring ring;
+      for (const Point2& p : lonlat) {
+        ring.push_back(site.frame.to_local(p[0], p[1]));
+      }
+      return ring;
+    }
+
+    Shape prism(const Polygon& lonlat, double floor, double ceiling) const {
+      Prism result{local(lonlat.outline), {}, floor, ceiling};
+      for (const Ring& hole : lonlat.holes) {
+        result.holes.push_back(local(hole));
+      }
+      return result;
+    }
+
+    void read_file(const Params& params) {
+      const GeoJson json = read_geojson(params.file->text, params.names);
+      if (!site.frame.has_position() && !json.features.empty()) {
+        Point2 low{180, 90};
+        double north = -90;
+        for (const Feature& feature : json.features) {
+          for (const Point2& p : feature.polygon.outline) {
+            low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
+            north = std::max(north, p[1]);
+          }
+        }
+        site.frame = Frame::geographic(low[0], low[1], (low[1] + north) / 2);
+        frame = site.frame;
+      }
+      for (const Feature& feature : json.features) {
+        try {
+          const double floor = feature.floor_m.value_or(-kInfinity);
+          const double ceiling = feature.ceiling_m.value_or(kInfinity);
+          if (!(floor < ceiling)) {
+            throw Error("the floor must be below the ceiling");
+          }
+          if (is_active(feature.from, feature.until)) {
+            shapes[int(params.file_kind)].push_back(prism(feature.polygon, floor, ceiling));
+          }
+        } catch (const Error& error) {
+          throw Error(params.file->text + ": '" + feature.id + "': " + error.what());
+        }
+      }
+      notes.push_back(std::to_string(json.features.size()) + " polygons read, " +
+                      std::to_string(json.skipped) + " features without an area skipped");
+    }
+
+    void read_zone(const ZoneParams& zone, std::size_t n) {
+      const double floor = zone.floor_m.value_or(-kInfinity);
+      const double ceiling = zone.ceiling_m.value_or(kInfinity);
+      std::vector<Shape>& into = shapes[int(zone.kind)];
+      Shape shape;
+      if (zone.cylinder) {
+        if (zone.cylinder->at.above_ground_m) {
+          throw Error("above_ground_m does not go with a zone: use floor_m and ceiling_m");
+        }
+        const Vec3 at = site.resolve(zone.cylinder->at);
+        shape = Cylinder{at.x(), at.y(), zone.cylinder->radius_m, floor, ceiling};
+      } else {
+        const bool is_local = !zone.polygon->outline_m.empty();
+        Polygon polygon{
+            without_repeats(is_local ? zone.polygon->outline_m : zone.polygon->outline_lonlat),
+            is_local ? zone.polygon->holes_m : zone.polygon->holes_lonlat};
+        for (Ring& hole : polygon.holes) {
+          hole = without_repeats(hole);
+        }
+        if (const std::string problem = polygon_problem(polygon); !problem.empty()) {
+          throw Error(problem);
+        }
+        shape = is_local ? Shape(Prism{polygon.outline, polygon.holes, floor, ceiling})
+                         : prism(polygon, floor, ceiling);
+      }
+      if (!is_active(zone.from, zone.until)) {
+        return;
+      }
+      into.push_back(shape);
+      if (zone.cylinder && zone.kind == Kind::keep_out) {
+        const auto& cylinder = std::get<Cylinder>(shape);
+        const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
+        threats.push_back({{cylinder.x, cylinder.y, middle},
+                           cylinder.radius,
+                           "zone",
+                           zone.id.empty() ? "zone_" + std::to_string(n) : zone.id});
+      }
+    }
+  };
+
+  explicit Zones(Reader reader)
+      : keep_out_(std::move(reader.shapes[int(Kind::keep_out)])),
+        keep_in_(std::move(reader.shapes[int(Kind::keep_in)])),
+        frame_(reader.frame),
+        notes_(std::move(reader.notes)),
+        threats_(std::move(reader.threats)) {}
+
+  Box do_bounds() const override { return keep_in_.empty() ? keep_out_.bounds() : Box{}; }
+  double do_clearance(const Vec3& p) const override {
+    const double out = keep_out_.clearance(p);
+    return keep_in_.empty() ? out : std::min(out, keep_in_.clearance(p));
+  }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    return keep_out_.blocked(a, b, r) || (!keep_in_.empty() && keep_in_.blocked(a, b, r));
+  }
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
+    keep_out_.near(p, reach, sink);
+    if (!keep_in_.empty()) {
+      Nearby outside = keep_in_.nearest(p);
+      outside.id = static_cast<int>(keep_out_.shapes().size());
+      if (outside.distance <= reach) {
+        sink(outside);
+      }
+    }
+  }
+  void do_rasterize(VoxelGrid& grid) const override {
+    keep_out_.rasterize(grid);
+    if (!keep_in_.empty()) {
+      keep_in_.rasterize(grid);
+    }
+  }
+  double do_slack() const override { return 0; }
+  std::vector<Threat> do_threats() const override { return threats_; }
+  std::optional<Frame> do_frame() const override { return frame_; }
+  std::vector<std::string> do_notes() const override { return notes_; }
+
+  kit::ObstacleSet keep_out_;
+  KeepIn keep_in_;
+  std::optional<Frame> frame_;
+  std::vector<std::string> notes_;
+  std::vector<Threat> threats_;
+};
+}  // namespace
+}  // namespace altiplan::zones
+
+ALTIPLAN_PLUGIN(Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
+                "Keep-out and keep-in zones: cylinders, polygons, GeoJSON, time windows")

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "altiplan/world.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::testing {
+namespace {
+
+const World kNothing;
+constexpr double kNoon = 1560772800;  // 2019-06-17T12:00:00Z
+
+Site site_of() {
+  Site site;
+  site.before = &kNothing;
+  return site;
+}
+
+Site site_at(double start_time_s) {
+  Site site = site_of();
+  site.has_start_time = true;
+  site.start_time_s = start_time_s;
+  return site;
+}
+
+std::unique_ptr<Environment> zones(const std::string& yaml, const Site& site = site_of()) {
+  return make_environment("zones", yaml, site);
+}
+
+std::string refusal(const std::string& yaml, const Site& site = site_of()) {
+  try {
+    zones(yaml, site);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string written(const std::string& name, const std::string& text) {
+  const std::string file = ::testing::TempDir() + "zones_" + name + ".geojson";
+  std::ofstream(file) << text;
+  return file;
+}
+
+std::string feature(const std::string& coordinates, const std::string& properties = "{}",
+                    const std::string& type = "Polygon") {
+  return R"({"type": "Feature", "id": "Z1", "properties": )" + properties +
+         R"(, "geometry": {"type": ")" + type + R"(", "coordinates": )" + coordinates + "}}";
+}
+
+TEST(Zones, KeepOutCylinderHasFloorCeilingAndThreat) {
+  const auto layer = zones(
+      "{list: [{id: tower, cylinder: {at_m: [100, 200], radius_m: 50}, floor_m: 10, ceiling_m: "
+      "90}]}");
+  EXPECT_NEAR(layer->clearance({100, 200, 50}), -40, 1e-9);
+  EXPECT_NEAR(layer->clearance({180, 200, 130}), 50, 1e-9);
+  EXPECT_TRUE(layer->blocked({0, 200, 50}, {300, 200, 50}, 1));
+  EXPECT_FALSE(layer->blocked({0, 200, 92}, {300, 200, 92}, 2));
+  ASSERT_EQ(layer->threats().size(), 1U);
+  EXPECT_EQ(layer->threats()[0].id, "tower");
+  EXPECT_EQ(layer->threats()[0].kind, "zone");
+  EXPECT_EQ(layer->slack(), 0);
+}
+
+TEST(Zones, PolygonWithAHoleIsFreeInTheHole) {
+  const auto layer = zones(
+      "{list: [{polygon: {outline_m: [[0, 0], [100, 0], [100, 100], [0, 100], [0, 0]],"
+      " holes_m: [[[40, 40], [60, 40], [60, 60], [40, 60]]]}}]}");
+  EXPECT_NEAR(layer->clearance({50, 50, 1e5}), 10, 1e-9);
+  EXPECT_NEAR(layer->clearance({20, 50, -1e5}), -20, 1e-9);
+  EXPECT_FALSE(layer->blocked({45, 45, 0}, {55, 55, 900}, 5));
+  EXPECT_TRUE(layer->blocked({45, 45, 0}, {55, 55, 900}, 5.1));
+}
+
+TEST(Zones, KeepInBlocksAllOutsideOfTheUnion) {
+  const auto layer = zones(
+      "{list: [{kind: keep_in, polygon: {outline_m: [[0, 0], [100, 0], [100, 100], [0, 100]]},"
+      " floor_m: 0, ceiling_m: 100},"
+      " {kind: keep_in, cylinder: {at_m: [120, 50], radius_m: 50}, floor_m: 0, ceiling_m: 200}]}");
+  EXPECT_FALSE(layer->blocked({10, 50, 50}, {160, 50, 50}, 10));
+  EXPECT_TRUE(layer->blocked({10, 50, 50}, {160, 50, 50}, 10.1));  // its ends are 10 m deep
+  EXPECT_FALSE(layer->blocked({50, 50, 50}, {120, 50, 50}, 15));
+  EXPECT_TRUE(layer->blocked({50, 50, 50}, {120, 50, 50}, 15.1));  // the overlap is 30 m wide
+  EXPECT_TRUE(layer->blocked({10, 50, 50}, {200, 50, 50}, 0));     // leaves
+  EXPECT_TRUE(layer->blocked({50, 50, 50}, {50, 50, 150}, 0));
+  EXPECT_FALSE(layer->blocked({0, 0, 0}, {100, 0, 0}, 0));      // along the border
+  EXPECT_TRUE(layer->blocked({90, 99, 50}, {150, 85, 50}, 0));  // out and in again
+  EXPECT_NEAR(layer->clearance({50, 50, 30}), 30, 1e-9);
+  EXPECT_NEAR(layer->clearance({50, 50, -30}), -30, 1e-9);
+  EXPECT_EQ(layer->bounds().max.x(), kInfinity);
+}
+
+// Sampled depths against the exact answer, for zones with concave outlines too.
+TEST(Zones, KeepInLegsAgreeWithSamples) {
+  const auto layer = zones(
+      "{list: [{kind: keep_in, polygon: {outline_m: [[0, 0], [90, 10], [50, 40], [100, 100],"
+      " [30, 60], [5, 95]], holes_m: [[[20, 20], [30, 22], [25, 40]]]}, floor_m: 0, ceiling_m: 50},"
+      " {kind: keep_in, cylinder: {at_m: [70, 45], radius_m: 40}, floor_m: 10, ceiling_m: 80}]}");
+  RandomStream random;
+  int free_legs = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Vec3 a(random.uniform(0, 110), random.uniform(0, 100), random.uniform(0, 80));
+    const Vec3 b =
+        a + Vec3(random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-9, 9));
+    double least = kInfinity;
+    for (int m = 0; m <= 2000; ++m) {
+      least = std::min(least, layer->clearance(a + m / 2000.0 * (b - a)));
+    }
+    const double spacing = (b - a).norm() / 2000;
+    if (least <= 0) {
+      continue;
+    }
+    ++free_legs;
+    EXPECT_TRUE(layer->blocked(a, b, least + 2e-6)) << n;
+    if (least > spacing) {
+      EXPECT_FALSE(layer->blocked(a, b, least - spacing)) << n;
+    }
+  }
+  EXPECT_GT(free_legs, 300);
+}
+
+TEST(Zones, KeepInRasterizesConvexZonesExactly) {
+  const auto layer = zones(
+      "{list: [{kind: keep_in, polygon: {outline_m: [[2, 2], [8, 2], [8, 8], [2, 8]]},"
+      " floor_m: 1, ceiling_m: 5}]}");
+  GridSpec spec;
+  spec.counts = {10, 10, 10};
+  VoxelGrid grid(spec);
+  layer->rasterize(grid);
+  EXPECT_EQ(1000 - grid.blocked_count(), 6U * 6 * 4);
+  spec.inflation = 1;
+  VoxelGrid grown(spec);
+  layer->rasterize(grown);
+  EXPECT_EQ(1000 - grown.blocked_count(), 4U * 4 * 2);
+}
+
+TEST(Zones, TimeWindowsMeetTheHorizon) {
+  const std::string window =
+      "{list: [{cylinder: {at_m: [0, 0], radius_m: 5}, from: '2019-06-17T13:00:00Z',"
+      " until: '2019-06-17T14:30Z'}], horizon_s: 1800}";
+  EXPECT_EQ(zones(window, site_at(kNoon))->clearance({0, 0, 0}), kInfinity);
+  EXPECT_EQ(zones(window, site_at(kNoon + 1800))->clearance({0, 0, 0}), -5);  // 12:30 to 13:00
+  EXPECT_EQ(zones(window, site_at(kNoon + 9000))->clearance({0, 0, 0}), -5);  // 14:30
+  EXPECT_EQ(zones(window, site_at(kNoon + 9001))->clearance({0, 0, 0}), kInfinity);
+  EXPECT_TRUE(says(refusal(window), "start_time"));
+  EXPECT_TRUE(says(
+      refusal("{list: [{cylinder: {at_m: [0, 0], radius_m: 5}, from: tomorrow}]}", site_at(kNoon)),
+      "tomorrow"));
+  EXPECT_TRUE(says(refusal("{list: [{cylinder: {at_m: [0, 0], radius_m: 5},"
+                           " until: '2019-02-29T00:00:00Z'}]}",
+                           site_at(kNoon)),
+                   "2019-02-29"));
+}
+
+TEST(Zones, GeoJsonBringsAFrameHeightsAndHoles) {
+  const std::string file = written(
+      "plain",
+      feature("[[[25, 60], [25.1, 60], [25.1, 60.1], [25, 60.1], [25, 60]],"
+              " [[25.04, 60.04], [25.06, 60.04], [25.06, 60.06], [25.04, 60.06], [25.04, 60.04]]]",
+              R"({"low": 100, "high": "450.5"})"));
+  const auto layer = zones("{file: " + file + ", floor_property: low, ceiling_property: high}");
+  ASSERT_TRUE(layer->frame().has_value());
+  const auto corner = layer->frame()->to_local(25, 60);
+  EXPECT_NEAR(std::hypot(corner[0], corner[1]), 0, 1e-6);
+  const auto middle = layer->frame()->to_local(25.05, 60.05);
+  EXPECT_GT(layer->clearance({middle[0], middle[1], 200}), 500);
+  const auto solid = layer->frame()->to_local(25.02, 60.02);
+  EXPECT_NEAR(layer->clearance({solid[0], solid[1], 440}), -10.5, 1e-6);
+  EXPECT_NEAR(layer->clearance({solid[0], solid[1], 90}), 10, 1e-6);
+  Site placed = site_of();
+  placed.frame = Frame::geographic(24, 59, 60);
+  EXPECT_FALSE(zones("{file: " + file + "}", placed)->frame().has_value());
+}
+
+TEST(Zones, RefusesBadFilesWithThePlace) {
+  const auto refused = [](const std::string& name, const std::string& text) {
+    return refusal("{file: " + written(name, text) + ", floor_property: low}");
+  };
+  EXPECT_TRUE(says(refusal("{file: /nowhere.geojson}"), "cannot be read"));
+  EXPECT_TRUE(says(refused("cut", R"({"type": "Feat)"), "not JSON"));
+  EXPECT_TRUE(says(refused("kind", R"({"type": "Topology"})"), "Topology"));
+  EXPECT_TRUE(
+      says(refused("open", feature("[[[0, 0], [1, 0], [1, 1], [0, 1]]]")), "end where it starts"));
+  EXPECT_TRUE(says(refused("range", feature("[[[0, 0], [190, 0], [1, 1], [0, 0]]]")), "190"));
+  const std::string bow = refused("bow", feature("[[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]"));
+  EXPECT_TRUE(says(bow, "meets itself at (1, 1)")) << bow;
+  EXPECT_TRUE(says(bow, "Z1"));
+  EXPECT_TRUE(says(refused("hole", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]],"
+                                           " [[5, 5], [6, 5], [6, 6], [5, 5]]]")),
+                   "outside"));
+  EXPECT_TRUE(says(
+      refused("height", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"low": "surface"})")),
+      "surface"));
+  EXPECT_TRUE(says(refused("type", feature("[]", "{}", "Curve")), "Curve"));
+}
+
+TEST(Zones, RefusesWrongParameters) {
+  EXPECT_EQ(parameter_problems("environment", "zones",
+                               "{list: [{cylinder: {at_m: [0, 0], radius_m: 5}}]}"),
+            "");
+  for (const char* wrong :
+       {"{}", "{list: [{}]}", "{list: [{cylinder: {at_m: [0, 0], radius_m: -5}}]}",
+        "{list: [{polygon: {}}]}",
+        "{list: [{cylinder: {at_m: [0, 0], radius_m: 5}, floor_m: 9,"
+        " ceiling_m: 3}]}",
+        "{list: [{kind: maybe, cylinder: {at_m: [0, 0], radius_m: 5}}]}"}) {
+    EXPECT_NE(parameter_problems("environment", "zones", wrong), "") << wrong;
+  }
+  EXPECT_TRUE(says(refusal("{list: [{polygon: {outline_m: [[0, 0], [2, 2], [2, 0], [0, 2]]}}]}"),
+                   "(1, 1)"));
+  EXPECT_NE(refusal("{list: [{cylinder: {at_lonlat: [25, 60], radius_m: 5}}]}"), "");
+}
+
+TEST(Zones, ReadsFinnishZones) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "city");
+  const auto restricted =
+      zones("{file: " + (folder / "finland_rajoitukset.geojson").string() + "}");
+  EXPECT_EQ(restricted->notes().front(), "51 polygons read, 0 features without an area skipped");
+  const auto loviisa = restricted->frame()->to_local(26.35, 60.37);
+  EXPECT_LT(restricted->clearance({loviisa[0], loviisa[1], 300}), 0);
+  EXPECT_TRUE(
+      says(zones("{file: " + (folder / "finland_valvottu.geojson").string() + "}")->notes().front(),
+           "28 polygons"));
+  EXPECT_TRUE(says(zones("{file: " + (folder / "finland_lennatyspaikat.geojson").string() + "}")
+                       ->notes()
+                       .front(),
+                   "84 features without an area skipped"));
+  const std::string timed = "{file: " + (folder / "finland_sup.geojson").string() +
+                            ", from_property: timeBegin, until_property: timeEnd}";
+  EXPECT_EQ(zones(timed, site_at(kNoon))->notes().back(),
+            "1 keep-out and 0 keep-in zones, 2 not active");
+  EXPECT_TRUE(says(refusal(timed), "start_time"));
+}
+}  // namespace
+}  // namespace altiplan::testing

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstdlib>
+#include <new>
+
+#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/random.hpp"
+#include "apf_field.hpp"
+#include "support/support.hpp"
+
+namespace {
+bool counting = false;
+long allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  allocations += counting;
+  if (void* memory = std::malloc(size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace altiplan::testing {
+namespace {
+
+constexpr double kNaturalTurn = 30;
+
+/// Ground z = 100 + x / 10 west of a ridge, closed form: a tilted plane.
+class Slope final : public Environment {
+  static constexpr double kRise = 0.1;
+  static double ground_at(double x) { return 100 + kRise * x; }
+  Box do_bounds() const override { return {}; }
+  double do_clearance(const Vec3& p) const override {
+    return (p.z() - ground_at(p.x())) / std::sqrt(1 + kRise * kRise);
+  }
+  double do_slack() const override { return 0; }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    return std::min(do_clearance(a), do_clearance(b)) < r - kLengthTolerance;
+  }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double x, double) const override { return ground_at(x); }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z() - ground_at(a.x()), b.z() - ground_at(b.x()));
+  }
+};
+
+Cylinder post(double x, double y, double radius, double ceiling = kInfinity) {
+  return {x, y, radius, -kInfinity, ceiling};
+}
+
+/// 30 km square, flown at 30 m/s.
+Request problem(World world, const Vec3& start, const Vec3& goal) {
+  Request request = request_in(std::move(world), start, goal, {{0, 0, 0}, {30e3, 30e3, 4000}});
+  request.vehicle.speed_mps = 30;
+  request.vehicle.radius_m = 2;
+  request.limits.min_clearance = 2;
+  request.limits.max_climb = radians(15);
+  return request;
+}
+
+struct Flown {
+  Route route;
+  PilotStep::Outcome outcome = PilotStep::Outcome::flying;
+  std::string why;
+  Counters counters;
+  double end_s = 0;
+  double least_separation = kInfinity;  ///< from the moving obstacle
+
+  std::int64_t counter(std::string_view name) const {
+    for (const Counter& counter : counters) {
+      if (counter.name == name) {
+        return counter.value;
+      }
+    }
+    return -1;
+  }
+};
+
+/// Flies from start to goal with the goal as target, past an optional moving sphere.
+Flown flight(const Request& request, std::string_view yaml, int most_steps = 4000,
+             std::optional<MovingObstacle> moving = std::nullopt) {
+  const auto planner = make_local_planner("apf", yaml);
+  const auto pilot = planner->begin(request);
+  Flown flown;
+  flown.route = {request.start.position};
+  Observation seen;
+  seen.state = request.start;
+  seen.goal = request.goal;
+  seen.local_target = request.goal.position;
+  seen.world = request.world.get();
+  while (flown.outcome == PilotStep::Outcome::flying && --most_steps > 0) {
+    SensedObstacle sensed;
+    if (moving) {
+      const Sphere sphere = std::get<Sphere>(moving->at(seen.state.time_s));
+      sensed = {"m", sphere.centre, sphere.radius, moving->velocity};
+      seen.moving = std::span(&sensed, 1);
+    }
+    const PilotStep step = pilot->step(seen);
+    flown.outcome = step.outcome;
+    flown.why = step.why;
+    if (step.outcome == PilotStep::Outcome::stuck) {
+      break;
+    }
+    if (moving) {
+      flown.least_separation = std::min(flown.least_separation,
+                                        separation(*moving, seen.state.position, seen.state.time_s,
+                                                   step.next.position, step.next.time_s));
+    }
+    flown.route.push_back(step.next.position);
+    seen.state = step.next;
+  }
+  flown.counters = pilot->counters();
+  flown.end_s = seen.state.time_s;
+  return flown;
+}
+
+double greatest_turn_deg(const Route& route) {
+  double turn = 0;
+  for (std::size_t i = 1; i + 1 < route.size(); ++i) {
+    turn = std::max(turn, turn_angle_in_space(route[i] - route[i - 1], route[i + 1] - route[i]));
+  }
+  return degrees(turn);
+}
+
+void expect_arrives(const Request& request, const Flown& flown) {
+  EXPECT_EQ(flown.outcome, PilotStep::Outcome::arrived) << flown.why;
+  const CheckResult verdict = check(flown.route, request);
+  EXPECT_TRUE(verdict.ok()) << verdict.violations.front().message;
+}
+
+TEST(ApfField, ClampTurnsByTheLimitExactly) {
+  for (int raw = 31; raw <= 179; ++raw) {
+    for (double ratio = 0.1; ratio <= 10; ratio *= 1.25) {
+      RandomStream random = RandomStream(7).sub("clamp", std::uint64_t(raw));
+      const Vec3 in = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Vec3 across = in.cross(Vec3(0.3, -0.2, 1)).normalized();
+      const Vec3 p2(12, -5, 3);
+      const Vec3 p1 = p2 - in;
+      const double step2 = in.norm() * ratio;
+      const Vec3 p3 =
+          p2 + step2 * (in.normalized() * std::cos(radians(raw)) + across * std::sin(radians(raw)));
+      const Vec3 p4 = apf::clamp_turn(p1, p2, p3, radians(kNaturalTurn));
+      EXPECT_NEAR(turn_angle_in_space(p2 - p1, p4 - p2), radians(kNaturalTurn), 1e-9)
+          << raw << " " << ratio;
+      EXPECT_LT((p4 - p2).norm(), step2) << "the step shrinks";
+      const Vec3 temp = p2 + in * ratio;
+      EXPECT_NEAR(point_leg_distance(p4, temp, p3), 0, 1e-9 * step2) << "P4 is on the chord";
+    }
+  }
+}
+
+TEST(ApfField, ClampLeavesASmallTurn) {
+  const Vec3 p3(2, 0.5, 0);
+  EXPECT_EQ(apf::clamp_turn({0, 0, 0}, {1, 0, 0}, p3, radians(30)), p3);
+}
+
+TEST(Apf, RefusesWrongParameters) {
+  EXPECT_NE(parameter_problems("local_planner", "apf", "{influence_m: 0}"), "");
+  EXPECT_NE(parameter_problems("local_planner", "apf", "{variant: better}"), "");
+  EXPECT_NE(parameter_problems("local_planner", "apf", "{influense_m: 10}"), "");
+  EXPECT_EQ(parameter_problems("local_planner", "apf", "{length_unit_m: auto}"), "");
+}
+
+TEST(Apf, ArrivesAroundOneCylinder) {
+  const Request request =
+      problem(world_of({post(15000, 15100, 1500)}), {2000, 15000, 500}, {28000, 15000, 600});
+  for (const char* yaml : {"{}", "{influence_m: 1000}", "{variant: modified}"}) {
+    SCOPED_TRACE(yaml);
+    expect_arrives(request, flight(request, yaml));
+  }
+}
+
+TEST(Apf, ArrivesAroundSeveralWithoutATurnAboveTheLimit) {
+  for (const bool plane : {false, true}) {
+    Request request = problem(
+        world_of({post(8000, 14800, 900), post(15000, 16300, 1100, 900), post(21000, 14000, 1300)}),
+        {2000, 15000, 500}, {28000, 15500, 500});
+    if (plane) {
+      request.level_m = 500;
+    }
+    const Flown flown = flight(request, "{}");
+    expect_arrives(request, flown);
+    EXPECT_EQ(flown.counter("clamp_yielded"), 0);
+    EXPECT_LE(greatest_turn_deg(flown.route), kNaturalTurn + degrees(1e-6));
+  }
+}
+
+TEST(Apf, MirroredScenesGiveMirroredFlights) {
+  const auto scene = [](double sign) {
+    Request request = request_in(
+        world_of({post(8000, sign * 400, 900), post(15000, sign * -700, 900),
+                  post(21000, sign * 900, 1300)}),
+        {2000, sign * 100, 500}, {28000, sign * -200, 800}, {{0, -15e3, 0}, {30e3, 15e3, 4000}});
+    request.vehicle.speed_mps = 30;
+    request.limits.max_climb = radians(15);
+    return flight(request, "{}").route;
+  };
+  const Route left = scene(1);
+  const Route right = scene(-1);
+  ASSERT_EQ(left.size(), right.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    EXPECT_LT((left[i] - Vec3(right[i].x(), -right[i].y(), right[i].z())).norm(), 1e-6) << i;
+  }
+}
+
+TEST(Apf, IsDeterministic) {
+  const Request request = problem(world_of({post(8000, 14800, 900), post(15000, 15300, 1100)}),
+                                  {2000, 15000, 500}, {28000, 15500, 500});
+  EXPECT_EQ(flight(request, "{}").route, flight(request, "{}").route);
+}
+
+TEST(Apf, GroundRepels) {
+  Request request =
+      problem(world_of(std::make_shared<Slope>()), {1000, 15000, 250}, {20000, 15000, 2300});
+  request.limits.min_ground_clearance = 20;
+  const Flown flown = flight(request, "{}");
+  expect_arrives(request, flown);
+  // The straight line sinks to 50 m above ground only at the start; level flight would cut it.
+  Observation seen;
+  seen.state = {0, {5000, 15000, 630}, {30, 0, 0}};
+  seen.goal = request.goal;
+  seen.goal.position = {20000, 15000, 630};
+  seen.local_target = {6000, 15000, 630};
+  seen.world = request.world.get();
+  const auto planner = make_local_planner("apf");
+  EXPECT_GT(planner->begin(request)->step(seen).next.position.z(), 630 + 1);
+}
+
+TEST(Apf, KeepsAwayFromWhatCrosses) {
+  const Request request = problem(World(), {2000, 15000, 500}, {28000, 15000, 500});
+  for (const double speed : {5.0, 15.0, 30.0}) {
+    for (const double angle : {70.0, 110.0, 180.0, 250.0}) {
+      // Meets the straight flight at (14000, 15100) after 400 s.
+      const Vec3 velocity = speed * Vec3(std::cos(radians(angle)), std::sin(radians(angle)), 0);
+      MovingObstacle moving{"m", Sphere{Vec3(14000, 15050, 500) - velocity * 400, 400}, velocity};
+      const Flown flown = flight(request, "{}", 4000, moving);
+      EXPECT_EQ(flown.outcome, PilotStep::Outcome::arrived)
+          << flown.why << speed << " m/s at " << angle << " end " << flown.route.back().transpose();
+      EXPECT_GT(flown.least_separation, 2) << speed << " m/s at " << angle;
+    }
+  }
+}
+
+TEST(Apf, PlainFieldReportsTheLocalMinimumOfATrap) {
+  const std::vector<Shape> trap{BoxShape{{{14000, 12000, 0}, {14500, 18000, 4000}}},
+                                BoxShape{{{10000, 12000, 0}, {14500, 12500, 4000}}},
+                                BoxShape{{{10000, 17500, 0}, {14500, 18000, 4000}}}};
+  Request request = problem(world_of(trap), {2000, 15000, 500}, {28000, 15000, 500});
+  request.level_m = 500;
+  const Flown flown = flight(request, "{variant: plain}");
+  EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
+  EXPECT_EQ(flown.counter("local_minima"), 1);
+  EXPECT_NE(flown.why.find("local minimum"), std::string::npos) << flown.why;
+  EXPECT_GT(flown.route.back().x(), 10000);
+}
+
+TEST(Apf, ContinuesFromTheObservedState) {
+  const Request request = problem(World(), {2000, 15000, 500}, {28000, 15000, 500});
+  const auto planner = make_local_planner("apf");
+  const auto pilot = planner->begin(request);
+  Observation seen;
+  seen.state = {0, {2000, 15000, 500}, {30, 0, 0}};
+  seen.goal = request.goal;
+  seen.local_target = request.goal.position;
+  seen.world = request.world.get();
+  pilot->step(seen);
+  seen.state = {50, {2500, 15800, 500}, {30, 0, 0}};  // blown off
+  const PilotStep step = pilot->step(seen);
+  EXPECT_NEAR((step.next.position - seen.state.position).norm(), 30, 1e-6);
+  EXPECT_NEAR(step.next.time_s, 51, 1e-9);
+}
+
+/// One pillar in closed form: a layer whose own queries allocate nothing.
+class Pillar final : public Environment {
+  Cylinder shape_{5000, 15000, 500, -kInfinity, kInfinity};
+  Box do_bounds() const override { return altiplan::bounds(shape_); }
+  double do_clearance(const Vec3& p) const override { return signed_distance(shape_, p); }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    return leg_distance(shape_, a, b) < r - kLengthTolerance;
+  }
+  double do_slack() const override { return 0; }
+};
+
+TEST(Apf, AllocatesNothingInAStep) {
+  Request request = problem(world_of(std::make_shared<Slope>(), "slope"), {1000, 15000, 700},
+                            {20000, 15000, 2300});
+  request.world = std::make_shared<World>(
+      request.world->with({"pillar", "pillar", std::make_shared<Pillar>(), true}));
+  request.limits.min_ground_clearance = 20;
+  const auto planner = make_local_planner("apf");
+  const auto pilot = planner->begin(request);
+  const SensedObstacle sensed{"m", {4000, 15400, 900}, 200, Vec3(5, -8, 0)};
+  Observation seen;
+  seen.state = request.start;
+  seen.goal = request.goal;
+  seen.local_target = request.goal.position;
+  seen.world = request.world.get();
+  seen.moving = std::span(&sensed, 1);
+  allocations = 0;
+  for (int i = 0; i < 300; ++i) {
+    counting = true;
+    const PilotStep step = pilot->step(seen);
+    counting = false;
+    ASSERT_EQ(step.outcome, PilotStep::Outcome::flying) << step.why;
+    seen.state = step.next;
+  }
+  EXPECT_EQ(allocations, 0);
+}
+}  // namespace
+}  // namespace altiplan::testing

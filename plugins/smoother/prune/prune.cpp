@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thinning of a route under the judge.
+//
+// Citation: paper 002 (fusion of constrained A*, smoothing and potential field), its removal of
+//   redundant points; here the fewest of them, by A* (see planner astar) over pairs of waypoints.
+// Guarantees: no subset of the route's waypoints that keeps the ends and every rule is smaller;
+//   of the smallest, the shortest. The route grows in no measure.
+// Complexity: O(n^2) leg checks, O(n^3) turn checks in the worst case, for n waypoints.
+// Deviations: legs are judged exactly (the paper looks at cells); turns are part of the search.
+// Symbols: a state (i, j) is the leg between waypoints i and j; legs and metres are compared in
+//   that order.
+#include <algorithm>
+#include <map>
+#include <queue>
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
+
+namespace {
+
+using namespace altiplan;
+
+/// Legs and metres, fewer legs first.
+struct Cost {
+  int legs = 0;
+  double metres = 0;
+  friend bool operator<(const Cost& a, const Cost& b) {
+    return a.legs != b.legs ? a.legs < b.legs : a.metres < b.metres;
+  }
+};
+
+/// The fewest waypoints of one route.
+class Thinning {
+ public:
+  Thinning(const Route& route, const Request& request)
+      : route_(route),
+        request_(request),
+        watch_(request.budget),
+        count_(route.size()),
+        visible_(count_ * count_, Visible::unknown) {}
+
+  /// The indices of the waypoints that stay; none where the budget ended or nothing was found.
+  std::vector<std::size_t> fewest() {
+    find_legs_to_go();
+    struct Entry {
+      Cost estimate;
+      Cost cost;
+      std::size_t i, j;
+    };
+    const auto later = [](const Entry& a, const Entry& b) {
+      if (a.estimate < b.estimate || b.estimate < a.estimate) {
+        return b.estimate < a.estimate;
+      }
+      return std::pair(a.i, a.j) > std::pair(b.i, b.j);
+    };
+    std::priority_queue<Entry, std::vector<Entry>, decltype(later)> open(later);
+    std::map<State, std::pair<Cost, State>> best;  // cost, and the state before
+    const std::size_t last = count_ - 1;
+    const auto reach = [&](const State& from, std::size_t k, const Cost& cost) {
+      const State state = {from.second, k};
+      const Cost total = {cost.legs + 1, cost.metres + distance(from.second, k)};
+      const auto [known, fresh] = best.try_emplace(state, total, from);
+      if (fresh || total < known->second.first) {
+        known->second = {total, from};
+        open.push({{total.legs + legs_to_go_[k], total.metres + distance(k, last)},
+                   total,
+                   state.first,
+                   state.second});
+      }
+    };
+    reach_from(State{0, 0}, Cost{}, reach);
+    while (!open.empty() && !budget_hit_) {
+      const Entry entry = open.top();
+      open.pop();
+      const State state = {entry.i, entry.j};
+      if (best.at(state).first < entry.cost) {
+        continue;
+      }
+      if (entry.j == last) {
+        std::vector<std::size_t> kept = {last};
+        for (State at = state; at != State{0, 0}; at = best.at(at).second) {
+          kept.push_back(at.first);
+        }
+        std::reverse(kept.begin(), kept.end());
+        return kept;
+      }
+      ++expanded_;
+      reach_from(state, entry.cost, reach);
+    }
+    return {};
+  }
+
+  std::int64_t expanded() const { return expanded_; }
+  std::int64_t legs_checked() const { return std::int64_t(legs_checked_); }
+  bool budget_hit() const { return budget_hit_; }
+
+ private:
+  using State = std::pair<std::size_t, std::size_t>;
+  enum class Visible : char { unknown, yes, no };
+
+  /// The leg j–k by itself.
+  bool visible(std::size_t j, std::size_t k) {
+    Visible& known = visible_[j * count_ + k];
+    if (known == Visible::unknown) {
+      budget_hit_ = budget_hit_ || watch_.spent(legs_checked_);
+      if (budget_hit_) {
+        return false;
+      }
+      ++legs_checked_;
+      known = leg_ok(std::nullopt, route_[j], route_[k], request_) ? Visible::yes : Visible::no;
+    }
+    return known == Visible::yes;
+  }
+
+  /// Legs from each waypoint to the last if turns were free: a lower bound.
+  void find_legs_to_go() {
+    const int none = int(count_) + 1;
+    legs_to_go_.assign(count_, none);
+    legs_to_go_.back() = 0;
+    std::vector<std::size_t> layer = {count_ - 1};
+    for (int legs = 1; !layer.empty(); ++legs) {
+      std::vector<std::size_t> next;
+      for (std::size_t j = 0; j + 1 < count_; ++j) {
+        if (legs_to_go_[j] == none && std::any_of(layer.begin(), layer.end(), [&](std::size_t k) {
+              return j < k && visible(j, k);
+            })) {
+          next.push_back(j);
+        }
+      }
+      for (const std::size_t j : next) {
+        legs_to_go_[j] = legs;
+      }
+      layer = std::move(next);
+    }
+  }
+
+  template <class Reach>
+  void reach_from(const State& state, const Cost& cost, const Reach& reach) {
+    const auto [i, j] = state;
+    const std::optional<Vec3> before =
+        cost.legs == 0 ? request_.before_start() : std::optional<Vec3>(route_[i]);
+    for (std::size_t k = j + 1; k < count_; ++k) {
+      if (legs_to_go_[k] <= int(count_) && follows(before, j, k) && visible(j, k)) {
+        reach(state, k, cost);
+      }
+    }
+  }
+
+  /// The rules of the leg j–k that look at the point before it.
+  bool follows(const std::optional<Vec3>& before, std::size_t j, std::size_t k) const {
+    if (!before) {
+      return true;
+    }
+    return kit::turn_kept(route_[j] - *before, route_[k] - route_[j], request_.limits) &&
+           std::all_of(request_.constraints.begin(), request_.constraints.end(),
+                       [&](const NamedConstraint& named) {
+                         return named.constraint->admits({before, route_[j], route_[k]});
+                       });
+  }
+
+  double distance(std::size_t j, std::size_t k) const { return (route_[k] - route_[j]).norm(); }
+
+  const Route& route_;
+  const Request& request_;
+  BudgetWatch watch_;
+  std::size_t count_;
+  std::vector<Visible> visible_;
+  std::vector<int> legs_to_go_;
+  std::int64_t expanded_ = 0;
+  std::uint64_t legs_checked_ = 0;
+  bool budget_hit_ = false;
+};
+
+class Prune final : public Smoother {
+ public:
+  explicit Prune(const NoParams&) {}
+
+ private:
+  PlanResult do_smooth(const Route& route, const Request& request) const override {
+    PlanResult result;
+    result.status = Status::solved;
+    result.route = route;
+    const Route clean = without_repeats(route);
+    Thinning thinning(clean, request);
+    const std::vector<std::size_t> kept = thinning.fewest();
+    result.budget_hit = thinning.budget_hit();
+    Route thinned;
+    for (const std::size_t index : kept) {
+      thinned.push_back(clean[index]);
+    }
+    // Rules of whole routes have the last word.
+    if (!thinned.empty() &&
+        check(thinned, request).violations.size() <= check(route, request).violations.size()) {
+      result.route = std::move(thinned);
+    }
+    result.message = std::to_string(result.route.size()) + " of " + std::to_string(route.size()) +
+                     " waypoints stay";
+    if (result.route.size() == route.size()) {
+      result.message += result.budget_hit ? " (the budget ended)" : "";
+    }
+    result.counters = {{"expanded", thinning.expanded()},
+                       {"legs_checked", thinning.legs_checked()},
+                       {"removed", std::int64_t(route.size() - result.route.size())}};
+    return result;
+  }
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Smoother, "prune", Prune, NoParams,
+                "the fewest waypoints of the route that keep every rule")

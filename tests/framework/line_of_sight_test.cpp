@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/line_of_sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "altiplan/random.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+/// Whether the closed box of cell c meets the segment between the centres of a and b: the
+/// parameters at which it is within each slab, as fractions of whole numbers, compared crosswise.
+bool meets(const Cell& a, const Cell& b, const Cell& c) {
+  std::int64_t low_n = 0;
+  std::int64_t low_d = 1;
+  std::int64_t high_n = 1;
+  std::int64_t high_d = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::int64_t d = 2 * (std::int64_t(b[axis]) - a[axis]);
+    std::int64_t enter = 2 * (std::int64_t(c[axis]) - a[axis]) - 1;
+    std::int64_t leave = enter + 2;
+    if (d == 0) {
+      if (enter > 0 || leave < 0) {
+        return false;
+      }
+      continue;
+    }
+    if (d < 0) {
+      d = -d;
+      std::swap(enter, leave);
+      enter = -enter;
+      leave = -leave;
+    }
+    if (enter * low_d > low_n * d) {
+      low_n = enter;
+      low_d = d;
+    }
+    if (leave * high_d < high_n * d) {
+      high_n = leave;
+      high_d = d;
+    }
+  }
+  return low_n * high_d <= high_n * low_d;
+}
+
+std::set<Cell> walked(const Cell& a, const Cell& b) {
+  std::set<Cell> cells;
+  walk_cells(a, b, [&](const Cell& c) {
+    EXPECT_TRUE(cells.insert(c).second) << "visited twice";
+    return true;
+  });
+  return cells;
+}
+
+TEST(LineOfSight, WalksExactlyTheCellsThatTheSegmentMeets) {
+  SplitMix64 random(3);
+  for (int n = 0; n < 1500; ++n) {
+    const int reach = n % 3 == 0 ? 3 : 9;
+    const auto draw = [&] { return random.integer(0, reach); };
+    const Cell a = {draw(), draw(), draw()};
+    const Cell b = {draw(), draw(), n % 4 == 0 ? a[2] : draw()};
+    const std::set<Cell> cells = walked(a, b);
+    for (int k = -1; k <= reach + 1; ++k) {
+      for (int j = -1; j <= reach + 1; ++j) {
+        for (int i = -1; i <= reach + 1; ++i) {
+          ASSERT_EQ(cells.count({i, j, k}) == 1, meets(a, b, {i, j, k}));
+        }
+      }
+    }
+    ASSERT_EQ(cells, walked(b, a));
+  }
+}
+
+TEST(LineOfSight, TouchingACornerIsEnoughToBlock) {
+  GridSpec spec;
+  spec.counts = {4, 4, 4};
+  VoxelGrid grid(spec);
+  EXPECT_TRUE(line_of_sight(grid, {0, 0, 0}, {3, 3, 3}));
+  grid.set({2, 1, 1}, true);  // shares a corner with the diagonal
+  EXPECT_FALSE(line_of_sight(grid, {0, 0, 0}, {3, 3, 3}));
+  EXPECT_FALSE(line_of_sight(grid, {3, 3, 3}, {0, 0, 0}));
+  EXPECT_TRUE(line_of_sight(grid, {0, 0, 0}, {0, 0, 0}));
+  EXPECT_FALSE(line_of_sight(grid, {2, 1, 1}, {2, 1, 1}));
+}
+}  // namespace
+}  // namespace altiplan::kit

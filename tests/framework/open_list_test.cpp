@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/open_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/random.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+TEST(OpenList, ComesOutSortedInEveryOrderOfPushes) {
+  SplitMix64 random(1);
+  std::vector<OpenList::Entry> entries;
+  for (std::uint32_t node = 0; node < 5000; ++node) {
+    entries.push_back({double(random.integer(0, 40)), double(random.integer(0, 9)), node});
+  }
+  auto sorted = entries;
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.f, -a.g, a.node) < std::tuple(b.f, -b.g, b.node);
+  });
+  OpenList open;
+  for (int order = 0; order < 3; ++order) {
+    open.clear(1);
+    for (const auto& entry : entries) {
+      open.push(entry.f, entry.g, entry.node);
+    }
+    for (const auto& expected : sorted) {
+      ASSERT_EQ(open.top().node, expected.node);
+      ASSERT_EQ(open.pop().node, expected.node);
+    }
+    EXPECT_TRUE(open.empty());
+    for (std::size_t i = entries.size() - 1; i > 0; --i) {
+      std::swap(entries[i], entries[std::size_t(random.integer(0, int(i)))]);
+    }
+  }
+}
+
+TEST(OpenList, MixedPushesAndPopsGiveTheLeast) {
+  SplitMix64 random(2);
+  OpenList open;
+  open.clear(1e-9);
+  std::vector<double> inside;
+  for (int turn = 0; turn < 20000; ++turn) {
+    if (inside.empty() || random.uniform() < 0.55) {
+      inside.push_back(random.uniform());
+      open.push(inside.back(), 0, std::uint32_t(turn));
+    } else {
+      const auto least = std::min_element(inside.begin(), inside.end());
+      ASSERT_NEAR(open.pop().f, *least * 1e9, 1);
+      inside.erase(least);
+    }
+  }
+}
+
+TEST(OpenList, RoundingDoesNotBreakTies) {
+  OpenList open;
+  open.clear(1e-9);
+  open.push(0.1 + 0.2, 1, 1);  // one bit above 0.3
+  open.push(0.3, 0.5, 2);
+  EXPECT_EQ(open.pop().node, 1u);
+}
+}  // namespace
+}  // namespace altiplan::kit

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the source tree promises: who may include whom, what a plugin's folder holds, what a plugin
+// library exports.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path kSource = ALTIPLAN_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Files below a folder of the source tree with one of the endings, sorted.
+std::vector<fs::path> files(const std::string& folder, const std::vector<std::string>& endings) {
+  std::vector<fs::path> found;
+  if (!fs::exists(kSource / folder)) {
+    return found;
+  }
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() &&
+        std::any_of(endings.begin(), endings.end(),
+                    [&](const std::string& ending) { return ends_with(name, ending); })) {
+      found.push_back(entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<fs::path> sources(const std::string& folder) { return files(folder, {".cpp", ".hpp"}); }
+
+bool is_test(const fs::path& file) { return ends_with(file.filename().string(), "_test.cpp"); }
+
+std::vector<std::string> includes(const fs::path& file) {
+  static const std::regex kInclude(R"re(^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"])re");
+  std::vector<std::string> found;
+  std::istringstream text(text_of(file));
+  for (std::string line; std::getline(text, line);) {
+    std::smatch match;
+    if (std::regex_search(line, match, kInclude)) {
+      found.push_back(match[1]);
+    }
+  }
+  return found;
+}
+
+/// Each include of the files that matches, as "file includes header".
+std::vector<std::string> forbidden(const std::vector<fs::path>& from, const std::regex& headers) {
+  std::vector<std::string> found;
+  for (const fs::path& file : from) {
+    for (const std::string& header : includes(file)) {
+      if (std::regex_search(header, headers)) {
+        found.push_back(fs::relative(file, kSource).string() + " includes " + header);
+      }
+    }
+  }
+  return found;
+}
+
+std::string list(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) {
+    text += line + "\n";
+  }
+  return text;
+}
+
+struct PluginFolder {
+  fs::path path;
+  std::string kind;
+  std::string name;
+};
+
+std::vector<PluginFolder> plugin_folders() {
+  std::vector<PluginFolder> found;
+  for (const fs::path& file : files("plugins", {"CMakeLists.txt"})) {
+    const fs::path folder = file.parent_path();
+    if (folder.parent_path().parent_path() == kSource / "plugins") {
+      found.push_back({folder, folder.parent_path().filename(), folder.filename()});
+    }
+  }
+  return found;
+}
+
+TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
+  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host)");
+  EXPECT_GT(sources("framework/include").size(), 20u);
+  EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
+}
+
+TEST(Structure, TheCoreDoesNotKnowTheHost) {
+  const std::regex kHost("(^|/)host/|^(yaml-cpp|boost|gdal|nlohmann|CLI)");
+  EXPECT_GT(sources("framework/src").size(), 5u);
+  EXPECT_EQ(list(forbidden(sources("framework/src"), kHost)), "");
+}
+
+TEST(Structure, PluginsKnowOnlyTheApiAndTheKit) {
+  const std::regex kHost("(^|/)host/|^(yaml-cpp|boost|fcl|CLI)");
+  std::vector<fs::path> code = sources("plugins");
+  EXPECT_GT(code.size(), 16u);
+  EXPECT_EQ(list(forbidden(code, kHost)), "");
+  code.erase(std::remove_if(code.begin(), code.end(), is_test), code.end());
+  EXPECT_EQ(list(forbidden(code, std::regex("^(support|gtest)/"))), "");
+}
+
+TEST(Structure, PluginsDoNotKnowEachOther) {
+  std::vector<std::string> found;
+  for (const fs::path& file : sources("plugins")) {
+    for (const std::string& header : includes(file)) {
+      // A file beside this one, a header of the API, or one of a library.
+      const bool climbs = header.find("..") != std::string::npos;
+      if (climbs || header.rfind("plugins/", 0) == 0 || fs::exists(kSource / "plugins" / header)) {
+        found.push_back(fs::relative(file, kSource).string() + " includes " + header);
+      }
+    }
+  }
+  EXPECT_EQ(list(found), "");
+}
+
+TEST(Structure, OnlyPluginsThatReadGeodataUseGdal) {
+  std::set<std::string> folders;
+  for (const char* folder : {"framework", "plugins", "tools"}) {
+    for (const fs::path& file : sources(folder)) {
+      if (!forbidden({file}, std::regex("^(gdal|ogr_|cpl_)")).empty()) {
+        folders.insert(fs::relative(file.parent_path(), kSource).string());
+      }
+    }
+  }
+  for (const std::string& folder : folders) {
+    EXPECT_EQ(folder.rfind("plugins/environment/", 0), 0u) << folder << " includes GDAL";
+  }
+}
+
+TEST(Structure, EveryPluginFolderIsWhole) {
+  const std::vector<PluginFolder> folders = plugin_folders();
+  EXPECT_GE(folders.size(), 8u);
+  std::set<std::string> kinds{"environment",   "constraint", "planner",
+                              "local_planner", "smoother",   "tuner"};
+  for (const PluginFolder& folder : folders) {
+    SCOPED_TRACE(folder.kind + "/" + folder.name);
+    EXPECT_TRUE(kinds.count(folder.kind)) << "not a kind of plugin";
+    EXPECT_TRUE(fs::exists(folder.path / (folder.name + ".cpp")));
+    EXPECT_TRUE(fs::exists(folder.path / (folder.name + "_test.cpp")));
+
+    const std::string build = text_of(folder.path / "CMakeLists.txt");
+    EXPECT_LE(std::count(build.begin(), build.end(), '\n'), 5) << "CMakeLists.txt: at most 5 lines";
+    EXPECT_NE(build.find("plugin(" + folder.kind + " " + folder.name + ")"), std::string::npos)
+        << build;
+    EXPECT_NE(text_of(folder.path / (folder.name + ".cpp")).find("\"" + folder.name + "\""),
+              std::string::npos)
+        << "the plugin is registered under the folder's name";
+  }
+}
+
+TEST(Structure, EveryPluginReadmeHasTheSameHeadings) {
+  for (const PluginFolder& folder : plugin_folders()) {
+    SCOPED_TRACE(folder.kind + "/" + folder.name);
+    std::string headings;
+    std::istringstream readme(text_of(folder.path / "README.md"));
+    bool code = false;
+    for (std::string line; std::getline(readme, line);) {
+      code ^= line.rfind("```", 0) == 0;
+      // The table of pseudo-code and functions is left out where there is nothing to map.
+      const bool heading = line.rfind("# ", 0) == 0 || line.rfind("## ", 0) == 0;
+      if (!code && heading && line.rfind("## Pseudo-code", 0) != 0) {
+        headings += line + "\n";
+      }
+    }
+    EXPECT_EQ(headings,
+              "# " + folder.name +
+                  "\n## What\n## Guarantees\n## Parameters\n## Example YAML\n## Limits\n");
+    EXPECT_NE(text_of(folder.path / "README.md").find("<!-- parameters -->"), std::string::npos);
+    EXPECT_NE(text_of(folder.path / "README.md").find("<!-- /parameters -->"), std::string::npos);
+  }
+}
+
+TEST(Structure, EverySourceFileNamesItsLicence) {
+  std::vector<fs::path> all;
+  for (const char* folder : {"framework", "plugins", "tests", "tools", "cmake", "docs"}) {
+    const std::vector<fs::path> some =
+        files(folder, {".cpp", ".hpp", ".cmake", "CMakeLists.txt", ".py", ".sh", ".bash"});
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  for (const char* script : {"tools/setup", "tools/run", "tools/test", ".ci/run"}) {
+    all.push_back(kSource / script);
+  }
+  for (const fs::path& file : all) {
+    const std::string head = text_of(file).substr(0, 200);
+    EXPECT_NE(head.find("SPDX-License-Identifier: Apache-2.0"), std::string::npos) << file;
+  }
+}
+
+/// What a library exports: the names of its defined dynamic symbols.
+std::vector<std::string> exports(const fs::path& library) {
+  const std::string command = "nm --dynamic --defined-only '" + library.string() + "'";
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
+  std::vector<std::string> names;
+  std::array<char, 4096> line{};
+  while (pipe && std::fgets(line.data(), int(line.size()), pipe.get()) != nullptr) {
+    std::string text = line.data();
+    text.erase(text.find_last_not_of("\n") + 1);
+    names.push_back(text.substr(text.rfind(' ') + 1));
+  }
+  return names;
+}
+
+TEST(Structure, APluginLibraryExportsOneSymbol) {
+  const fs::path folder = fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins";
+  std::size_t looked_at = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".so") {
+      EXPECT_EQ(exports(entry.path()), std::vector<std::string>{"altiplan_plugins"})
+          << entry.path();
+      ++looked_at;
+    }
+  }
+  EXPECT_GE(looked_at, 8u);
+}
+}  // namespace

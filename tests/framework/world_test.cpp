@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include "altiplan/frame.hpp"
+#include "altiplan/kit/iso_time.hpp"
+#include "altiplan/kit/obstacle_set.hpp"
+#include "support/support.hpp"
+
+namespace altiplan {
+namespace {
+
+Layer shapes(std::string id, std::vector<Shape> list) {
+  return {std::move(id), "shapes", std::make_shared<kit::ShapeLayer>(std::move(list)), true};
+}
+
+/// Level ground over a rectangle: a tile of a larger terrain.
+class FlatTile final : public Environment {
+ public:
+  FlatTile(Box box, double height) : box_(box), height_(height) {}
+
+ private:
+  Box do_bounds() const override { return box_; }
+  double do_clearance(const Vec3& p) const override { return p.z() - height_; }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double x, double y) const override {
+    return box_.contains({x, y, box_.min.z()}) ? std::optional(height_) : std::nullopt;
+  }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z(), b.z()) - height_;
+  }
+  Box box_;
+  double height_;
+};
+
+TEST(World, LayersByIdAndRevision) {
+  const World empty;
+  const World one = empty.with(shapes("a", {Sphere{{0, 0, 0}, 1}}));
+  EXPECT_EQ(one.revision(), empty.revision() + 1);
+  EXPECT_NE(one.find("a"), nullptr);
+  EXPECT_EQ(one.find("b"), nullptr);
+  EXPECT_EQ(one.without("a").layers().size(), 0u);
+  EXPECT_THROW(one.with(shapes("a", {})), Error);
+  EXPECT_EQ(empty.clearance({0, 0, 0}), kInfinity);
+}
+
+TEST(World, ChangedGridsEqualFreshOnes) {
+  RandomStream random(9);
+  const Box space{{0, 0, 0}, {60, 60, 30}};
+  GridSpec spec;
+  spec.counts = {60, 60, 30};
+  spec.inflation = 0.7;
+  World world;
+  for (int i = 0; i < 8; ++i) {
+    world = world.with(shapes(
+        "s" + std::to_string(i),
+        {Sphere{random.in(space), 5}, BoxShape{leg_box(random.in(space), random.in(space))}}));
+  }
+  for (int round = 0; round < 12; ++round) {
+    world.voxels(spec);  // the grid that the change patches
+    const std::string id = "s" + std::to_string(round % 8);
+    world = world.find(id) != nullptr ? world.without(id)
+                                      : world.with(shapes(id, {Sphere{random.in(space), 8}}));
+    World fresh;
+    for (const Layer& layer : world.layers()) {
+      fresh = fresh.with(layer);
+    }
+    EXPECT_TRUE(VoxelGrid::diff(*world.voxels(spec), *fresh.voxels(spec)).empty()) << round;
+  }
+}
+
+TEST(World, TilesShareTheGround) {
+  World world = World()
+                    .with({"west", "flat",
+                           std::make_shared<FlatTile>(Box{{0, 0, 0}, {100, 100, 50}}, 50), true})
+                    .with({"east", "flat",
+                           std::make_shared<FlatTile>(Box{{100, 0, 0}, {200, 100, 60}}, 60), true});
+  EXPECT_EQ(world.ground_gap({10, 50, 100}, {190, 50, 100}), 40);
+  EXPECT_EQ(world.ground_gap({10, 50, 100}, {90, 50, 100}), 50);
+  EXPECT_EQ(world.ground_gap({10, 50, 100}, {210, 50, 100}), -kInfinity);
+  EXPECT_EQ(*world.ground(150, 50), 60);
+  EXPECT_FALSE(world.ground(250, 50));
+}
+
+TEST(World, MovingObstaclesMeetByRelativeMotion) {
+  // It crosses the leg's middle when the vehicle is there, at right angles.
+  const MovingObstacle crossing{"m", Sphere{{50, -50, 0}, 5}, {0, 10, 0}, 0, true};
+  EXPECT_TRUE(hits(crossing, {0, 0, 0}, 0, {100, 0, 0}, 10, 0.1));
+  EXPECT_EQ(separation(crossing, {0, 0, 0}, 0, {100, 0, 0}, 10), 0);
+  // Ten seconds later it has gone.
+  EXPECT_FALSE(hits(crossing, {0, 0, 0}, 10, {100, 0, 0}, 20, 20));
+  // A parallel flight keeps its distance exactly: touching is free.
+  const MovingObstacle beside{"m", Sphere{{0, 15, 0}, 5}, {10, 0, 0}, 0, true};
+  EXPECT_FALSE(hits(beside, {0, 0, 0}, 0, {100, 0, 0}, 10, 10));
+  EXPECT_TRUE(hits(beside, {0, 0, 0}, 0, {100, 0, 0}, 10, 10.001));
+}
+
+TEST(Environment, SphereTracingKeepsItsLaws) {
+  // A third party that gives clearance alone: a ball of radius 10.
+  class Ball final : public Environment {
+    Box do_bounds() const override { return {{-10, -10, -10}, {10, 10, 10}}; }
+    double do_clearance(const Vec3& p) const override { return p.norm() - 10; }
+  };
+  const Ball ball;
+  RandomStream random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 a = random.in({{-40, -40, -40}, {40, 40, 40}});
+    const Vec3 b = random.in({{-40, -40, -40}, {40, 40, 40}});
+    const double r = random.uniform(0, 10);
+    const double distance = point_leg_distance({0, 0, 0}, a, b) - 10;
+    const bool blocked = ball.blocked(a, b, r);
+    EXPECT_EQ(blocked, ball.blocked(b, a, r));
+    if (distance < r - kLengthTolerance) {
+      EXPECT_TRUE(blocked);
+    } else if (distance > r + ball.slack()) {
+      EXPECT_FALSE(blocked);
+    }
+  }
+  int found = 0;
+  ball.near({0, 0, 12}, 5, [&](const Nearby& nearby) {
+    ++found;
+    EXPECT_NEAR(nearby.distance, 2, 1e-9);
+    EXPECT_NEAR(nearby.normal.z(), 1, 1e-6);
+    EXPECT_NEAR(nearby.point.z(), 10, 1e-5);
+  });
+  EXPECT_EQ(found, 1);
+}
+
+TEST(Frame, GeographicThereAndBack) {
+  const Frame frame = Frame::geographic(-84.41, 36.45, 36.6);
+  const auto p = frame.to_local(-84.08, 36.73);
+  EXPECT_NEAR(p[0], 29500, 200);
+  EXPECT_NEAR(p[1], 31060, 200);
+  const auto back = frame.to_lonlat(p[0], p[1]);
+  EXPECT_NEAR(back[0], -84.08, 1e-12);
+  EXPECT_NEAR(back[1], 36.73, 1e-12);
+  // Across the antimeridian the short way.
+  EXPECT_NEAR(Frame::geographic(179.9, 0, 0).to_local(-179.9, 0)[0], 22264, 1);
+  EXPECT_LT(frame.scale_error({{0, 0, 0}, {30000, 31000, 0}}), 0.005);
+  EXPECT_THROW(Frame().to_local(0, 0), Error);
+}
+
+TEST(RandomStream, NamedStreamsAreIndependentAndStable) {
+  RandomStream a = RandomStream(7).sub("sample", 1);
+  RandomStream b = RandomStream(7).sub("sample", 2);
+  RandomStream again = RandomStream(7).sub("sample", 1);
+  double sum = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double u = a.uniform();
+    EXPECT_EQ(u, again.uniform());
+    EXPECT_NE(u, b.uniform());
+    sum += u;
+  }
+  EXPECT_NEAR(sum / 10000, 0.5, 0.02);
+  std::array<int, 6> dice{};
+  for (int i = 0; i < 60000; ++i) {
+    ++dice[std::size_t(a.integer(1, 6) - 1)];
+  }
+  for (const int n : dice) {
+    EXPECT_NEAR(n, 10000, 500);
+  }
+}
+
+TEST(SplitMix64, KnownSequence) {
+  // The published reference values for seed 1234567.
+  SplitMix64 random(1234567);
+  EXPECT_EQ(random.next(), 6457827717110365317ULL);
+  EXPECT_EQ(random.next(), 3203168211198807973ULL);
+}
+
+TEST(IsoTime, ReadsAndRefuses) {
+  EXPECT_EQ(kit::parse_iso_time("1970-01-02"), 86400);
+  EXPECT_EQ(kit::parse_iso_time("2026-05-01T10:00:00Z"), 1777629600);
+  EXPECT_EQ(kit::parse_iso_time("2026-05-01T12:00:00+02:00"), 1777629600);
+  EXPECT_EQ(kit::parse_iso_time("2026-05-01T10:00Z"), 1777629600);
+  for (const char* bad : {"", "2026-02-30", "2026-05-01T25:00Z", "2026-05-01T10:00:00", "today",
+                          "2026-05-01T10:00:00Zx"}) {
+    EXPECT_FALSE(kit::parse_iso_time(bad)) << bad;
+  }
+}
+}  // namespace
+}  // namespace altiplan

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/registry.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+#include "altiplan/error.hpp"
+#include "altiplan/params.hpp"
+
+namespace altiplan::host {
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path kBroken = fs::path(ALTIPLAN_BUILD_DIR) / "tests/broken_plugins";
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A folder of the test's own, gone with it.
+class RegistryTest : public ::testing::Test {
+ protected:
+  RegistryTest()
+      : folder_(fs::path(::testing::TempDir()) /
+                ("altiplan_registry_" + std::to_string(::getpid()) + "_" +
+                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "other");
+  }
+  ~RegistryTest() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& bytes) const {
+    const fs::path file = folder_ / name;
+    std::ofstream(file, std::ios::binary) << bytes;
+    return file;
+  }
+  /// A copy of two_plugins whose record of alpha is changed.
+  template <class Edit>
+  fs::path edited(const std::string& name, Edit edit) const {
+    std::string bytes = bytes_of(kBroken / "two_plugins.so");
+    const std::string magic(Manifest::kMagic, sizeof Manifest::kMagic);
+    Manifest record{};
+    std::size_t at = 0;
+    for (; std::strcmp(record.name, "alpha") != 0; ++at) {
+      at = bytes.find(magic, at);
+      std::memcpy(&record, bytes.data() + at, sizeof record);
+    }
+    --at;
+    edit(record);
+    std::memcpy(bytes.data() + at, &record, sizeof record);
+    return write(name, bytes);
+  }
+
+  fs::path folder_;
+};
+
+/// Text of the exception of this type; "" where none came.
+template <class Exception, class Call>
+std::string text_of(Call call) {
+  try {
+    call();
+  } catch (const Exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST_F(RegistryTest, ReadsAManifestWithoutRunningAnything) {
+  const Library library = examine_library(kBroken / "two_plugins.so");
+  EXPECT_EQ(library.refused, "");
+  ASSERT_EQ(library.plugins.size(), 2U);
+  EXPECT_STREQ(library.plugins[1].kind, "planner");
+  EXPECT_STREQ(library.plugins[1].name, "alpha");
+  EXPECT_STREQ(library.plugins[0].name, "beta");
+  EXPECT_STREQ(library.plugins[0].sentence, "admits every route");
+  EXPECT_EQ(library.build.size(), 40U);
+  EXPECT_EQ(library.build.find_first_not_of("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(examine_library(kBroken / "no_manifest.so").refused,
+            "not an altiplan plugin (no section altiplan_manifest)");
+}
+
+TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
+  const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
+  EXPECT_EQ(refusal([](Manifest& m) { m.api_major = 7; }),
+            "built for API 7.1, this altiplan offers 0.1");
+  EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 2; }),
+            "built for API 0.2, this altiplan offers 0.1");
+  EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 0; }), "");
+  EXPECT_EQ(refusal([](Manifest& m) { m.cxx11_abi ^= 1; }),
+            "built with _GLIBCXX_USE_CXX11_ABI = 0, this altiplan with 1");
+  EXPECT_HAS(refusal([](Manifest& m) { m.glibcxx_debug ^= 1; }), "built with _GLIBCXX_DEBUG = ");
+  EXPECT_HAS(refusal([](Manifest& m) { m.sanitizers ^= 3; }), "this altiplan with ");
+  EXPECT_EQ(refusal([](Manifest& m) { m.layouts[0] = 32 * 64 + 16; }),
+            "its Vec3 has 32 bytes aligned to 16, this altiplan's 24 bytes aligned to 8: built "
+            "with other headers or ABI flags");
+  EXPECT_HAS(refusal([](Manifest& m) { m.struct_size = 400; }),
+             "400 bytes a plugin, this altiplan's");
+  EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
+}
+
+TEST_F(RegistryTest, RefusesADamagedManifest) {
+  const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
+  EXPECT_HAS(refusal([](Manifest& m) { m.magic[3] = 'x'; }), "expected 'altiplan plugin'");
+  EXPECT_HAS(refusal([](Manifest& m) { std::memset(m.name, 'a', sizeof m.name); }),
+             "a text without an end");
+  EXPECT_HAS(refusal([](Manifest& m) { std::strcpy(m.kind, "painter"); }),
+             "the unknown kind 'painter'");
+  EXPECT_HAS(refusal([](Manifest& m) { std::strcpy(m.name, "A*"); }), "named 'A*'");
+  EXPECT_HAS(refusal([](Manifest& m) { std::strcpy(m.name, ""); }), "named ''");
+  EXPECT_HAS(refusal([](Manifest& m) {
+               std::strcpy(m.kind, "constraint");
+               std::strcpy(m.name, "beta");
+             }),
+             "offers the constraint 'beta' twice");
+}
+
+TEST_F(RegistryTest, RefusesEveryTruncation) {
+  const std::string whole = bytes_of(kBroken / "two_plugins.so");
+  ASSERT_GT(whole.size(), 5000U);
+  for (std::size_t size = 0; size < whole.size(); size += size < 200 ? 1 : 509) {
+    EXPECT_NE(examine_library(write("cut.so", whole.substr(0, size))).refused, "") << size;
+  }
+  EXPECT_NE(examine_library(write("cut.so", whole.substr(0, whole.size() - 1))).refused, "");
+  EXPECT_EQ(examine_library(write("cut.so", whole)).refused, "");
+}
+
+TEST_F(RegistryTest, SurvivesAnyByteOfTheHeadersChanged) {
+  const std::string whole = bytes_of(kBroken / "two_plugins.so");
+  for (std::size_t at = 0; at < 64 + 56 * 4; ++at) {
+    for (const char value : {'\x00', '\x7F', '\xFF'}) {
+      std::string changed = whole;
+      changed[at] = value;
+      examine_library(write("changed.so", changed));
+    }
+  }
+  EXPECT_HAS(examine_library(write("x.so", "#!/bin/sh\n" + std::string(100, ' '))).refused,
+             "not an ELF file");
+  EXPECT_HAS(examine_library(folder_ / "none.so").refused, "cannot be opened");
+  EXPECT_EQ(examine_library(folder_).refused, "not a regular file");
+}
+
+TEST_F(RegistryTest, LoadsAtTheFirstCallFromManyThreads) {
+  fs::copy(kBroken / "two_plugins.so", folder_ / "two.so");
+  Registry registry({folder_ / "missing", folder_, folder_ / "../" / folder_.filename()});
+  EXPECT_EQ(registry.libraries().size(), 1U);
+  EXPECT_EQ(registry.names("planner"), std::vector<std::string>{"alpha"});
+  EXPECT_EQ(registry.names("smoother"), std::vector<std::string>{});
+  std::vector<const PluginEntry*> seen(4);
+  {
+    std::vector<std::jthread> threads;
+    for (const PluginEntry*& entry : seen) {
+      threads.emplace_back([&] { entry = &registry.get("planner", "alpha"); });
+    }
+  }
+  for (const PluginEntry* entry : seen) {
+    EXPECT_EQ(entry, seen[0]);
+  }
+  EXPECT_STREQ(seen[0]->name, "alpha");
+  EXPECT_NE(seen[0]->planner(nullptr), nullptr);
+  EXPECT_EQ(seen[0]->describe(nullptr, "").fields.at(0).spec.name, "least_m");
+  EXPECT_NE(registry.get("constraint", "beta").constraint(nullptr), nullptr);
+}
+
+TEST_F(RegistryTest, SaysWhatIsPresentWhereNoLibraryOffersAName) {
+  fs::copy(kBroken / "two_plugins.so", folder_ / "two.so");
+  Registry registry({folder_, folder_ / "nowhere"});
+  EXPECT_EQ(registry.offering("planner", "alpa"), nullptr);
+  const std::string text = text_of<Error>([&] { registry.get("planner", "alpa"); });
+  EXPECT_HAS(text, "no library offers the planner 'alpa'");
+  EXPECT_HAS(text, "did you mean 'alpha'");
+  EXPECT_HAS(text, folder_.string());
+  EXPECT_HAS(text, "nowhere (no such folder)");
+  EXPECT_EQ(text_of<PluginError>([&] { EXPECT_THROW(registry.get("planner", "alpa"), Error); }),
+            "");
+  EXPECT_HAS(text_of<Error>([&] { registry.get("smoother", "alpha"); }), "'alpha' is a planner");
+}
+
+TEST_F(RegistryTest, TwoLibrariesWithOneNameAreRefusedByName) {
+  fs::copy(kBroken / "two_plugins.so", folder_ / "first.so");
+  edited("other/second.so", [](Manifest& m) {
+    std::strcpy(m.kind, "local_planner");
+    m.optimised ^= 1;
+  });
+  Registry registry({folder_, folder_ / "other"});
+  ASSERT_EQ(registry.libraries().size(), 2U);
+  EXPECT_HAS(registry.libraries()[0].refused, "second.so offers a local_planner of that name too");
+  EXPECT_HAS(registry.libraries()[1].refused, "first.so offers a planner of that name too");
+  const std::string text = text_of<PluginError>([&] { registry.get("planner", "alpha"); });
+  EXPECT_HAS(text, "first.so");
+  EXPECT_HAS(text, "second.so");
+  EXPECT_NE(text_of<PluginError>([&] { registry.offering("local_planner", "alpha"); }), "");
+  EXPECT_NE(text_of<PluginError>([&] { registry.offering("constraint", "beta"); }), "");
+}
+
+TEST_F(RegistryTest, ALibraryThatCannotBeUsedIsAPluginError) {
+  edited("announced.so", [](Manifest& m) { std::strcpy(m.name, "omega"); });
+  edited("api.so", [](Manifest& m) {
+    std::strcpy(m.name, "old");
+    m.api_major = 9;
+  });
+  fs::remove(folder_ / "api.so");
+  fs::copy(kBroken / "undefined_symbol.so", folder_ / "undefined.so");
+  fs::copy(kBroken / "no_list.so", folder_ / "no_list.so");
+  Registry registry({folder_});
+  EXPECT_HAS(text_of<PluginError>([&] { registry.get("planner", "omega"); }),
+             "announces the planner 'omega', but does not hold it");
+  EXPECT_HAS(text_of<PluginError>([&] { registry.get("constraint", "delta"); }),
+             "no_list.so does not export altiplan_plugins");
+  const std::string text = text_of<PluginError>([&] { registry.get("constraint", "gamma"); });
+  EXPECT_HAS(text, "missing_function_of_a_test");
+  EXPECT_EQ(text.find("Bad file descriptor"), std::string::npos) << text;
+}
+
+TEST_F(RegistryTest, SearchPath) {
+  ::setenv("ALTIPLAN_PLUGIN_PATH", "/a::/b:", 1);
+  const std::vector<fs::path> folders = Registry::search_path({"/first"});
+  ::unsetenv("ALTIPLAN_PLUGIN_PATH");
+  ASSERT_GE(folders.size(), 4U);
+  EXPECT_EQ(folders[0], "/first");
+  EXPECT_EQ(folders[1], "/a");
+  EXPECT_EQ(folders[2], "/b");
+  EXPECT_TRUE(fs::is_directory(folders[3])) << folders[3];
+  for (const fs::path& folder : folders) {
+    EXPECT_TRUE(folder.is_absolute());
+  }
+}
+}  // namespace
+}  // namespace altiplan::host

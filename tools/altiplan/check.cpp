@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "commands.hpp"
+#include "host/judge.hpp"
+#include "host/mission.hpp"
+#include "host/output/result_json.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::optional<std::string> result;
+  std::optional<std::string> route;
+  std::optional<std::string> scenario;
+  host::Overrides overrides;
+  bool json = false;
+};
+
+host::Json read_json(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) {
+    throw Error("cannot read '" + file + "'");
+  }
+  try {
+    return host::Json::parse(in);
+  } catch (const host::Json::exception& error) {
+    throw Error(file + ": expected JSON: " + error.what());
+  }
+}
+
+Route route_of(const host::Json& json, const std::string& file) {
+  Route route;
+  try {
+    for (const host::Json& p : json) {
+      if (p.size() != 3) {
+        throw Error(file + ": expected points of three numbers, found one of " +
+                    std::to_string(p.size()));
+      }
+      route.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
+    }
+  } catch (const host::Json::exception&) {
+    throw Error(file + ": expected a route as a list of [x, y, z] in metres");
+  }
+  if (route.empty()) {
+    throw Error(file + ": there is no route in it");
+  }
+  return route;
+}
+
+int report(const CheckResult& verdict, const Route& route, const Request& request, bool json) {
+  const Measures measures = measure(route, request);
+  if (json) {
+    std::cout << host::Json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}}
+                     .dump(1)
+              << '\n';
+  } else {
+    std::printf("%s: %zu waypoints, %s km, clearance %s m, %s m above ground\n",
+                verdict.ok() ? "sound" : "not sound", measures.waypoints,
+                fixed(measures.length_m / 1000, 3).c_str(),
+                fixed(measures.min_clearance_m, 2).c_str(),
+                fixed(measures.min_ground_clearance_m, 2).c_str());
+    for (const Violation& violation : verdict.violations) {
+      std::printf("  waypoint %zu, %s: %s\n", violation.at, violation.constraint.c_str(),
+                  violation.message.c_str());
+    }
+  }
+  return verdict.ok() ? kDone : kNoRoute;
+}
+
+/// The overrides with which a stored run was made.
+host::Overrides stored_overrides(const host::Json& json, host::Overrides overrides) {
+  overrides.scenario = json.at("scenario").get<std::string>();
+  overrides.seed = json.at("seed").get<std::int64_t>();
+  const host::Json& stored = json.at("overrides");
+  if (stored.contains("set")) {
+    for (const auto& [key, value] : stored.at("set").items()) {
+      overrides.set.push_back(key + "=" + value.get<std::string>());
+    }
+  }
+  return overrides;
+}
+
+int check_result(const Arguments& arguments) {
+  const std::string& file = *arguments.result;
+  const host::Json json = read_json(file);
+  host::Overrides overrides;
+  std::string pipeline;
+  try {
+    if (json.at("altiplan") != host::kFileFormat) {
+      throw Error(file + ": expected a result of format 1");
+    }
+    overrides = stored_overrides(json, arguments.overrides);
+    pipeline = json.at("pipeline").get<std::string>();
+    for (const host::Json& used : json.at("files")) {
+      if (host::sha256(used.at("path").get<std::string>()) != used.at("sha256")) {
+        warn(used.at("path").get<std::string>() + " is not the file that the result was made from");
+      }
+    }
+    if (json.at("route").is_null()) {
+      std::cout << "there is no standing route in " << file << '\n';
+      return kNoRoute;
+    }
+  } catch (const host::Json::exception& error) {
+    throw Error(file + ": expected a result of altiplan run: " + error.what());
+  }
+  const host::Config config = host::load_config(pipeline, overrides);
+  const host::Mission mission = host::build_mission(config, 1);
+  const Route route = route_of(json.at("route"), file);
+  return report(host::judge(route, mission.request, mission.via), route, mission.request,
+                arguments.json);
+}
+
+int check_route(const Arguments& arguments) {
+  const host::Json json = read_json(*arguments.route);
+  const Route route = route_of(json.is_object() && json.contains("route") ? json.at("route") : json,
+                               *arguments.route);
+  const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
+  const host::Mission mission = host::build_mission(config, 1);
+  return report(host::judge(route, mission.request, mission.via), route, mission.request,
+                arguments.json);
+}
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("check", "judge a stored or a foreign route again");
+  auto arguments = std::make_shared<Arguments>();
+  auto* result = command->add_option("result", arguments->result, "a result of altiplan run");
+  auto* route =
+      command->add_option("--route", arguments->route, "a route as JSON: [[x, y, z], …] in metres")
+          ->type_name("FILE")
+          ->excludes(result);
+  auto* scenario =
+      command->add_option("--scenario", arguments->scenario, "the scenario to judge it in")
+          ->type_name("FILE")
+          ->excludes(result);
+  route->needs(scenario);
+  scenario->needs(route);
+  add_plugin_path(*command, arguments->overrides);
+  command->add_flag("--json", arguments->json, "print JSON");
+  set_example(*command, "altiplan check result.json");
+  command->callback([&action, arguments] {
+    if (!arguments->result && !arguments->route) {
+      throw CLI::RequiredError("a result, or --route and --scenario");
+    }
+    action = [arguments] {
+      return arguments->result ? check_result(*arguments) : check_route(*arguments);
+    };
+  });
+}
+}  // namespace altiplan::cli

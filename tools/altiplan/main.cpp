@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <map>
+
+#include "altiplan/error.hpp"
+#include "commands.hpp"
+
+namespace altiplan::cli {
+
+LogLevel& log_level() {
+  static LogLevel level = LogLevel::warning;
+  return level;
+}
+
+void warn(const std::string& message) {
+  if (log_level() != LogLevel::quiet) {
+    std::cerr << "altiplan: warning: " << message << '\n';
+  }
+}
+
+void info(const std::string& message) {
+  if (log_level() == LogLevel::info) {
+    std::cerr << "altiplan: " << message << '\n';
+  }
+}
+
+void set_example(CLI::App& command, const std::string& example) {
+  command.footer("Example:\n  " + example);
+}
+
+void add_plugin_path(CLI::App& command, host::Overrides& overrides) {
+  command
+      .add_option("--plugin-path", overrides.plugin_path,
+                  "folder of plugin libraries, searched first; may be given again")
+      ->expected(1)
+      ->type_name("DIR")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_overrides(CLI::App& command, host::Overrides& overrides) {
+  add_plugin_path(command, overrides);
+  command.add_option("--scenario", overrides.scenario, "scenario in place of the pipeline's")
+      ->type_name("FILE");
+  command.add_option("--seed", overrides.seed, "seed in place of the pipeline's")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--set", overrides.set,
+                  "any key of the pipeline, or of the scenario as scenario.KEY; may be given again")
+      ->expected(1)
+      ->type_name("KEY=VALUE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::string fixed(const std::optional<double>& value, int digits) {
+  if (!value) {
+    return "-";
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, *value);
+  return text;
+}
+
+namespace {
+
+int guarded(const Action& action) {
+  try {
+    return action();
+  } catch (const ConfigError& error) {
+    for (const Problem& problem : error.problems()) {
+      std::cerr << problem.text() << '\n';
+    }
+    return kBadFile;
+  } catch (const PluginError& error) {
+    std::cerr << "altiplan: " << error.what() << '\n';
+    return kBadPlugin;
+  } catch (const Error& error) {
+    std::cerr << "altiplan: " << error.what() << '\n';
+    return kBadFile;
+  } catch (const std::exception& error) {
+    std::cerr << "altiplan: internal error: " << error.what() << '\n';
+    return kInternal;
+  }
+}
+
+int main_checked(int argc, char** argv) {
+  CLI::App app("Plans and judges routes of unmanned aircraft with plugins composed in YAML.",
+               "altiplan");
+  app.set_version_flag("--version", ALTIPLAN_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  static const std::map<std::string, LogLevel> kLevels{
+      {"quiet", LogLevel::quiet}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
+  app.add_option("--log-level", log_level(), "quiet, warning or info")
+      ->transform(CLI::CheckedTransformer(kLevels));
+  set_example(app, "altiplan run configs/pipelines/ridge_crossing.yaml");
+  Action action;
+  add_run(app, action);
+  add_validate(app, action);
+  add_explain(app, action);
+  add_check(app, action);
+  add_plugins(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? kDone : kUsage;
+  }
+  const int code = guarded(action);
+  std::cout.flush();
+  if (!std::cout) {
+    std::cerr << "altiplan: cannot write to stdout\n";
+    return code == kDone ? kInternal : code;
+  }
+  return code;
+}
+}  // namespace
+}  // namespace altiplan::cli
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of the stream, not of ours
+  return altiplan::cli::main_checked(argc, argv);
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+
+#include "commands.hpp"
+#include "host/describe.hpp"
+#include "host/schema.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::string name;
+  host::Overrides overrides;
+  bool strict = false;
+  bool json = false;
+};
+
+host::Registry registry_of(const Arguments& arguments) {
+  return host::Registry(host::Registry::search_path(arguments.overrides.plugin_path));
+}
+
+int plugins(const Arguments& arguments) {
+  host::Registry registry = registry_of(arguments);
+  const std::vector<host::Library> libraries = host::examine_all(registry);
+  if (arguments.json) {
+    std::cout << host::plugins_json(registry, libraries).dump(1) << '\n';
+  } else {
+    std::cout << host::plugins_text(registry, libraries);
+  }
+  const bool refused = std::any_of(libraries.begin(), libraries.end(),
+                                   [](const host::Library& l) { return !l.refused.empty(); });
+  return refused && arguments.strict ? kBadPlugin : kDone;
+}
+
+int describe(const Arguments& arguments) {
+  host::Registry registry = registry_of(arguments);
+  const std::vector<host::Description> all = host::describe_plugin(registry, arguments.name);
+  if (arguments.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const host::Description& description : all) {
+      json.push_back(host::describe_json(description));
+    }
+    std::cout << (all.size() == 1 ? json.front() : json).dump(1) << '\n';
+    return kDone;
+  }
+  for (const host::Description& description : all) {
+    std::cout << host::describe_text(description);
+  }
+  return kDone;
+}
+
+int schema(const Arguments& arguments) {
+  host::Registry registry = registry_of(arguments);
+  std::cout << host::any_file_schema(host::choices_of(registry)).dump(1) << '\n';
+  return kDone;
+}
+
+CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sentence,
+              const std::shared_ptr<Arguments>& arguments, int (*call)(const Arguments&)) {
+  CLI::App* command = app.add_subcommand(name, sentence);
+  add_plugin_path(*command, arguments->overrides);
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback(
+      [&action, arguments, call] { action = [arguments, call] { return call(*arguments); }; });
+  return command;
+}
+}  // namespace
+
+void add_plugins(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = add(app, action, "plugins", "what is loaded, and what was refused and why",
+                          arguments, &plugins);
+  command->add_flag("--strict", arguments->strict, "exit with 4 when a library is refused");
+  set_example(*command, "altiplan plugins --plugin-path build/my_plugins");
+
+  arguments = std::make_shared<Arguments>();
+  command = add(app, action, "describe", "one plugin: what it does, its parameters, its traits",
+                arguments, &describe);
+  command->add_option("name", arguments->name, "plugin")->required();
+  set_example(*command, "altiplan describe astar");
+
+  arguments = std::make_shared<Arguments>();
+  command = add(app, action, "schema", "JSON Schema (draft-07) of pipelines and scenarios",
+                arguments, &schema);
+  set_example(*command, "altiplan schema > altiplan.schema.json");
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <thread>
+
+#include "commands.hpp"
+#include "host/output/result_json.hpp"
+#include "host/pipeline.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct RunArguments {
+  std::string pipeline;
+  host::Overrides overrides;
+  int threads = 1;
+  std::optional<std::string> trace;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+/// Turns SIGINT and SIGTERM into a stop token: the step under way ends, the result is written.
+/// A second signal ends the process at once.
+class Interrupt {
+ public:
+  Interrupt() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    sigaddset(&signals_, SIGUSR1);  // ends the thread
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    thread_ = std::thread([this] {
+      int signal = 0;
+      while (sigwait(&signals_, &signal) == 0 && signal != SIGUSR1) {
+        if (happened_.exchange(true)) {
+          _exit(kInterrupted);
+        }
+        stop_.request_stop();
+      }
+    });
+  }
+  ~Interrupt() {
+    pthread_kill(thread_.native_handle(), SIGUSR1);
+    thread_.join();
+  }
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  std::stop_token token() const { return stop_.get_token(); }
+  bool happened() const { return happened_; }
+
+ private:
+  sigset_t signals_;
+  std::stop_source stop_;
+  std::atomic<bool> happened_ = false;
+  std::thread thread_;
+};
+
+void print_row(const std::string& id, const std::string& plugin, const std::string& status,
+               const std::optional<Measures>& m, double seconds) {
+  const auto cell = [&](std::optional<double> value, int digits) { return fixed(value, digits); };
+  std::optional<double> length;
+  std::optional<double> points;
+  if (m) {
+    length = m->length_m / 1000;
+    points = double(m->waypoints);
+  }
+  std::printf("  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", id.c_str(), plugin.c_str(),
+              status.c_str(), cell(length, 3).c_str(), cell(points, 0).c_str(),
+              cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
+              cell(m ? m->max_climb_deg : std::nullopt, 1).c_str(),
+              cell(m ? m->min_clearance_m : std::nullopt, 1).c_str(),
+              cell(m ? m->min_ground_clearance_m : std::nullopt, 1).c_str(),
+              fixed(seconds * 1000, 1).c_str());
+}
+
+void print_flight(const host::FlightResult& flight) {
+  std::printf("  flight: %s after %s s, %d collision%s, nearest %s m, %zu replan%s\n",
+              flight.reached ? "reached the goal" : "did not reach the goal",
+              fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
+              flight.collisions == 1 ? "" : "s", fixed(flight.min_separation_m, 1).c_str(),
+              flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
+  for (const host::Handover& handover : flight.handovers) {
+    std::printf("  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
+                handover.to.c_str(), handover.why.c_str());
+  }
+}
+
+void print_table(const host::RunResult& result) {
+  std::printf("  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", "step", "plugin", "status",
+              "length_km", "points", "turn_d", "climb_d", "clear_m", "ground_m", "time_ms");
+  for (const host::StepResult& step : result.steps) {
+    const bool flown = step.verb == host::Verb::fly && &step == &result.steps.back();
+    print_row(step.id, step.plugin, step.stands && !flown ? "stands" : name(step.status),
+              flown ? result.flight->measures : step.measures, step.time_s);
+  }
+  if (result.flight) {
+    print_flight(*result.flight);
+  }
+  for (const host::StepResult& step : result.steps) {
+    if (!step.stands) {
+      std::printf("  %s: %s\n", step.id.c_str(), step.message.c_str());
+    }
+  }
+}
+
+/// A folder that is not there is said before anything is computed.
+void expect_writable(const std::optional<std::string>& file, const char* option) {
+  if (!file) {
+    return;
+  }
+  const auto folder = std::filesystem::absolute(*file).parent_path();
+  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
+    throw Error(std::string(option) + ": cannot write into the folder '" + folder.string() + "'");
+  }
+  if (std::filesystem::is_directory(*file)) {
+    throw Error(std::string(option) + ": '" + *file + "' is a folder");
+  }
+}
+
+void hand_out(const RunArguments& arguments, const host::Config& config,
+              const host::RunResult& result) {
+  const host::Json json =
+      arguments.out || arguments.json ? host::result_json(config, result) : host::Json();
+  if (arguments.out) {
+    host::write_file(*arguments.out, json.dump(1) + "\n");
+  }
+  if (arguments.json) {
+    std::cout << json.dump(1) << '\n';
+  } else {
+    std::printf("%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
+    print_table(result);
+    std::printf("  %s\n", result.message.c_str());
+  }
+}
+
+int run(const RunArguments& arguments) {
+  expect_writable(arguments.out, "--out");
+  expect_writable(arguments.trace, "--trace");
+  const Interrupt interrupt;
+  const host::Config config = host::load_config(arguments.pipeline, arguments.overrides);
+  host::RunOptions options;
+  options.threads = arguments.threads;
+  options.trace = arguments.trace;
+  options.stop = interrupt.token();
+  options.on_stuck = [&](const host::RunResult& result) {
+    hand_out(arguments, config, result);
+    std::cout.flush();
+    std::fflush(nullptr);
+    _exit(result.exit_code());
+  };
+  const host::RunResult result = host::run(config, options);
+  for (const std::string& warning : result.warnings) {
+    warn(warning);
+  }
+  for (const std::string& note : result.notes) {
+    info(note);
+  }
+  hand_out(arguments, config, result);
+  return interrupt.happened() ? kInterrupted : result.exit_code();
+}
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("run", "run a pipeline: plan, smooth, judge, fly");
+  auto arguments = std::make_shared<RunArguments>();
+  command->add_option("pipeline", arguments->pipeline, "pipeline file")->required();
+  add_overrides(*command, arguments->overrides);
+  command->add_option("--threads", arguments->threads, "threads that a plugin may use")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--trace", arguments->trace, "write what the searches did")
+      ->type_name("FILE");
+  command->add_option("--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command->add_flag("--json", arguments->json, "print the result as JSON, and nothing else");
+  set_example(*command,
+              "altiplan run configs/pipelines/ridge_crossing.yaml --seed 3 "
+              "--set steps.0.with.weight_g=0.6 --out result.json");
+  command->callback([&action, arguments] { action = [arguments] { return run(*arguments); }; });
+}
+}  // namespace altiplan::cli

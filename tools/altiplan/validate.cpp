@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <iostream>
+
+#include "commands.hpp"
+#include "host/output/result_json.hpp"
+#include "host/yaml.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> files;
+  host::Overrides overrides;
+  bool json = false;
+};
+
+void validate_one(const std::string& file, const host::Overrides& overrides) {
+  switch (host::kind_of(host::load_yaml(file))) {
+    case host::FileKind::pipeline:
+      host::load_config(file, overrides);
+      break;
+    case host::FileKind::scenario:
+      host::load_scenario(file, overrides);
+      break;
+    case host::FileKind::study:
+      throw ConfigError(Location{file, 0, 0, ""}, "",
+                        "a study: this version checks pipelines and scenarios");
+  }
+}
+
+int validate(const Arguments& arguments) {
+  int code = kDone;
+  for (const std::string& file : arguments.files) {
+    try {
+      validate_one(file, arguments.overrides);
+      std::cout << file << ": valid\n";
+    } catch (const ConfigError& error) {
+      for (const Problem& problem : error.problems()) {
+        std::cerr << problem.text() << '\n';
+      }
+      code = kBadFile;
+    }
+  }
+  return code;
+}
+
+int explain(const Arguments& arguments) {
+  const host::Config config = host::load_config(arguments.files[0], arguments.overrides);
+  const std::vector<host::Explained> all = host::explain(config);
+  if (arguments.json) {
+    host::Json json = host::Json::array();
+    for (const host::Explained& entry : all) {
+      json.push_back({{"key", entry.key},
+                      {"value", host::Json::parse(entry.value_json)},
+                      {"unit", entry.unit},
+                      {"from", entry.from}});
+    }
+    std::cout << json.dump(1) << '\n';
+    return kDone;
+  }
+  std::size_t width = 0;
+  for (const host::Explained& entry : all) {
+    width = std::max(width, entry.key.size());
+  }
+  for (const host::Explained& entry : all) {
+    const std::string value =
+        entry.value_json +
+        (entry.unit.empty() || entry.value_json == "null" ? "" : " " + entry.unit);
+    std::printf("%-*s  %-24s  %s\n", int(width), entry.key.c_str(), value.c_str(),
+                entry.from.c_str());
+  }
+  return kDone;
+}
+}  // namespace
+
+void add_validate(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("validate", "check files without running them");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("files", arguments->files, "pipelines and scenarios")->required();
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command, "altiplan validate configs/pipelines/*.yaml configs/scenarios/*.yaml");
+  command->callback(
+      [&action, arguments] { action = [arguments] { return validate(*arguments); }; });
+}
+
+void add_explain(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "explain", "a pipeline with every default, and where each value came from");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("pipeline", arguments->files, "pipeline file")->required()->expected(1);
+  add_overrides(*command, arguments->overrides);
+  command->add_flag("--json", arguments->json, "print JSON");
+  set_example(*command, "altiplan explain configs/pipelines/ridge_crossing.yaml");
+  command->callback([&action, arguments] { action = [arguments] { return explain(*arguments); }; });
+}
+}  // namespace altiplan::cli
