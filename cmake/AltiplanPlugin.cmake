@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # altiplan_add_plugin(KIND NAME): the library altiplan_KIND_NAME from the *.cpp files beside the
-# calling CMakeLists.txt, and its test from NAME_test.cpp where tests are built.
+# calling CMakeLists.txt, and its test from the *_test.cpp files there where tests are built.
 # KIND: environment, constraint, planner, local_planner, smoother or tuner.
 
 set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
@@ -26,9 +26,9 @@ function(altiplan_add_plugin kind name)
   include(GNUInstallDirs)
   install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/altiplan/plugins)
   set_property(GLOBAL APPEND PROPERTY ALTIPLAN_PLUGINS ${target})
-  if(BUILD_TESTING AND COMMAND altiplan_add_test
-     AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
-    altiplan_add_test(${kind}_${name} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  if(BUILD_TESTING AND COMMAND altiplan_add_test AND tests)
+    altiplan_add_test(${kind}_${name} ${tests})
     add_dependencies(test_${kind}_${name} ${target})
   endif()
 endfunction()

@@ -37,9 +37,14 @@ configure() {
 
 # build PRESET [TARGET…]
 build() {
-  local preset=$1
+  local preset=$1 cache
   shift
-  if [[ ! -d $root/build/$preset/lib ]]; then
+  # ccache compiles nothing where it cannot write, as for a user without a home folder.
+  cache=$(ccache --get-config cache_dir 2>/dev/null) || cache=
+  if [[ -z $cache ]] || ! mkdir -p "$cache" 2>/dev/null || [[ ! -w $cache ]]; then
+    export CCACHE_DIR=$root/build/ccache
+  fi
+  if [[ ! -x $root/build/$preset/bin/altiplan ]]; then
     say "building into build/$preset; the first time takes some minutes"
   else
     say "building what changed into build/$preset"

@@ -33,6 +33,20 @@ Violation beyond(const char* rule, std::size_t at, double value, double limit, c
               " the limit of " + fixed(limit) + unit};
 }
 
+/// Where a leg with no ground below part of it comes to the first such part.
+Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
+  if (!world.ground_below(a, a)) {
+    return a;
+  }
+  double known = 0;
+  double unknown = 1;
+  for (int i = 0; i < 50; ++i) {
+    const double t = (known + unknown) / 2;
+    (world.ground_below(a, a + t * (b - a)) ? known : unknown) = t;
+  }
+  return a + unknown * (b - a);
+}
+
 double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
@@ -110,10 +124,21 @@ void judge_leg(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
       }
     }
   }
+  const bool over_ground = request.world->ground_below(a, b);
+  if (!over_ground && !report([&] {
+        return Violation{"ground", at, 0, 0,
+                         "there is no ground of known height below " +
+                             place(ground_ends(*request.world, a, b)) + ", a place of the leg"};
+      })) {
+    return;
+  }
   const double low = std::min(a.z(), b.z());
   const double high = std::max(a.z(), b.z());
   for (const AltitudeBand& band : limits.altitude) {
     const bool over_sea = band.datum == AltitudeBand::Datum::sea;
+    if (!over_sea && !over_ground) {
+      continue;
+    }
     const double least = over_sea ? low : request.world->ground_gap(a, b, band.min);
     if (least < band.min - kLengthTolerance && !report([&, l = least, m = band.min] {
           return beyond("altitude", at, l, m, " m", "the altitude", true);
@@ -130,16 +155,12 @@ void judge_leg(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
       return;
     }
   }
-  if (limits.min_ground_clearance && request.world->has_ground()) {
-    const double gap = request.world->ground_gap(a, b, *limits.min_ground_clearance);
-    if (gap < *limits.min_ground_clearance - kLengthTolerance && !report(
-                                                                     [&] {
-                                                                       return gap == -kInfinity
-                     ? Violation{"ground_clearance", at, gap, *limits.min_ground_clearance,
-                                 "part of the leg has no ground of known height below it"}
-                     : beyond("ground_clearance", at, gap, *limits.min_ground_clearance, " m",
-                              "the height above ground", true);
-                                                                     })) {
+  if (limits.min_ground_clearance && over_ground) {
+    const double least = *limits.min_ground_clearance;
+    const double gap = request.world->ground_gap(a, b, least);
+    if (gap < least - kLengthTolerance && !report([&] {
+          return beyond("ground_clearance", at, gap, least, " m", "the height above ground", true);
+        })) {
       return;
     }
   }

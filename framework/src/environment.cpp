@@ -130,6 +130,7 @@ std::optional<double> Environment::do_ground(double, double) const { return std:
 double Environment::do_ground_gap(const Vec3&, const Vec3&, double) const { return -kInfinity; }
 double Environment::do_ground_gap_max(const Vec3&, const Vec3&) const { return kInfinity; }
 double Environment::do_ground_slope(const Box&) const { return kInfinity; }
+const HeightField* Environment::do_height_field() const { return nullptr; }
 std::vector<Threat> Environment::do_threats() const { return {}; }
 double Environment::do_slack() const { return 0.05; }
 std::optional<GridSpec> Environment::do_native_grid() const { return std::nullopt; }

@@ -27,9 +27,11 @@ double deepest(const std::function<double(const Vec3&)>& clearance, const Vec3& 
   return least;
 }
 
+/// Bounds the error of greatest_free_radius, as a share of what it finds.
+constexpr double kFine = 1e-9;
+
 /// The greatest r for which the leg is not blocked, so that it agrees with the judge.
-template <class Solid>
-double greatest_free_radius(const Solid& solid, const Vec3& a, const Vec3& b) {
+double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3& b) {
   constexpr double kFar = 1e7;
   if (solid.blocked(a, b, 0)) {
     return std::min(0.0, deepest([&](const Vec3& p) { return solid.clearance(p); }, a, b));
@@ -43,23 +45,46 @@ double greatest_free_radius(const Solid& solid, const Vec3& a, const Vec3& b) {
       return kInfinity;
     }
   }
-  while (met - free > 1e-9 * std::max(1.0, met)) {
+  while (met - free > kFine * std::max(1.0, met)) {
     const double middle = (free + met) / 2;
     (solid.blocked(a, b, middle) ? met : free) = middle;
   }
   return std::max(0.0, free - kLengthTolerance);  // touching within the tolerance counts as free
 }
-}  // namespace
-
-double leg_clearance(const World& world, const Vec3& a, const Vec3& b) {
-  double least = kInfinity;
-  for (const Layer& layer : world.layers()) {
-    least = std::min(least, leg_clearance(*layer.environment, a, b));
+/// Least clearance of the route's legs. Those that come nearest by the clearance of their middles
+/// are measured first, and the others only where they may be nearer still.
+double least_clearance(const Environment& environment, const Route& route, double enough) {
+  struct Candidate {
+    double at_least;
+    std::size_t leg;
+  };
+  std::vector<Candidate> legs;
+  const double spare = environment.slack() + 2 * kLengthTolerance;
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    const double clearance = environment.clearance((route[i] + route[i + 1]) / 2);
+    const double at_least = clearance - (route[i + 1] - route[i]).norm() / 2 - spare;
+    legs.push_back({std::isnan(at_least) ? -kInfinity : at_least, i});
+  }
+  std::sort(legs.begin(), legs.end(),
+            [](const Candidate& x, const Candidate& y) { return x.at_least < y.at_least; });
+  double least = enough;
+  for (const Candidate& candidate : legs) {
+    if (candidate.at_least >= least) {
+      break;
+    }
+    const std::size_t i = candidate.leg;
+    least = std::min(least, leg_clearance(environment, route[i], route[i + 1], least));
   }
   return least;
 }
+}  // namespace
 
-double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b) {
+double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b, double enough) {
+  // One question spares the search: a leg that is free a little above `enough` has at least that.
+  const double above = enough > 0 ? enough * (1 + 4 * kFine) + 2 * kLengthTolerance : 0;
+  if (std::isfinite(enough) && !environment.blocked(a, b, above)) {
+    return enough;
+  }
   return greatest_free_radius(environment, a, b);
 }
 
@@ -125,12 +150,14 @@ Measures measure(const Route& route, const Request& request) {
       m.min_radius_m = radius;
     }
   }
+  const Route legs = bends.size() > 1 ? bends : Route{bends.front(), bends.front()};
   double clearance = kInfinity;
+  for (const Layer& layer : world.layers()) {
+    clearance = least_clearance(*layer.environment, legs, clearance);
+  }
   double ground = kInfinity;
-  for (std::size_t i = 0; i + (bends.size() > 1 ? 1 : 0) < bends.size(); ++i) {
-    const Vec3& to = bends[std::min(i + 1, bends.size() - 1)];
-    clearance = std::min(clearance, leg_clearance(world, bends[i], to));
-    ground = std::min(ground, world.ground_gap(bends[i], to));
+  for (std::size_t i = 0; i + 1 < legs.size(); ++i) {
+    ground = std::min(ground, world.ground_gap(legs[i], legs[i + 1], ground));
   }
   if (std::isfinite(clearance)) {
     m.min_clearance_m = clearance;

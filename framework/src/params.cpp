@@ -52,6 +52,17 @@ std::string json_text(std::string_view text) {
   return out + '"';
 }
 
+/// The keys of a point, as a map.
+std::string point_json(const char* form, const Point& point) {
+  std::string text =
+      "{" + json_text(form) + ": [" + number_text(point.at[0]) + ", " + number_text(point.at[1]);
+  text += (point.has_height ? ", " + number_text(point.at[2]) : "") + "]";
+  if (point.above_ground_m) {
+    text += ", \"above_ground_m\": " + number_text(*point.above_ground_m);
+  }
+  return text + "}";
+}
+
 FieldSpec make_shape(FieldType type, std::string default_json) {
   FieldSpec spec;
   spec.type = type;
@@ -360,7 +371,15 @@ FieldRef Fields::point(Point& target) {
   for (const char* key : {"at_m", "at_lonlat", "at_cell", "above_ground_m"}) {
     known_.emplace_back(key);
   }
+  const auto show = [&] {
+    for (const auto& [name, form] : kForms) {
+      if (target.form == form) {
+        bound_[index].value_json = point_json(name, target);
+      }
+    }
+  };
   if (source_ == nullptr) {
+    show();
     return {*this, index};
   }
   for (const auto& [name, form] : kForms) {
@@ -373,7 +392,6 @@ FieldRef Fields::point(Point& target) {
       continue;
     }
     bound_[index].where = value->where;
-    bound_[index].value_json = "{" + json_text(name) + ": " + json(*value) + "}";
     if (value->kind != Value::Kind::list || value->items.size() < 2 || value->items.size() > 3) {
       problem(*value, key_of(name), "expected two or three numbers, found " + value->what());
       continue;
@@ -394,10 +412,6 @@ FieldRef Fields::point(Point& target) {
   }
   if (const Value* value = source_->find("above_ground_m")) {
     target.above_ground_m = read_number(*value, key_of("above_ground_m"));
-    std::string& shown = bound_[index].value_json;
-    if (!shown.empty()) {
-      shown.insert(shown.size() - 1, ", \"above_ground_m\": " + json(*value));
-    }
     if (target.has_height) {
       problem(*value, key_of("above_ground_m"),
               "the point has a height already: give its third coordinate or above_ground_m");
@@ -406,6 +420,7 @@ FieldRef Fields::point(Point& target) {
   if (target.form == Point::Form::none) {
     missing_.push_back(index);
   }
+  show();
   return {*this, index};
 }
 
@@ -415,6 +430,9 @@ FieldRef Fields::plugin(std::string_view kind, std::string& name, Value& paramet
   const std::size_t index = open("", std::move(spec));
   known_.pop_back();
   if (source_ == nullptr) {
+    if (!name.empty()) {
+      bound_[index].value_json = "{" + json_text(name) + ": " + json(parameters) + "}";
+    }
     return {*this, index};
   }
   const Value::Entry* found = nullptr;

@@ -155,6 +155,9 @@ PlanResult Planner::plan(const Request& request) const {
 }
 
 std::unique_ptr<Session> Planner::begin(const Request& request) const {
+  if (auto result = settled(request); result && result->status == Status::invalid_problem) {
+    return std::make_unique<HeldSession>(*std::move(result));
+  }
   std::unique_ptr<Session> session;
   PlanResult failure = guarded([&] {
     session = do_begin(request);
@@ -169,7 +172,11 @@ std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
 }
 
 std::unique_ptr<Pilot> LocalPlanner::begin(const Request& request) const {
-  return do_begin(request);
+  std::unique_ptr<Pilot> pilot = do_begin(request);
+  if (pilot == nullptr) {
+    throw PluginError("the local planner broke a law of its interface: begin returned no pilot");
+  }
+  return pilot;
 }
 
 Traits LocalPlanner::do_traits() const { return {}; }

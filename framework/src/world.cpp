@@ -2,6 +2,7 @@
 #include "altiplan/world.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -17,6 +18,7 @@ struct World::Cache {
   };
   std::mutex mutex;
   std::vector<std::shared_ptr<const VoxelGrid>> grids;
+  std::vector<std::shared_ptr<const DistanceField>> distances;
   std::vector<Earlier> earlier;
 };
 
@@ -166,6 +168,13 @@ std::pair<double, double> part_over(const Box& box, const Vec3& a, const Vec3& b
   }
   return {t0, t1};
 }
+
+/// The place at t of the leg; rounding does not carry it out of the box, where there is no ground.
+Vec3 on_leg(const Vec3& a, const Vec3& b, double t, const Box& box) {
+  const Vec3 p = t <= 0 ? a : t >= 1 ? b : Vec3(a + t * (b - a));
+  return {std::clamp(p.x(), box.min.x(), box.max.x()), std::clamp(p.y(), box.min.y(), box.max.y()),
+          p.z()};
+}
 }  // namespace
 
 double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
@@ -181,13 +190,13 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
   double least = kInfinity;
   std::vector<std::pair<double, double>> parts;
   for (const Layer& layer : layers_) {
-    const auto [t0, t1] = part_over(layer.environment->bounds(), a, b);
+    const Box box = layer.environment->bounds();
+    const auto [t0, t1] = part_over(box, a, b);
     if (!is_ground(layer) || t0 > t1) {
       continue;
     }
-    const Vec3 from = t0 > 0 ? Vec3(a + t0 * (b - a)) : a;
-    const Vec3 to = t1 < 1 ? Vec3(a + t1 * (b - a)) : b;
-    least = std::min(least, layer.environment->ground_gap(from, to, enough));
+    least = std::min(
+        least, layer.environment->ground_gap(on_leg(a, b, t0, box), on_leg(a, b, t1, box), enough));
     parts.emplace_back(t0, t1);
   }
   std::sort(parts.begin(), parts.end());
@@ -201,16 +210,22 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
   return !parts.empty() && covered >= 1 ? least : -kInfinity;
 }
 
+bool World::ground_below(const Vec3& a, const Vec3& b) const {
+  // Any finite height will do.
+  return ground_gap(a, b, std::numeric_limits<double>::lowest()) > -kInfinity;
+}
+
 double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
   double most = -kInfinity;
   bool covered = false;
   for (const Layer& layer : layers_) {
     if (layer.environment->has_ground()) {
-      const auto [t0, t1] = part_over(layer.environment->bounds(), a, b);
+      const Box box = layer.environment->bounds();
+      const auto [t0, t1] = part_over(box, a, b);
       if (t0 <= t1) {
         covered = true;
-        most =
-            std::max(most, layer.environment->ground_gap_max(a + t0 * (b - a), a + t1 * (b - a)));
+        most = std::max(
+            most, layer.environment->ground_gap_max(on_leg(a, b, t0, box), on_leg(a, b, t1, box)));
       }
     }
   }
@@ -324,6 +339,18 @@ std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
   return cache_->grids.back();
 }
 
+std::shared_ptr<const DistanceField> World::distances(const GridSpec& spec) const {
+  const auto grid = voxels(spec);
+  const std::lock_guard lock(cache_->mutex);
+  for (const auto& field : cache_->distances) {
+    if (field->spec() == spec) {
+      return field;
+    }
+  }
+  cache_->distances.push_back(std::make_shared<const DistanceField>(*grid));
+  return cache_->distances.back();
+}
+
 namespace {
 /// The flight's ends as the obstacle sees them, standing still as it is at since_s.
 std::pair<Vec3, Vec3> relative(const MovingObstacle& obstacle, const Vec3& a, double t0,
@@ -336,7 +363,11 @@ std::pair<Vec3, Vec3> relative(const MovingObstacle& obstacle, const Vec3& a, do
 bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b, double t1,
           double r) {
   const auto [from, to] = relative(obstacle, a, t0, b, t1);
-  return leg_distance(obstacle.shape, from, to) < r - kLengthTolerance;
+  const double limit = r - kLengthTolerance;
+  const double distance = leg_distance(obstacle.shape, from, to);
+  // A point (r below the tolerance) hits where it gets inside, as touching is free.
+  return distance < limit || (limit <= 0 && distance <= kLengthTolerance &&
+                              -leg_depth(obstacle.shape, from, to) < limit);
 }
 
 double separation(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/yaml.hpp"
+#include "host/config/yaml.hpp"
 
 namespace altiplan {
 namespace {

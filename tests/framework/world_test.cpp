@@ -70,6 +70,17 @@ TEST(World, ChangedGridsEqualFreshOnes) {
   }
 }
 
+TEST(World, DistancesFollowTheGrid) {
+  const World world = World().with(shapes("s", {BoxShape{{{4, 4, 4}, {5, 5, 5}}}}));
+  GridSpec spec;
+  spec.counts = {10, 10, 10};
+  const auto field = world.distances(spec);
+  EXPECT_EQ(field, world.distances(spec));
+  EXPECT_EQ(field->centre_distance({4, 4, 4}), 0);
+  EXPECT_NEAR(field->centre_distance({7, 8, 4}), 5, 1e-5);
+  EXPECT_EQ(world.without("s").distances(spec)->centre_distance({4, 4, 4}), kInfinity);
+}
+
 TEST(World, TilesShareTheGround) {
   World world = World()
                     .with({"west", "flat",
@@ -178,6 +189,14 @@ TEST(IsoTime, ReadsAndRefuses) {
                           "2026-05-01T10:00:00Zx"}) {
     EXPECT_FALSE(kit::parse_iso_time(bad)) << bad;
   }
+}
+
+TEST(Moving, APointHitsWhatItFliesThrough) {
+  const MovingObstacle still{"still", Sphere{{500, 0, 0}, 9}, {0, 0, 0}, 0, true};
+  EXPECT_TRUE(hits(still, {0, 0, 0}, 0, {900, 0, 0}, 60, 0));
+  EXPECT_TRUE(hits(still, {500, 0, 0}, 0, {500, 0, 0}, 1, 0));
+  EXPECT_FALSE(hits(still, {0, 9, 0}, 0, {900, 9, 0}, 60, 0)) << "touching is free";
+  EXPECT_FALSE(hits(still, {0, 0, 0}, 0, {480, 0, 0}, 60, 0));
 }
 }  // namespace
 }  // namespace altiplan

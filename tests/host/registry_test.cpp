@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/registry.hpp"
+#include "host/registry/registry.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -198,6 +198,38 @@ TEST_F(RegistryTest, TwoLibrariesWithOneNameAreRefusedByName) {
   EXPECT_HAS(text, "second.so");
   EXPECT_NE(text_of<PluginError>([&] { registry.offering("local_planner", "alpha"); }), "");
   EXPECT_NE(text_of<PluginError>([&] { registry.offering("constraint", "beta"); }), "");
+}
+
+TEST_F(RegistryTest, OfTwoCopiesOfOneBuildTheFirstIsUsed) {
+  fs::copy(kBroken / "two_plugins.so", folder_ / "first.so");
+  fs::copy(kBroken / "two_plugins.so", folder_ / "other/second.so");
+  Registry registry({folder_ / "other", folder_});
+  ASSERT_EQ(registry.libraries().size(), 1U);
+  EXPECT_EQ(registry.libraries()[0].file, folder_ / "other/second.so");
+  EXPECT_EQ(registry.libraries()[0].refused, "");
+  ASSERT_EQ(registry.copies().size(), 1U);
+  EXPECT_EQ(registry.copies()[0].file, folder_ / "first.so");
+  EXPECT_EQ(registry.copies()[0].used, folder_ / "other/second.so");
+  EXPECT_STREQ(registry.get("planner", "alpha").name, "alpha");
+}
+
+TEST_F(RegistryTest, TwoBuildsWithOneNameAreRefused) {
+  fs::copy(kBroken / "two_plugins.so", folder_ / "first.so");
+  std::string bytes = bytes_of(kBroken / "two_plugins.so");
+  const std::string build = examine_library(folder_ / "first.so").build;
+  std::string id;
+  for (std::size_t i = 0; i < build.size(); i += 2) {
+    id += char(std::stoi(build.substr(i, 2), nullptr, 16));
+  }
+  const std::size_t at = bytes.find(id);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = char(bytes[at] ^ 1);
+  write("other/second.so", bytes);
+  Registry registry({folder_, folder_ / "other"});
+  ASSERT_EQ(registry.libraries().size(), 2U);
+  EXPECT_TRUE(registry.copies().empty());
+  EXPECT_HAS(registry.libraries()[0].refused, "second.so offers it too");
+  EXPECT_HAS(registry.libraries()[1].refused, "first.so offers it too");
 }
 
 TEST_F(RegistryTest, ALibraryThatCannotBeUsedIsAPluginError) {

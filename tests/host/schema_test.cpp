@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/schema.hpp"
+#include "host/config/schema.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <fstream>
-
-#include "host/describe.hpp"
+#include "host/registry/describe.hpp"
+#include "support/files.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -52,35 +49,18 @@ std::vector<Choice> made_up(std::string_view kind) {
   return {};
 }
 
-/// What an independent validator says of the cases; "" where it agrees with all.
 std::string check(const Json& schema, const std::vector<std::pair<bool, std::string>>& cases) {
-  const fs::path folder =
-      fs::path(::testing::TempDir()) / ("altiplan_schema_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  Json list = Json::array();
+  std::vector<std::pair<bool, Json>> documents;
   for (const auto& [fits, text] : cases) {
-    Json one = Json::object();
-    one["fits"] = fits;
-    one["file"] = Json::parse(text);
-    list.push_back(std::move(one));
+    documents.emplace_back(fits, Json::parse(text));
   }
-  std::ofstream(folder / "schema.json") << schema.dump(1);
-  std::ofstream(folder / "cases.json") << list.dump(1);
-  const std::string command =
-      "/usr/bin/python3 " ALTIPLAN_SOURCE_DIR "/tests/host/check_schema.py " +
-      (folder / "schema.json").string() + " " + (folder / "cases.json").string() + " > " +
-      (folder / "said").string() + " 2>&1";
-  const int status = std::system(command.c_str());
-  std::ifstream stream(folder / "said");
-  const std::string said{std::istreambuf_iterator<char>(stream), {}};
-  fs::remove_all(folder);
-  return status == 0 ? "" : "status " + std::to_string(status) + ": " + said;
+  return altiplan::testing::schema_disagreement(schema, documents);
 }
 
 class SchemaTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0) {
+    if (!altiplan::testing::has_schema_validator()) {
       GTEST_SKIP() << "no python3-jsonschema to validate with";
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/yaml.hpp"
+#include "host/config/yaml.hpp"
 
 #include <gtest/gtest.h>
 

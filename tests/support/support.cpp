@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "altiplan/kit/obstacle_set.hpp"
-#include "host/registry.hpp"
-#include "host/yaml.hpp"
+#include "host/registry/registry.hpp"
+#include "host/config/yaml.hpp"
 
 namespace altiplan::testing {
 namespace {

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
 #include "commands.hpp"
-#include "host/judge.hpp"
-#include "host/mission.hpp"
+#include "host/run/events.hpp"
+#include "host/run/judge.hpp"
+#include "host/run/mission.hpp"
 #include "host/output/result_json.hpp"
+#include "host/flight/track_judge.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -21,9 +26,12 @@ struct Arguments {
 };
 
 host::Json read_json(const std::string& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw Error("'" + file + "' is a folder, expected a JSON file");
+  }
   std::ifstream in(file);
   if (!in) {
-    throw Error("cannot read '" + file + "'");
+    throw Error("cannot read '" + file + "': " + std::strerror(errno));
   }
   try {
     return host::Json::parse(in);
@@ -51,24 +59,76 @@ Route route_of(const host::Json& json, const std::string& file) {
   return route;
 }
 
-int report(const CheckResult& verdict, const Route& route, const Request& request, bool json) {
-  const Measures measures = measure(route, request);
-  if (json) {
-    std::cout << host::Json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}}
-                     .dump(1)
-              << '\n';
-  } else {
-    std::printf("%s: %zu waypoints, %s km, clearance %s m, %s m above ground\n",
-                verdict.ok() ? "sound" : "not sound", measures.waypoints,
-                fixed(measures.length_m / 1000, 3).c_str(),
-                fixed(measures.min_clearance_m, 2).c_str(),
-                fixed(measures.min_ground_clearance_m, 2).c_str());
-    for (const Violation& violation : verdict.violations) {
-      std::printf("  waypoint %zu, %s: %s\n", violation.at, violation.constraint.c_str(),
-                  violation.message.c_str());
+void print_violations(const CheckResult& verdict, const char* point) {
+  for (const Violation& violation : verdict.violations) {
+    std::printf("  %s %zu, %s: %s\n", point, violation.at, violation.constraint.c_str(),
+                violation.message.c_str());
+  }
+}
+
+void print_route(const CheckResult& verdict, const Measures& measures) {
+  std::printf("%s: %zu waypoints, %s km, clearance %s m, %s m above ground\n",
+              verdict.ok() ? "sound" : "not sound", measures.waypoints,
+              fixed(measures.length_m / 1000, 3).c_str(),
+              fixed(measures.min_clearance_m, 2).c_str(),
+              fixed(measures.min_ground_clearance_m, 2).c_str());
+  print_violations(verdict, "waypoint");
+}
+
+void print_track(const host::TrackVerdict& verdict, const host::Track& track, bool has_events) {
+  std::printf("flight %s: %zu points, %s s, %d collision%s, %s\n",
+              verdict.check.ok() ? "sound" : "not sound", track.size(),
+              fixed(track.back().first, 0).c_str(), verdict.collisions,
+              verdict.collisions == 1 ? "" : "s",
+              verdict.reached ? "reached the goal" : "did not reach the goal");
+  print_violations(verdict.check, "point");
+  if (has_events) {
+    std::printf("  each event was applied at the first point at or after it\n");
+  }
+}
+
+/// The verdicts, printed; a flight only where there is one.
+int report(const host::Mission& mission, const Route& route,
+           const std::optional<host::Track>& track, const std::vector<host::FlightEvent>& events,
+           bool as_json) {
+  const CheckResult verdict = host::judge(route, mission.request, mission.via);
+  const Measures measures = measure(route, mission.request);
+  bool sound = verdict.ok();
+  host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}};
+  if (!as_json) {
+    print_route(verdict, measures);
+  }
+  if (track) {
+    host::FlightSetup setup;
+    setup.request = mission.track_request;
+    setup.truth = mission.truth;
+    setup.events = events;
+    const host::TrackVerdict flown = host::judge_track(*track, setup);
+    sound = sound && flown.check.ok();
+    json["flight"] = {{"check", host::to_json(flown.check)},
+                      {"collisions", flown.collisions},
+                      {"reached", flown.reached}};
+    if (!as_json) {
+      print_track(flown, *track, !events.empty());
     }
   }
-  return verdict.ok() ? kDone : kNoRoute;
+  if (as_json) {
+    std::cout << json.dump(1) << '\n';
+  }
+  return sound ? kDone : kNoRoute;
+}
+
+host::Track track_of(const host::Json& json, const std::string& file) {
+  host::Track track;
+  for (const host::Json& point : json) {
+    track.emplace_back(
+        point.at(0).get<double>(),
+        Vec3(point.at(1).get<double>(), point.at(2).get<double>(), point.at(3).get<double>()));
+  }
+  if (track.empty()) {
+    throw Error(file + ": the flight has no track");
+  }
+  return track;
 }
 
 /// The overrides with which a stored run was made.
@@ -89,8 +149,10 @@ int check_result(const Arguments& arguments) {
   const host::Json json = read_json(file);
   host::Overrides overrides;
   std::string pipeline;
+  std::optional<host::Track> track;
   try {
-    if (json.at("altiplan") != host::kFileFormat) {
+    if (!json.is_object() || !json.contains("altiplan") ||
+        json.at("altiplan") != host::kFileFormat) {
       throw Error(file + ": expected a result of format 1");
     }
     overrides = stored_overrides(json, arguments.overrides);
@@ -104,14 +166,16 @@ int check_result(const Arguments& arguments) {
       std::cout << "there is no standing route in " << file << '\n';
       return kNoRoute;
     }
+    if (!json.at("flight").is_null()) {
+      track = track_of(json.at("flight").at("track"), file);
+    }
   } catch (const host::Json::exception& error) {
     throw Error(file + ": expected a result of altiplan run: " + error.what());
   }
   const host::Config config = host::load_config(pipeline, overrides);
   const host::Mission mission = host::build_mission(config, 1);
-  const Route route = route_of(json.at("route"), file);
-  return report(host::judge(route, mission.request, mission.via), route, mission.request,
-                arguments.json);
+  return report(mission, route_of(json.at("route"), file), track,
+                host::build_events(config, mission), arguments.json);
 }
 
 int check_route(const Arguments& arguments) {
@@ -120,8 +184,7 @@ int check_route(const Arguments& arguments) {
                                *arguments.route);
   const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
   const host::Mission mission = host::build_mission(config, 1);
-  return report(host::judge(route, mission.request, mission.via), route, mission.request,
-                arguments.json);
+  return report(mission, route, std::nullopt, {}, arguments.json);
 }
 }  // namespace
 

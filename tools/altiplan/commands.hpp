@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "host/config.hpp"
+#include "host/config/config.hpp"
 
 namespace altiplan::cli {
 

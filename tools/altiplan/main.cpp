@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -46,7 +47,15 @@ void add_overrides(CLI::App& command, host::Overrides& overrides) {
       ->type_name("FILE");
   command.add_option("--seed", overrides.seed, "seed in place of the pipeline's")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) {
+        std::int64_t seed = -1;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+        const bool whole = error == std::errc() && stop == text.data() + text.size();
+        return whole && seed >= 0 ? std::string()
+                                  : "expected a whole number from 0 to 9223372036854775807, found "
+                                    "'" +
+                                        text + "'";
+      });
   command
       .add_option("--set", overrides.set,
                   "any key of the pipeline, or of the scenario as scenario.KEY; may be given again")
@@ -106,6 +115,13 @@ int main_checked(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // CLI11 would only miss a command.
+    const std::vector<std::string> rest = app.remaining();
+    if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
+      std::cerr << "altiplan: unknown command '" << rest.front()
+                << "' (altiplan --help lists the commands)\n";
+      return kUsage;
+    }
     const int code = app.exit(error);
     return code == 0 ? kDone : kUsage;
   }

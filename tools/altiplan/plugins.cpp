@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/describe.hpp"
-#include "host/schema.hpp"
+#include "host/registry/describe.hpp"
+#include "host/config/schema.hpp"
 
 namespace altiplan::cli {
 namespace {

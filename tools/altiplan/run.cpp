@@ -4,14 +4,17 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <thread>
 
 #include "commands.hpp"
 #include "host/output/result_json.hpp"
-#include "host/pipeline.hpp"
+#include "host/run/pipeline.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -26,7 +29,7 @@ struct RunArguments {
 };
 
 /// Turns SIGINT and SIGTERM into a stop token: the step under way ends, the result is written.
-/// A second signal ends the process at once.
+/// A second signal ends the process at once; not within half a second, as timeout(1) sends two.
 class Interrupt {
  public:
   Interrupt() {
@@ -36,12 +39,16 @@ class Interrupt {
     sigaddset(&signals_, SIGUSR1);  // ends the thread
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
     thread_ = std::thread([this] {
+      using Clock = std::chrono::steady_clock;
+      Clock::time_point first;
       int signal = 0;
       while (sigwait(&signals_, &signal) == 0 && signal != SIGUSR1) {
-        if (happened_.exchange(true)) {
+        if (!happened_.exchange(true)) {
+          first = Clock::now();
+          stop_.request_stop();
+        } else if (Clock::now() - first > std::chrono::milliseconds(500)) {
           _exit(kInterrupted);
         }
-        stop_.request_stop();
       }
     });
   }
@@ -96,7 +103,8 @@ void print_table(const host::RunResult& result) {
   std::printf("  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", "step", "plugin", "status",
               "length_km", "points", "turn_d", "climb_d", "clear_m", "ground_m", "time_ms");
   for (const host::StepResult& step : result.steps) {
-    const bool flown = step.verb == host::Verb::fly && &step == &result.steps.back();
+    const bool flown =
+        result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
     print_row(step.id, step.plugin, step.stands && !flown ? "stands" : name(step.status),
               flown ? result.flight->measures : step.measures, step.time_s);
   }
@@ -104,7 +112,8 @@ void print_table(const host::RunResult& result) {
     print_flight(*result.flight);
   }
   for (const host::StepResult& step : result.steps) {
-    if (!step.stands) {
+    const std::string& said = result.message;  // printed last
+    if (!step.stands && (step.message.empty() || said.find(step.message) == said.npos)) {
       std::printf("  %s: %s\n", step.id.c_str(), step.message.c_str());
     }
   }
@@ -115,11 +124,23 @@ void expect_writable(const std::optional<std::string>& file, const char* option)
   if (!file) {
     return;
   }
-  const auto folder = std::filesystem::absolute(*file).parent_path();
-  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
-    throw Error(std::string(option) + ": cannot write into the folder '" + folder.string() + "'");
+  if (file->empty()) {
+    throw Error(std::string(option) + ": expected a file name, found nothing");
   }
-  if (std::filesystem::is_directory(*file)) {
+  std::error_code error;
+  if (std::filesystem::exists(*file, error) && !std::filesystem::is_directory(*file, error) &&
+      access(file->c_str(), W_OK) != 0) {
+    throw Error(std::string(option) + ": cannot write '" + *file + "': " + std::strerror(errno));
+  }
+  if (std::filesystem::is_other(*file, error)) {
+    return;  // a device or a pipe: written in place
+  }
+  const auto folder = std::filesystem::absolute(*file, error).parent_path();
+  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
+    throw Error(std::string(option) + ": cannot write into the folder '" +
+                (folder.empty() ? "." : folder.string()) + "'");
+  }
+  if (std::filesystem::is_directory(*file, error)) {
     throw Error(std::string(option) + ": '" + *file + "' is a folder");
   }
 }
@@ -128,15 +149,15 @@ void hand_out(const RunArguments& arguments, const host::Config& config,
               const host::RunResult& result) {
   const host::Json json =
       arguments.out || arguments.json ? host::result_json(config, result) : host::Json();
-  if (arguments.out) {
-    host::write_file(*arguments.out, json.dump(1) + "\n");
-  }
   if (arguments.json) {
     std::cout << json.dump(1) << '\n';
   } else {
     std::printf("%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
     print_table(result);
     std::printf("  %s\n", result.message.c_str());
+  }
+  if (arguments.out) {  // last: where it cannot be written, the result stands on stdout
+    host::write_file(*arguments.out, json.dump(1) + "\n");
   }
 }
 
@@ -163,6 +184,9 @@ int run(const RunArguments& arguments) {
     info(note);
   }
   hand_out(arguments, config, result);
+  if (!result.trace_error.empty()) {
+    throw Error(result.trace_error);
+  }
   return interrupt.happened() ? kInterrupted : result.exit_code();
 }
 }  // namespace

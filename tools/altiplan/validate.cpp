@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
 #include "commands.hpp"
+#include "host/run/mission.hpp"
 #include "host/output/result_json.hpp"
-#include "host/yaml.hpp"
+#include "host/config/yaml.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -39,23 +41,30 @@ int validate(const Arguments& arguments) {
       for (const Problem& problem : error.problems()) {
         std::cerr << problem.text() << '\n';
       }
-      code = kBadFile;
+      code = std::max(code, kBadFile);
+    } catch (const PluginError& error) {
+      std::cerr << file << ": " << error.what() << '\n';
+      code = kBadPlugin;
     }
   }
   return code;
 }
 
+/// What the layers say of themselves, and what the user should look at, needs the world built.
 int explain(const Arguments& arguments) {
   const host::Config config = host::load_config(arguments.files[0], arguments.overrides);
   const std::vector<host::Explained> all = host::explain(config);
+  const host::Mission mission = host::build_mission(config, 1);
   if (arguments.json) {
-    host::Json json = host::Json::array();
+    host::Json parameters = host::Json::array();
     for (const host::Explained& entry : all) {
-      json.push_back({{"key", entry.key},
-                      {"value", host::Json::parse(entry.value_json)},
-                      {"unit", entry.unit},
-                      {"from", entry.from}});
+      parameters.push_back({{"key", entry.key},
+                            {"value", host::Json::parse(entry.value_json)},
+                            {"unit", entry.unit},
+                            {"from", entry.from}});
     }
+    const host::Json json{
+        {"parameters", parameters}, {"notes", mission.notes}, {"warnings", mission.warnings}};
     std::cout << json.dump(1) << '\n';
     return kDone;
   }
@@ -64,11 +73,17 @@ int explain(const Arguments& arguments) {
     width = std::max(width, entry.key.size());
   }
   for (const host::Explained& entry : all) {
-    const std::string value =
-        entry.value_json +
-        (entry.unit.empty() || entry.value_json == "null" ? "" : " " + entry.unit);
+    const std::string value = entry.value_json +
+                              (entry.unit.empty() || entry.value_json == "null" ? "" : " ") +
+                              (entry.value_json == "null" ? "" : entry.unit);
     std::printf("%-*s  %-24s  %s\n", int(width), entry.key.c_str(), value.c_str(),
                 entry.from.c_str());
+  }
+  for (const std::string& note : mission.notes) {
+    std::printf("%s\n", note.c_str());
+  }
+  for (const std::string& warning : mission.warnings) {
+    warn(warning);
   }
   return kDone;
 }

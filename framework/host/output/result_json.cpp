@@ -246,8 +246,14 @@ Json result_json(const Config& config, const RunResult& result) {
   return json;
 }
 
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path beside = file.string() + ".partial";
+void write_file(const std::filesystem::path& named, const std::string& text) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  // A rename would put a file in place of a device, a pipe or a link.
+  const bool in_place = fs::exists(named, code) && !fs::is_regular_file(named, code);
+  const fs::path file =
+      !in_place && fs::is_symlink(named, code) ? fs::weakly_canonical(named, code) : named;
+  const fs::path beside = in_place ? file : fs::path(file.string() + ".partial");
   std::FILE* out = std::fopen(beside.c_str(), "w");
   if (out == nullptr) {
     throw Error("cannot write '" + file.string() + "': " + std::strerror(errno));
@@ -255,15 +261,22 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
   const bool closed = std::fclose(out) == 0;
   const int error = errno;
-  std::error_code code;
-  if (written && closed) {
-    std::filesystem::rename(beside, file, code);
-    if (!code) {
+  if (in_place) {
+    if (written && closed) {
       return;
     }
+  } else {
+    if (written && closed) {
+      fs::rename(beside, file, code);
+      if (!code) {
+        return;
+      }
+    }
+    std::error_code ignored;
+    fs::remove(beside, ignored);
   }
-  std::filesystem::remove(beside, code);
-  throw Error("cannot write '" + file.string() + "': " + std::strerror(error));
+  throw Error("cannot write '" + file.string() +
+              "': " + (code ? code.message() : std::strerror(error)));
 }
 
 std::string sha256(const std::filesystem::path& file) {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "host/config.hpp"
-#include "host/run_result.hpp"
+#include "host/config/config.hpp"
+#include "host/run/run_result.hpp"
 
 namespace altiplan::host {
 
@@ -20,7 +20,7 @@ Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
 
 /// Writes the whole file or, where that fails, throws Error and leaves what was there: it is
-/// written beside and renamed.
+/// written beside and renamed. What is no regular file (a pipe, a device) is written in place.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
 /// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.

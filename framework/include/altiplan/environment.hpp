@@ -13,6 +13,7 @@
 
 namespace altiplan {
 
+class HeightField;
 class World;
 
 /// A disc that a plane planner avoids.
@@ -59,7 +60,8 @@ struct ALTIPLAN_API Site {
 ///     r - 1e-6 m; it may be true up to slack() metres above r; touching is free.
 ///  4. blocked is symmetric in a and b, and monotone in r.
 ///  5. ground(x, y) is the height of the ground that this layer brings, if any; ground_gap is the
-///     least height of a leg above it, exact within 1e-6 m.
+///     least height of a leg above it, exact within 1e-6 m. Beyond its ground a layer blocks
+///     nothing: a leg with no ground below part of it is the judge's to refuse.
 ///  6. rasterize never leaves a cell free that the grid's rule blocks.
 class ALTIPLAN_API Environment {
  public:
@@ -84,6 +86,9 @@ class ALTIPLAN_API Environment {
   /// Steepest slope (rise over run) of this layer's ground within the horizontal box, an upper
   /// bound; infinite where it is not known or the ground has holes there.
   double ground_slope(const Box& box) const { return do_ground_slope(box); }
+  /// This layer's ground as posts, where it is one (an elevation model): concrete data for inner
+  /// loops; null otherwise. Lives as long as the layer.
+  const HeightField* height_field() const { return do_height_field(); }
   std::vector<Threat> threats() const { return do_threats(); }
   double slack() const { return do_slack(); }
   std::optional<GridSpec> native_grid() const { return do_native_grid(); }
@@ -111,6 +116,7 @@ class ALTIPLAN_API Environment {
   virtual double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const;
   virtual double do_ground_gap_max(const Vec3& a, const Vec3& b) const;
   virtual double do_ground_slope(const Box& box) const;
+  virtual const HeightField* do_height_field() const;
   virtual std::vector<Threat> do_threats() const;
   /// Default 0.05 m.
   virtual double do_slack() const;

@@ -25,9 +25,9 @@ ALTIPLAN_API Measures measure(const Route& route, const Request& request);
 
 /// Least clearance of the leg a–b, by bisection on `blocked` so that it agrees with the judge
 /// (within 1e-6 m and the layer's slack); signed where the leg goes into an obstacle; infinite in
-/// an empty world.
-ALTIPLAN_API double leg_clearance(const World& world, const Vec3& a, const Vec3& b);
-ALTIPLAN_API double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b);
+/// an empty layer; any value of at least `enough` once it is known to be that.
+ALTIPLAN_API double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b,
+                                  double enough = kInfinity);
 
 /// Seconds from a to b at the vehicle's speed law.
 ALTIPLAN_API double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/distance_field.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/shape.hpp"
 
@@ -81,6 +82,10 @@ class ALTIPLAN_API World {
   /// Least height of the leg above the ground of any layer; infinite in a world without ground,
   /// -infinity where no layer has ground below a part of the leg.
   double ground_gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
+  /// Whether a leg may be there for all that the ground says: in a world with ground, all of it has
+  /// some below (or above: how high it is matters not). Quick. Layers with ground block nothing
+  /// beyond it, so that others may go on there; who uses the world keeps legs to this.
+  bool ground_below(const Vec3& a, const Vec3& b) const;
   /// Greatest height of the leg above the ground; +infinity where there is none.
   double ground_gap_max(const Vec3& a, const Vec3& b) const;
   std::vector<Threat> threats() const;
@@ -91,6 +96,9 @@ class ALTIPLAN_API World {
   /// Occupancy of all layers under the spec; built once per spec and revision, a change patches it
   /// inside its box only.
   std::shared_ptr<const VoxelGrid> voxels(const GridSpec& spec) const;
+  /// Distances between the cells of that grid and its blocked ones; built once per spec and
+  /// revision.
+  std::shared_ptr<const DistanceField> distances(const GridSpec& spec) const;
 
  private:
   struct Cache;

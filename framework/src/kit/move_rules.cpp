@@ -36,7 +36,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
   }
   wants_clearance_ = check == MoveCheck::exact && !request.world->layers().empty();
   has_ground_rules_ =
-      (limits.min_ground_clearance && request.world->has_ground()) ||
+      request.world->has_ground() ||
       std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
         return band.datum == AltitudeBand::Datum::ground;
       });
@@ -87,9 +87,12 @@ DirectionMask MoveRules::directions_kept() {
 bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
   const World& world = *request_.world;
   const Limits& limits = request_.limits;
-  if (limits.min_ground_clearance && world.has_ground() &&
-      world.ground_gap(a, b, *limits.min_ground_clearance) <
-          *limits.min_ground_clearance - kLengthTolerance) {
+  if (!world.ground_below(a, b)) {
+    ++refused_[kNoGround];
+    return false;
+  }
+  if (limits.min_ground_clearance && world.ground_gap(a, b, *limits.min_ground_clearance) <
+                                         *limits.min_ground_clearance - kLengthTolerance) {
     ++refused_[kGround];
     return false;
   }
@@ -158,6 +161,7 @@ std::string MoveRules::refusals() const {
       "blocked cells",
       request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
       "clearance to '" + refused_layer_ + "'",
+      "no ground below",
       "ground_clearance",
       "altitude",
       refused_constraint_,

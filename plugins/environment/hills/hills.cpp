@@ -162,8 +162,14 @@ class Hills final : public Environment {
   }
 
   void do_rasterize(VoxelGrid& grid) const override {
-    kit::rasterize_ground(grid, [this](double x0, double y0, double x1, double y1) {
-      return ground_.max_height(x0, y0, x1, y1);
+    const GridSpec& spec = grid.spec();
+    const Vec3 first = spec.centre({0, 0, 0});
+    const auto half = kit::half_footprint(spec);
+    const auto top =
+        ground_.highest({first.x(), spec.cell.x(), half[0], spec.counts[0]},
+                        {first.y(), spec.cell.y(), half[1], spec.counts[1]}, spec.cell.z() / 50);
+    kit::block_below(grid, [&](int i, int j) {
+      return top[std::size_t(j) * std::size_t(spec.counts[0]) + std::size_t(i)];
     });
   }
 

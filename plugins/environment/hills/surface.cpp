@@ -224,29 +224,82 @@ double Surface::height_bound(double x0, double y0, double x1, double y1) const {
                             bend(x, y, r) * r * r / 2);
 }
 
-double Surface::max_height(double x0, double y0, double x1, double y1) const {
-  constexpr double kWithin = 0.01;  // metres
-  const auto look = [&](double x, double y, double half_x, double half_y) {
-    Local at = local(x, y);
-    const double most_bend = bend(x, y, std::hypot(half_x, half_y));
-    const double turn = most_bend * std::hypot(half_x, half_y);
-    const bool east_west = std::abs(at.dx) > turn;
-    const bool north_south = std::abs(at.dy) > turn;
-    // Where the slope along an axis keeps its sign, the highest ground lies on that side.
-    if (east_west || north_south) {
-      x += east_west ? std::copysign(half_x, at.dx) : 0;
-      y += north_south ? std::copysign(half_y, at.dy) : 0;
-      half_x = east_west ? 0 : half_x;
-      half_y = north_south ? 0 : half_y;
-      at = local(x, y);
+namespace {
+
+/// Factors along one axis of a bell, over nodes and intervals. Its middle is m, its width s, and
+/// u = (x - m) / s.
+struct Factors {
+  std::vector<double> node;  ///< exp(-u² / 2) at the nodes, all intervals' first ones first
+  std::vector<double> most;  ///< greatest of it in each interval
+  std::vector<double> bend;  ///< greatest of (1 - u²) exp(-u² / 2) / s² in each, or 0
+
+  Factors(const Surface::Intervals& at, int pieces, double m, double s) {
+    for (int n = 0; n <= pieces; ++n) {
+      for (int k = 0; k < at.count; ++k) {
+        const double x = at.first + k * at.step + (2.0 * n / pieces - 1) * at.half;
+        node.push_back(std::exp(-square((x - m) / s) / 2));
+      }
     }
-    const double value = height(x + std::copysign(half_x, at.dx), y + std::copysign(half_y, at.dy));
-    const double bound = at.sum + std::abs(at.dx) * half_x + std::abs(at.dy) * half_y +
-                         most_bend * (half_x * half_x + half_y * half_y) / 2;
-    return std::pair(value, std::min(bound, top_));
-  };
-  return greatest({(x0 + x1) / 2, (y0 + y1) / 2, (x1 - x0) / 2, (y1 - y0) / 2, 0}, 0, kWithin,
-                  look);
+    for (int k = 0; k < at.count; ++k) {
+      const double away = std::max(std::abs(at.first + k * at.step - m) - at.half, 0.0) / s;
+      most.push_back(std::exp(-square(away) / 2));
+      bend.push_back(std::max(1 - square(away), 0.0) * most.back() / square(s));
+    }
+  }
+};
+}  // namespace
+
+// A bell is the product of a factor along each axis, so that the ground at the nodes of a lattice,
+// `pieces` to each box and axis, takes no exponential a node. Between the nodes a function rises
+// above them by at most (greatest downward bend) L² / 8 along each axis. Narrow hills are bounded
+// by the greatest of each bell instead.
+std::vector<double> Surface::highest(const Intervals& east, const Intervals& north,
+                                     double within) const {
+  constexpr int kMostPieces = 12;
+  double sag = 0;  // of a box that is one piece
+  for (const Peak& peak : peaks_) {
+    sag += peak.height * (square(east.half / peak.sx) + square(north.half / peak.sy)) / 2;
+  }
+  const int pieces = int(std::clamp(std::ceil(std::sqrt(sag / within)), 1.0, double(kMostPieces)));
+  std::vector<Factors> x;
+  std::vector<Factors> y;
+  for (const Peak& peak : peaks_) {
+    x.emplace_back(east, pieces, peak.x, peak.sx);
+    y.emplace_back(north, pieces, peak.y, peak.sy);
+  }
+  const std::size_t columns = std::size_t(east.count);
+  const double bend_x = square(2 * east.half / pieces) / 8;
+  const double bend_y = square(2 * north.half / pieces) / 8;
+  std::vector<double> result;
+  std::vector<double> row((std::size_t(pieces) + 1) * columns);
+  for (std::size_t j = 0; j < std::size_t(north.count); ++j) {
+    std::vector<double> at_nodes(columns, -kInfinity);
+    for (std::size_t n = 0; n <= std::size_t(pieces); ++n) {
+      std::fill(row.begin(), row.end(), base_);
+      for (std::size_t p = 0; p < peaks_.size(); ++p) {
+        const double factor = peaks_[p].height * y[p].node[n * std::size_t(north.count) + j];
+        for (std::size_t k = 0; k < row.size(); ++k) {
+          row[k] += factor * x[p].node[k];
+        }
+      }
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        at_nodes[k % columns] = std::max(at_nodes[k % columns], row[k]);
+      }
+    }
+    std::vector<double> most(columns, base_);
+    for (std::size_t p = 0; p < peaks_.size(); ++p) {
+      const double factor = peaks_[p].height * y[p].most[j];
+      const double factor_bend = peaks_[p].height * y[p].bend[j];
+      for (std::size_t i = 0; i < columns; ++i) {
+        most[i] += factor * x[p].most[i];
+        at_nodes[i] += bend_x * factor * x[p].bend[i] + bend_y * factor_bend * x[p].most[i];
+      }
+    }
+    for (std::size_t i = 0; i < columns; ++i) {
+      result.push_back(std::min({top_, most[i], at_nodes[i]}));
+    }
+  }
+  return result;
 }
 
 // A bell is steepest at one width from its middle: beyond ten widths from all of them the slope is

@@ -31,8 +31,15 @@ class Surface {
   double max_slope(double x, double y, double r) const;
   /// No ground in the closed box is higher; one evaluation, loose in a large box.
   double height_bound(double x0, double y0, double x1, double y1) const;
-  /// The same, within a centimetre of the highest ground.
-  double max_height(double x0, double y0, double x1, double y1) const;
+  /// Intervals along an axis: middles `step` apart from `first`, each `half` to both sides.
+  struct Intervals {
+    double first, step, half;
+    int count;
+  };
+  /// No ground is higher in each closed box of an interval east and one north (rows from the south,
+  /// each from the west); within about `within` metres of the highest ground where the hills are
+  /// wide against the boxes.
+  std::vector<double> highest(const Intervals& east, const Intervals& north, double within) const;
 
   /// Least height of the leg above the ground, within 1e-7 m; any value of at least `enough` once
   /// it is known to be that high.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Ground from an elevation model. Heights stand at the posts and are bilinear between them; beyond
-// the posts nothing is known, and everything is blocked.
+// Ground from an elevation model. Heights stand at the posts and are bilinear between them; the
+// solid is what lies below, between the posts. Beyond them nothing is known, and nothing blocked.
 //
 // The slope bounds every answer: where it is at most s within a distance d of a point at height v
-// above its ground, the ground is at least min(d, v / sqrt(1 + s²)) away.
+// above its ground, the ground is at least min(d, v / sqrt(1 + s²)) away. A point beyond the posts,
+// e away from them, is at least hypot(e, c) from the ground, c the same bound for the nearest place
+// above the posts: that place sees any other of them at no less than a right angle.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,15 +42,11 @@ class Terrain final : public Environment {
                 {field_.origin()[0] + (field_.columns() - 1) * field_.spacing()[0],
                  field_.origin()[1] + (field_.rows() - 1) * field_.spacing()[1], kInfinity}} {}
 
-  /// Horizontal distance to the edge of the posts, negative beyond it.
-  double edge(const Vec3& p) const {
-    const Vec3 low = p - bounds_.min;
-    const Vec3 high = bounds_.max - p;
-    const double inside = std::min({low.x(), high.x(), low.y(), high.y()});
-    if (inside >= 0) {
-      return inside;
-    }
-    return -std::hypot(std::max({-low.x(), -high.x(), 0.0}), std::max({-low.y(), -high.y(), 0.0}));
+  /// The nearest place over the posts, at the same height.
+  Vec3 over_posts(const Vec3& p) const { return p.cwiseMax(bounds_.min).cwiseMin(bounds_.max); }
+  /// Horizontal distance to the edge of the posts, for a place above them.
+  double to_edge(const Vec3& p) const {
+    return (p - bounds_.min).cwiseMin(bounds_.max - p).head<2>().minCoeff();
   }
   /// Of the nearest place that has ground.
   double ground_near(double x, double y) const {
@@ -65,6 +63,7 @@ class Terrain final : public Environment {
   double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
     return field_.gap_max(a, b);
   }
+  const HeightField* do_height_field() const override { return &field_; }
   double do_ground_slope(const Box& box) const override {
     return field_.void_posts() > 0
                ? kInfinity
@@ -73,89 +72,138 @@ class Terrain final : public Environment {
   std::optional<Frame> do_frame() const override { return placed_.frame; }
 
   double do_clearance(const Vec3& p) const override {
-    const double above = (p.z() - ground_near(p.x(), p.y())) / std::hypot(1, field_.max_slope());
-    return std::min(std::max(above, p.z() - field_.max_height()), edge(p));
+    const Vec3 q = over_posts(p);
+    const double above =
+        std::max((q.z() - ground_near(q.x(), q.y())) / std::hypot(1, field_.max_slope()),
+                 q.z() - field_.max_height());
+    const double beyond = (p - q).norm();
+    return beyond > 0   ? std::hypot(beyond, std::max(above, 0.0))
+           : above >= 0 ? above
+                        : std::max(above, -to_edge(p));
   }
 
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    const double keep = r - kLengthTolerance;
-    if (std::min(edge(a), edge(b)) < keep) {  // least at an end: the posts' rectangle is convex
-      return true;
-    }
-    if (std::min(a.z(), b.z()) - field_.max_height() >= keep) {
+    if (std::min(a.z(), b.z()) - field_.max_height() >= r - kLengthTolerance) {
       return false;
     }
+    // The leg in parts that lie over the posts or beyond one side or corner of them.
+    std::array<double, 6> at{0, 1, 1, 1, 1, 1};
+    int count = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+      for (const double side : {bounds_.min[axis], bounds_.max[axis]}) {
+        const double t = (side - a[axis]) / (b[axis] - a[axis]);
+        if (t > 0 && t < 1) {
+          at[std::size_t(count++)] = t;
+        }
+      }
+    }
+    std::sort(at.begin(), at.end());
+    for (int n = 0; n < count; ++n) {
+      const double t0 = at[std::size_t(n)];
+      const double t1 = at[std::size_t(n) + 1];
+      const Vec3 from = t0 > 0 ? Vec3(a + t0 * (b - a)) : a;
+      const Vec3 to = n + 1 < count ? Vec3(a + t1 * (b - a)) : b;
+      const Vec3 middle = (from + to) / 2;
+      const bool over = bounds_.contains(middle) && to_edge(middle) > 0;
+      if (over ? too_low(over_posts(from), over_posts(to), r) : too_near(from, to, r)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Whether a leg over the posts is too near to the ground below it.
+  bool too_low(const Vec3& a, const Vec3& b, double r) const {
     const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
       return field_.gap(from, to, enough);
     };
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
-      const Box box = leg_box(from, to).grown(within);
-      return field_.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+      return slope_near(from, to, within);
     };
-    return kit::too_near_ground(a, b, r, kit::height_for(keep, field_.max_slope()),
+    return kit::too_near_ground(a, b, r, kit::height_for(r - kLengthTolerance, field_.max_slope()),
                                 std::max(field_.spacing()[0], field_.spacing()[1]), gap, slope);
   }
 
+  /// Whether a leg beyond one side or corner of the posts is too near to their edge or the ground
+  /// behind it: by the bound above, halving the leg where that is in doubt.
+  bool too_near(const Vec3& a, const Vec3& b, double r) const {
+    const double keep = r - kLengthTolerance;
+    const Vec3 from = over_posts(a);
+    const Vec3 to = over_posts(b);
+    // The least horizontal distance to the posts, exactly beyond a side or from a corner.
+    const Vec3 flat(1, 1, 0);
+    const double beyond = from.head<2>() == to.head<2>()
+                              ? point_leg_distance(from.cwiseProduct(flat), a.cwiseProduct(flat),
+                                                   b.cwiseProduct(flat))
+                              : (a - from).cwiseAbs().cwiseMin((b - to).cwiseAbs()).norm();
+    if (beyond >= keep) {
+      return false;
+    }
+    const double height = field_.gap(from, to);
+    const double steepness = std::hypot(1, slope_near(from, to, r));
+    if (std::hypot(beyond, std::max(height, 0.0) / steepness) >= keep) {
+      return false;
+    }
+    const auto is_hit = [&](const Vec3& p, const Vec3& q) {
+      const double above = std::max(p.z() - ground_near(q.x(), q.y()), 0.0);
+      return std::hypot((p - q).norm(), above / steepness) < keep;
+    };
+    if (is_hit(a, from) || is_hit(b, to) || (b - a).norm() <= kInDoubt) {
+      return true;
+    }
+    const Vec3 middle = (a + b) / 2;
+    return too_near(a, middle, r) || too_near(middle, b, r);
+  }
+
+  double slope_near(const Vec3& a, const Vec3& b, double within) const {
+    const Box box = leg_box(a, b).grown(within);
+    return field_.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+  }
+
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
-    constexpr int kGround = 0;
-    constexpr int kEdge = 1;
-    near_edge(p, reach, sink, kEdge);
-    const double x = std::clamp(p.x(), bounds_.min.x(), bounds_.max.x());
-    const double y = std::clamp(p.y(), bounds_.min.y(), bounds_.max.y());
-    const double gap = p.z() - ground_near(x, y);
+    const Vec3 over = over_posts(p);
+    const double beyond = (p - over).norm();
+    const double gap = p.z() - ground_near(over.x(), over.y());
     if (gap <= kLengthTolerance) {
+      if (beyond > 0) {  // beside the edge
+        if (beyond <= reach) {
+          sink({over, beyond, (p - over) / beyond, 0});
+        }
+        return;
+      }
       // The way out is up; the depth is a lower bound, as clearance has it.
-      sink({{x, y, p.z() - gap}, gap / std::hypot(1, field_.max_slope()), {0, 0, 1}, kGround});
+      sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
     }
-    if (p.z() - field_.max_height() > reach) {
+    if (std::hypot(beyond, std::max(p.z() - field_.max_height(), 0.0)) > reach) {
       return;
     }
-    const auto ground = [&](double at_x, double at_y) { return ground_near(at_x, at_y); };
+    const auto ground = [&](double x, double y) {
+      const double height = ground_near(x, y);
+      return beyond > 0 ? std::min(height, p.z()) : height;  // higher ground is met at its edge
+    };
     const auto highest = [&](double x0, double y0, double x1, double y1) {
       return field_.max_height(x0, y0, x1, y1);
     };
-    const kit::NearestGround nearest({x, y, p.z()}, bounds_, ground, highest);
-    const double distance = (p - nearest.point()).norm();
-    if (distance <= reach) {
-      sink({nearest.point(), distance, (p - nearest.point()) / distance, kGround});
+    const kit::NearestGround nearest(p, bounds_, ground, highest);
+    if (nearest.distance() <= reach) {
+      sink({nearest.point(), nearest.distance(), (p - nearest.point()) / nearest.distance(), 0});
     }
-  }
-
-  /// The end of what is known is an obstacle too: a wall of any height.
-  void near_edge(const Vec3& p, double reach, const NearSink& sink, int id) const {
-    const double distance = edge(p);
-    if (distance > reach) {
-      return;
-    }
-    Vec3 point(std::clamp(p.x(), bounds_.min.x(), bounds_.max.x()),
-               std::clamp(p.y(), bounds_.min.y(), bounds_.max.y()), p.z());
-    Vec3 normal = point - p;
-    if (distance >= 0) {
-      for (int axis = 0; axis < 2; ++axis) {
-        for (const double side : {bounds_.min[axis], bounds_.max[axis]}) {
-          if (std::abs(p[axis] - side) == distance) {
-            point = p;
-            point[axis] = side;
-            normal = Vec3::Zero();
-            normal[axis] = side == bounds_.min[axis] ? 1 : -1;
-          }
-        }
-      }
-    }
-    sink({point, distance, normal.normalized(), id});
   }
 
   void do_rasterize(VoxelGrid& grid) const override {
     kit::rasterize_ground(grid, [this](double x0, double y0, double x1, double y1) {
-      return field_.max_height(x0, y0, x1, y1);
+      const Box part = Box{{x0, y0, 0}, {x1, y1, 0}}.intersected(bounds_);
+      return part.is_empty()
+                 ? -kInfinity
+                 : field_.max_height(part.min.x(), part.min.y(), part.max.x(), part.max.y());
     });
   }
 
   // A sphere of the vehicle's size may be kept off by the slope though the ground is a little
   // farther away than its radius.
   double do_slack() const override {
-    return vehicle_radius_ * (std::hypot(1, field_.max_slope()) - 1);
+    return vehicle_radius_ * (std::hypot(1, field_.max_slope()) - 1) + kInDoubt;
   }
 
   std::vector<std::string> do_notes() const override {
@@ -170,6 +218,9 @@ class Terrain final : public Environment {
                          field_.rows(), field_.spacing()[0], field_.spacing()[1],
                          field_.min_height(), field_.max_height()) +
                     voids);
+    if (placed_.joined) {
+      notes.push_back("joined to the ground of the layers before, a post's spacing away");
+    }
     if (placed_.resampled) {
       notes.push_back("resampled (bilinear) from " + source_ + " to " + placed_.frame.crs());
     }
@@ -178,6 +229,8 @@ class Terrain final : public Environment {
         placed_.frame.crs());
     return notes;
   }
+
+  static constexpr double kInDoubt = 1e-4;  ///< metres of a leg that are not halved any more
 
   std::size_t voids_;
   terrain::Voids voids_rule_;

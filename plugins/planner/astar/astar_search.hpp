@@ -330,7 +330,7 @@ class Search {
     }
     const std::string refusals = rules_.refusals();
     if (!refusals.empty()) {
-      text += "; moves refused by " + refusals;
+      text += "; refused moves: " + refusals;
     }
     if (too_long_) {
       text += "; parts of the search left out by route_length";

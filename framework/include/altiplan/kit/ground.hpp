@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,23 +13,24 @@
 /// of it has no ground.
 namespace altiplan::kit {
 
-/// Blocks each column of cells up to the highest ground in its footprint (rule touched), or in the
-/// column's middle (rule centre), both grown by the inflation on every side.
-template <class Highest>
-void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
+/// Half the width and depth of the footprint that a column's highest ground is asked for in: the
+/// column's own (rule touched) or its middle alone (rule centre), grown by the inflation.
+inline std::array<double, 2> half_footprint(const GridSpec& spec) {
+  const double share = spec.rule == GridSpec::Rule::centre ? 0 : 0.5;
+  return {share * spec.cell.x() + spec.inflation, share * spec.cell.y() + spec.inflation};
+}
+
+/// Blocks each column (i, j) of cells up to top(i, j), the highest ground in its footprint, grown
+/// by the inflation.
+template <class Top>
+void block_below(VoxelGrid& grid, const Top& column_top) {
   const GridSpec& spec = grid.spec();
   const bool centre = spec.rule == GridSpec::Rule::centre;
-  const Vec3 half = centre ? Vec3(Vec3::Zero()) : Vec3(spec.cell / 2);
-  const double grown_x = half.x() + spec.inflation;
-  const double grown_y = half.y() + spec.inflation;
   std::vector<int> blocked_levels(std::size_t(spec.counts[0]));
   for (int j = 0; j < spec.counts[1]; ++j) {
     int most = 0;
     for (int i = 0; i < spec.counts[0]; ++i) {
-      const Vec3 c = spec.centre({i, j, 0});
-      const double top =
-          highest(c.x() - grown_x, c.y() - grown_y, c.x() + grown_x, c.y() + grown_y) +
-          spec.inflation;
+      const double top = column_top(i, j) + spec.inflation;
       const double levels = (top - spec.origin.z()) / spec.cell.z();
       // Touched: the open cell lies below the top in part; centre: its centre does, or on it.
       const double count = centre ? std::floor(levels - 0.5) + 1 : std::ceil(levels);
@@ -47,6 +49,16 @@ void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
       }
     }
   }
+}
+
+/// The same, asking highest for each column.
+template <class Highest>
+void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
+  const auto [half_x, half_y] = half_footprint(grid.spec());
+  block_below(grid, [&, x = half_x, y = half_y](int i, int j) {
+    const Vec3 c = grid.spec().centre({i, j, 0});
+    return highest(c.x() - x, c.y() - y, c.x() + x, c.y() + y);
+  });
 }
 
 /// Height above the ground that keeps a distance from it, where its slope is at most `slope`.
@@ -82,13 +94,14 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, double enough, doub
 
 /// A point of the ground, within `over` (horizontally), whose distance from p is the least there is
 /// to within 5 %, and least among its neighbours to within 0.1 %. p must lie more than 1e-6 m above
-/// the ground.
+/// the ground, or above that at the nearest place within `over`.
 template <class Ground, class Highest>
 class NearestGround {
  public:
   NearestGround(const Vec3& p, const Box& over, const Ground& ground, const Highest& highest)
       : p_(p), over_(over), ground_(ground), highest_(highest) {
-    try_at(p.x(), p.y());
+    const Vec3 nearest = p.cwiseMax(over.min).cwiseMin(over.max);
+    try_at(nearest.x(), nearest.y());
     const double reach = best_;
     const Box box = Box{p, p}.grown(reach).intersected(over);
     search(box.min.x(), box.min.y(), box.max.x(), box.max.y());

@@ -70,7 +70,17 @@ class ALTIPLAN_API MoveRules {
   std::string refusals() const;
 
  private:
-  enum Rule { kCells, kTurn, kClearance, kGround, kAltitude, kConstraint, kLink, kRules };
+  enum Rule {
+    kCells,
+    kTurn,
+    kClearance,
+    kNoGround,
+    kGround,
+    kAltitude,
+    kConstraint,
+    kLink,
+    kRules
+  };
   DirectionMask directions_kept();
   bool keeps_ground(const Vec3& a, const Vec3& b);
   bool admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/config.hpp"
+
+#include "host/config/config_check.hpp"
+#include "host/config/overrides.hpp"
+#include "host/config/shapes.hpp"
+#include "host/config/yaml.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path absolute_file(const fs::path& path) {
+  if (path.empty()) {
+    return path;  // absolute("") throws
+  }
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  if (error) {
+    throw ConfigError(Location{path.string(), 0, 0, ""}, "",
+                      "cannot be found: the current folder is gone");
+  }
+  return absolute.lexically_normal();
+}
+
+std::shared_ptr<Registry> make_registry(const Config& config) {
+  std::vector<fs::path> folders = config.overrides.plugin_path;
+  for (const auto* list : {&config.pipeline.plugins, &config.scenario.plugins}) {
+    for (const Path& path : *list) {
+      folders.emplace_back(path.text);
+    }
+  }
+  return std::make_shared<Registry>(Registry::search_path(folders));
+}
+
+/// A file of the other kind, or of none, would give one problem a key.
+void expect_kind(const Value& tree, FileKind expected) {
+  if (tree.kind != Value::Kind::map) {
+    throw ConfigError(tree.where, "",
+                      "expected keys with values ('altiplan: 1', …), found " + tree.what());
+  }
+  const bool has_steps = tree.find("steps") != nullptr;
+  if (expected == FileKind::scenario && has_steps && kind_of(tree) == FileKind::pipeline) {
+    throw ConfigError(place_of(tree, "steps"), "steps", "this is a pipeline, expected a scenario");
+  }
+  if (expected == FileKind::pipeline && !has_steps && kind_of(tree) == FileKind::scenario) {
+    throw ConfigError(
+        tree.where, "",
+        "this is a scenario, expected a pipeline: a file with 'scenario' and 'steps'");
+  }
+}
+
+/// False when the file cannot be read as YAML: its keys are not known then.
+bool read_scenario(Config& config, Checker& checker) {
+  try {
+    config.scenario_tree = load_yaml(config.scenario_path);
+    expect_kind(config.scenario_tree, FileKind::scenario);
+    apply_overrides(config.scenario_tree, config.overrides.set, FileOfKey::scenario);
+  } catch (const ConfigError& error) {
+    checker.add(error.problems());
+    return false;
+  }
+  checker.add(bind(config.scenario, &config.scenario_tree).problems);
+  config.files.push_back(config.scenario_path);
+  return true;
+}
+
+/// The scenario that the pipeline or the command line names; false, with the reason told, if none.
+bool find_scenario(Config& config, Checker& checker) {
+  if (config.overrides.scenario) {
+    config.scenario_path = absolute_file(*config.overrides.scenario);
+    return true;
+  }
+  const auto& named = config.pipeline.scenario;
+  const Location where = place_of(config.pipeline_tree, "scenario");
+  if (!named) {
+    checker.problem(where, "", "the key 'scenario' is missing: a scenario file, or --scenario");
+    return false;
+  }
+  if (named->text.empty()) {
+    return false;  // said already
+  }
+  config.scenario_path = absolute_file(named->text);
+  std::error_code error;
+  if (!fs::is_regular_file(config.scenario_path, error)) {
+    checker.problem(where, "scenario", "there is no file '" + config.scenario_path.string() + "'");
+    return false;
+  }
+  return true;
+}
+}  // namespace
+
+const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string_view name) {
+  if (kind == "environment") {
+    for (const PluginEntry& entry : built_in_environments()) {
+      if (name == entry.name) {
+        return entry;
+      }
+    }
+  }
+  return registry.get(kind, name);
+}
+
+FileKind kind_of(const Value& tree) {
+  if (tree.find("pipelines") != nullptr || tree.find("scenarios") != nullptr) {
+    return FileKind::study;
+  }
+  const bool scenario = tree.find("environment") != nullptr || tree.find("start") != nullptr ||
+                        tree.find("goal") != nullptr;
+  return scenario ? FileKind::scenario : FileKind::pipeline;
+}
+
+Config load_scenario(const fs::path& scenario, const Overrides& overrides) {
+  Config config;
+  config.overrides = overrides;
+  config.scenario_path = absolute_file(scenario);
+  config.seed = overrides.seed.value_or(0);
+  Checker checker(config);
+  const bool read = read_scenario(config, checker);
+  config.registry = make_registry(config);
+  if (read) {
+    check_scenario(checker, config.scenario, config.scenario_tree);
+  }
+  checker.finish();
+  return config;
+}
+
+Config load_config(const fs::path& pipeline, const Overrides& overrides) {
+  Config config;
+  config.overrides = overrides;
+  config.pipeline_path = absolute_file(pipeline);
+  config.pipeline_tree = load_yaml(config.pipeline_path);
+  expect_kind(config.pipeline_tree, FileKind::pipeline);
+  apply_overrides(config.pipeline_tree, overrides.set, FileOfKey::pipeline);
+  Checker checker(config);
+  checker.add(bind(config.pipeline, &config.pipeline_tree).problems);
+  config.files.push_back(config.pipeline_path);
+  config.seed = overrides.seed.value_or(config.pipeline.seed);
+  const bool read = find_scenario(config, checker) && read_scenario(config, checker);
+  config.registry = make_registry(config);
+  if (read) {
+    check_scenario(checker, config.scenario, config.scenario_tree);
+  }
+  check_constraints(checker, config.pipeline.constraints, config.pipeline_tree);
+  check_steps(checker, config);
+  checker.finish();
+  return config;
+}
+}  // namespace altiplan::host

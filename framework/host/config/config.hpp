@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/config/pipeline_file.hpp"
+#include "host/registry/registry.hpp"
+
+namespace altiplan::host {
+
+/// What the command line adds to the files.
+struct Overrides {
+  std::optional<std::filesystem::path> scenario;
+  std::optional<std::int64_t> seed;
+  std::vector<std::string> set;  ///< "steps.0.with.weight_g=0.6", "scenario.…"
+  std::vector<std::filesystem::path> plugin_path;
+};
+
+/// A pipeline and its scenario, read, overridden and checked against the plugins that they name.
+struct Config {
+  std::filesystem::path pipeline_path;  ///< absolute; empty for a scenario alone
+  std::filesystem::path scenario_path;
+  Value pipeline_tree;  ///< as read, overrides applied
+  Value scenario_tree;
+  PipelineFile pipeline;
+  std::vector<StepEntry> steps;
+  ScenarioFile scenario;
+  std::int64_t seed = 0;
+  Overrides overrides;
+  std::vector<std::filesystem::path> files;  ///< all that the run reads by name, in order
+  std::shared_ptr<Registry> registry;
+};
+
+/// Reads and checks both files; throws ConfigError with every problem of both.
+Config load_config(const std::filesystem::path& pipeline, const Overrides& overrides);
+
+/// A scenario without a pipeline (`check --route`, `validate`).
+Config load_scenario(const std::filesystem::path& scenario, const Overrides& overrides);
+
+/// Whether the file is a pipeline, a scenario or a study, by its keys.
+enum class FileKind { pipeline, scenario, study };
+FileKind kind_of(const Value& tree);
+
+/// The plugin of that kind and name: built in, or from a library. Throws as Registry::get.
+const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string_view name);
+
+/// One resolved parameter of the configuration, for `explain`.
+struct Explained {
+  std::string key;
+  std::string value_json;
+  std::string from;  ///< "file:line:column", "--set …" or "default"
+  std::string unit;
+};
+std::vector<Explained> explain(const Config& config);
+}  // namespace altiplan::host

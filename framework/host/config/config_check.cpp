@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/config_check.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "host/config/yaml.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+
+void Checker::check_plugin(std::string_view kind, const std::string& name, const Value& parameters,
+                           const Location& where, const std::string& path, const std::string& key) {
+  if (name.empty()) {
+    return;  // said already
+  }
+  const PluginEntry* entry = nullptr;
+  try {
+    entry = &plugin(*config_.registry, kind, name);
+  } catch (const PluginError&) {
+    throw;  // a library that offers the name is refused: exit code 4
+  } catch (const Error& error) {
+    problem(where, key, error.what());
+    return;
+  }
+  check_report(entry->describe(&parameters, path), path);
+}
+
+void Checker::check_report(const ParamReport& report, const std::string& path) {
+  add(report.problems);
+  for (const BoundField& field : report.fields) {
+    if (field.spec.type == FieldType::path && field.where && field.value_json.size() > 2) {
+      const Value text = parse_yaml(field.value_json, "");
+      check_file(text.text, *field.where, path + "." + field.spec.name);
+    }
+  }
+}
+
+void Checker::check_file(const std::string& file, const Location& where, const std::string& key) {
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    problem(where, key, "there is no file '" + file + "'");
+  } else if (!fs::is_regular_file(file, error)) {
+    problem(where, key, "'" + file + "' is not a file");
+  } else if (std::find(config_.files.begin(), config_.files.end(), file) == config_.files.end()) {
+    config_.files.emplace_back(file);
+  }
+}
+
+void Checker::finish() {
+  if (problems_.empty()) {
+    return;
+  }
+  const auto order = [&](const Problem& problem) {
+    const bool second =
+        !config_.pipeline_path.empty() && problem.where.file != config_.pipeline_path.string();
+    return std::tuple(second, problem.where.line, problem.where.column);
+  };
+  std::stable_sort(problems_.begin(), problems_.end(),
+                   [&](const Problem& a, const Problem& b) { return order(a) < order(b); });
+  throw ConfigError(std::move(problems_));
+}
+
+std::string item(const std::string& list, std::size_t index) {
+  return list + "." + std::to_string(index);
+}
+
+Location place_of(const Value& map, std::string_view key) {
+  for (const Value::Entry& entry : map.entries) {
+    if (entry.key == key) {
+      return entry.where;
+    }
+  }
+  return map.where;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string near = nearest_name(word, candidates);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& entries,
+                       const Value& tree) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string path = item("constraints", i);
+    const ConstraintEntry& entry = entries[i];
+    checker.check_plugin("constraint", entry.plugin, entry.parameters,
+                         place_of(tree.find("constraints")->items[i], entry.plugin),
+                         path + "." + entry.plugin, path);
+  }
+}
+}  // namespace altiplan::host

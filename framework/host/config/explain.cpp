@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/config_check.hpp"
+
+namespace altiplan::host {
+namespace {
+
+std::string shown_location(const std::optional<Location>& where) {
+  return where ? where->text() : "default";
+}
+
+/// Leaves of a report; fields that hold plugins are explained by those plugins.
+void add_fields(std::vector<Explained>& all, const ParamReport& report, const std::string& path) {
+  for (const BoundField& field : report.fields) {
+    if (field.spec.type == FieldType::plugin) {
+      continue;
+    }
+    const std::string name = field.spec.type == FieldType::point ? "at" : field.spec.name;
+    const std::string& value = field.value_json;
+    all.push_back({path.empty() ? name : path + "." + name, value.empty() ? "null" : value,
+                   shown_location(field.where), field.spec.unit});
+  }
+}
+}  // namespace
+
+std::vector<Explained> explain(const Config& config) {
+  std::vector<Explained> all;
+  Registry& registry = *config.registry;
+  const auto add_plugin = [&](std::string_view kind, const std::string& name,
+                              const Value& parameters, const std::string& path) {
+    add_fields(all, plugin(registry, kind, name).describe(&parameters, path), path);
+  };
+  ScenarioFile scenario;
+  for (const BoundField& field : bind(scenario, &config.scenario_tree).fields) {
+    if (field.spec.type != FieldType::list) {
+      add_fields(all, {{field}, {}}, "scenario");
+    }
+  }
+  for (std::size_t i = 0; i < config.scenario.environment.size(); ++i) {
+    const LayerEntry& layer = config.scenario.environment[i];
+    add_plugin("environment", layer.plugin, layer.parameters,
+               item("scenario.environment", i) + "." + layer.plugin);
+  }
+  for (const auto& [entries, path] :
+       {std::pair(&config.scenario.constraints, "scenario.constraints"),
+        std::pair(&config.pipeline.constraints, "constraints")}) {
+    for (std::size_t i = 0; i < entries->size(); ++i) {
+      const ConstraintEntry& entry = (*entries)[i];
+      add_plugin("constraint", entry.plugin, entry.parameters, item(path, i) + "." + entry.plugin);
+    }
+  }
+  PipelineFile pipeline;
+  for (const BoundField& field : bind(pipeline, &config.pipeline_tree).fields) {
+    if (field.spec.type != FieldType::list) {
+      add_fields(all, {{field}, {}}, "");
+    }
+  }
+  const auto add_step = [&](const StepEntry& step, const Value& tree) {
+    StepEntry copy;
+    for (const BoundField& field : bind(copy, &tree, step.path).fields) {
+      if (field.spec.name == "id") {
+        all.push_back({step.path + ".id", "\"" + step.id + "\"", shown_location(field.where), ""});
+      } else if (field.spec.name != "with" && field.spec.name != "else" &&
+                 (field.where || field.value_json != "null")) {
+        add_fields(all, {{field}, {}}, step.path);
+      }
+    }
+    if (step.plugin != kFollowRoute) {
+      add_plugin(kind_of_step(registry, step), step.plugin, step.with, step.path + ".with");
+    }
+  };
+  for (std::size_t i = 0; i < config.steps.size(); ++i) {
+    const StepEntry& step = config.steps[i];
+    add_step(step, config.pipeline.steps[i]);
+    for (std::size_t k = 0; k < step.otherwise.size(); ++k) {
+      add_step(step.otherwise[k], step.alternatives[k]);
+    }
+  }
+  return all;
+}
+}  // namespace altiplan::host

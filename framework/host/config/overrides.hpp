@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "altiplan/value.hpp"
+
+namespace altiplan::host {
+
+enum class FileOfKey { pipeline, scenario };
+
+/// Puts the values of `--set KEY=VALUE` into the file's tree, written there or not; keys that begin
+/// with "scenario." are the scenario's. Throws ConfigError naming the assignment.
+void apply_overrides(Value& tree, const std::vector<std::string>& set, FileOfKey file);
+}  // namespace altiplan::host

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/pipeline_file.hpp"
+
+namespace altiplan::host {
+
+const char* name(Verb verb) {
+  return verb == Verb::plan ? "plan" : verb == Verb::smooth ? "smooth" : "fly";
+}
+
+void SmootherEntry::describe(Fields& f) {
+  f.plugin("smoother", plugin, parameters).doc("a smoother over its parameters").required();
+}
+
+void FlyKeys::describe(Fields& f) {
+  f("replan", replan).doc("id of a plan step whose session goes on, or {plan: …, with: …}");
+  f("when", when).one_of({"unsafe", "any_change"}).doc("when to replan");
+  f("smooth", smooth).doc("smoothers for replanned routes");
+  f("command", command)
+      .one_of({"near", "always"})
+      .doc("near: the pilot flies near what the route did not know; always: all the way");
+  f("step_s", step_s).unit("s").greater_than(0).at_most(3600).doc("simulated time of a step");
+  f("replan_latency_s", replan_latency_s)
+      .unit("s")
+      .at_least(0)
+      .doc("simulated time until a replanned route is there");
+  f("max_time_s", max_time_s)
+      .unit("s")
+      .greater_than(0)
+      .doc("the flight ends then; default: ten times the route's duration");
+}
+
+void StepEntry::describe(Fields& f) {
+  // A fly step's `smooth` is a list of smoothers; elsewhere it is the verb.
+  std::optional<std::string> plan;
+  std::optional<std::string> pilot;
+  std::optional<Value> smooth;
+  f("plan", plan).doc("a planner, or a local planner that the host rolls out");
+  f("fly", pilot).doc("a local planner, or route: follow the route alone");
+  const bool flies = pilot.has_value();
+  if (!flies) {
+    f("smooth", smooth).doc("a smoother");
+  }
+  f("id", id).doc("name of the step; default: the plugin's name");
+  f("with", with).doc("the plugin's parameters");
+  f("from", from).doc("id of the step whose route this one takes; default: the last that stands");
+  f("within_s", within_s).unit("s").greater_than(0).at_most(1e8).doc("time budget");
+  f("within_iterations", within_iterations).at_least(0).doc("budget in units of `expanded`");
+  f("within_mb", within_mb).unit("MB").greater_than(0).at_most(1e9).doc("memory budget");
+  f("else", alternatives).doc("steps tried in order when this one does not stand");
+  if (flies || !f.reading()) {
+    fly.describe(f);
+  }
+  const bool smooths = smooth && smooth->kind == Value::Kind::scalar;
+  f.check(int(plan.has_value()) + int(flies) + int(smooth.has_value()) == 1,
+          "expected one verb: plan, smooth or fly");
+  f.check(!smooth || smooths, "expected the name of a smoother after smooth");
+  f.check(!plan || !from, "a plan step takes no route: from is for smooth and fly");
+  verb = plan ? Verb::plan : flies ? Verb::fly : Verb::smooth;
+  plugin = plan ? *plan : flies ? *pilot : smooths ? smooth->text : "";
+  path = f.path();
+  if (id.empty()) {
+    id = plugin;
+  }
+}
+
+void PipelineFile::describe(Fields& f) {
+  f("altiplan", altiplan).range(kFileFormat, kFileFormat).required().doc("file format");
+  f("name", name).doc("title in results");
+  f("scenario", scenario).doc("the scenario file; --scenario takes its place");
+  f("seed", seed).at_least(0).doc("seed of every random choice; --seed takes its place");
+  f("plugins", plugins).doc("further folders of plugin libraries");
+  f("constraints", constraints).doc("rules for routes and tracks");
+  f("steps", steps).min_items(1).required().doc("what is done, in order");
+}
+}  // namespace altiplan::host

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "altiplan/kit/iso_time.hpp"
+#include "host/config/config_check.hpp"
+#include "host/config/shapes.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Ids = std::set<std::string>;
+
+std::vector<std::string> list(const Ids& ids) { return {ids.begin(), ids.end()}; }
+
+/// The plugin's name, then name_2, name_3 …, where the user gives no id.
+std::string free_id(const std::string& name, const Ids& taken) {
+  std::string id = name;
+  for (int n = 2; taken.contains(id); ++n) {
+    id = name + "_" + std::to_string(n);
+  }
+  return id;
+}
+
+void check_layers(Checker& checker, ScenarioFile& scenario, const Value& tree, Ids& ids) {
+  for (std::size_t i = 0; i < scenario.environment.size(); ++i) {
+    LayerEntry& layer = scenario.environment[i];
+    const Value& map = tree.find("environment")->items[i];
+    const std::string path = item("environment", i);
+    checker.check_plugin("environment", layer.plugin, layer.parameters, place_of(map, layer.plugin),
+                         path + "." + layer.plugin, path);
+    if (layer.id.empty()) {
+      layer.id = free_id(layer.plugin, ids);
+    } else if (ids.contains(layer.id)) {
+      checker.problem(place_of(map, "id"), path + ".id",
+                      "the id '" + layer.id + "' names another layer already");
+    }
+    ids.insert(layer.id);
+  }
+}
+
+void check_moving(Checker& checker, ScenarioFile& scenario, const Value& tree, Ids& ids) {
+  for (std::size_t i = 0; i < scenario.moving.size(); ++i) {
+    MovingEntry& moving = scenario.moving[i];
+    const Value& map = tree.find("moving")->items[i];
+    const std::string path = item("moving", i);
+    if (moving.id.empty()) {
+      moving.id = moving.shape + "_" + std::to_string(i + 1);
+    }
+    if (!ids.insert(moving.id).second) {
+      checker.problem(place_of(map, "id"), path + ".id",
+                      "the id '" + moving.id + "' names another moving obstacle already");
+    }
+    if (moving.shape.empty()) {
+      continue;
+    }
+    if (const DescribeMoving describe = describe_moving(moving.shape)) {
+      const std::string key = path + "." + moving.shape;
+      checker.check_report(describe(&moving.parameters, key), key);
+    } else {
+      std::vector<std::string> names = moving_shapes();
+      names.emplace_back("random");
+      checker.problem(place_of(map, moving.shape), path,
+                      "unknown shape '" + moving.shape +
+                          "': expected sphere, cylinder, box, prism or random" +
+                          did_you_mean(moving.shape, names));
+    }
+  }
+}
+
+void check_added(Checker& checker, ScenarioFile& scenario, const Value& tree, Ids& ids) {
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    EventEntry& event = scenario.events[i];
+    if (!event.add) {
+      continue;
+    }
+    const Value& map = tree.find("events")->items[i];
+    const std::string key = item("events", i) + ".add";
+    checker.check_plugin("environment", event.add->plugin, event.add->parameters,
+                         place_of(map, "add"), key + "." + event.add->plugin, key);
+    if (event.id.empty()) {
+      event.id = free_id(event.add->plugin, ids);
+    } else if (ids.contains(event.id)) {
+      checker.problem(place_of(map, "id"), item("events", i) + ".id",
+                      "the id '" + event.id + "' names another layer already");
+    }
+    ids.insert(event.id);
+  }
+}
+
+/// Layers that an event speaks of are there at some time; moving obstacles may go and move too.
+void check_references(Checker& checker, const ScenarioFile& scenario, const Value& tree,
+                      const Ids& layers, const Ids& moving) {
+  Ids all = layers;
+  all.insert(moving.begin(), moving.end());
+  const auto expect = [&](std::size_t i, const char* key, const std::string& id, const Ids& among,
+                          const char* what) {
+    if (!id.empty() && !among.contains(id)) {
+      checker.problem(
+          place_of(tree.find("events")->items[i], key), item("events", i) + "." + key,
+          std::string("there is no ") + what + " '" + id + "'" + did_you_mean(id, list(among)));
+    }
+  };
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    const EventEntry& event = scenario.events[i];
+    expect(i, "remove", event.remove.value_or(""), all, "layer or moving obstacle");
+    expect(i, "move", event.move ? event.move->layer : "", all, "layer or moving obstacle");
+    expect(i, "set_cells", event.set_cells ? event.set_cells->layer : "", layers, "layer");
+  }
+}
+
+void check_points(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
+  const auto check = [&](const Point& point, const Location& where, const std::string& key) {
+    const bool plane = point.form == Point::Form::metres || point.form == Point::Form::lonlat;
+    if (plane && !point.has_height && !point.above_ground_m && !scenario.level_flight_at_m) {
+      checker.problem(where, key,
+                      "the point has no height: give a third coordinate (metres above sea level), "
+                      "above_ground_m, or level_flight_at_m for all points");
+    }
+  };
+  check(scenario.start.point, place_of(tree, "start"), "start");
+  check(scenario.goal.point, place_of(tree, "goal"), "goal");
+  for (std::size_t i = 0; i < scenario.via.size(); ++i) {
+    check(scenario.via[i].point, tree.find("via")->items[i].where, item("via", i));
+  }
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    const EventEntry& event = scenario.events[i];
+    const Value& map = tree.find("events")->items[i];
+    if (event.when_near) {
+      check(event.when_near->point, place_of(map, "when_near"), item("events", i) + ".when_near");
+    }
+    if (event.move_goal) {
+      check(event.move_goal->point, place_of(map, "move_goal"), item("events", i) + ".move_goal");
+    }
+  }
+}
+}  // namespace
+
+void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree) {
+  Ids layers;
+  Ids moving;
+  check_layers(checker, scenario, tree, layers);
+  check_moving(checker, scenario, tree, moving);
+  check_added(checker, scenario, tree, layers);
+  check_references(checker, scenario, tree, layers, moving);
+  check_points(checker, scenario, tree);
+  check_constraints(checker, scenario.constraints, tree);
+  if (scenario.start_time && !kit::parse_iso_time(*scenario.start_time)) {
+    checker.problem(
+        place_of(tree, "start_time"), "start_time",
+        "expected a time as 2026-05-01T10:00:00Z, found '" + *scenario.start_time + "'");
+  }
+}
+}  // namespace altiplan::host

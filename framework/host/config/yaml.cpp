@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/yaml.hpp"
+
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "host/config/yaml_reader.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+
+/// yaml-cpp's message in words that tell a user what to change.
+std::string plain_words(const std::string& message) {
+  using namespace YAML::ErrorMsg;
+  static const std::map<std::string, std::string> kWords = {
+      {END_OF_MAP,
+       "this does not fit the map around it: check the indentation, and that each key is followed "
+       "by ': '"},
+      {END_OF_MAP_FLOW, "the map that starts with '{' is not well closed: expected ',' or '}'"},
+      {END_OF_SEQ,
+       "this does not fit the list around it: check the indentation, and that each item starts "
+       "with '- '"},
+      {END_OF_SEQ_FLOW, "the list that starts with '[' is not well closed: expected ',' or ']'"},
+      {EOF_IN_SCALAR, "the text that starts with a quote is not closed"},
+      {DOC_IN_SCALAR, "the text that starts with a quote is not closed before '---' or '...'"},
+      {MAP_VALUE,
+       "a ':' with no key that it could belong to: quote the text if the ':' is part "
+       "of it, else check the indentation"},
+      {MAP_KEY, "a key cannot stand here: check the indentation"},
+      {BLOCK_ENTRY, "a list item ('- ') cannot stand here: check the indentation"},
+      {FLOW_END, "a closing bracket that does not match the opening one"},
+      {UNKNOWN_TOKEN, "a character that cannot start a value: quote the text"},
+      {UNKNOWN_ANCHOR, "an alias ('*name') whose anchor ('&name') does not stand before it"},
+      {TAG_WITH_NO_SUFFIX, "tags ('!…') are not taken: leave the tag out"},
+      {TAB_IN_INDENTATION, "a tab indents this line: indent with spaces"},
+  };
+  const auto found = kWords.find(message);
+  return found != kWords.end() ? found->second : "not well-formed YAML: " + message;
+}
+
+/// Notes where a second document starts, and stops there.
+class Rest final : public YAML::EventHandler {
+ public:
+  explicit Rest(const YamlSource& source) : source_(source) {}
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    const bool marked = source_.from(mark).substr(0, 3) == "---";
+    throw ConfigError(source_.at(mark), "",
+                      marked ? "a second document ('---'): one file holds one document"
+                             : "text after the end of the document: check the indentation, and "
+                               "that each key is followed by ': '");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  const YamlSource& source_;
+};
+
+Value parse(const YamlSource& source, const char* when_empty) {
+  scan_characters(source);
+  YamlReader reader(source);
+  try {
+    std::istringstream stream{std::string(source.text())};
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(reader);
+    Rest rest(source);
+    parser.HandleNextDocument(rest);
+  } catch (const YAML::Exception& error) {
+    reader.problems().push_back({source.at(error.mark), "", plain_words(error.msg)});
+  }
+  if (!reader.problems().empty()) {
+    throw ConfigError(std::move(reader.problems()));
+  }
+  if (reader.empty()) {
+    throw ConfigError(source.at(YAML::Mark::null_mark()), "", when_empty);
+  }
+  return reader.tree();
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& message) {
+    throw ConfigError({file.string(), 0, 0, ""}, "", message);
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    refuse("this is a folder, expected a YAML file");
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                               &std::fclose);
+  if (!stream) {
+    refuse(errno == ENOENT ? "there is no such file"
+                           : std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  std::string text;
+  std::array<char, 65536> buffer;
+  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), stream.get())) {
+    text.append(buffer.data(), got);
+    if (text.size() > kMaxBytes) {
+      refuse("larger than 16 MiB, the most that a YAML file may have");
+    }
+  }
+  if (std::ferror(stream.get()) != 0) {
+    refuse(std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return text;
+}
+}  // namespace
+
+Value load_yaml(const std::filesystem::path& file) {
+  return parse_yaml(read_file(file), file.string());
+}
+
+Value parse_yaml(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxBytes) {
+    throw ConfigError({name, 0, 0, ""}, "",
+                      "larger than 16 MiB, the most that a YAML file may have");
+  }
+  if (text.substr(0, 3) == "\xEF\xBB\xBF") {
+    text.remove_prefix(3);
+  }
+  return parse(YamlSource(text, name, ""), "the file is empty");
+}
+
+Value parse_override(std::string_view text, const std::string& assignment) {
+  if (text.find('\n') != text.npos || text.size() > kMaxBytes) {
+    throw ConfigError({"", 0, 0, assignment}, "", "expected a value on one line");
+  }
+  return parse(YamlSource(text, "", assignment), "has no value");
+}
+}  // namespace altiplan::host

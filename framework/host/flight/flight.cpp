@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/flight/flight.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "altiplan/error.hpp"
+#include "host/flight/flight_run.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr int kMostSteps = 1'000'000;
+constexpr double kTimesDuration = 10;
+}  // namespace
+
+std::string place(const Vec3& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
+  return text;
+}
+
+Flight::Flight(const FlightSetup& setup)
+    : setup_(setup),
+      world_(setup),
+      request_(setup.request),
+      truth_request_(setup.request),
+      path_(setup.route),
+      events_(setup.events),
+      state_(setup.request.start),
+      before_(setup.request.before_start()),
+      required_(std::max(request_.limits.min_clearance, request_.vehicle.radius_m)) {
+  // Shares without owning: the truth lives, and changes, in world_.
+  truth_request_.world =
+      std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
+  result_.track.emplace_back(state_.time_s, state_.position);
+}
+
+FlightResult Flight::run() {
+  // What fails ends the flight, and keeps what was flown.
+  for (const auto part : {&Flight::fly_to_the_end, &Flight::finish}) {
+    try {
+      (this->*part)();
+    } catch (const ParameterError&) {
+      throw;
+    } catch (const std::exception& error) {
+      end_flight(Status::failed,
+                 "the flight with '" + setup_.pilot_name + "' failed: " + error.what());
+    } catch (...) {
+      end_flight(Status::failed, "the flight with '" + setup_.pilot_name +
+                                     "' failed: it threw something that is not a std::exception");
+    }
+  }
+  return std::move(result_);
+}
+
+void Flight::fly_to_the_end() {
+  if (setup_.pilot != nullptr) {
+    pilot_ = setup_.pilot->begin(setup_.request);
+    reach_ = pilot_->reach_m();
+  }
+  const double end = state_.time_s + max_time();
+  if (setup_.always && pilot_ != nullptr) {
+    hand_over(true, "the pilot flies all the way");
+  }
+  while (!ended_ && !request_.goal.reached_at(state_.position)) {
+    const bool late = state_.time_s >= end;
+    if (late || ++steps_ > kMostSteps) {
+      end_flight(Status::not_reached, (late ? "the flight's time ended at "
+                                            : "the most steps of a flight were used up (step_s is "
+                                              "short for this flight) at ") +
+                                          place(state_.position) + ", " + away() +
+                                          " from the goal");
+    } else if (setup_.request.budget.stop.stop_requested()) {
+      end_flight(Status::cancelled, "stopped at " + place(state_.position));
+    } else {
+      meet_events();
+      sense();
+      replan_when_due();
+      pilot_commands_ ? fly_pilot() : fly_route();
+    }
+  }
+}
+
+double Flight::max_time() const {
+  if (setup_.max_time_s) {
+    return *setup_.max_time_s;
+  }
+  double duration = 0;
+  for (std::size_t i = 0; i + 1 < setup_.route.size(); ++i) {
+    duration += leg_duration(*setup_.request.world, setup_.request.vehicle, setup_.route[i],
+                             setup_.route[i + 1]);
+  }
+  return std::max(kTimesDuration * duration, 10 * setup_.step_s);
+}
+
+std::string Flight::away() const {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f m", (request_.goal.position - state_.position).norm());
+  return text;
+}
+
+void Flight::end_flight(Status status, std::string message) {
+  ended_ = true;
+  result_.status = status;
+  result_.message = std::move(message);
+}
+
+void Flight::hand_over(bool to_pilot, std::string why) {
+  pilot_commands_ = to_pilot;
+  result_.handovers.push_back(
+      {state_.time_s, to_pilot ? setup_.pilot_name : "route", std::move(why)});
+}
+
+FlightResult fly(const FlightSetup& setup) {
+  if (setup.route.empty() || setup.route.front() != setup.request.start.position) {
+    throw Error("a flight needs a route that begins at the start");
+  }
+  if (!(setup.step_s > 0)) {
+    throw Error("step_s must be greater than 0, found " + std::to_string(setup.step_s));
+  }
+  return Flight(setup).run();
+}
+}  // namespace altiplan::host

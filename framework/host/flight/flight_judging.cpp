@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/flight/flight_run.hpp"
+#include "host/flight/track_judge.hpp"
+
+#include <algorithm>
+
+namespace altiplan::host {
+
+void Flight::fly_leg(const State& next) {
+  const Vec3 a = state_.position;
+  const double t0 = state_.time_s;
+  const double t1 = next.time_s;
+  const Vec3& b = next.position;
+  if (a == b) {
+    state_ = next;
+    return;
+  }
+  separation_ = world_.separation_below(separation_, a, t0, b, t1);
+  for (Violation& violation :
+       leg_violations(before_, a, b, truth_request_, result_.track.size() - 1)) {
+    result_.check.violations.push_back(std::move(violation));
+  }
+  result_.track.emplace_back(t1, b);
+  before_ = a;
+  state_ = next;
+  if (const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m)) {
+    ++result_.collisions;
+    end_flight(Status::collided, "collided with '" + *met + "' near " + place(b));
+  }
+}
+
+void Flight::finish() {
+  result_.reached = !ended_ && request_.goal.reached_at(state_.position);
+  Route track;
+  for (const auto& [t, p] : result_.track) {
+    track.push_back(p);
+  }
+  result_.measures = measure(track, truth_request_);
+  result_.measures.duration_s = state_.time_s - setup_.request.start.time_s;
+  if (std::isfinite(separation_)) {
+    result_.min_separation_m = separation_;
+  }
+  if (pilot_ != nullptr) {
+    result_.counters = pilot_->counters();
+  }
+  result_.counters.insert(result_.counters.begin(), {"steps", steps_});
+  judge_whole(track);
+  if (!ended_) {
+    const CheckResult& check = result_.check;
+    result_.status = check.ok() ? Status::solved : Status::rejected;
+    result_.message = check.ok() ? "reached the goal"
+                                 : "reached the goal, but " + check.violations.front().message;
+  }
+}
+
+void Flight::judge_whole(const Route& track) {
+  const Request& request = truth_request_;
+  std::vector<Violation>& found = result_.check.violations;
+  if (!result_.reached) {
+    found.push_back({"goal", track.size() - 1, (track.back() - request.goal.position).norm(),
+                     request.goal.tolerance_m, "the flight ended " + away() + " from the goal"});
+  }
+  for (Violation& violation : whole_track_violations(track, request)) {
+    found.push_back(std::move(violation));
+  }
+}
+}  // namespace altiplan::host

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/run/along_via.hpp"
+
+#include <algorithm>
+
+#include "host/run/judge.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// "expanded" of several calls is their sum, and so is every other counter.
+void add_counters(Counters& sum, const Counters& more) {
+  for (const Counter& counter : more) {
+    const auto same = std::find_if(sum.begin(), sum.end(),
+                                   [&](const Counter& c) { return c.name == counter.name; });
+    if (same == sum.end()) {
+      sum.push_back(counter);
+    } else {
+      same->value += counter.value;
+    }
+  }
+}
+
+/// What is left of a budget of iterations after a part of the whole.
+std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
+  if (iterations == Budget{}.max_iterations) {
+    return iterations;
+  }
+  for (const Counter& counter : used) {
+    if (counter.name == "expanded") {
+      return iterations -
+             std::min(iterations, std::uint64_t(std::max<std::int64_t>(counter.value, 0)));
+    }
+  }
+  return iterations;
+}
+
+/// The velocity that the vehicle has at the end of a route.
+Vec3 velocity_at_end(const Route& route, double speed) {
+  for (std::size_t i = route.size(); i-- > 1;) {
+    const Vec3 leg = route[i] - route[i - 1];
+    if (leg.squaredNorm() > 0) {
+      return leg.normalized() * speed;
+    }
+  }
+  return Vec3::Zero();
+}
+
+/// Index of the leg of the route that is nearest to p.
+std::size_t nearest_leg(const Route& route, const Vec3& p) {
+  std::size_t nearest = 0;
+  double least = kInfinity;
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    const double distance = point_leg_distance(p, route[i], route[i + 1]);
+    if (distance < least) {
+      least = distance;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+}  // namespace
+
+PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanPart& plan_part) {
+  PlanResult whole;
+  std::vector<Goal> goals = via;
+  goals.push_back(request.goal);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    request.goal = goals[i];
+    PlanResult part = plan_part(request);
+    add_counters(whole.counters, part.counters);
+    whole.budget_hit = whole.budget_hit || part.budget_hit;
+    whole.proved = part.proved;
+    whole.status = part.status;
+    whole.message = part.message;
+    if (part.status != Status::solved && goals.size() > 1) {
+      const std::string to = i + 1 == goals.size() ? "the goal" : "via point " + std::to_string(i);
+      whole.message = "on the way to " + to + ": " + part.message;
+    }
+    const std::ptrdiff_t shared = whole.route.empty() || part.route.empty() ? 0 : 1;
+    whole.route.insert(whole.route.end(), part.route.begin() + shared, part.route.end());
+    if (part.status != Status::solved) {
+      break;
+    }
+    request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
+    request.start.velocity = velocity_at_end(whole.route, request.vehicle.speed_mps);
+    request.start.position = whole.route.back();
+  }
+  return whole;
+}
+
+FreshVia::FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part)
+    : request_(std::move(request)), via_(std::move(via)), plan_part_(std::move(plan_part)) {
+  take(plan_along(request_, via_, plan_part_));
+}
+
+void FreshVia::take(PlanResult result) {
+  result_ = std::move(result);
+  if (result_.status == Status::solved) {
+    flown_ = result_.route;
+  }
+}
+
+const PlanResult& FreshVia::do_update(const State& state, const Goal& goal,
+                                      std::shared_ptr<const World> world, std::span<const Change>,
+                                      const Budget& budget) {
+  const std::vector<std::size_t> at = via_indices(flown_, via_);
+  const std::size_t leg = nearest_leg(flown_, state.position);
+  const auto passed =
+      std::count_if(at.begin(), at.end(), [&](std::size_t index) { return index <= leg; });
+  via_.erase(via_.begin(), via_.begin() + passed);
+  request_.start = state;
+  request_.goal = goal;
+  request_.world = std::move(world);
+  request_.budget = budget;
+  take(plan_along(request_, via_, plan_part_));
+  return result_;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "altiplan/planner.hpp"
+
+namespace altiplan::host {
+
+/// Plans one piece, from a request's start to its goal.
+using PlanPart = std::function<PlanResult(const Request&)>;
+
+/// start – via … – goal piece by piece, joined; each piece is held to the heading that the one
+/// before ends in.
+PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanPart& plan_part);
+
+/// A session for what has none of its own: plans afresh, past the via points that are still ahead.
+class FreshVia final : public Session {
+ public:
+  FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part);
+
+ private:
+  const PlanResult& do_result() const override { return result_; }
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change> changes,
+                              const Budget& budget) override;
+
+  void take(PlanResult result);
+
+  Request request_;
+  std::vector<Goal> via_;  ///< still ahead
+  PlanPart plan_part_;
+  PlanResult result_;
+  Route flown_;  ///< the last that was found
+};
+}  // namespace altiplan::host

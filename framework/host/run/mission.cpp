@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/run/mission.hpp"
+
+#include <chrono>
+#include <cstdio>
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/iso_time.hpp"
+#include "host/config/shapes.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Where a key of the scenario stands.
+Location place(const Value& tree, std::string_view key) {
+  for (const Value::Entry& entry : tree.entries) {
+    if (entry.key == key) {
+      return entry.where;
+    }
+  }
+  return tree.where;
+}
+
+/// An optional corner of the volume, completed from the layers' box.
+Box volume_of(const Config& config, const World& truth, const std::optional<double>& level) {
+  const VolumeEntry& entry = config.scenario.volume;
+  Box box = truth.bounds();
+  if (entry.min_m) {
+    box.min = *entry.min_m;
+  }
+  if (entry.max_m) {
+    box.max = *entry.max_m;
+  }
+  if (level) {
+    box.min.z() = *level;
+    box.max.z() = *level;
+  }
+  static constexpr const char* kAxes[] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Location where = place(config.scenario_tree, "volume");
+    if (!std::isfinite(box.min[axis])) {
+      throw ConfigError(where, "volume.min_m",
+                        std::string("no layer bounds the volume on the ") + kAxes[axis] +
+                            " axis: give volume.min_m");
+    }
+    if (!std::isfinite(box.max[axis])) {
+      throw ConfigError(where, "volume.max_m",
+                        std::string("no layer bounds the volume on the ") + kAxes[axis] +
+                            " axis: give volume.max_m");
+    }
+    if (box.min[axis] > box.max[axis]) {
+      throw ConfigError(where, "volume",
+                        std::string("the volume is empty on the ") + kAxes[axis] + " axis");
+    }
+  }
+  return box;
+}
+
+Vehicle vehicle_of(const VehicleEntry& entry) {
+  Vehicle vehicle;
+  vehicle.radius_m = entry.radius_m;
+  vehicle.speed_mps = entry.speed_mps;
+  vehicle.sensing_m = entry.sensing_m.value_or(kInfinity);
+  for (const SpeedNearEntry& near : entry.speed_near) {
+    vehicle.speed_near.push_back({near.within_m, near.speed_mps});
+  }
+  return vehicle;
+}
+
+std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, const Box& volume,
+                                      bool level) {
+  std::vector<MovingObstacle> all;
+  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
+    const MovingEntry& entry = config.scenario.moving[i];
+    const Value& tree = config.scenario_tree.find("moving")->items[i];
+    if (entry.shape == "random") {
+      RandomMoving random;
+      bind(random, &entry.parameters);
+      RandomStream stream = random.seed ? RandomStream(std::uint64_t(*random.seed)) : site.random;
+      stream = stream.sub("moving:" + entry.id);
+      for (int n = 0; n < random.count; ++n) {
+        RandomStream draw = stream.sub("sphere", std::uint64_t(n));
+        const Vec3 at = draw.in(volume);
+        const double heading = draw.uniform(0, 2 * kPi);
+        const double climb = level ? 0 : draw.uniform(-0.1, 0.1);
+        const Vec3 direction(std::cos(heading) * std::cos(climb),
+                             std::sin(heading) * std::cos(climb), std::sin(climb));
+        all.push_back({entry.id + "_" + std::to_string(n + 1), Sphere{at, random.radius_m},
+                       direction * random.speed_mps, 0, entry.known});
+      }
+      continue;
+    }
+    try {
+      const MovingShape made = make_moving(entry.shape, entry.parameters, site);
+      all.push_back({entry.id, made.shape, made.velocity, 0, entry.known});
+    } catch (const ConfigError&) {
+      throw;
+    } catch (const Error& error) {
+      throw ConfigError(place(tree, entry.shape), "moving." + std::to_string(i), error.what());
+    }
+  }
+  return all;
+}
+
+std::vector<NamedConstraint> constraints_of(const Config& config) {
+  std::vector<NamedConstraint> all;
+  for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
+    for (const ConstraintEntry& entry : *entries) {
+      all.push_back(
+          {entry.plugin,
+           plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
+    }
+  }
+  return all;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %%", share * 100);
+  return text;
+}
+
+/// A point that needs something that is not there yet is not known yet.
+std::optional<Vec3> maybe_point(const Point& point, const Site& site,
+                                const std::optional<double>& level) {
+  try {
+    return resolve_point(point, site, level, {}, "");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+}  // namespace
+
+Vec3 resolve_point(const Point& point, const Site& site, const std::optional<double>& level_m,
+                   const Location& where, const std::string& key) {
+  try {
+    Vec3 p = site.resolve(point);
+    if (level_m && !point.has_height && !point.above_ground_m) {
+      p.z() = *level_m;
+    }
+    return p;
+  } catch (const Error& error) {
+    throw ConfigError(where, key, error.what());
+  }
+}
+
+Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,
+                  const std::string& id, bool known, Site site, const std::string& key) {
+  site.random = RandomStream(std::uint64_t(config.seed)).sub("layer:" + id);
+  const PluginEntry& entry = plugin(*config.registry, "environment", plugin_name);
+  try {
+    return {id, plugin_name, entry.environment(&parameters, site), known};
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const PluginError& error) {
+    throw PluginError("the environment '" + plugin_name + "' (" + key + ") " + error.what());
+  } catch (const ParameterError& error) {
+    throw ConfigError(place(parameters, error.key()), key + "." + error.key(), error.what());
+  } catch (const Error& error) {
+    throw ConfigError(parameters.where, key, error.what());
+  }
+}
+
+Mission build_mission(const Config& config, int threads) {
+  const auto began = std::chrono::steady_clock::now();
+  const ScenarioFile& file = config.scenario;
+  const Value& tree = config.scenario_tree;
+  Mission mission;
+  Site& site = mission.site;
+  site.vehicle = vehicle_of(file.vehicle);
+  site.frame_crs = file.frame.crs;
+  if (file.frame.origin_lonlat) {
+    const auto [lon, lat] = *file.frame.origin_lonlat;
+    mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
+  }
+  site.random = RandomStream(std::uint64_t(config.seed));
+  if (file.start_time) {
+    site.start_time_s = kit::parse_iso_time(*file.start_time).value();  // checked on reading
+    site.has_start_time = true;
+  }
+  if (file.volume.min_m) {
+    site.volume.min = *file.volume.min_m;
+  }
+  if (file.volume.max_m) {
+    site.volume.max = *file.volume.max_m;
+  }
+  const std::optional<double>& level = file.level_flight_at_m;
+  World& truth = mission.truth;
+  for (std::size_t i = 0; i < file.environment.size(); ++i) {
+    const LayerEntry& entry = file.environment[i];
+    site.frame = truth.frame();
+    site.before = &truth;
+    site.start = maybe_point(file.start.point, site, level);
+    site.goal = maybe_point(file.goal.point, site, level);
+    Layer layer = build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site,
+                              "environment." + std::to_string(i) + "." + entry.plugin);
+    for (const std::string& note : layer.environment->notes()) {
+      mission.notes.push_back(entry.id + ": " + note);
+    }
+    const auto frame = layer.environment->frame();
+    truth = truth.with(std::move(layer));
+    if (frame && !truth.frame().has_position()) {
+      truth = truth.with_frame(*frame);
+    }
+  }
+  site.frame = truth.frame();
+  site.before = &truth;
+  site.volume = volume_of(config, truth, level);
+  const double error = truth.frame().scale_error(site.volume);
+  if (error > 0) {
+    mission.notes.push_back("frame: " + truth.frame().crs() + ", greatest scale error " +
+                            percent(error));
+  }
+  if (error > 0.005) {
+    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
+                               "; a projected system mends it: frame: {crs: …}");
+  }
+  truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
+
+  Request& request = mission.request;
+  request.vehicle = site.vehicle;
+  request.volume = site.volume;
+  request.level_m = level;
+  request.threads = threads;
+  request.random = site.random;
+  request.start.position =
+      resolve_point(file.start.point, site, level, place(tree, "start"), "start");
+  request.goal = {resolve_point(file.goal.point, site, level, place(tree, "goal"), "goal"),
+                  file.goal.tolerance_m};
+  site.start = request.start.position;
+  site.goal = request.goal.position;
+  for (std::size_t i = 0; i < file.via.size(); ++i) {
+    const std::string key = "via." + std::to_string(i);
+    mission.via.push_back(
+        {resolve_point(file.via[i].point, site, level, tree.find("via")->items[i].where, key),
+         file.via[i].tolerance_m});
+  }
+  mission.known = truth;
+  for (const Layer& layer : truth.layers()) {
+    if (!layer.known) {
+      mission.known = mission.known.without(layer.id);
+    }
+  }
+  std::vector<MovingObstacle> known_moving;
+  for (const MovingObstacle& obstacle : truth.moving()) {
+    if (obstacle.known) {
+      known_moving.push_back(obstacle);
+    }
+  }
+  mission.known = mission.known.with_moving(std::move(known_moving));
+  request.world = std::make_shared<const World>(mission.known);
+  const std::vector<NamedConstraint> constraints = constraints_of(config);
+  mission.track_request = request;
+  apply_constraints(request, constraints, AppliesTo::route);
+  apply_constraints(mission.track_request, constraints, AppliesTo::track);
+  site.before = nullptr;
+  mission.setup_time_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return mission;
+}
+}  // namespace altiplan::host

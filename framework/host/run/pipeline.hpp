@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "host/config/config.hpp"
+#include "host/run/run_result.hpp"
+
+namespace altiplan::host {
+
+struct RunOptions {
+  int threads = 1;
+  std::optional<std::filesystem::path> trace;
+  /// Called from the watchdog's thread with the result so far when a step never stops; must not
+  /// return.
+  std::function<void(const RunResult&)> on_stuck;
+  std::stop_token stop;  ///< interrupted
+};
+
+/// Runs a pipeline: every step, its alternatives, the judge after each, the flight.
+RunResult run(const Config& config, const RunOptions& options);
+}  // namespace altiplan::host

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/measures.hpp"
+#include "host/flight/flight.hpp"
+#include "host/run/judge.hpp"
+
+namespace altiplan::host {
+
+/// One attempt of a step.
+struct StepResult {
+  std::string id;
+  Verb verb = Verb::plan;
+  std::string plugin;
+  std::optional<std::string> instead_of;
+  bool stands = false;
+  Status status = Status::failed;
+  std::string message;
+  double time_s = 0;
+  double setup_time_s = 0;
+  Counters counters;
+  bool budget_hit = false;
+  bool proved = false;
+  Route route;
+  std::optional<Measures> measures;
+  std::optional<CheckResult> check;
+};
+
+/// What a run gave; grows while it runs.
+struct RunResult {
+  Status status = Status::failed;
+  std::string message;
+  bool budget_hit = false;
+  std::vector<StepResult> steps;
+  std::optional<std::size_t> standing;  ///< index of the step whose route stands
+  std::optional<FlightResult> flight;
+  Frame frame;
+  double setup_time_s = 0;
+  std::vector<std::string> warnings;
+  std::vector<std::string> notes;
+  std::optional<std::string> trace;
+
+  /// 0 solved; 4 no route stands and a step failed; else 1.
+  std::string trace_error;  ///< why the trace could not be written
+  int exit_code() const;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/run/watchdog.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace altiplan::host {
+namespace {
+
+/// Resident memory of this process, MB.
+double resident_mb() {
+  long pages = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    long all = 0;
+    if (std::fscanf(file, "%ld %ld", &all, &pages) != 2) {
+      pages = 0;
+    }
+    std::fclose(file);
+  }
+  return double(pages) * double(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+}  // namespace
+
+Watchdog::Watchdog(std::function<void(const std::string&)> last_words)
+    : last_words_(std::move(last_words)), thread_([this](std::stop_token done) { watch(done); }) {}
+
+Watchdog::~Watchdog() {
+  thread_.request_stop();
+  changed_.notify_all();
+}
+
+std::stop_token Watchdog::arm(double seconds, std::optional<double> memory_mb) {
+  const std::lock_guard lock(mutex_);
+  stop_ = std::stop_source();
+  stop_at_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                std::chrono::duration<double>(std::min(seconds, 1e8)));
+  memory_mb_ = memory_mb;
+  memory_at_start_mb_ = memory_mb ? resident_mb() : 0;
+  stopped_ = false;
+  out_of_memory_ = false;
+  armed_ = true;
+  changed_.notify_all();
+  return stop_.get_token();
+}
+
+void Watchdog::disarm() {
+  const std::lock_guard lock(mutex_);
+  armed_ = false;
+  changed_.notify_all();
+}
+
+void Watchdog::stop_now() {
+  const std::lock_guard lock(mutex_);
+  stop_at_ = Clock::now();
+  changed_.notify_all();
+}
+
+void Watchdog::watch(std::stop_token done) {
+  constexpr auto kMemoryPoll = std::chrono::milliseconds(20);
+  const auto grace =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kGraceSeconds));
+  std::unique_lock lock(mutex_);
+  while (!done.stop_requested()) {
+    if (!armed_) {
+      changed_.wait(lock, done, [this] { return armed_; });
+      continue;
+    }
+    Clock::time_point wake = stopped_ ? stopped_at_ + grace : stop_at_;
+    if (memory_mb_) {
+      wake = std::min(wake, Clock::now() + kMemoryPoll);
+    }
+    changed_.wait_until(lock, done, wake,
+                        [&] { return !armed_ || (!stopped_ && stop_at_ < wake); });
+    if (!armed_ || done.stop_requested()) {
+      continue;
+    }
+    const auto now = Clock::now();
+    const double grown = memory_mb_ ? resident_mb() - memory_at_start_mb_ : 0;
+    if (memory_mb_ && grown > *memory_mb_) {
+      if (!out_of_memory_) {
+        out_of_memory_ = true;
+        stopped_ = true;
+        stopped_at_ = now;
+        stop_.request_stop();
+      } else if (grown > 2 * *memory_mb_ + 64) {  // it does not stop: before the machine suffers
+        last_words_("used more memory than its within_mb and did not stop when told to");
+      }
+    }
+    if (!stopped_ && now >= stop_at_) {
+      stopped_ = true;
+      stopped_at_ = now;
+      stop_.request_stop();
+    } else if (stopped_ && now >= stopped_at_ + grace) {
+      last_words_(out_of_memory_
+                      ? "used more memory than its within_mb and did not stop when told to"
+                      : "did not stop within two seconds of the end of its time");
+    }
+  }
+}
+}  // namespace altiplan::host

@@ -1,0 +1,334 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cli_test.py PROGRAM BROKEN: the command line, as a user calls it.
+
+BROKEN is the folder of the libraries that no one can use."""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM, BROKEN = sys.argv[1:3]
+
+# A wall between start and goal, passed on either side; the vehicle then meets a post.
+SCENARIO = """altiplan: 1
+environment:
+  - box: {min_m: [300, 300, 0], max_m: [310, 700, 1000]}
+    id: wall
+  - cylinder: {at_m: [700, 500], radius_m: 30}
+    id: post
+    known: KNOWN
+volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
+vehicle: {radius_m: 2, sensing_m: 300}
+start: {at_m: [100, 500, 100]}
+goal: {at_m: [900, 500, 100], tolerance_m: 5}
+"""
+PIPELINE = """altiplan: 1
+scenario: scenario.yaml
+seed: 3
+steps:
+  - plan: astar
+    with: {cell_m: [50, 50, 50]}
+"""
+# The goal in a closed shell: a search sees all of the lattice before it gives up.
+SEALED = """altiplan: 1
+environment:
+  - box: {min_m: [800, 400, 50], max_m: [1000, 410, 150]}
+  - box: {min_m: [800, 590, 50], max_m: [1000, 600, 150]}
+  - box: {min_m: [800, 400, 50], max_m: [810, 600, 150]}
+  - box: {min_m: [990, 400, 50], max_m: [1000, 600, 150]}
+  - box: {min_m: [800, 400, 50], max_m: [1000, 600, 60]}
+  - box: {min_m: [800, 400, 140], max_m: [1000, 600, 150]}
+volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
+start: {at_m: [100, 500, 100]}
+goal: {at_m: [900, 500, 100]}
+"""
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="altiplan_cli_")
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "true"))
+        self.pipeline = self.write("pipeline.yaml", PIPELINE)
+        self.sealed = self.write("sealed.yaml", SEALED)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as stream:
+            stream.write(text)
+        return self.path(name)
+
+    def read(self, name):
+        with open(self.path(name)) as stream:
+            return stream.read()
+
+    def call(self, *arguments, code=0, stdout=subprocess.PIPE):
+        """What the program printed on stdout and on stderr; it must end with this code."""
+        done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=stdout,
+                              stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=250)
+        self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
+        return done.stdout, done.stderr
+
+    def result(self, *arguments, code=0):
+        out, _ = self.call("run", "--json", *arguments, code=code)
+        return json.loads(out)
+
+    # Exit codes.
+
+    def test_exit_codes(self):
+        out, err = self.call("run", self.pipeline)
+        self.assertIn("pipeline: solved", out)
+        self.assertEqual(err, "")
+        self.call("run", self.pipeline, "--scenario", self.sealed, code=1)
+        self.call(code=2)
+        self.call("fly", code=2)
+        self.call("run", code=2)
+        self.call("run", self.pipeline, "--threads", "0", code=2)
+        self.call("run", self.pipeline, "--seed", "-1", code=2)
+        for file in ("nowhere.yaml", "", self.folder):
+            out, err = self.call("run", file, code=3)
+            self.assertEqual(out, "")
+            self.assertTrue(err)
+        self.call("describe", "nobody", code=3)
+        with open("/dev/full", "w") as full:
+            self.call("plugins", code=5, stdout=full)
+
+    def test_a_refused_library_or_a_failed_step_is_4(self):
+        refused = self.write("refused.yaml", PIPELINE + "constraints:\n  - gamma: {}\n")
+        out, err = self.call("run", refused, "--plugin-path", BROKEN, code=4)
+        self.assertEqual(out, "")
+        self.assertIn("missing_function_of_a_test", err)
+        _, err = self.call("run", refused, code=3)
+        self.assertIn("no library offers the constraint 'gamma'", err)
+        # alpha always says that it failed
+        fails = self.write("fails.yaml", PIPELINE.split("  - plan")[0] + "  - plan: alpha\n")
+        self.assertEqual(
+            self.result(fails, "--plugin-path", BROKEN, code=4)["status"], "failed")
+
+    def test_help_has_an_example(self):
+        for verb in ("run", "validate", "explain", "check", "plugins", "describe", "schema"):
+            out, _ = self.call(verb, "--help")
+            self.assertIn("Example:\n  altiplan " + verb, out)
+        self.assertRegex(self.call("--version")[0], r"^\d+\.\d+\.\d+\n$")
+
+    # run
+
+    def test_json_is_the_result_alone(self):
+        result = self.result(self.pipeline, "--out", self.path("result.json"))
+        self.assertEqual(result, json.loads(self.read("result.json")))
+        self.assertEqual(result["status"], "solved")
+        self.assertTrue(result["check"]["ok"])
+        self.assertGreater(result["metrics"]["length_m"], 800)
+        self.assertEqual(self.call("run", self.pipeline, "--json")[1], "")
+
+    def test_out_that_cannot_be_written_is_said_before_planning(self):
+        trace = self.path("trace.jsonl")
+        for option, place in (("--out", "missing/result.json"), ("--out", self.folder),
+                              ("--out", "")):
+            _, err = self.call("run", self.pipeline, "--trace", trace, option, place, code=3)
+            self.assertIn("--out", err)
+            self.assertFalse(os.path.exists(trace), "planning had begun")
+        self.call("run", self.pipeline, "--trace", "missing/trace.jsonl", code=3)
+
+    def test_set_of_written_and_unwritten_keys(self):
+        written = self.result(self.pipeline, "--set", "steps.0.with.cell_m=[100, 100, 100]")
+        before = self.result(self.pipeline)
+        self.assertLess(written["metrics"]["expanded"], before["metrics"]["expanded"])
+        self.assertEqual(written["overrides"]["set"],
+                         {"steps.0.with.cell_m": "[100, 100, 100]"})
+        unwritten = self.result(self.pipeline, "--set", "steps.0.with.heuristic=zero")
+        self.assertGreater(unwritten["metrics"]["expanded"], before["metrics"]["expanded"])
+        self.result(self.pipeline, "--set", "steps.0.within_iterations=5", code=1)
+        moved = self.result(self.pipeline, "--set", "scenario.goal.at_m=[900, 600, 100]")
+        self.assertEqual(moved["route"][-1], [900, 600, 100])
+        taller = self.result(self.pipeline, "--set", "scenario.environment.0.box.max_m=[310, 1000, "
+                             "1000]", "--set", "scenario.environment.0.box.min_m=[300, 0, 0]",
+                             code=1)
+        self.assertIsNone(taller["route"])
+        for wrong in ("steps.0.with.weight=1", "steps.1.plan=astar", "steps.0.with.cell_m=text",
+                      "seed", "=3", "scenario.goals={}"):
+            out, err = self.call("run", self.pipeline, "--set", wrong, code=3)
+            self.assertEqual(out, "")
+            self.assertIn("--set " + wrong, err)
+
+    def test_seed_and_scenario(self):
+        self.assertEqual(self.result(self.pipeline)["seed"], 3)
+        result = self.result(self.pipeline, "--seed", "11")
+        self.assertEqual((result["seed"], result["overrides"]), (11, {"seed": 11}))
+        result = self.result(self.pipeline, "--scenario", self.sealed, code=1)
+        self.assertEqual(result["scenario"], self.sealed)
+        self.assertEqual(result["status"], "no_route")
+        self.assertIsNone(result["route"])
+        self.assertIsNone(result["metrics"]["length_m"])
+
+    def test_the_trace_has_a_line_for_each_expansion(self):
+        trace = self.path("trace.jsonl")
+        result = self.result(self.pipeline, "--trace", trace)
+        lines = [json.loads(line) for line in self.read("trace.jsonl").splitlines()]
+        self.assertEqual(lines[0], {"altiplan_trace": 1})
+        expansions = [line for line in lines[1:] if line["kind"] == "expanded"]
+        self.assertEqual(len(expansions), result["metrics"]["expanded"])
+        self.assertEqual(expansions[0]["at"], [100, 500, 100])
+        self.assertEqual(result["trace"], trace)
+
+    def test_an_interrupt_ends_the_plan_and_writes_the_result(self):
+        trace = self.path("trace.jsonl")
+        run = subprocess.Popen(
+            [PROGRAM, "run", self.pipeline, "--scenario", self.sealed, "--set",
+             "steps.0.with.cell_m=[4, 4, 4]", "--trace", trace, "--out", self.path("result.json")],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=self.folder)
+        try:
+            while not os.path.exists(trace) or os.path.getsize(trace) < 10000:
+                self.assertIsNone(run.poll(), "ended by itself")
+                time.sleep(0.01)
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.wait(timeout=200), 130)
+        finally:
+            run.kill()
+        result = json.loads(self.read("result.json"))
+        self.assertEqual(result["status"], "cancelled")
+        self.assertEqual(result["steps"][0]["status"], "cancelled")
+        self.assertIsNone(result["route"])
+
+    # validate, explain
+
+    def test_validate(self):
+        out, err = self.call("validate", self.pipeline, "scenario.yaml")
+        self.assertEqual((out, err), (self.pipeline + ": valid\nscenario.yaml: valid\n", ""))
+        bad = self.write("bad.yaml", PIPELINE.replace("seed: 3", "sede: 3").replace(
+            "50, 50]}", "50, -1]\n          , heuristc: zero}"))
+        out, err = self.call("validate", self.pipeline, bad, code=3)
+        self.assertEqual(out, self.pipeline + ": valid\n")
+        self.assertIn(bad + ":3:1: sede: ", err)
+        self.assertIn("did you mean 'seed'", err)
+        self.assertIn(bad + ":6:29: steps.0.with.cell_m.2: ", err)
+        self.assertIn(bad + ":7:13: steps.0.with.heuristc: ", err)
+        for name in ("''", "{}", "nowhere.yaml", "."):
+            nameless = self.write("nameless.yaml", PIPELINE.replace("scenario.yaml", name))
+            _, err = self.call("validate", nameless, code=3)
+            self.assertEqual(err.count("\n"), 1)
+            self.assertIn(nameless + ":2:", err)
+        for text in ("altiplan: 1\n---\naltiplan: 1\n", "a: [", "", "altiplan: 1\nsteps: null\n"):
+            self.call("validate", self.write("worse.yaml", text), code=3)
+
+    def test_explain(self):
+        out, _ = self.call("explain", self.pipeline, "--json", "--set", "steps.0.with.weight_h=0.2")
+        explained = json.loads(out)
+        self.assertEqual((explained["notes"], explained["warnings"]), ([], []))
+        values = {entry["key"]: entry for entry in explained["parameters"]}
+        self.assertEqual(values["steps.0.with.weight_h"]["value"], 0.2)
+        self.assertEqual(values["steps.0.with.weight_h"]["from"], "--set steps.0.with.weight_h=0.2")
+        self.assertEqual(values["steps.0.with.weight_g"]["from"], "default")
+        cell = values["steps.0.with.cell_m"]
+        self.assertEqual((cell["value"], cell["unit"]), ([50, 50, 50], "m"))
+        self.assertTrue(cell["from"].startswith(self.pipeline + ":6:"), cell)
+        self.assertEqual(values["scenario.environment.1.cylinder.radius_m"]["value"], 30)
+        self.assertEqual(values["scenario.goal"]["value"],
+                         {"at_m": [900, 500, 100], "tolerance_m": 5})
+        out, _ = self.call("explain", self.pipeline)
+        self.assertRegex(out, r"steps\.0\.with\.weight_g +0\.5 +default\n")
+
+    # check
+
+    def test_check_a_route_from_elsewhere(self):
+        around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
+                            "[900,500,100]]")
+        out, _ = self.call("check", "--route", around, "--scenario", "scenario.yaml")
+        self.assertTrue(out.startswith("sound: 4 waypoints"), out)
+        through = self.write("through.json", "[[100,500,100],[900,500,100]]")
+        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", code=1)
+        self.assertIn("'wall'", out)
+        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", "--json",
+                           code=1)
+        self.assertFalse(json.loads(out)["check"]["ok"])
+        for text in ("[]", "[[1,2]]", "{}", "[1", '"text"', '[["a","b","c"]]'):
+            route = self.write("wrong.json", text)
+            self.call("check", "--route", route, "--scenario", "scenario.yaml", code=3)
+        self.call("check", "--route", around, code=2)
+        self.call("check", code=2)
+
+    def test_check_a_result_without_a_flight(self):
+        self.call("run", self.pipeline, "--out", "result.json")
+        out, _ = self.call("check", "result.json")
+        self.assertTrue(out.startswith("sound"), out)
+        self.assertNotIn("flight", out)
+        result = json.loads(self.read("result.json"))
+        result["route"] = [result["route"][0], result["route"][-1]]
+        self.write("forged.json", json.dumps(result))
+        out, _ = self.call("check", "forged.json", code=1)
+        self.assertTrue(out.startswith("not sound"), out)
+        self.write("scenario.yaml", self.read("scenario.yaml") + "# changed\n")
+        _, err = self.call("check", "result.json")
+        self.assertIn("scenario.yaml is not the file that the result was made from", err)
+        for text in ("{}", "[1", "[]", '{"altiplan": 2}'):
+            self.call("check", self.write("wrong.json", text), code=3)
+
+    def test_check_a_flight_against_the_true_world(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
+        flies = self.write("flies.yaml", PIPELINE + "  - fly: apf\n"
+                           "    with: {influence_m: 200}\n")
+        self.call("run", flies, "--out", "result.json")
+        out, _ = self.call("check", "result.json")
+        self.assertIn("\nflight sound: ", out)
+        self.assertIn("0 collisions, reached the goal", out)
+
+        result = json.loads(self.read("result.json"))
+        result["flight"]["track"] = [[0, 100, 500, 100], [60, 900, 500, 100]]
+        self.write("forged.json", json.dumps(result))
+        out, _ = self.call("check", "forged.json", code=1)
+        self.assertIn("flight not sound: 2 points", out)
+        self.assertIn("collision: the vehicle touches 'wall'", out)
+        verdict = json.loads(self.call("check", "forged.json", "--json", code=1)[0])
+        self.assertTrue(verdict["check"]["ok"], "the route is as it was")
+        self.assertEqual((verdict["flight"]["collisions"], verdict["flight"]["reached"]),
+                         (1, False))
+
+        alone = self.write("alone.yaml", PIPELINE + "  - fly: route\n")
+        self.call("run", alone, "--out", "alone.json", code=1)
+        out, _ = self.call("check", "alone.json", code=1)
+        self.assertIn("1 collision, did not reach the goal", out)
+        self.assertIn("collision: the vehicle touches 'post'", out)
+
+    def test_check_says_where_events_count(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") +
+                   "events:\n  - {at_s: 20, remove: post}\n")
+        self.call("run", self.write("alone.yaml", PIPELINE + "  - fly: route\n"), "--out", "r.json")
+        out, _ = self.call("check", "r.json")
+        self.assertIn("0 collisions, reached the goal\n  each event was applied at", out)
+
+    # plugins, describe, schema
+
+    def test_plugins(self):
+        out, _ = self.call("plugins", "--strict")
+        self.assertIn("planner astar", out)
+        listed = json.loads(self.call("plugins", "--json")[0])
+        self.assertGreaterEqual(len(listed["libraries"]), 10)
+        out, _ = self.call("plugins", "--plugin-path", BROKEN)
+        self.assertIn("refused: " + os.path.join(BROKEN, "undefined_symbol.so"), out)
+        self.call("plugins", "--strict", "--plugin-path", BROKEN, code=4)
+
+    def test_describe_and_schema(self):
+        out, _ = self.call("describe", "astar")
+        self.assertIn("planner astar", out)
+        self.assertIn("cell_m: 3 numbers [m]", out)
+        described = json.loads(self.call("describe", "cylinder", "--json")[0])
+        self.assertEqual(described["kind"], "environment")
+        _, err = self.call("describe", "asta", code=3)
+        self.assertIn("did you mean 'astar'", err)
+        schema = json.loads(self.call("schema")[0])
+        self.assertEqual(schema["$schema"], "http://json-schema.org/draft-07/schema#")
+        self.assertIn("planner_astar", schema["definitions"])
+        self.assertNotIn("planner_alpha", schema["definitions"])
+        schema = json.loads(self.call("schema", "--plugin-path", BROKEN)[0])
+        self.assertIn("planner_alpha", schema["definitions"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

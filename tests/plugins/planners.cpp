@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// A planner that does as it is told, well or badly; and one whose session keeps count.
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "altiplan/error.hpp"
+#include "altiplan/plugin.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct Params {
+  std::string does = "straight";
+  Vec3 past_m{0, 0, 0};
+  void describe(Fields& f) {
+    f("does", does)
+        .one_of({"straight", "past", "never_stops", "throws", "throws_int", "nan", "huge",
+                 "wrong_end", "no_points", "allocates", "uses_budget", "refuses_does", "no_route"})
+        .doc("what it does");
+    f("past_m", past_m).unit("m").doc("of past: the one waypoint between");
+  }
+};
+
+void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+class Told final : public Planner {
+ public:
+  explicit Told(const Params& params) : params_(params) {}
+
+ private:
+  PlanResult route(const Request& request, std::vector<Vec3> between) const {
+    PlanResult result;
+    result.status = Status::solved;
+    result.route = std::move(between);
+    result.route.insert(result.route.begin(), request.start.position);
+    result.route.push_back(request.goal.position);
+    result.counters = {{"expanded", 3}};
+    if (request.trace != nullptr) {
+      request.trace->add({TraceEvent::Kind::expanded, 1, -1, request.start.position, 2.5});
+      request.trace->add({TraceEvent::Kind::rewired, 2, 1, request.goal.position,
+                          std::numeric_limits<double>::infinity()});
+    }
+    return result;
+  }
+
+  static PlanResult use_budget(const Request& request) {
+    PlanResult result;
+    BudgetWatch watch(request.budget);
+    std::int64_t expanded = 0;
+    while (!watch.spent(std::uint64_t(expanded))) {
+      ++expanded;
+      if (expanded % 64 == 0) {
+        pause();
+      }
+    }
+    result.status = watch.cancelled() ? Status::cancelled : Status::timed_out;
+    result.message = "the search was cut short";
+    result.budget_hit = !watch.cancelled();
+    result.counters = {{"expanded", expanded}};
+    return result;
+  }
+
+  PlanResult do_plan(const Request& request) const override {
+    const std::string& does = params_.does;
+    if (does == "past") {
+      return route(request, {params_.past_m});
+    }
+    if (does == "nan") {
+      return route(request, {Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0)});
+    }
+    if (does == "huge") {
+      return route(request, {Vec3(1e300, -1e300, 1e300)});
+    }
+    if (does == "wrong_end") {
+      PlanResult result = route(request, {});
+      result.route.back().x() += 7;
+      return result;
+    }
+    if (does == "no_points") {
+      PlanResult result = route(request, {});
+      result.route.clear();
+      return result;
+    }
+    if (does == "never_stops") {
+      while (true) {
+        pause();
+      }
+    }
+    if (does == "allocates") {
+      std::vector<std::vector<char>> hoard;
+      while (!request.budget.stop.stop_requested()) {
+        hoard.emplace_back(1 << 20, 'x');
+        pause();
+      }
+      PlanResult result;
+      result.status = Status::cancelled;
+      return result;
+    }
+    if (does == "throws") {
+      throw std::runtime_error("the attic is on fire");
+    }
+    if (does == "throws_int") {
+      throw 42;
+    }
+    if (does == "refuses_does") {
+      throw ParameterError("does", "this does not fit the problem");
+    }
+    if (does == "uses_budget") {
+      return use_budget(request);
+    }
+    if (does == "no_route") {
+      PlanResult result;
+      result.status = Status::no_route;
+      result.message = "walls all around";
+      return result;
+    }
+    return route(request, {});
+  }
+  Traits do_traits() const override { return {}; }
+
+  Params params_;
+};
+
+/// Straight to the goal again at every update, by a session of its own.
+class Kept final : public Session {
+ public:
+  explicit Kept(const Request& request) { head(request.start.position, request.goal.position); }
+
+ private:
+  void head(const Vec3& from, const Vec3& to) {
+    result_.status = Status::solved;
+    result_.route = {from, to};
+    result_.counters = {{"expanded", 1}, {"calls", ++calls_}, {"changes", changes_}};
+  }
+  const PlanResult& do_result() const override { return result_; }
+  const PlanResult& do_update(const State& state, const Goal& goal, std::shared_ptr<const World>,
+                              std::span<const Change> changes, const Budget&) override {
+    changes_ += std::int64_t(changes.size());
+    head(state.position, goal.position);
+    return result_;
+  }
+  PlanResult result_;
+  std::int64_t calls_ = 0;
+  std::int64_t changes_ = 0;
+};
+
+class Keeping final : public Planner {
+ public:
+  explicit Keeping(const NoParams&) {}
+
+ private:
+  PlanResult do_plan(const Request& request) const override { return Kept(request).result(); }
+  std::unique_ptr<Session> do_begin(const Request& request) const override {
+    return std::make_unique<Kept>(request);
+  }
+  Traits do_traits() const override { return {}; }
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Planner, "told", Told, Params, "does as it is told")
+ALTIPLAN_PLUGIN(Planner, "keeping", Keeping, NoParams, "straight, with a session of its own")

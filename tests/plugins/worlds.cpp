@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers that lie or throw, one with cells of its own, and constraints of every sort.
+#include <stdexcept>
+
+#include "altiplan/plugin.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct LayerParams {
+  std::string does = "lies";
+  void describe(Fields& f) { f("does", does).one_of({"lies", "throws", "refuses"}).doc("what"); }
+};
+
+/// Says that all is far away, and that it is solid from x = 500 m to 800 m.
+class Liar final : public Environment {
+ public:
+  Liar(const LayerParams& params, const Site&) : params_(params) {
+    if (params.does == "refuses") {
+      throw std::runtime_error("the map is blank");
+    }
+  }
+
+ private:
+  Box do_bounds() const override { return {{0, 0, 0}, {1000, 1000, 1000}}; }
+  double do_clearance(const Vec3&) const override { return 900; }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    if (params_.does == "throws") {
+      throw std::runtime_error("the map is torn");
+    }
+    return r == 0 && a == b && a.x() > 500 && a.x() < 800;
+  }
+  LayerParams params_;
+};
+
+/// Cells of 100 m, all free at first; solid where told, by the default walk along the clearance.
+class Cells final : public Environment {
+ public:
+  Cells(const NoParams&, const Site&) {
+    spec_.cell = {100, 100, 100};
+    spec_.counts = {10, 10, 10};
+    spec_.rule = GridSpec::Rule::native;
+  }
+
+ private:
+  Box do_bounds() const override { return spec_.box(); }
+  double do_clearance(const Vec3&) const override { return 1e9; }
+  void do_rasterize(VoxelGrid&) const override {}
+  std::optional<GridSpec> do_native_grid() const override { return spec_; }
+  std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
+    return spec_.centre({int(cell[0]), int(cell[1]), int(cell[2])});
+  }
+  GridSpec spec_;
+};
+
+struct RuleParams {
+  std::string does = "admits";
+  std::string holds_for = "both";
+  double max_y_m = 1e9;
+  void describe(Fields& f) {
+    f("does", does).one_of({"admits", "violations", "throws"}).doc("how it says no");
+    f("holds_for", holds_for).one_of({"route", "track", "both"}).doc("what it applies to");
+    f("max_y_m", max_y_m).unit("m").doc("no point lies farther north");
+  }
+};
+
+/// North of max_y_m is forbidden: leg by leg, or of the route as a whole.
+class NotNorth final : public Constraint {
+ public:
+  explicit NotNorth(const RuleParams& params) : params_(params) {}
+
+ private:
+  AppliesTo do_applies_to() const override {
+    return params_.holds_for == "route"   ? AppliesTo::route
+           : params_.holds_for == "track" ? AppliesTo::track
+                                          : AppliesTo::both;
+  }
+  bool do_admits(const Leg& leg) const override {
+    return params_.does != "admits" ||
+           (leg.from.y() <= params_.max_y_m && leg.to.y() <= params_.max_y_m);
+  }
+  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+    if (params_.does == "throws") {
+      throw std::runtime_error("the rule book is lost");
+    }
+    std::vector<Violation> found;
+    for (std::size_t i = 0; i < route.size() && params_.does == "violations"; ++i) {
+      if (route[i].y() > params_.max_y_m) {
+        found.push_back({"", i, route[i].y(), params_.max_y_m, "too far north"});
+      }
+    }
+    return found;
+  }
+  RuleParams params_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Environment, "liar", Liar, LayerParams, "contradicts itself")
+ALTIPLAN_PLUGIN(Environment, "cells", Cells, NoParams, "ten by ten by ten free cells")
+ALTIPLAN_PLUGIN(Constraint, "not_north", NotNorth, RuleParams, "forbids the north")
