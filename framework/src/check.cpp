@@ -51,152 +51,171 @@ double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
 
-/// The worst that the leg does against every rule, one call of `report` a broken rule; stops at the
-/// first when report returns false. The cheap rules come first.
+/// Holds one leg to every rule, the cheap ones first: one call of `report` (with what makes the
+/// violation) for each broken rule, until report returns false.
 template <class Report>
-void judge_leg(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
-               const Request& request, std::size_t at, const Report& report) {
-  const Limits& limits = request.limits;
-  const Vec3 leg = b - a;
-  if (!is_finite(a) || !is_finite(b)) {
-    report([&] { return Violation{"finite", at, 0, 0, "a coordinate is not finite"}; });
-    return;
+class LegJudge {
+ public:
+  LegJudge(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, const Request& request,
+           std::size_t at, const Report& report)
+      : before_(before),
+        a_(a),
+        b_(b),
+        leg_(b - a),
+        request_(request),
+        limits_(request.limits),
+        at_(at),
+        report_(report) {}
+
+  void judge() const {
+    if (!is_finite(a_) || !is_finite(b_)) {
+      report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
+      return;
+    }
+    // Each says whether to go on.
+    (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_size() && keeps_bend() &&
+           keeps_heights() && keeps_constraints() && keeps_off());
   }
-  for (const auto& [p, index] : {std::pair(&a, at), std::pair(&b, at + 1)}) {
-    if (!request.volume.contains(*p, kLengthTolerance)) {
-      const double outside =
-          std::max((request.volume.min - *p).maxCoeff(), (*p - request.volume.max).maxCoeff());
-      if (!report([&, i = index, q = *p] {
-            return Violation{"volume", i, outside, 0,
-                             place(q) + " lies " + fixed(outside) + " m outside the volume"};
-          })) {
-        return;
+
+ private:
+  // Quantities and their limits; `scale` turns both into the unit of the message.
+  bool at_least(double value, double limit, double tolerance, const char* rule, const char* what,
+                const char* unit, double scale = 1) const {
+    return value >= limit - tolerance || report_([&] {
+             return beyond(rule, at_, value * scale, limit * scale, unit, what, true);
+           });
+  }
+  bool at_most(double value, double limit, double tolerance, const char* rule, const char* what,
+               const char* unit, double scale = 1) const {
+    return value <= limit + tolerance || report_([&] {
+             return beyond(rule, at_, value * scale, limit * scale, unit, what, false);
+           });
+  }
+  bool at_most_angle(double value, double limit, const char* rule, const char* what) const {
+    return at_most(value, limit, kAngleTolerance, rule, what, " degrees", degrees(1));
+  }
+
+  bool keeps_place(const Vec3& p, std::size_t index) const {
+    if (!request_.volume.contains(p, kLengthTolerance) && !report_([&] {
+          const double outside =
+              std::max((request_.volume.min - p).maxCoeff(), (p - request_.volume.max).maxCoeff());
+          return Violation{"volume", index, outside, 0,
+                           place(p) + " lies " + fixed(outside) + " m outside the volume"};
+        })) {
+      return false;
+    }
+    return !request_.level_m || std::abs(p.z() - *request_.level_m) <= kLengthTolerance ||
+           report_([&] {
+             return Violation{
+                 "level_flight", index, p.z(), *request_.level_m,
+                 place(p) + " is not on the level of " + fixed(*request_.level_m) + " m"};
+           });
+  }
+
+  bool keeps_size() const {
+    const double run = leg_.norm();
+    return at_least(run, limits_.min_leg, kLengthTolerance, "leg_length", "the leg's length",
+                    " m") &&
+           at_most(run, limits_.max_leg, kLengthTolerance, "leg_length", "the leg's length",
+                   " m") &&
+           at_most_angle(climb_angle(leg_), limits_.max_climb, "climb_angle", "the climb angle");
+  }
+
+  bool keeps_bend() const {
+    if (!before_) {
+      return true;
+    }
+    const Vec3 incoming = a_ - *before_;
+    return at_most_angle(turn_angle_horizontal(incoming, leg_), limits_.max_turn_horizontal,
+                         "turn_angle", "the turn angle") &&
+           at_most_angle(turn_angle_in_space(incoming, leg_), limits_.max_turn_space, "turn_angle",
+                         "the turn angle") &&
+           (limits_.min_turn_radius == 0 ||
+            at_least(radius_through(*before_, a_, b_), limits_.min_turn_radius, kLengthTolerance,
+                     "turn_radius", "the turn radius", " m"));
+  }
+
+  bool keeps_heights() const {
+    const World& world = *request_.world;
+    const bool over_ground = world.ground_below(a_, b_);
+    if (!over_ground && !report_([&] {
+          return Violation{"ground", at_, 0, 0,
+                           "there is no ground of known height below " +
+                               place(ground_ends(world, a_, b_)) + ", a place of the leg"};
+        })) {
+      return false;
+    }
+    for (const AltitudeBand& band : limits_.altitude) {
+      if ((over_ground || band.datum == AltitudeBand::Datum::sea) && !keeps_band(band)) {
+        return false;
       }
     }
-    if (request.level_m && std::abs(p->z() - *request.level_m) > kLengthTolerance) {
-      if (!report([&, i = index, q = *p] {
-            return Violation{
-                "level_flight", i, q.z(), *request.level_m,
-                place(q) + " is not on the level of " + fixed(*request.level_m) + " m"};
-          })) {
-        return;
-      }
-    }
+    return !limits_.min_ground_clearance || !over_ground ||
+           at_least(world.ground_gap(a_, b_, *limits_.min_ground_clearance),
+                    *limits_.min_ground_clearance, kLengthTolerance, "ground_clearance",
+                    "the height above ground", " m");
   }
-  const double run = leg.norm();
-  if (run < limits.min_leg - kLengthTolerance && !report([&] {
-        return beyond("leg_length", at, run, limits.min_leg, " m", "the leg's length", true);
-      })) {
-    return;
-  }
-  if (run > limits.max_leg + kLengthTolerance && !report([&] {
-        return beyond("leg_length", at, run, limits.max_leg, " m", "the leg's length", false);
-      })) {
-    return;
-  }
-  const double climb = climb_angle(leg);
-  if (climb > limits.max_climb + kAngleTolerance && !report([&] {
-        return beyond("climb_angle", at, degrees(climb), degrees(limits.max_climb), " degrees",
-                      "the climb angle", false);
-      })) {
-    return;
-  }
-  if (before) {
-    const Vec3 incoming = a - *before;
-    const std::pair<double, double> turns[] = {
-        {turn_angle_horizontal(incoming, leg), limits.max_turn_horizontal},
-        {turn_angle_in_space(incoming, leg), limits.max_turn_space}};
-    for (const auto& [turn, limit] : turns) {
-      if (turn > limit + kAngleTolerance && !report([&, t = turn, l = limit] {
-            return beyond("turn_angle", at, degrees(t), degrees(l), " degrees", "the turn angle",
-                          false);
-          })) {
-        return;
-      }
-    }
-    if (limits.min_turn_radius > 0) {
-      const double radius = radius_through(*before, a, b);
-      if (radius < limits.min_turn_radius - kLengthTolerance && !report([&] {
-            return beyond("turn_radius", at, radius, limits.min_turn_radius, " m",
-                          "the turn radius", true);
-          })) {
-        return;
-      }
-    }
-  }
-  const bool over_ground = request.world->ground_below(a, b);
-  if (!over_ground && !report([&] {
-        return Violation{"ground", at, 0, 0,
-                         "there is no ground of known height below " +
-                             place(ground_ends(*request.world, a, b)) + ", a place of the leg"};
-      })) {
-    return;
-  }
-  const double low = std::min(a.z(), b.z());
-  const double high = std::max(a.z(), b.z());
-  for (const AltitudeBand& band : limits.altitude) {
+
+  bool keeps_band(const AltitudeBand& band) const {
     const bool over_sea = band.datum == AltitudeBand::Datum::sea;
-    if (!over_sea && !over_ground) {
-      continue;
+    const double least =
+        over_sea ? std::min(a_.z(), b_.z()) : request_.world->ground_gap(a_, b_, band.min);
+    if (!at_least(least, band.min, kLengthTolerance, "altitude", "the altitude", " m")) {
+      return false;
     }
-    const double least = over_sea ? low : request.world->ground_gap(a, b, band.min);
-    if (least < band.min - kLengthTolerance && !report([&, l = least, m = band.min] {
-          return beyond("altitude", at, l, m, " m", "the altitude", true);
-        })) {
-      return;
-    }
-    if (band.max == kInfinity) {
-      continue;
-    }
-    const double most = over_sea ? high : request.world->ground_gap_max(a, b);
-    if (most > band.max + kLengthTolerance && !report([&, m = most, l = band.max] {
-          return beyond("altitude", at, m, l, " m", "the altitude", false);
-        })) {
-      return;
-    }
+    return band.max == kInfinity ||
+           at_most(over_sea ? std::max(a_.z(), b_.z()) : request_.world->ground_gap_max(a_, b_),
+                   band.max, kLengthTolerance, "altitude", "the altitude", " m");
   }
-  if (limits.min_ground_clearance && over_ground) {
-    const double least = *limits.min_ground_clearance;
-    const double gap = request.world->ground_gap(a, b, least);
-    if (gap < least - kLengthTolerance && !report([&] {
-          return beyond("ground_clearance", at, gap, least, " m", "the height above ground", true);
-        })) {
-      return;
-    }
+
+  bool keeps_constraints() const {
+    return std::all_of(request_.constraints.begin(), request_.constraints.end(),
+                       [&](const NamedConstraint& named) {
+                         return named.constraint->admits({before_, a_, b_}) || report_([&] {
+                                  return Violation{named.name, at_, 0, 0,
+                                                   "the constraint does not admit this leg"};
+                                });
+                       });
   }
-  for (const NamedConstraint& named : request.constraints) {
-    if (!named.constraint->admits({before, a, b}) && !report([&] {
-          return Violation{named.name, at, 0, 0, "the constraint does not admit this leg"};
-        })) {
-      return;
-    }
+
+  bool keeps_off() const {
+    const double needed = required_clearance(request_);
+    const Layer* layer = request_.world->blocked_by(a_, b_, needed);
+    return layer == nullptr || report_([&] {
+             const double clearance = leg_clearance(*layer->environment, a_, b_);
+             return Violation{"clearance", at_, clearance, needed,
+                              "comes to " + fixed(clearance) + " m of '" + layer->id + "', where " +
+                                  fixed(needed) + " m are needed"};
+           });
   }
-  const double needed = required_clearance(request);
-  if (const Layer* layer = request.world->blocked_by(a, b, needed)) {
-    report([&] {
-      const double clearance = leg_clearance(*layer->environment, a, b);
-      return Violation{"clearance", at, clearance, needed,
-                       "comes to " + fixed(clearance) + " m of '" + layer->id + "', where " +
-                           fixed(needed) + " m are needed"};
-    });
-  }
-}
+
+  const std::optional<Vec3>& before_;
+  const Vec3& a_;
+  const Vec3& b_;
+  const Vec3 leg_;
+  const Request& request_;
+  const Limits& limits_;
+  std::size_t at_;
+  const Report& report_;
+};
 }  // namespace
 
 bool leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
             const Request& request) {
   bool ok = true;
-  judge_leg(before, a, b, request, 0, [&](const auto&) { return ok = false; });
+  const auto note = [&](const auto&) { return ok = false; };
+  LegJudge(before, a, b, request, 0, note).judge();
   return ok;
 }
 
 std::vector<Violation> leg_violations(const std::optional<Vec3>& before, const Vec3& a,
                                       const Vec3& b, const Request& request, std::size_t index) {
   std::vector<Violation> all;
-  judge_leg(before, a, b, request, index, [&](const auto& violation) {
+  const auto add = [&](const auto& violation) {
     all.push_back(violation());
     return true;
-  });
+  };
+  LegJudge(before, a, b, request, index, add).judge();
   return all;
 }
 

@@ -50,6 +50,15 @@ TEST(Flight, FollowingAloneCollides) {
   EXPECT_NE(result.message.find("'unknown'"), std::string::npos) << result.message;
 }
 
+TEST(Flight, StartingInsideTheUnknownIsACollision) {
+  Scene scene;
+  scene.hide(layer("unknown", post(2000, 15000, 800)));
+  const FlightResult result = fly(scene.setup);
+  EXPECT_EQ(result.status, Status::collided);
+  EXPECT_EQ(result.collisions, 1);
+  EXPECT_EQ(result.track.size(), 1u);
+}
+
 TEST(Flight, CollisionDoesNotDependOnTheTimeStep) {
   // A wall of 1 cm, and a mover that is on the route for a fifth of a second.
   for (const double step_s : {0.25, 1.0, 7.0, 60.0}) {
@@ -62,7 +71,9 @@ TEST(Flight, CollisionDoesNotDependOnTheTimeStep) {
     mover.hide_moving({17000, 15000, 500}, 500, {0, 200, 0}, 20);
     mover.follow_alone();
     mover.setup.step_s = step_s;
-    EXPECT_EQ(fly(mover.setup).status, Status::collided) << step_s;
+    const FlightResult met = fly(mover.setup);
+    EXPECT_EQ(met.status, Status::collided) << step_s;
+    EXPECT_EQ(met.check.violations.front().constraint, "collision");
     mover.hide_moving({17000, 15000, 500}, 503, {0, 200, 0}, 20);
     EXPECT_EQ(fly(mover.setup).status, Status::solved) << step_s;
   }

@@ -162,7 +162,8 @@ TEST_F(FlyStepTest, EventsThatCannotBeAreRefusedBeforeAnythingIsPlanned) {
   scenario(
       "events: [{at_s: 3, set_cells: {layer: late, cells: [[1, 2, 3]]}}, {at_s: 1, add: "
       "{cells: {}}, id: late}]\n");
-  EXPECT_HAS(refusal(run), "this does not fit the problem") << " a layer that comes by a later line";
+  EXPECT_HAS(refusal(run), "this does not fit the problem")
+      << " a layer that comes by a later line";
   ASSERT_EQ(events().size(), 2U);
   EXPECT_EQ(events()[0].box.max, Vec3(200, 300, 400));
   scenario("events: [{at_s: 3, move_goal: {at_cell: [1, 2, 3]}}]\n");

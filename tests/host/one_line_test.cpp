@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/error.hpp"
-#include "host/registry/describe.hpp"
 #include "host/config/schema.hpp"
+#include "host/registry/describe.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "host/run/pipeline.hpp"
 #include "host/config/yaml.hpp"
+#include "host/run/pipeline.hpp"
 
 namespace altiplan::testing {
 namespace fs = std::filesystem;

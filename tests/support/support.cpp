@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "altiplan/kit/obstacle_set.hpp"
-#include "host/registry/registry.hpp"
 #include "host/config/yaml.hpp"
+#include "host/registry/registry.hpp"
 
 namespace altiplan::testing {
 namespace {

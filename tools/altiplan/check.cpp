@@ -8,11 +8,11 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "host/flight/track_judge.hpp"
+#include "host/output/result_json.hpp"
 #include "host/run/events.hpp"
 #include "host/run/judge.hpp"
 #include "host/run/mission.hpp"
-#include "host/output/result_json.hpp"
-#include "host/flight/track_judge.hpp"
 
 namespace altiplan::cli {
 namespace {

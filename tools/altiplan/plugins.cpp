@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/registry/describe.hpp"
 #include "host/config/schema.hpp"
+#include "host/registry/describe.hpp"
 
 namespace altiplan::cli {
 namespace {

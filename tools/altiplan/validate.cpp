@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/run/mission.hpp"
-#include "host/output/result_json.hpp"
 #include "host/config/yaml.hpp"
+#include "host/output/result_json.hpp"
+#include "host/run/mission.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/config_check.hpp"
+#include "host/config/shapes.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -39,6 +40,25 @@ std::vector<Explained> explain(const Config& config) {
     const LayerEntry& layer = config.scenario.environment[i];
     add_plugin("environment", layer.plugin, layer.parameters,
                item("scenario.environment", i) + "." + layer.plugin);
+  }
+  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
+    const MovingEntry& moving = config.scenario.moving[i];
+    const std::string path = item("scenario.moving", i) + "." + moving.shape;
+    add_fields(all, describe_moving(moving.shape)(&moving.parameters, path), path);
+  }
+  for (std::size_t i = 0; i < config.scenario.via.size(); ++i) {
+    GoalEntry via;
+    add_fields(all, bind(via, &config.scenario_tree.find("via")->items[i]),
+               item("scenario.via", i));
+  }
+  for (std::size_t i = 0; i < config.scenario.events.size(); ++i) {
+    EventEntry event;
+    for (const BoundField& field :
+         bind(event, &config.scenario_tree.find("events")->items[i]).fields) {
+      if (field.where) {
+        add_fields(all, {{field}, {}}, item("scenario.events", i));
+      }
+    }
   }
   for (const auto& [entries, path] :
        {std::pair(&config.scenario.constraints, "scenario.constraints"),

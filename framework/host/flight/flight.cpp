@@ -64,6 +64,7 @@ void Flight::fly_to_the_end() {
   if (setup_.always && pilot_ != nullptr) {
     hand_over(true, "the pilot flies all the way");
   }
+  end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
   while (!ended_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMostSteps) {

@@ -23,10 +23,18 @@ void Flight::fly_leg(const State& next) {
   result_.track.emplace_back(t1, b);
   before_ = a;
   state_ = next;
-  if (const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m)) {
-    ++result_.collisions;
-    end_flight(Status::collided, "collided with '" + *met + "' near " + place(b));
+  end_on_contact(a, t0, b, t1);
+}
+
+void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
+  const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
+  if (met == nullptr) {
+    return;
   }
+  ++result_.collisions;
+  result_.check.violations.push_back(
+      {"collision", result_.track.size() - 1, 0, 0, "the vehicle touches '" + *met + "'"});
+  end_flight(Status::collided, "collided with '" + *met + "' near " + place(b));
 }
 
 void Flight::finish() {

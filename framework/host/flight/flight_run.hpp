@@ -56,6 +56,8 @@ class Flight {
 
   // What was flown, judged in the true world: flight_judging.cpp.
   void fly_leg(const State& next);
+  /// The first contact with the true world ends the flight.
+  void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);
   void finish();
   /// What check() asks of a route as a whole; the legs were judged in the world of their time.
   void judge_whole(const Route& track);

@@ -41,6 +41,9 @@ class Carried final : public Environment {
   double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
     return original_->ground_gap_max(a - by_, b - by_);
   }
+  double do_ground_slope(const Box& box) const override {
+    return original_->ground_slope({box.min - by_, box.max - by_});
+  }
   std::vector<Threat> do_threats() const override {
     std::vector<Threat> threats = original_->threats();
     for (Threat& threat : threats) {

@@ -22,6 +22,7 @@ class Replay {
     }
     std::optional<Vec3> before = request_.before_start();
     bool touching = false;
+    note_contact(track.front(), track.front(), 0, touching);
     for (std::size_t i = 0; i + 1 < track.size(); ++i) {
       meet_events(track[i].first, track[i].second);
       judge_leg(before, track[i], track[i + 1], i, touching);
@@ -71,7 +72,14 @@ class Replay {
     for (Violation& violation : leg_violations(before, a, b, request_, at)) {
       found().push_back(std::move(violation));
     }
-    const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
+    note_contact(from, to, at, touching);
+  }
+
+  /// A contact that goes on from leg to leg counts once.
+  void note_contact(const std::pair<double, Vec3>& from, const std::pair<double, Vec3>& to,
+                    std::size_t at, bool& touching) {
+    const std::string* met =
+        world_.contact(from.second, from.first, to.second, to.first, request_.vehicle.radius_m);
     if (met != nullptr && !touching) {
       ++verdict_.collisions;
       found().push_back({"collision", at, 0, 0, "the vehicle touches '" + *met + "'"});

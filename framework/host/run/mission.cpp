@@ -161,6 +161,63 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
   }
 }
 
+namespace {
+/// The layers in their order, each built on those before it.
+void build_layers(const Config& config, Mission& mission) {
+  const ScenarioFile& file = config.scenario;
+  Site& site = mission.site;
+  World& truth = mission.truth;
+  const std::optional<double>& level = file.level_flight_at_m;
+  for (std::size_t i = 0; i < file.environment.size(); ++i) {
+    const LayerEntry& entry = file.environment[i];
+    site.frame = truth.frame();
+    site.before = &truth;
+    site.start = maybe_point(file.start.point, site, level);
+    site.goal = maybe_point(file.goal.point, site, level);
+    Layer layer = build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site,
+                              "environment." + std::to_string(i) + "." + entry.plugin);
+    for (const std::string& note : layer.environment->notes()) {
+      mission.notes.push_back(entry.id + ": " + note);
+    }
+    const auto frame = layer.environment->frame();
+    truth = truth.with(std::move(layer));
+    if (frame && !truth.frame().has_position()) {
+      truth = truth.with_frame(*frame);
+    }
+  }
+}
+
+/// The frame's error, told and, where it matters, warned of.
+void note_scale(Mission& mission) {
+  const Frame& frame = mission.truth.frame();
+  const double error = frame.scale_error(mission.site.volume);
+  if (error > 0) {
+    mission.notes.push_back("frame: " + frame.crs() + ", greatest scale error " + percent(error));
+  }
+  if (error > 0.005) {
+    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
+                               "; a projected system mends it: frame: {crs: …}");
+  }
+}
+
+/// What may be known at take-off.
+World known_part(const World& truth) {
+  World known = truth;
+  for (const Layer& layer : truth.layers()) {
+    if (!layer.known) {
+      known = known.without(layer.id);
+    }
+  }
+  std::vector<MovingObstacle> moving;
+  for (const MovingObstacle& obstacle : truth.moving()) {
+    if (obstacle.known) {
+      moving.push_back(obstacle);
+    }
+  }
+  return known.with_moving(std::move(moving));
+}
+}  // namespace
+
 Mission build_mission(const Config& config, int threads) {
   const auto began = std::chrono::steady_clock::now();
   const ScenarioFile& file = config.scenario;
@@ -184,37 +241,13 @@ Mission build_mission(const Config& config, int threads) {
   if (file.volume.max_m) {
     site.volume.max = *file.volume.max_m;
   }
-  const std::optional<double>& level = file.level_flight_at_m;
+  build_layers(config, mission);
   World& truth = mission.truth;
-  for (std::size_t i = 0; i < file.environment.size(); ++i) {
-    const LayerEntry& entry = file.environment[i];
-    site.frame = truth.frame();
-    site.before = &truth;
-    site.start = maybe_point(file.start.point, site, level);
-    site.goal = maybe_point(file.goal.point, site, level);
-    Layer layer = build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site,
-                              "environment." + std::to_string(i) + "." + entry.plugin);
-    for (const std::string& note : layer.environment->notes()) {
-      mission.notes.push_back(entry.id + ": " + note);
-    }
-    const auto frame = layer.environment->frame();
-    truth = truth.with(std::move(layer));
-    if (frame && !truth.frame().has_position()) {
-      truth = truth.with_frame(*frame);
-    }
-  }
+  const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();
   site.before = &truth;
   site.volume = volume_of(config, truth, level);
-  const double error = truth.frame().scale_error(site.volume);
-  if (error > 0) {
-    mission.notes.push_back("frame: " + truth.frame().crs() + ", greatest scale error " +
-                            percent(error));
-  }
-  if (error > 0.005) {
-    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
-                               "; a projected system mends it: frame: {crs: …}");
-  }
+  note_scale(mission);
   truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
 
   Request& request = mission.request;
@@ -235,19 +268,7 @@ Mission build_mission(const Config& config, int threads) {
         {resolve_point(file.via[i].point, site, level, tree.find("via")->items[i].where, key),
          file.via[i].tolerance_m});
   }
-  mission.known = truth;
-  for (const Layer& layer : truth.layers()) {
-    if (!layer.known) {
-      mission.known = mission.known.without(layer.id);
-    }
-  }
-  std::vector<MovingObstacle> known_moving;
-  for (const MovingObstacle& obstacle : truth.moving()) {
-    if (obstacle.known) {
-      known_moving.push_back(obstacle);
-    }
-  }
-  mission.known = mission.known.with_moving(std::move(known_moving));
+  mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
   const std::vector<NamedConstraint> constraints = constraints_of(config);
   mission.track_request = request;

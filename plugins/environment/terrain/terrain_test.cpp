@@ -344,7 +344,8 @@ TEST(Terrain, ProjectsFromSeveralThreads) {
         const std::size_t k = std::size_t(n % kPoints);
         const auto lonlat = lonlat_of(int(k));
         const auto back = copy.to_local(lonlat[0], lonlat[1]);
-        same[std::size_t(t)] += lonlat == expected[k] && std::abs(back[0] - 20.0 * double(k)) < 1e-5;
+        same[std::size_t(t)] +=
+            lonlat == expected[k] && std::abs(back[0] - 20.0 * double(k)) < 1e-5;
       }
     });
   }

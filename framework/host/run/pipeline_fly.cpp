@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/flight/flight.hpp"
+#include "host/run/pipeline_run.hpp"
+
+namespace altiplan::host {
+
+void Run::fly_step(const StepEntry& step) {
+  fly_once(step, std::nullopt);
+  for (const StepEntry& other : step.otherwise) {
+    if (result_.flight->status == Status::solved || interrupted()) {
+      return;
+    }
+    fly_once(other, step.id);
+  }
+}
+
+FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
+  FlightSetup setup;
+  Request request = request_for(entry, result_.steps.size());
+  request.limits = mission_.track_request.limits;
+  request.constraints = mission_.track_request.constraints;
+  setup.request = request;
+  setup.route_request = mission_.request;
+  setup.route_request.random = request.random;
+  setup.route_request.budget.stop = request.budget.stop;
+  setup.route_request.trace = request.trace;
+  setup.route = result_.steps[input_of(entry)].route;
+  setup.truth = mission_.truth;
+  setup.events = events_;
+  if (entry.plugin != kFollowRoute) {
+    plugins.pilot = make(entry, &PluginEntry::local_planner);
+    setup.pilot = plugins.pilot.get();
+    setup.pilot_name = entry.plugin;
+  }
+  setup.always = entry.fly.command == "always";
+  setup.step_s = entry.fly.step_s;
+  setup.when = entry.fly.when == "any_change" ? ReplanWhen::any_change : ReplanWhen::unsafe;
+  setup.replan_latency_s = entry.fly.replan_latency_s;
+  setup.max_time_s = entry.fly.max_time_s;
+  for (const SmootherEntry& smoother : entry.fly.smooth) {
+    StepEntry as_step;
+    as_step.plugin = smoother.plugin;
+    as_step.with = smoother.parameters;
+    as_step.path = entry.path + ".smooth";
+    plugins.smoothers.push_back(make(as_step, &PluginEntry::smoother));
+    setup.smoothers.push_back(plugins.smoothers.back().get());
+  }
+  find_replanner(entry, setup);
+  return setup;
+}
+
+void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of) {
+  StepResult step;
+  step.id = entry.id;
+  step.verb = Verb::fly;
+  step.plugin = entry.plugin;
+  step.instead_of = std::move(instead_of);
+  {
+    const std::lock_guard lock(mutex_);
+    result_.steps.push_back(step);
+  }
+  if (trace_) {
+    trace_->begin_step(entry.id);
+  }
+  const auto began = Clock::now();
+  FlightPlugins plugins;
+  const FlightSetup setup = flight_setup(entry, plugins);
+  step.setup_time_s = seconds_since(began);
+  FlightResult flight;
+  try {
+    flight = fly(setup);
+  } catch (const ParameterError& error) {
+    throw at_its_key(entry, error);
+  }
+  watchdog_.disarm();
+  step.time_s = seconds_since(began) - step.setup_time_s;
+  if (flight.status == Status::cancelled && !interrupted()) {
+    step.budget_hit = true;
+    flight.status = Status::not_reached;
+    flight.message = (watchdog_.out_of_memory() ? "the step's memory was used up: "
+                                                : "the step's computing time ended: ") +
+                     flight.message;
+  }
+  step.stands = flight.status == Status::solved;
+  step.status = flight.status;
+  step.message = flight.message;
+  step.counters = flight.counters;
+  const std::lock_guard lock(mutex_);
+  result_.steps.back() = std::move(step);
+  result_.flight = std::move(flight);
+}
+
+void Run::find_replanner(const StepEntry& entry, FlightSetup& setup) {
+  const Value& replan = entry.fly.replan;
+  StepEntry planner;
+  if (replan.kind == Value::Kind::map) {
+    bind(planner, &replan, entry.path + ".replan");
+    planner.path = entry.path + ".replan";
+    planner.where = replan.where;
+  } else if (replan.text.empty()) {
+    return;
+  } else {
+    planner = plan_entry(replan.text);
+  }
+  setup.replan_step = planner.id;
+  setup.replan_within_s = planner.within_s;
+  set_budget(setup.route_request.budget, planner);
+  std::unique_ptr<Session>& session = sessions_[replan.text.empty() ? planner.path : planner.id];
+  if (session == nullptr) {  // also of an alternative that was not needed
+    try {
+      session = begin_session(make_plan(planner), setup.route_request);
+    } catch (const ParameterError& error) {
+      throw at_its_key(planner, error);
+    }
+  }
+  setup.replanner = session.get();
+}
+
+const StepEntry& Run::plan_entry(const std::string& id) const {
+  for (const StepEntry& step : config_.steps) {
+    for (const StepEntry& other : step.otherwise) {
+      if (other.id == id) {
+        return other;
+      }
+    }
+    if (step.id == id) {
+      return step;
+    }
+  }
+  throw Error("there is no plan step '" + id + "'");
+}
+}  // namespace altiplan::host

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/run/along_via.hpp"
+#include "host/run/mission.hpp"
+#include "host/run/pipeline.hpp"
+#include "host/run/rollout.hpp"
+#include "host/run/trace_file.hpp"
+#include "host/run/watchdog.hpp"
+
+namespace altiplan::host {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point began) {
+  return std::chrono::duration<double>(Clock::now() - began).count();
+}
+
+/// One run of a pipeline: the order of things is in pipeline.cpp, plan and smooth steps in
+/// pipeline_steps.cpp, the flight in pipeline_fly.cpp.
+class Run {
+ public:
+  Run(const Config& config, const RunOptions& options);
+  RunResult operator()();
+
+ private:
+  bool interrupted() const { return options_.stop.stop_requested(); }
+
+  /// The step, then its alternatives, until one stands. What it leaves is the route that `from`
+  /// finds under its id: its own, or the one that it was to work on.
+  void attempt(const StepEntry& step);
+  bool one_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
+  static void set_budget(Budget& budget, const StepEntry& entry);
+  /// The mission's request with the step's budget, stream and trace.
+  Request request_for(const StepEntry& entry, std::uint64_t index);
+  /// Runs a plugin's work under the watchdog, timed; what it throws ends up in the step.
+  void guarded(const StepEntry& entry, StepResult& step,
+               const std::function<PlanResult(const Request&)>& work);
+
+  /// A planner, or a local planner that is rolled out, kept for the sessions that use it.
+  struct PlanPlugin {
+    std::unique_ptr<Planner> planner;
+    std::unique_ptr<LocalPlanner> local_planner;
+    PlanPart part() const {
+      return [this](const Request& request) {
+        return planner ? planner->plan(request) : roll_out(*local_planner, request);
+      };
+    }
+  };
+  const PlanPlugin& make_plan(const StepEntry& entry);
+  /// A session from the request's start: the planner's own, where it can have one.
+  std::unique_ptr<Session> begin_session(const PlanPlugin& made, const Request& request);
+  /// Whether a flight goes on with the session of that plan step.
+  bool flown_with(const std::string& id) const;
+  void plan(const StepEntry& entry, StepResult& step);
+  void smooth(const StepEntry& entry, StepResult& step);
+  /// Smooths the pieces between via points, which stay.
+  PlanResult between_via(const Smoother& smoother, const Route& before, const Request& request);
+  /// Index of the step whose route `entry` takes.
+  std::size_t input_of(const StepEntry& entry) const;
+  /// Judges and measures; layers and constraints that throw fail the step.
+  void judge_step(StepResult& step, const Request& request);
+  static void take_verdict(StepResult& step);
+
+  template <class Interface>
+  std::unique_ptr<Interface> make(const StepEntry& entry,
+                                  std::unique_ptr<Interface> (*PluginEntry::*maker)(const Value*)) {
+    const char* kind = detail::Kind<Interface>::kName;
+    try {
+      return (plugin(*config_.registry, kind, entry.plugin).*maker)(&entry.with);
+    } catch (const ConfigError&) {
+      throw;
+    } catch (const PluginError& error) {
+      throw PluginError(std::string("the ") + kind + " '" + entry.plugin + "' (" + entry.path +
+                        ") " + error.what());
+    } catch (const ParameterError& error) {
+      throw at_its_key(entry, error);
+    } catch (const Error& error) {
+      throw ConfigError(entry.with.where, entry.path + ".with", error.what());
+    }
+  }
+  static ConfigError at_its_key(const StepEntry& entry, const ParameterError& error);
+  /// The flight; its alternatives are flown when it fails before the goal.
+  void fly_step(const StepEntry& step);
+  void fly_once(const StepEntry& entry, std::optional<std::string> instead_of);
+  /// What a flight uses, kept while it lasts.
+  struct FlightPlugins {
+    std::unique_ptr<LocalPlanner> pilot;
+    std::vector<std::unique_ptr<Smoother>> smoothers;
+  };
+  FlightSetup flight_setup(const StepEntry& entry, FlightPlugins& plugins);
+  /// The session that goes on in flight: a plan step's, or one begun now.
+  void find_replanner(const StepEntry& entry, FlightSetup& setup);
+  /// The plan step, or alternative, of that id; the configuration has made sure that there is one.
+  const StepEntry& plan_entry(const std::string& id) const;
+  void conclude();
+  /// On the watchdog's thread: the step that is under way never stopped.
+  void give_up(const std::string& why);
+
+  const Config& config_;
+  const RunOptions& options_;
+  Mission mission_;
+  std::mutex mutex_;  ///< guards result_ against the watchdog
+  RunResult result_;
+  std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id stands for
+  std::vector<FlightEvent> events_;
+  std::unique_ptr<TraceFile> trace_;
+  std::vector<std::unique_ptr<PlanPlugin>> plan_plugins_;
+  std::map<std::string, std::unique_ptr<Session>> sessions_;  ///< by step
+  Watchdog watchdog_;
+  std::unique_ptr<std::stop_callback<std::function<void()>>> interrupt_;
+};
+}  // namespace altiplan::host
