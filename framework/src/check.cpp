@@ -10,15 +10,15 @@
 namespace altiplan {
 namespace {
 
+/// A number for a message; one beyond any world is not spelled out.
 std::string fixed(double value, int digits = 2) {
   char buffer[64];
-  const int n = std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-  for (int i = 0; i < n; ++i) {
-    if (buffer[i] == ',') {
-      buffer[i] = '.';  // a locale with a decimal comma
-    }
-  }
-  return {buffer, static_cast<std::size_t>(n)};
+  const bool spelled = std::abs(value) < 1e15;
+  const int n = spelled ? std::snprintf(buffer, sizeof buffer, "%.*f", digits, value)
+                        : std::snprintf(buffer, sizeof buffer, "%g", value);
+  std::string text(buffer, static_cast<std::size_t>(n));
+  std::replace(text.begin(), text.end(), ',', '.');  // a locale with a decimal comma
+  return text;
 }
 
 std::string place(const Vec3& p) {
@@ -183,9 +183,13 @@ class LegJudge {
     const Layer* layer = request_.world->blocked_by(a_, b_, needed);
     return layer == nullptr || report_([&] {
              const double clearance = leg_clearance(*layer->environment, a_, b_);
+             // What blocks may lie around: beyond a keep-in zone.
+             const std::string where =
+                 clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
+                                     layer->id + "' blocks"
+                               : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
              return Violation{"clearance", at_, clearance, needed,
-                              "comes to " + fixed(clearance) + " m of '" + layer->id + "', where " +
-                                  fixed(needed) + " m are needed"};
+                              where + ", where " + fixed(needed) + " m of clearance are needed"};
            });
   }
 

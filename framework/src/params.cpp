@@ -103,6 +103,9 @@ namespace {
 std::string bounds_text(const FieldSpec& spec) {
   const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
   const bool bounded = std::isfinite(spec.max);
+  if (spec.min == spec.max) {
+    return number_text(spec.min) + unit;
+  }
   if (std::isfinite(spec.min) && bounded) {
     return std::string(spec.above ? "more than " : "from ") + number_text(spec.min) +
            (spec.above ? " and at most " : " to ") + number_text(spec.max) + unit;

@@ -4,6 +4,7 @@
 BROKEN is the folder of the libraries that no one can use."""
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -13,6 +14,7 @@ import time
 import unittest
 
 PROGRAM, BROKEN = sys.argv[1:3]
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 # A wall between start and goal, passed on either side; the vehicle then meets a post.
 SCENARIO = """altiplan: 1
@@ -116,6 +118,8 @@ class Cli(unittest.TestCase):
         for verb in ("run", "validate", "explain", "check", "plugins", "describe", "schema"):
             out, _ = self.call(verb, "--help")
             self.assertIn("Example:\n  altiplan " + verb, out)
+        _, err = self.call("--log-level", "loud", "plugins", code=2)
+        self.assertIn("--log-level: expected quiet, warning or info, found 'loud'", err)
         self.assertRegex(self.call("--version")[0], r"^\d+\.\d+\.\d+\n$")
 
     # run
@@ -210,6 +214,9 @@ class Cli(unittest.TestCase):
         self.assertIn("did you mean 'seed'", err)
         self.assertIn(bad + ":6:29: steps.0.with.cell_m.2: ", err)
         self.assertIn(bad + ":7:13: steps.0.with.heuristc: ", err)
+        later = self.write("later.yaml", PIPELINE.replace("altiplan: 1", "altiplan: 2"))
+        _, err = self.call("validate", later, code=3)
+        self.assertEqual(err, later + ":1:11: altiplan: expected 1, found 2\n")
         for name in ("''", "{}", "nowhere.yaml", "."):
             nameless = self.write("nameless.yaml", PIPELINE.replace("scenario.yaml", name))
             _, err = self.call("validate", nameless, code=3)
@@ -230,10 +237,52 @@ class Cli(unittest.TestCase):
         self.assertEqual((cell["value"], cell["unit"]), ([50, 50, 50], "m"))
         self.assertTrue(cell["from"].startswith(self.pipeline + ":6:"), cell)
         self.assertEqual(values["scenario.environment.1.cylinder.radius_m"]["value"], 30)
+        self.assertEqual(values["scenario.environment.1.id"]["value"], "post")
+        self.assertIs(values["scenario.environment.1.known"]["value"], True)
         self.assertEqual(values["scenario.goal"]["value"],
                          {"at_m": [900, 500, 100], "tolerance_m": 5})
         out, _ = self.call("explain", self.pipeline)
         self.assertRegex(out, r"steps\.0\.with\.weight_g +0\.5 +default\n")
+
+    def test_explain_shows_via_points_moving_obstacles_and_events(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") + """via:
+  - {at_m: [150, 500, 100], tolerance_m: 20}
+moving:
+  - sphere: {at_m: [500, 100, 100], radius_m: 10, velocity_mps: [0, 1, 0]}
+  - random: {count: 2, radius_m: 5, speed_mps: 3}
+    known: false
+events:
+  - {at_s: 5, id: late, add: {cylinder: {at_m: [500, 900], radius_m: 20}}}
+  - {at_s: 9, remove: late}
+""")
+        out, _ = self.call("explain", self.pipeline, "--json")
+        values = {entry["key"]: entry["value"] for entry in json.loads(out)["parameters"]}
+        for key, value in (("environment.1.known", False), ("via.0.tolerance_m", 20),
+                           ("moving.0.id", "sphere_1"), ("moving.0.sphere.radius_m", 10),
+                           ("moving.1.known", False), ("moving.1.random.count", 2),
+                           ("events.0.id", "late"), ("events.0.known", False),
+                           ("events.0.add", {"cylinder": {"at_m": [500, 900], "radius_m": 20}}),
+                           ("events.1.at_s", 9), ("events.1.remove", "late")):
+            self.assertEqual(values["scenario." + key], value, key)
+        self.assertNotIn("scenario.events.1.known", values)
+
+    # documentation
+
+    def test_the_files_in_the_documentation_are_valid(self):
+        shutil.copytree(os.path.join(ROOT, "configs"), self.path("configs"))
+        blocks = 0
+        for page in ("README.md", "docs/getting-started.md", "docs/files.md"):
+            with open(os.path.join(ROOT, page)) as stream:
+                files = re.findall(r"```yaml\n(altiplan: 1\n.*?)```", stream.read(), re.DOTALL)
+            pipeline = next(text for text in files if "\nsteps:" in text)
+            written = [self.write("configs/pipelines/of_a_page.yaml", pipeline)]
+            for text in files:
+                if text != pipeline:
+                    name = re.search(r"\nscenario: (.*)", pipeline).group(1)
+                    written.append(self.write("configs/pipelines/" + name, text))
+            out, _ = self.call("validate", *written)
+            blocks += out.count(": valid\n")
+        self.assertGreaterEqual(blocks, 5)
 
     # check
 
@@ -251,6 +300,9 @@ class Cli(unittest.TestCase):
         for text in ("[]", "[[1,2]]", "{}", "[1", '"text"', '[["a","b","c"]]'):
             route = self.write("wrong.json", text)
             self.call("check", "--route", route, "--scenario", "scenario.yaml", code=3)
+        _, err = self.call("check", "scenario.yaml", code=3)
+        self.assertEqual(err, "altiplan: scenario.yaml:1: this is not JSON: expected a result of "
+                              "altiplan run\n")
         self.call("check", "--route", around, code=2)
         self.call("check", code=2)
 

@@ -165,15 +165,26 @@ TEST(Check, LegOkAgreesWithTheViolations) {
   EXPECT_LT(sound, 1950);
 }
 
+TEST(Check, NumbersBeyondAnyWorldAreToldShortly) {
+  Request request = empty_request();
+  const CheckResult result = check({{0, 0, 100}, {1e300, 0, 100}}, request);
+  ASSERT_FALSE(result.ok());
+  for (const Violation& violation : result.violations) {
+    EXPECT_LT(violation.message.size(), 120u) << violation.message;
+  }
+}
+
 TEST(Check, PointProblemsNameTheFigure) {
   Request request =
       request_in(world_of({Sphere{{0, 0, 100}, 50}}), {0, 0, 100}, {500, 0, 100}, kVolume);
   EXPECT_EQ(point_problem({0, 0, 100}, request),
-            "(0.00, 0.00, 100.00) cannot be flown: comes to -50.00 m of 'shapes', where 0.00 m are "
-            "needed");
+            "(0.00, 0.00, 100.00) cannot be flown: lies up to 50.00 m inside what 'shapes' blocks, "
+            "where 0.00 m of clearance are needed");
   EXPECT_EQ(point_problem({0, 60, 100}, request), "");
   request.vehicle.radius_m = 20;
-  EXPECT_NE(point_problem({0, 60, 100}, request), "");
+  EXPECT_EQ(point_problem({0, 60, 100}, request),
+            "(0.00, 60.00, 100.00) cannot be flown: comes to 10.00 m of 'shapes', where 20.00 m of "
+            "clearance are needed");
 }
 
 TEST(Measures, OfARouteByHand) {

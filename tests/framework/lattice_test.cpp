@@ -50,13 +50,16 @@ TEST(Lattice, NativeCellsSetCellAndOrigin) {
 }
 
 TEST(Lattice, TooManyCellsAreRefusedWithBothFigures) {
-  try {
-    const Lattice lattice(empty_request(), {1, 1, 1}, Neighbourhood::all, {1 << 20, 16});
-    FAIL();
-  } catch (const ParameterError& error) {
-    EXPECT_EQ(error.key(), "cell_m");
-    EXPECT_NE(std::string(error.what()).find("allowed are 1 MB"), std::string::npos)
-        << error.what();
+  for (const auto& [bytes, said] :
+       {std::pair(1 << 20, "allowed are 1 MB"), std::pair(1 << 19, "allowed are less than 1 MB")}) {
+    try {
+      const Lattice lattice(empty_request(), {1, 1, 1}, Neighbourhood::all,
+                            {std::size_t(bytes), 16});
+      FAIL();
+    } catch (const ParameterError& error) {
+      EXPECT_EQ(error.key(), "cell_m");
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
   }
 }
 

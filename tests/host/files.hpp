@@ -45,7 +45,7 @@ class Files : public ::testing::Test {
   std::filesystem::path pipeline(const std::string& text) const {
     return write("p.yaml", "altiplan: 1\nscenario: s.yaml\n" + text);
   }
-  RunResult run(const std::string& text, RunOptions options = {}) const {
+  RunResult run(const std::string& text, const RunOptions& options = {}) const {
     const Config config = load_config(pipeline(text), overrides_);
     return host::run(config, options);
   }

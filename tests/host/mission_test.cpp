@@ -36,11 +36,13 @@ TEST_F(MissionTest, PointsThatCannotBeResolved) {
 }
 
 TEST_F(MissionTest, TheVolumeMustBeBoundedAndNotEmpty) {
-  EXPECT_EQ(refused("", kEnds, ""),
-            "s.yaml:1:1: volume.min_m: no layer bounds the volume on the x axis: give "
-            "volume.min_m");
+  EXPECT_EQ(
+      refused("", kEnds, ""),
+      "s.yaml:1:1: volume.min_m: no layer bounds the volume from below on x, y, z: give "
+      "volume.min_m\ns.yaml:1:1: volume.max_m: no layer bounds the volume from above on x, y, "
+      "z: give volume.max_m");
   EXPECT_HAS(refused("", kEnds, "volume: {min_m: [0, 0, 0]}\n"),
-             "s.yaml:2:1: volume.max_m: no layer bounds the volume on the x axis");
+             "s.yaml:2:1: volume.max_m: no layer bounds the volume from above on x, y, z");
   EXPECT_HAS(refused("", kEnds, "volume: {min_m: [0, 9, 0], max_m: [1, 8, 1]}\n"),
              "s.yaml:2:9: volume: expected min_m below max_m on each axis");
   EXPECT_HAS(refused("environment: [{cells: {}}]\n", kEnds, "volume: {min_m: [2000, 0, 0]}\n"),

@@ -4,7 +4,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/schema.hpp"
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host {
@@ -17,10 +17,10 @@ struct OneLine : ::testing::TestWithParam<bool> {
   fs::path library() const { return kLibraries / (GetParam() ? "with" : "without"); }
 
   fs::path pipeline(const std::string& parameters) const {
-    folder_.write("scenario.yaml",
-                  "altiplan: 1\nvolume: {min_m: [0, 0, 0], max_m: [9, 9, 9]}\n"
-                  "start: {at_m: [1, 1, 1]}\ngoal: {at_m: [8, 8, 8]}\n");
-    return folder_.write(
+    folder.write("scenario.yaml",
+                 "altiplan: 1\nvolume: {min_m: [0, 0, 0], max_m: [9, 9, 9]}\n"
+                 "start: {at_m: [1, 1, 1]}\ngoal: {at_m: [8, 8, 8]}\n");
+    return folder.write(
         "pipeline.yaml",
         "altiplan: 1\nscenario: scenario.yaml\nsteps:\n  - plan: one_line\n" + parameters);
   }
@@ -40,7 +40,7 @@ struct OneLine : ::testing::TestWithParam<bool> {
     return "";
   }
 
-  altiplan::testing::TempFolder folder_;
+  altiplan::testing::TempFolder folder;
 };
 
 TEST_P(OneLine, SchemaAndReference) {

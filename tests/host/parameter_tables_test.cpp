@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"
 

@@ -48,8 +48,8 @@ TEST_F(PipelineTest, TheJudgeRejectsARouteThroughAWall) {
   EXPECT_EQ(result.exit_code(), 1);
   EXPECT_EQ(result.steps[0].route.size(), 2U) << "what the planner returned stays to be seen";
   EXPECT_HAS(result.message,
-             "told: the judge found 1 violation, at waypoint 0 (clearance): comes to");
-  EXPECT_HAS(result.message, "of 'box', where 0.00 m are needed");
+             "told: the judge found 1 violation, at waypoint 0 (clearance): lies up to");
+  EXPECT_HAS(result.message, "m inside what 'box' blocks, where 0.00 m of clearance are needed");
 }
 
 TEST_F(PipelineTest, ImpossibleEndsAreInvalidForEveryKindOfPlanner) {
@@ -211,7 +211,7 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   scenario("via: [{at_m: [300, 700, 500]}, {at_m: [500, 1200, 500]}]\n");
   const RunResult outside = run(told("straight"));
   EXPECT_EQ(outside.status, Status::invalid_problem);
-  EXPECT_HAS(outside.message, "on the way to via point 1: the goal (500.00, 1200.00, 500.00)");
+  EXPECT_HAS(outside.message, "via point 1 (500.00, 1200.00, 500.00) cannot be flown: ");
 }
 
 TEST_F(PipelineTest, RollsOutALocalPlanner) {

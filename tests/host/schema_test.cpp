@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host {

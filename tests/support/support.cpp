@@ -118,9 +118,9 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
 }
 
 std::unique_ptr<Environment> make_environment(std::string_view name, std::string_view yaml) {
-  static const World empty;
+  static const World kEmpty;
   Site site;
-  site.before = &empty;
+  site.before = &kEmpty;
   return make_environment(name, yaml, site);
 }
 

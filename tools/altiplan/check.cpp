@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -25,7 +26,7 @@ struct Arguments {
   bool json = false;
 };
 
-host::Json read_json(const std::string& file) {
+host::Json read_json(const std::string& file, const std::string& expected) {
   if (std::filesystem::is_directory(file)) {
     throw Error("'" + file + "' is a folder, expected a JSON file");
   }
@@ -35,8 +36,13 @@ host::Json read_json(const std::string& file) {
   }
   try {
     return host::Json::parse(in);
-  } catch (const host::Json::exception& error) {
-    throw Error(file + ": expected JSON: " + error.what());
+  } catch (const host::Json::parse_error& error) {
+    in.clear();
+    in.seekg(0);
+    std::string before(error.byte > 0 ? error.byte - 1 : 0, '\0');
+    in.read(before.data(), std::streamsize(before.size()));
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    throw Error(file + ":" + std::to_string(line) + ": this is not JSON: expected " + expected);
   }
 }
 
@@ -146,7 +152,7 @@ host::Overrides stored_overrides(const host::Json& json, host::Overrides overrid
 
 int check_result(const Arguments& arguments) {
   const std::string& file = *arguments.result;
-  const host::Json json = read_json(file);
+  const host::Json json = read_json(file, "a result of altiplan run");
   host::Overrides overrides;
   std::string pipeline;
   std::optional<host::Track> track;
@@ -179,7 +185,7 @@ int check_result(const Arguments& arguments) {
 }
 
 int check_route(const Arguments& arguments) {
-  const host::Json json = read_json(*arguments.route);
+  const host::Json json = read_json(*arguments.route, "a route as a list of [x, y, z] in metres");
   const Route route = route_of(json.is_object() && json.contains("route") ? json.at("route") : json,
                                *arguments.route);
   const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
@@ -192,10 +198,11 @@ void add_check(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("check", "judge a stored or a foreign route again");
   auto arguments = std::make_shared<Arguments>();
   auto* result = command->add_option("result", arguments->result, "a result of altiplan run");
-  auto* route =
-      command->add_option("--route", arguments->route, "a route as JSON: [[x, y, z], …] in metres")
-          ->type_name("FILE")
-          ->excludes(result);
+  auto* route = command
+                    ->add_option("--route", arguments->route,
+                                 "a route as JSON: [[x, y, z], …] in metres, or a result")
+                    ->type_name("FILE")
+                    ->excludes(result);
   auto* scenario =
       command->add_option("--scenario", arguments->scenario, "the scenario to judge it in")
           ->type_name("FILE")

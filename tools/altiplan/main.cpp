@@ -104,7 +104,17 @@ int main_checked(int argc, char** argv) {
   static const std::map<std::string, LogLevel> kLevels{
       {"quiet", LogLevel::quiet}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
   app.add_option("--log-level", log_level(), "quiet, warning or info")
-      ->transform(CLI::CheckedTransformer(kLevels));
+      ->transform(CLI::Validator(
+          [](std::string& text) {
+            const auto level = kLevels.find(text);
+            if (level == kLevels.end()) {
+              return "expected quiet, warning or info, found '" + text + "'";
+            }
+            text = std::to_string(int(level->second));
+            return std::string();
+          },
+          ""))
+      ->type_name("LEVEL");
   set_example(app, "altiplan run configs/pipelines/ridge_crossing.yaml");
   Action action;
   add_run(app, action);

@@ -4,7 +4,7 @@
 
 #include "commands.hpp"
 #include "host/config/schema.hpp"
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 
 namespace altiplan::cli {
 namespace {

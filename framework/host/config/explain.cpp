@@ -21,6 +21,34 @@ void add_fields(std::vector<Explained>& all, const ParamReport& report, const st
                    shown_location(field.where), field.spec.unit});
   }
 }
+
+/// The host's own keys of an entry; an id that was not given is the one that the host gave.
+template <class Entry>
+void add_entry(std::vector<Explained>& all, const Entry& entry, const Value& tree,
+               const std::string& path) {
+  Entry copy;
+  for (BoundField& field : bind(copy, &tree, path).fields) {
+    if constexpr (requires { entry.id; }) {
+      if (field.spec.name == "id") {
+        field.value_json = entry.id.empty() ? "null" : "\"" + entry.id + "\"";
+      }
+    }
+    bool said = field.where || field.value_json != "null";
+    if constexpr (std::is_same_v<Entry, EventEntry>) {
+      said = said && (entry.add || field.spec.name != "known");
+    }
+    if (said) {
+      add_fields(all, {{field}, {}}, path);
+    }
+  }
+}
+
+void add_moving(std::vector<Explained>& all, const MovingEntry& moving, const Value& tree,
+                const std::string& path) {
+  add_entry(all, moving, tree, path);
+  const std::string inner = path + "." + moving.shape;
+  add_fields(all, describe_moving(moving.shape)(&moving.parameters, inner), inner);
+}
 }  // namespace
 
 std::vector<Explained> explain(const Config& config) {
@@ -38,27 +66,21 @@ std::vector<Explained> explain(const Config& config) {
   }
   for (std::size_t i = 0; i < config.scenario.environment.size(); ++i) {
     const LayerEntry& layer = config.scenario.environment[i];
-    add_plugin("environment", layer.plugin, layer.parameters,
-               item("scenario.environment", i) + "." + layer.plugin);
-  }
-  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
-    const MovingEntry& moving = config.scenario.moving[i];
-    const std::string path = item("scenario.moving", i) + "." + moving.shape;
-    add_fields(all, describe_moving(moving.shape)(&moving.parameters, path), path);
+    const std::string path = item("scenario.environment", i);
+    add_entry(all, layer, config.scenario_tree.find("environment")->items[i], path);
+    add_plugin("environment", layer.plugin, layer.parameters, path + "." + layer.plugin);
   }
   for (std::size_t i = 0; i < config.scenario.via.size(); ++i) {
-    GoalEntry via;
-    add_fields(all, bind(via, &config.scenario_tree.find("via")->items[i]),
-               item("scenario.via", i));
+    add_entry(all, config.scenario.via[i], config.scenario_tree.find("via")->items[i],
+              item("scenario.via", i));
+  }
+  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
+    add_moving(all, config.scenario.moving[i], config.scenario_tree.find("moving")->items[i],
+               item("scenario.moving", i));
   }
   for (std::size_t i = 0; i < config.scenario.events.size(); ++i) {
-    EventEntry event;
-    for (const BoundField& field :
-         bind(event, &config.scenario_tree.find("events")->items[i]).fields) {
-      if (field.where) {
-        add_fields(all, {{field}, {}}, item("scenario.events", i));
-      }
-    }
+    add_entry(all, config.scenario.events[i], config.scenario_tree.find("events")->items[i],
+              item("scenario.events", i));
   }
   for (const auto& [entries, path] :
        {std::pair(&config.scenario.constraints, "scenario.constraints"),

@@ -7,7 +7,7 @@
 
 #include "host/config/config.hpp"
 #include "host/config/shapes.hpp"
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -2,6 +2,7 @@
 #include "host/run/along_via.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "host/run/judge.hpp"
 
@@ -75,7 +76,11 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
     whole.message = part.message;
     if (part.status != Status::solved && goals.size() > 1) {
       const std::string to = i + 1 == goals.size() ? "the goal" : "via point " + std::to_string(i);
-      whole.message = "on the way to " + to + ": " + part.message;
+      // To the planner every end is "the goal"; a via point that cannot be flown is named as one.
+      const std::string_view goal = "the goal ";
+      const bool its_end = part.status == Status::invalid_problem && part.message.starts_with(goal);
+      whole.message = its_end ? to + " " + part.message.substr(goal.size())
+                              : "on the way to " + to + ": " + part.message;
     }
     const std::ptrdiff_t shared = whole.route.empty() || part.route.empty() ? 0 : 1;
     whole.route.insert(whole.route.end(), part.route.begin() + shared, part.route.end());

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <tuple>
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/iso_time.hpp"
@@ -36,18 +37,26 @@ Box volume_of(const Config& config, const World& truth, const std::optional<doub
     box.max.z() = *level;
   }
   static constexpr const char* kAxes[] = {"x", "y", "z"};
+  const Location where = place(config.scenario_tree, "volume");
+  std::vector<Problem> problems;
+  for (const auto& [key, side, corner] : {std::tuple("volume.min_m", "below", box.min),
+                                          std::tuple("volume.max_m", "above", box.max)}) {
+    std::string axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(corner[axis])) {
+        axes += (axes.empty() ? "" : ", ") + std::string(kAxes[axis]);
+      }
+    }
+    if (!axes.empty()) {
+      problems.push_back({where, key,
+                          std::string("no layer bounds the volume from ") + side + " on " + axes +
+                              ": give " + key});
+    }
+  }
+  if (!problems.empty()) {
+    throw ConfigError(std::move(problems));
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    const Location where = place(config.scenario_tree, "volume");
-    if (!std::isfinite(box.min[axis])) {
-      throw ConfigError(where, "volume.min_m",
-                        std::string("no layer bounds the volume on the ") + kAxes[axis] +
-                            " axis: give volume.min_m");
-    }
-    if (!std::isfinite(box.max[axis])) {
-      throw ConfigError(where, "volume.max_m",
-                        std::string("no layer bounds the volume on the ") + kAxes[axis] +
-                            " axis: give volume.max_m");
-    }
     if (box.min[axis] > box.max[axis]) {
       throw ConfigError(where, "volume",
                         std::string("the volume is empty on the ") + kAxes[axis] + " axis");

@@ -72,6 +72,8 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   if (!(bytes <= double(memory.max_bytes)) || total > 4e9) {
     const double mb = 1.0 / (1024 * 1024);
     const auto whole = [](double value) { return std::to_string(std::int64_t(value)); };
+    const double allowed_mb = std::min(double(memory.max_bytes) * mb, 1e15);
+    const std::string allowed = allowed_mb < 1 ? "less than 1" : whole(allowed_mb);
     throw ParameterError(
         "cell_m",
         "the lattice would have " +
@@ -79,7 +81,7 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
                           : std::string("more than 1e18")) +
             " cells, which need " +
             (total < 1e18 ? whole(std::ceil(bytes * mb)) : std::string("far too many")) +
-            " MB; allowed are " + whole(std::min(double(memory.max_bytes) * mb, 1e15)) +
+            " MB; allowed are " + allowed +
             " MB and 4e9 cells: choose larger cells or a smaller volume");
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -262,7 +262,7 @@ void treat_voids(const Params& params, Dem& dem) {
       refuse(params,
              "has voids (" + count +
                  " have no height); say what becomes of them with "
-                 "voids: neighbours, or voids: fill_m and fill_m",
+                 "voids: neighbours, or voids: fill_m with a height fill_m",
              "voids");
     case Voids::fill_m:
       for (float& height : dem.heights) {

@@ -41,7 +41,8 @@ struct Params {
         .at_least(4)
         .doc("a file that declares more posts is refused before anything is allocated");
     f.check((voids == Voids::fill_m) == fill_m.has_value(),
-            "fill_m goes with voids: fill_m, and only with it");
+            voids == Voids::fill_m ? "voids: fill_m needs fill_m, the height that voids get"
+                                   : "fill_m is the height of voids: it needs voids: fill_m");
   }
 };
 

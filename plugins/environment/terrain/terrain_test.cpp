@@ -339,7 +339,7 @@ TEST(Terrain, ProjectsFromSeveralThreads) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
-      const Frame copy = frame;
+      const Frame& copy = frame;
       for (int n = t; n < kPoints + t; ++n) {
         const std::size_t k = std::size_t(n % kPoints);
         const auto lonlat = lonlat_of(int(k));
@@ -368,7 +368,10 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
   EXPECT_NEAR(*mean->ground(100, 200), (10 * 5 + 20 * 2) / 7.0, 1e-5);
   EXPECT_SAYS(mean->notes()[0], "2 voids filled from their neighbours");
   EXPECT_SAYS(testing::parameter_problems("environment", "terrain", file_yaml(file, "fill_m: 1")),
-              "voids: fill_m");
+              "it needs voids: fill_m");
+  EXPECT_SAYS(
+      testing::parameter_problems("environment", "terrain", file_yaml(file, "voids: fill_m")),
+      "needs fill_m, the height");
   const auto undeclared = grid("10 10 10 10 10\n10 -9999 5 10 10\n1 1 1 1 1\n1 1 1 1 1\n");
   EXPECT_SAYS(refusal(undeclared), "-9999 at column 1, row 1");
   EXPECT_EQ(refusal(undeclared, "nodata: -9999, voids: neighbours"), "");

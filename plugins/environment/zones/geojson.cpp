@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geojson.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "altiplan/error.hpp"
 
@@ -147,8 +149,34 @@ Json parse(const std::string& file) {
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   try {
     return Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw Error(file + ": is not JSON: " + error.what());
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
+    const auto line = 1 + std::count(text.begin(), end, '\n');
+    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
+                std::to_string(line));
+  }
+}
+
+// A name that stands nowhere is a slip: the zones would silently hold at all heights and times.
+void expect_properties(const std::string& file, const Json::array_t& features,
+                       const PropertyNames& names) {
+  std::set<std::string> present;
+  for (const Json& feature : features) {
+    if (feature.contains("properties") && feature["properties"].is_object()) {
+      for (const auto& [name, value] : feature["properties"].items()) {
+        present.insert(name);
+      }
+    }
+  }
+  std::string list;
+  for (const std::string& name : present) {
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  for (const std::string& name : {names.floor, names.ceiling, names.from, names.until}) {
+    if (!name.empty() && !present.contains(name)) {
+      throw Error(file + ": no feature has the property '" + name +
+                  "'; present: " + (list.empty() ? "none" : list));
+    }
   }
 }
 }  // namespace
@@ -182,6 +210,9 @@ GeoJson read_geojson(const std::string& file, const PropertyNames& names) {
     } catch (const std::exception& error) {
       throw Error(file + ": features." + std::to_string(n) + " ('" + id + "'): " + error.what());
     }
+  }
+  if (!result.features.empty()) {
+    expect_properties(file, list, names);
   }
   return result;
 }

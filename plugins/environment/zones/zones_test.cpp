@@ -199,6 +199,11 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
       refused("height", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"low": "surface"})")),
       "surface"));
   EXPECT_TRUE(says(refused("type", feature("[]", "{}", "Curve")), "Curve"));
+  EXPECT_TRUE(
+      says(refused("cut", "{\n\"type\":\n"), "not JSON: it breaks off or goes wrong in line 3"));
+  EXPECT_TRUE(
+      says(refused("property", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"lower": 1})")),
+           "no feature has the property 'low'; present: lower"));
 }
 
 TEST(Zones, RefusesWrongParameters) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 
 #include <algorithm>
 #include <array>

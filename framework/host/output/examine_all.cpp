@@ -9,7 +9,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/shapes.hpp"
-#include "host/registry/describe.hpp"
+#include "host/output/describe.hpp"
 
 namespace altiplan::host {
 namespace {
