@@ -94,6 +94,9 @@ class Cli(unittest.TestCase):
         self.call("run", code=2)
         self.call("run", self.pipeline, "--threads", "0", code=2)
         self.call("run", self.pipeline, "--seed", "-1", code=2)
+        for assignment in ("seed", "=3"):
+            _, err = self.call("run", self.pipeline, "--set", assignment, code=2)
+            self.assertIn("expected KEY=VALUE", err)
         for file in ("nowhere.yaml", "", self.folder):
             out, err = self.call("run", file, code=3)
             self.assertEqual(out, "")
@@ -157,7 +160,7 @@ class Cli(unittest.TestCase):
                              code=1)
         self.assertIsNone(taller["route"])
         for wrong in ("steps.0.with.weight=1", "steps.1.plan=astar", "steps.0.with.cell_m=text",
-                      "seed", "=3", "scenario.goals={}"):
+                      "scenario.goals={}"):
             out, err = self.call("run", self.pipeline, "--set", wrong, code=3)
             self.assertEqual(out, "")
             self.assertIn("--set " + wrong, err)

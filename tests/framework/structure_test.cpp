@@ -51,7 +51,7 @@ std::vector<fs::path> files(const std::string& folder, const std::vector<std::st
 
 std::vector<fs::path> sources(const std::string& folder) { return files(folder, {".cpp", ".hpp"}); }
 
-bool is_test(const fs::path& file) { return ends_with(file.filename().string(), "_test.cpp"); }
+bool is_test(const fs::path& file) { return ends_with(file.stem().string(), "_test"); }
 
 std::vector<std::string> includes(const fs::path& file) {
   static const std::regex kInclude(R"re(^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"])re");

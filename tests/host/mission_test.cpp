@@ -21,7 +21,6 @@ class MissionTest : public testing::Files {
   static constexpr const char* kVolume = "volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 1000]}\n";
   static constexpr const char* kEnds =
       "start: {at_m: [100, 500, 500]}\ngoal: {at_m: [900, 500, 500]}\n";
-  static constexpr const char* kTerrain = "environment: [{hills: {base_m: 50}}]\n";
 };
 
 TEST_F(MissionTest, PointsThatCannotBeResolved) {

@@ -61,7 +61,13 @@ void add_overrides(CLI::App& command, host::Overrides& overrides) {
                   "any key of the pipeline, or of the scenario as scenario.KEY; may be given again")
       ->expected(1)
       ->type_name("KEY=VALUE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check([](const std::string& text) {
+        const std::size_t equals = text.find('=');
+        return equals == 0 || equals == std::string::npos
+                   ? "expected KEY=VALUE, found '" + text + "'"
+                   : std::string();
+      });
 }
 
 std::string fixed(const std::optional<double>& value, int digits) {

@@ -323,7 +323,7 @@ Json step_schema(Writer& writer) {
           {"allOf", std::move(all_of)}};
 }
 
-Json file_schema(const char* title, Json body, Writer& writer) {
+Json file_schema(const char* title, const Json& body, Writer& writer) {
   Json schema = {{"$schema", kDraft}, {"title", title}};
   schema.update(body);
   if (!writer.definitions().empty()) {

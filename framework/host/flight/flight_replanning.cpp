@@ -51,7 +51,7 @@ void Flight::take_route(Route route, const Request& request) {
       route = smooth.route;
     }
   }
-  path_ = FlightPath(std::move(route));
+  path_ = FlightPath(route);
   progress_ = 0;
   stuck_ = 0;
   end_moved_ = false;

@@ -24,7 +24,8 @@ double resident_mb() {
 }  // namespace
 
 Watchdog::Watchdog(std::function<void(const std::string&)> last_words)
-    : last_words_(std::move(last_words)), thread_([this](std::stop_token done) { watch(done); }) {}
+    : last_words_(std::move(last_words)),
+      thread_([this](const std::stop_token& done) { watch(done); }) {}
 
 Watchdog::~Watchdog() {
   thread_.request_stop();
@@ -57,7 +58,7 @@ void Watchdog::stop_now() {
   changed_.notify_all();
 }
 
-void Watchdog::watch(std::stop_token done) {
+void Watchdog::watch(const std::stop_token& done) {
   constexpr auto kMemoryPoll = std::chrono::milliseconds(20);
   const auto grace =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kGraceSeconds));

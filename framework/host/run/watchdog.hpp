@@ -32,7 +32,7 @@ class Watchdog {
   bool out_of_memory() const { return out_of_memory_; }
 
  private:
-  void watch(std::stop_token done);
+  void watch(const std::stop_token& done);
   using Clock = std::chrono::steady_clock;
 
   std::function<void(const std::string&)> last_words_;

@@ -88,19 +88,19 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
   const World& world = *request_.world;
   const Limits& limits = request_.limits;
   if (!world.ground_below(a, b)) {
-    ++refused_[kNoGround];
+    ++refused_[by_no_ground];
     return false;
   }
   if (limits.min_ground_clearance && world.ground_gap(a, b, *limits.min_ground_clearance) <
                                          *limits.min_ground_clearance - kLengthTolerance) {
-    ++refused_[kGround];
+    ++refused_[by_ground];
     return false;
   }
   for (const AltitudeBand& band : limits.altitude) {
     if (band.datum == AltitudeBand::Datum::ground &&
         (world.ground_gap(a, b, band.min) < band.min - kLengthTolerance ||
          (band.max < kInfinity && world.ground_gap_max(a, b) > band.max + kLengthTolerance))) {
-      ++refused_[kAltitude];
+      ++refused_[by_altitude];
       return false;
     }
   }
@@ -110,7 +110,7 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
 bool MoveRules::admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     if (!constraints_[i]->admits({before, a, b})) {
-      ++refused_[kConstraint];
+      ++refused_[by_constraint];
       refused_constraint_ = request_.constraints[i].name;
       admit_needed_parent_ =
           admit_needed_parent_ || (before && constraints_[i]->admits({std::nullopt, a, b}));
@@ -134,7 +134,7 @@ bool MoveRules::leg_free(const std::optional<Vec3>& before, const Vec3& a, const
     return true;
   }
   if (const Layer* layer = request_.world->blocked_by(a, b, needed_)) {
-    ++refused_[kClearance];
+    ++refused_[by_clearance];
     refused_layer_ = layer->id;
     return false;
   }
@@ -147,17 +147,17 @@ bool MoveRules::any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, con
     return true;
   }
   if (!before || !leg_ok(std::nullopt, a, b, request_)) {
-    ++refused_[kLink];
+    ++refused_[by_link];
     const auto found = leg_violations(before, a, b, request_, 0);
     refused_link_ = found.empty() ? "" : found.front().constraint;
   } else {
-    ++refused_[kTurn];
+    ++refused_[by_turn];
   }
   return false;
 }
 
 std::string MoveRules::refusals() const {
-  const std::string names[kRules] = {
+  const std::string names[rule_count] = {
       "blocked cells",
       request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
       "clearance to '" + refused_layer_ + "'",
@@ -167,7 +167,7 @@ std::string MoveRules::refusals() const {
       refused_constraint_,
       refused_link_ + " where start or goal join the lattice"};
   std::vector<int> order;
-  for (int rule = 0; rule < kRules; ++rule) {
+  for (int rule = 0; rule < rule_count; ++rule) {
     if (refused_[std::size_t(rule)] > 0) {
       order.push_back(rule);
     }

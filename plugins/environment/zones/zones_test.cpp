@@ -213,8 +213,7 @@ TEST(Zones, RefusesWrongParameters) {
   for (const char* wrong :
        {"{}", "{list: [{}]}", "{list: [{cylinder: {at_m: [0, 0], radius_m: -5}}]}",
         "{list: [{polygon: {}}]}",
-        "{list: [{cylinder: {at_m: [0, 0], radius_m: 5}, floor_m: 9,"
-        " ceiling_m: 3}]}",
+        "{list: [{cylinder: {at_m: [0, 0], radius_m: 5}, floor_m: 9, ceiling_m: 3}]}",
         "{list: [{kind: maybe, cylinder: {at_m: [0, 0], radius_m: 5}}]}"}) {
     EXPECT_NE(parameter_problems("environment", "zones", wrong), "") << wrong;
   }

@@ -35,10 +35,10 @@ class ALTIPLAN_API MoveRules {
     DirectionMask open = steps_ & lattice_.inside(c);
     if (grid_ != nullptr) {
       const DirectionMask free = free_steps(blocked_around(*grid_, c), corner_);
-      refused_[kCells] += __builtin_popcount(open & ~free);
+      refused_[by_cells] += __builtin_popcount(open & ~free);
       open &= free;
     }
-    refused_[kTurn] += __builtin_popcount(open & ~after_[std::size_t(in)]);
+    refused_[by_turn] += __builtin_popcount(open & ~after_[std::size_t(in)]);
     return open & after_[std::size_t(in)];
   }
 
@@ -57,12 +57,12 @@ class ALTIPLAN_API MoveRules {
 
   /// Whether a rule that looks at the leg before refused anything: then one parent a cell may be
   /// too few, and finding nothing proves nothing.
-  bool parent_mattered() const { return refused_[kTurn] > 0 || admit_needed_parent_; }
+  bool parent_mattered() const { return refused_[by_turn] > 0 || admit_needed_parent_; }
   std::int64_t moves_checked() const { return moves_checked_; }
   /// Whether the cell itself is closed, which only moves by cells know.
   bool cell_blocked(const Cell& c) {
     const bool blocked = grid_ != nullptr && grid_->blocked(c);
-    refused_[kCells] += blocked;
+    refused_[by_cells] += blocked;
     return blocked;
   }
   /// The rules that refused moves, the busiest first: "ground_clearance (120), turn_angle (7)", and
@@ -71,15 +71,15 @@ class ALTIPLAN_API MoveRules {
 
  private:
   enum Rule {
-    kCells,
-    kTurn,
-    kClearance,
-    kNoGround,
-    kGround,
-    kAltitude,
-    kConstraint,
-    kLink,
-    kRules
+    by_cells,
+    by_turn,
+    by_clearance,
+    by_no_ground,
+    by_ground,
+    by_altitude,
+    by_constraint,
+    by_link,
+    rule_count
   };
   DirectionMask directions_kept();
   bool keeps_ground(const Vec3& a, const Vec3& b);
@@ -96,7 +96,7 @@ class ALTIPLAN_API MoveRules {
   std::shared_ptr<const VoxelGrid> grid_;
   DirectionMask steps_ = 0;
   std::array<DirectionMask, kDirections> after_{};  ///< by incoming direction
-  std::array<std::int64_t, kRules> refused_{};
+  std::array<std::int64_t, rule_count> refused_{};
   std::string refused_constraint_;
   std::string refused_layer_;
   std::string refused_link_;
