@@ -39,8 +39,8 @@ Api open() {
 }  // namespace
 
 const Api& api() {
-  static const Api opened = open();
-  return opened;
+  static const Api kApi = open();
+  return kApi;
 }
 
 Quiet::Quiet() {
