@@ -18,7 +18,7 @@ Layer shapes(std::string id, std::vector<Shape> list) {
 /// Level ground over a rectangle: a tile of a larger terrain.
 class FlatTile final : public Environment {
  public:
-  FlatTile(Box box, double height) : box_(box), height_(height) {}
+  FlatTile(const Box& box, double height) : box_(box), height_(height) {}
 
  private:
   Box do_bounds() const override { return box_; }

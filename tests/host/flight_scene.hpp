@@ -39,7 +39,7 @@ struct Scene {
     hidden.known = false;
     setup.truth = setup.truth.with(std::move(hidden));
   }
-  void hide_moving(Vec3 meets_at, double at_s, Vec3 velocity, double radius) {
+  void hide_moving(const Vec3& meets_at, double at_s, const Vec3& velocity, double radius) {
     setup.truth = setup.truth.with_moving(
         {{"mover", Sphere{meets_at - velocity * at_s, radius}, velocity, 0, false}});
   }
