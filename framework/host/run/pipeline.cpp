@@ -71,7 +71,7 @@ void Run::attempt(const StepEntry& step) {
   }
 }
 
-bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead_of) {
+StepResult Run::begin_attempt(const StepEntry& entry, std::optional<std::string> instead_of) {
   StepResult step;
   step.id = entry.id;
   step.verb = entry.verb;
@@ -84,6 +84,11 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
   if (trace_) {
     trace_->begin_step(entry.id);
   }
+  return step;
+}
+
+bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead_of) {
+  StepResult step = begin_attempt(entry, std::move(instead_of));
   if (entry.verb == Verb::plan) {
     plan(entry, step);
   } else {

@@ -50,18 +50,7 @@ FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
 }
 
 void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of) {
-  StepResult step;
-  step.id = entry.id;
-  step.verb = Verb::fly;
-  step.plugin = entry.plugin;
-  step.instead_of = std::move(instead_of);
-  {
-    const std::lock_guard lock(mutex_);
-    result_.steps.push_back(step);
-  }
-  if (trace_) {
-    trace_->begin_step(entry.id);
-  }
+  StepResult step = begin_attempt(entry, std::move(instead_of));
   const auto began = Clock::now();
   FlightPlugins plugins;
   const FlightSetup setup = flight_setup(entry, plugins);

@@ -38,6 +38,8 @@ class Run {
   /// The step, then its alternatives, until one stands. What it leaves is the route that `from`
   /// finds under its id: its own, or the one that it was to work on.
   void attempt(const StepEntry& step);
+  /// Notes the attempt in the result, so that the watchdog can say what was under way.
+  StepResult begin_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   bool one_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   static void set_budget(Budget& budget, const StepEntry& entry);
   /// The mission's request with the step's budget, stream and trace.
