@@ -20,9 +20,11 @@ function(altiplan_add_plugin kind name)
     LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})
   target_link_options(${target} PRIVATE
     -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id)
-  if(ALTIPLAN_PLUGIN_DIR)
-    set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ALTIPLAN_PLUGIN_DIR})
+  # Out of tree all of a project's plugins end up in its build folder: `--plugin-path build`.
+  if(NOT ALTIPLAN_PLUGIN_DIR)
+    set(ALTIPLAN_PLUGIN_DIR ${CMAKE_BINARY_DIR})
   endif()
+  set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ALTIPLAN_PLUGIN_DIR})
   include(GNUInstallDirs)
   install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/altiplan/plugins)
   set_property(GLOBAL APPEND PROPERTY ALTIPLAN_PLUGINS ${target})

@@ -173,7 +173,8 @@ class LegJudge {
                        [&](const NamedConstraint& named) {
                          return named.constraint->admits({before_, a_, b_}) || report_([&] {
                                   return Violation{named.name, at_, 0, 0,
-                                                   "the constraint does not admit this leg"};
+                                                   "the constraint does not admit the leg from " +
+                                                       place(a_) + " to " + place(b_)};
                                 });
                        });
   }
@@ -246,7 +247,9 @@ CheckResult check(const Route& route, const Request& request) {
     for (Violation& violation : leg_violations(before, route[i], route[i + 1], request, i)) {
       found.push_back(std::move(violation));
     }
-    before = route[i];
+    if (route[i + 1] != route[i]) {  // a repeated point hides no turn
+      before = route[i];
+    }
   }
   const double total = length(route);
   if (total > request.limits.max_route_length + kLengthTolerance) {

@@ -57,20 +57,36 @@ Vec3 Site::resolve(const Point& point) const {
 
 Environment::~Environment() = default;
 
-double Environment::clearance(const Vec3& p) const { return do_clearance(p); }
+// Layers are asked about places only: of what is none, nothing good is said.
+double Environment::clearance(const Vec3& p) const {
+  return is_finite(p) ? do_clearance(p) : -kInfinity;
+}
 
 bool Environment::blocked(const Vec3& a, const Vec3& b, double r) const {
+  if (!std::isfinite((b - a).squaredNorm()) || !std::isfinite(r)) {
+    return r != -kInfinity;
+  }
   // One order of the ends for both, so that the answer is symmetric to the last bit.
   const bool swap = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
   return swap ? do_blocked(b, a, r) : do_blocked(a, b, r);
 }
 
 void Environment::near(const Vec3& p, double reach, const NearSink& sink) const {
-  do_near(p, reach, sink);
+  if (is_finite(p) && !std::isnan(reach)) {
+    do_near(p, reach, sink);
+  }
+}
+
+std::optional<double> Environment::ground(double x, double y) const {
+  return std::isfinite(x) && std::isfinite(y) ? do_ground(x, y) : std::nullopt;
 }
 
 double Environment::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
-  return do_ground_gap(a, b, enough);
+  return is_finite(a) && is_finite(b) ? do_ground_gap(a, b, enough) : -kInfinity;
+}
+
+double Environment::ground_gap_max(const Vec3& a, const Vec3& b) const {
+  return is_finite(a) && is_finite(b) ? do_ground_gap_max(a, b) : kInfinity;
 }
 
 bool Environment::do_blocked(const Vec3& a, const Vec3& b, double r) const {

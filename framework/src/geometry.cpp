@@ -5,14 +5,28 @@
 #include <algorithm>
 
 namespace altiplan {
+namespace {
+
+/// A heading is lost in the rounding of coordinates where a direction is this near to the vertical.
+bool has_heading(const Vec3& direction) {
+  const double most = kAngleTolerance * direction.z();
+  return direction.head<2>().squaredNorm() > most * most;
+}
+}  // namespace
 
 double turn_angle_horizontal(const Vec3& before, const Vec3& after) {
+  if (!has_heading(before) || !has_heading(after)) {
+    return 0;
+  }
   const double cross = before.x() * after.y() - before.y() * after.x();
   const double dot = before.x() * after.x() + before.y() * after.y();
-  return std::atan2(std::abs(cross), dot);  // atan2(0, 0) = 0: a vertical direction
+  return std::atan2(std::abs(cross), dot);
 }
 
 double turn_angle_in_space(const Vec3& before, const Vec3& after) {
+  if (before.isZero(0) || after.isZero(0)) {
+    return 0;  // atan2(0, -0.0) would be pi
+  }
   return std::atan2(before.cross(after).norm(), before.dot(after));
 }
 

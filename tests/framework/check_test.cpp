@@ -60,6 +60,32 @@ TEST(Check, ReversingIsATurnOfHalfACircle) {
   EXPECT_EQ(rules(check({{0, 0, 100}, {2000, 0, 100}, {1000, 0, 100}}, request)), "turn_angle@1 ");
 }
 
+TEST(Check, ARepeatedPointHidesNoTurn) {
+  Request request = empty_request();
+  request.limits.max_turn_horizontal = radians(55);
+  request.limits.max_turn_space = radians(55);
+  const Route bend{{0, 0, 100}, {2000, 0, 100}, {2000, 0, 100}, {1000, 0, 100}};
+  EXPECT_EQ(rules(check(bend, request)), "turn_angle@2 turn_angle@2 ");
+}
+
+TEST(Check, AVerticalLegHasNoHeadingFromAnySide) {
+  Request request = empty_request();
+  request.limits.max_turn_horizontal = radians(10);
+  for (const double x : {-1.0, 1e-15, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      const Vec3 level(x, y, 0);
+      EXPECT_EQ(turn_angle_horizontal(level, {0, 0, 1}), 0) << x << ' ' << y;
+      EXPECT_EQ(turn_angle_horizontal({0, 0, -1}, level), 0) << x << ' ' << y;
+      EXPECT_EQ(turn_angle_in_space(level, {0, 0, 0}), 0) << x << ' ' << y;
+    }
+  }
+  // The rounding of coordinates is no heading either.
+  request.start.position = {-1000, 0, 100};
+  request.goal.position = {0, 0, 200};
+  const double nearly = std::nextafter(-1000.0, 0.0);
+  EXPECT_EQ(rules(check({{-1000, 0, 100}, {nearly, 1e-12, 200}, {0, 0, 200}}, request)), "");
+}
+
 TEST(Check, TheHeadingAtTheStartHoldsTheFirstLeg) {
   Request request = empty_request();
   request.limits.max_turn_horizontal = radians(60);

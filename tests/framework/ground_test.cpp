@@ -38,13 +38,35 @@ TEST(Ground, TooNearIsHeldToTheSlopeNearby) {
   const double r = 5;
   const double enough = kit::height_for(r, 2);
   const auto near = [&](double x0, double x1, double z) {
-    return kit::too_near_ground({x0, 0, z}, {x1, 0, z}, r, enough, 0.1, gap, slope);
+    return kit::too_near_ground({x0, 0, z}, {x1, 0, z}, r, {1e9, enough}, 0.1, gap, slope);
   };
   EXPECT_FALSE(near(0, 90, 5)) << "touching is free";
   EXPECT_TRUE(near(0, 90, 4.9999));
   EXPECT_FALSE(near(0, 94, 5)) << "5 m above the flat, 6 m from the slope's foot";
   EXPECT_TRUE(near(0, 100, 5)) << "by the slope";
   EXPECT_FALSE(near(0, 100, enough));
+}
+
+TEST(Ground, WhatIsFarAboveTheTopIsFree) {
+  // A plateau of 100 m with a steep side: high over it the side's slope is of no matter.
+  const auto at = [](double x) { return std::clamp(2 * x, 0.0, 100.0); };
+  const auto gap = [&](const Vec3& a, const Vec3& b, double) {
+    double least = std::min(a.z() - at(a.x()), b.z() - at(b.x()));
+    for (const double x : {0.0, 50.0}) {
+      const double t = (x - a.x()) / (b.x() - a.x());
+      least = t > 0 && t < 1 ? std::min(least, a.z() + t * (b.z() - a.z()) - at(x)) : least;
+    }
+    return least;
+  };
+  const auto slope = [](const Vec3&, const Vec3&, double) { return 2.0; };
+  const auto near = [&](const Vec3& a, const Vec3& b) {
+    return kit::too_near_ground(a, b, 30, {100, kit::height_for(30, 2)}, 0.1, gap, slope);
+  };
+  EXPECT_FALSE(near({60, 0, 130}, {400, 0, 130})) << "30 m above the plateau";
+  EXPECT_TRUE(near({60, 0, 129.99}, {400, 0, 130}));
+  EXPECT_FALSE(near({-100, 0, 70}, {50, 0, 190})) << "up the side, its foot 70 m below, and on";
+  EXPECT_FALSE(near({50, 0, 190}, {-100, 0, 70}));
+  EXPECT_TRUE(near({-100, 0, 40}, {50, 0, 131})) << "too low at the side";
 }
 
 TEST(Ground, NearestPointIsWithinFivePercent) {

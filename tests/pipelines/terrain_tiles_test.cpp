@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "altiplan/height_field.hpp"
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
@@ -45,12 +46,9 @@ class Tiles : public ::testing::Test {
     out << "ncols " << part.east - part.west << "\nnrows " << part.north - part.south
         << "\nxllcorner " << -84.5 + (part.west - 0.5) * kStep << "\nyllcorner "
         << 36.25 + (part.south - 0.5) * kStep << "\ncellsize " << kStep << "\n";
-    const Box box = model_->bounds();
     for (int j = part.north - 1; j >= part.south; --j) {
       for (int i = part.west; i < part.east; ++i) {
-        out << float(
-                   *model_->ground(box.max.x() * i / (kColumns - 1), box.max.y() * j / (kRows - 1)))
-            << ' ';
+        out << model_->height_field()->post(i, j) << ' ';
       }
       out << '\n';
     }

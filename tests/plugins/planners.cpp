@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A planner that does as it is told, well or badly; and one whose session keeps count.
+// A planner that does as it is told, well or badly.
 #include <chrono>
 #include <limits>
 #include <stdexcept>
@@ -122,42 +122,6 @@ class Told final : public Planner {
 
   Params params_;
 };
-
-/// Straight to the goal again at every update, by a session of its own.
-class Kept final : public Session {
- public:
-  explicit Kept(const Request& request) { head(request.start.position, request.goal.position); }
-
- private:
-  void head(const Vec3& from, const Vec3& to) {
-    result_.status = Status::solved;
-    result_.route = {from, to};
-    result_.counters = {{"expanded", 1}, {"calls", ++calls_}, {"changes", changes_}};
-  }
-  const PlanResult& do_result() const override { return result_; }
-  const PlanResult& do_update(const State& state, const Goal& goal, std::shared_ptr<const World>,
-                              std::span<const Change> changes, const Budget&) override {
-    changes_ += std::int64_t(changes.size());
-    head(state.position, goal.position);
-    return result_;
-  }
-  PlanResult result_;
-  std::int64_t calls_ = 0;
-  std::int64_t changes_ = 0;
-};
-
-class Keeping final : public Planner {
- public:
-  explicit Keeping(const NoParams&) {}
-
- private:
-  PlanResult do_plan(const Request& request) const override { return Kept(request).result(); }
-  std::unique_ptr<Session> do_begin(const Request& request) const override {
-    return std::make_unique<Kept>(request);
-  }
-  Traits do_traits() const override { return {}; }
-};
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "told", Told, Params, "does as it is told")
-ALTIPLAN_PLUGIN(Planner, "keeping", Keeping, NoParams, "straight, with a session of its own")

@@ -52,6 +52,8 @@ struct ALTIPLAN_API Site {
 };
 
 /// A layer of the world: terrain, buildings, zones, radars. Immutable; a solid, closed set.
+/// A place that is not finite is blocked, has a clearance of -infinity and no ground; the layer is
+/// not asked.
 ///
 /// Laws, held by every environment and tested by the conformance suite:
 ///  1. Pure: built from (parameters, Site) alone; const functions may run on many threads.
@@ -74,7 +76,7 @@ class ALTIPLAN_API Environment {
   /// Calls the sink once for each obstacle whose distance from p is at most `reach`.
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
-  std::optional<double> ground(double x, double y) const { return do_ground(x, y); }
+  std::optional<double> ground(double x, double y) const;
   /// Whether the layer brings a ground at all.
   bool has_ground() const { return do_has_ground(); }
   /// Least height of the leg above this layer's ground; -infinity where it has none below part of
@@ -82,7 +84,7 @@ class ALTIPLAN_API Environment {
   double ground_gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
   /// Greatest height of the leg above this layer's ground; +infinity where it has none below part
   /// of the leg.
-  double ground_gap_max(const Vec3& a, const Vec3& b) const { return do_ground_gap_max(a, b); }
+  double ground_gap_max(const Vec3& a, const Vec3& b) const;
   /// Steepest slope (rise over run) of this layer's ground within the horizontal box, an upper
   /// bound; infinite where it is not known or the ground has holes there.
   double ground_slope(const Box& box) const { return do_ground_slope(box); }

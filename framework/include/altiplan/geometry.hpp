@@ -58,7 +58,8 @@ struct Box {
 /// The box of the leg a–b.
 inline Box leg_box(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
-/// Angle between the horizontal projections of two directions, in [0, pi]; 0 where one is vertical.
+/// Angle between the horizontal projections of two directions, in [0, pi]; 0 where one is vertical,
+/// within kAngleTolerance.
 ALTIPLAN_API double turn_angle_horizontal(const Vec3& before, const Vec3& after);
 
 /// Angle between two directions in space, in [0, pi]; 0 where one has no length.

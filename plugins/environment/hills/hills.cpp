@@ -138,7 +138,7 @@ class Hills final : public Environment {
       return ground_.max_slope(middle.x(), middle.y(), half + within);
     };
     const double enough = kit::height_for(r - kLengthTolerance, ground_.max_slope());
-    return kit::too_near_ground(a, b, r, enough, kShortest, gap, slope);
+    return kit::too_near_ground(a, b, r, {ground_.top(), enough}, kShortest, gap, slope);
   }
 
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {

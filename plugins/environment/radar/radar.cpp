@@ -108,12 +108,23 @@ class Radar final : public Environment {
       return true;
     }
     // A flagged place must not depend on how it was found, else the answer would not be monotone
-    // in r; places nearer than the spare clearance need no look.
-    const double total = (b - a).norm();
+    // in r; places nearer than the spare clearance need no look, nor do those beyond the range.
+    const Vec3 way = b - a;
+    const double total = way.norm();
     const double count = std::max(1.0, std::ceil(total / kMaskedSlack));
-    for (double n = 0; n <= count;) {
+    double first = 0;
+    double last = count;
+    if (total > 0) {
+      const double middle = (at_ - a).dot(way) / total;
+      const double aside = (a + middle / total * way - at_).norm();
+      const double reach = range_ + r + kMaskedSlack;
+      const double half = std::sqrt(std::max(0.0, reach * reach - aside * aside));
+      first = std::max(0.0, std::floor((middle - half) / total * count));
+      last = std::min(count, std::ceil((middle + half) / total * count));
+    }
+    for (double n = first; n <= last;) {
       const double spare =
-          do_clearance(a + n / count * (b - a)) - (r - kLengthTolerance + kMaskedSlack / 2);
+          do_clearance(a + n / count * way) - (r - kLengthTolerance + kMaskedSlack / 2);
       if (spare < 0) {
         return true;
       }

@@ -120,7 +120,8 @@ class Terrain final : public Environment {
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
       return slope_near(from, to, within);
     };
-    return kit::too_near_ground(a, b, r, kit::height_for(r - kLengthTolerance, field_.max_slope()),
+    const double enough = kit::height_for(r - kLengthTolerance, field_.max_slope());
+    return kit::too_near_ground(a, b, r, {field_.max_height(), enough},
                                 std::max(field_.spacing()[0], field_.spacing()[1]), gap, slope);
   }
 
@@ -139,16 +140,18 @@ class Terrain final : public Environment {
     if (beyond >= keep) {
       return false;
     }
-    const double height = field_.gap(from, to);
     const double steepness = std::hypot(1, slope_near(from, to, r));
-    if (std::hypot(beyond, std::max(height, 0.0) / steepness) >= keep) {
+    // How far below the ground is, at least, for a place so high above it and above sea level.
+    const auto above = [&](double height, double z) {
+      return std::max({height / steepness, z - field_.max_height(), 0.0});
+    };
+    if (std::hypot(beyond, above(field_.gap(from, to), std::min(a.z(), b.z()))) >= keep) {
       return false;
     }
     const auto is_hit = [&](const Vec3& p, const Vec3& q) {
-      const double above = std::max(p.z() - ground_near(q.x(), q.y()), 0.0);
-      return std::hypot((p - q).norm(), above / steepness) < keep;
+      return std::hypot((p - q).norm(), above(p.z() - ground_near(q.x(), q.y()), p.z())) < keep;
     };
-    if (is_hit(a, from) || is_hit(b, to) || (b - a).norm() <= kInDoubt) {
+    if (is_hit(a, from) || is_hit(b, to) || (b - a).norm() <= kInDoubt / 2) {
       return true;
     }
     const Vec3 middle = (a + b) / 2;

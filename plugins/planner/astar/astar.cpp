@@ -59,7 +59,7 @@ struct Params {
        {"zero", Heuristic::zero}})
         .doc(
             "estimate of the way to go: octile is the length on an empty lattice; manhattan is "
-            "not admissible with 26 neighbours");
+            "not admissible with 26 neighbours, and octile with 6");
     f("weight_g", search.weight_g)
         .range(0, 1)
         .doc("weight of the travelled length in f, paper 002 eq. (10)");
@@ -77,6 +77,10 @@ class AStar final : public Planner {
   explicit AStar(const Params& params) : params_(params) {
     params_.search.neighbours =
         params_.neighbours == 26 ? Neighbourhood::all : Neighbourhood::faces;
+    if (params_.neighbours == 6 && params_.search.heuristic == Heuristic::manhattan) {
+      // On an empty lattice of faces the two are one; beside it the goal's last leg is straight.
+      params_.search.heuristic = Heuristic::octile;
+    }
   }
 
  private:
@@ -106,10 +110,9 @@ class AStar final : public Planner {
 
   Traits do_traits() const override {
     const astar::Settings& s = params_.search;
-    const double stretch =
-        s.heuristic == Heuristic::zero                                              ? 0
-        : s.heuristic == Heuristic::manhattan && s.neighbours == Neighbourhood::all ? std::sqrt(3.0)
-                                                                                    : 1.0;
+    const double stretch = s.heuristic == Heuristic::zero        ? 0
+                           : s.heuristic == Heuristic::manhattan ? std::sqrt(3.0)
+                                                                 : 1.0;
     Traits traits;
     traits.complete = true;
     traits.optimal = s.weight_g > 0 && stretch * s.weight_h <= s.weight_g;

@@ -202,7 +202,7 @@ class Search {
       const Cell o = kit::offset(d);
       const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
       const Vec3 there = lattice_.position(to);
-      if (limited_length_ && g + (goal_ - there).norm() > longest_) {
+      if (limited_length_ && g + (goal_ - there).norm() - request_.goal.tolerance_m > longest_) {
         too_long_ = true;
         continue;
       }
@@ -247,7 +247,8 @@ class Search {
         return;
       }
     }
-    if (fallback_ == kNone && request_.goal.reached_at(here) && node.g <= longest_) {
+    if (node.g < fallback_g_ && node.g <= longest_ && request_.goal.reached_at(here)) {
+      fallback_g_ = node.g;
       fallback_ = index;
     }
   }
@@ -359,6 +360,7 @@ class Search {
   std::vector<kit::Lattice::Link> ends_;
   double goal_g_ = kInfinity;
   std::uint32_t goal_parent_ = kNone;
+  double fallback_g_ = kInfinity;
   std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
   std::uint64_t expanded_ = 0;
   std::int64_t generated_ = 0;

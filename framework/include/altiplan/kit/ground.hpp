@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "altiplan/voxel_grid.hpp"
@@ -66,17 +68,37 @@ inline double height_for(double distance, double slope) {
   return distance > 0 ? distance * std::hypot(1, slope) : distance;
 }
 
+/// The part of the leg below the height; none where all of it is at least that high.
+inline std::optional<std::pair<Vec3, Vec3>> part_below(const Vec3& a, const Vec3& b, double z) {
+  if (std::min(a.z(), b.z()) >= z) {
+    return std::nullopt;
+  }
+  if (std::max(a.z(), b.z()) <= z) {
+    return std::pair(a, b);
+  }
+  const Vec3 at = a + (z - a.z()) / (b.z() - a.z()) * (b - a);
+  return a.z() < z ? std::pair(a, at) : std::pair(at, b);
+}
+
+/// What is known of a whole ground: no part is higher than `top`, and a height of `enough` above it
+/// serves everywhere.
+struct GroundBounds {
+  double top;
+  double enough;
+};
+
 /// Whether the leg is lower than the ground's slope allows for a sphere of radius r: true wherever
 /// the ground is nearer than r - 1e-6 m. The leg is halved, down to parts of `shortest` metres, for
-/// as long as a part may be free by the slope near it. gap(a, b, enough): as
-/// Environment::ground_gap; slope(a, b, r): at least the steepest within r of the leg, and no less
-/// than for any part of it; enough: the height that serves everywhere.
+/// as long as a part may be free by the slope near it; what lies r above the top is free for
+/// certain. gap(a, b, enough): as Environment::ground_gap; slope(a, b, r): at least the steepest
+/// within r of the leg, and no less than for any part of it.
 template <class Gap, class Slope>
-bool too_near_ground(const Vec3& a, const Vec3& b, double r, double enough, double shortest,
-                     const Gap& gap, const Slope& slope) {
+bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds& ground,
+                     double shortest, const Gap& gap, const Slope& slope) {
   const double keep = r - kLengthTolerance;
-  const double height = gap(a, b, enough);
-  if (height >= enough) {
+  const auto low = part_below(a, b, ground.top + keep);
+  const double height = low ? gap(low->first, low->second, ground.enough) : ground.enough;
+  if (height >= ground.enough) {
     return false;
   }
   const double need = height_for(keep, slope(a, b, r));
@@ -87,7 +109,7 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, double enough, doub
     return true;
   }
   const Vec3 middle = (a + b) / 2;
-  const double least = std::min(enough, need);
+  const GroundBounds least{ground.top, std::min(ground.enough, need)};
   return too_near_ground(a, middle, r, least, shortest, gap, slope) ||
          too_near_ground(middle, b, r, least, shortest, gap, slope);
 }

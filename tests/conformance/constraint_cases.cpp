@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "worlds.hpp"
+
+namespace altiplan::conformance {
+namespace {
+
+constexpr const char* kPure = "Constraint law 1: pure and const, any number of threads may ask";
+constexpr const char* kTightens = "Constraint law 2: tighten only ever makes a limit stricter";
+constexpr const char* kLegAlone =
+    "Constraint law 3: admits depends on the leg alone, and is monotone under the parameter";
+constexpr const char* kViolations =
+    "Constraint law 4: violations is empty if and only if the route keeps the rule";
+constexpr const char* kNothing = "Suite: there must be something to judge";
+
+struct Bench {
+  Factory<Constraint> make;
+  Factory<Constraint> tighter;
+  Options options;
+};
+
+/// Limits as numbers of which less is stricter.
+constexpr std::array kLimitNames{"min_clearance",
+                                 "min_ground_clearance",
+                                 "min_leg",
+                                 "min_turn_radius",
+                                 "max_leg",
+                                 "max_turn_horizontal",
+                                 "max_turn_space",
+                                 "max_climb",
+                                 "max_route_length",
+                                 "lowest above sea",
+                                 "highest above sea",
+                                 "lowest above ground",
+                                 "highest above ground"};
+using Figures = std::array<double, kLimitNames.size()>;
+
+Figures figures(const Limits& limits) {
+  Figures all{-limits.min_clearance,
+              -limits.min_ground_clearance.value_or(-kInfinity),
+              -limits.min_leg,
+              -limits.min_turn_radius,
+              limits.max_leg,
+              limits.max_turn_horizontal,
+              limits.max_turn_space,
+              limits.max_climb,
+              limits.max_route_length,
+              kInfinity,
+              kInfinity,
+              kInfinity,
+              kInfinity};
+  for (const AltitudeBand& band : limits.altitude) {
+    const std::size_t at = band.datum == AltitudeBand::Datum::sea ? 9 : 11;
+    all[at] = std::min(all[at], -band.min);
+    all[at + 1] = std::min(all[at + 1], band.max);
+  }
+  return all;
+}
+
+/// The first limit that is not at least as strict in `now`; "" where all are.
+std::string loosened(const Limits& before, const Limits& now) {
+  const Figures was = figures(before);
+  const Figures is = figures(now);
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    if (!(is[i] <= was[i])) {
+      return std::string(kLimitNames[i]) + " went from " + text(std::abs(was[i])) + " to " +
+             text(std::abs(is[i]));
+    }
+  }
+  return "";
+}
+
+/// From far stricter than any constraint to far looser, and the defaults in between.
+Limits random_limits(RandomStream& random) {
+  Limits limits;
+  const auto some = [&] { return random.uniform() < 0.5; };
+  const auto metres = [&] { return std::pow(10, random.uniform(-1, 5)); };
+  limits.min_clearance = some() ? metres() : 0;
+  if (some()) {
+    limits.min_ground_clearance = metres();
+  }
+  if (some()) {
+    const double low = metres() - metres();
+    const auto datum = some() ? AltitudeBand::Datum::sea : AltitudeBand::Datum::ground;
+    limits.altitude.push_back({datum, low, low + metres()});
+  }
+  limits.min_leg = some() ? metres() : 0;
+  limits.max_leg = some() ? metres() : kInfinity;
+  limits.max_turn_horizontal = random.uniform(0, kPi);
+  limits.max_turn_space = random.uniform(0, kPi);
+  limits.min_turn_radius = some() ? metres() : 0;
+  limits.max_climb = random.uniform(0, kPi / 2);
+  limits.max_route_length = some() ? metres() : kInfinity;
+  return limits;
+}
+
+/// Over ground, among solids, of the size in which constraints are written: hundreds of metres.
+Scene scene_of(std::uint64_t seed) {
+  Scene scene = random_scene(100, seed, Flight::space);
+  scene.ridge = std::make_shared<Ridge>(1000, 120, 0.2);
+  scene.request.world = std::make_shared<const World>(
+      scene.request.world->with({"ridge", "conformance", scene.ridge, true}));
+  return scene;
+}
+
+Vec3 direction(RandomStream& random) {
+  return Vec3(random.normal(), random.normal(), 0.3 * random.normal());
+}
+
+Leg random_leg(RandomStream& random) {
+  Leg leg;
+  const double scale = std::pow(10, random.uniform(-1, 4));
+  leg.from = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)) * 3000;
+  leg.to = leg.from + scale * direction(random);
+  if (random.uniform() < 0.6) {
+    leg.before = leg.from + scale * direction(random);
+  }
+  if (random.uniform() < 0.05) {
+    leg.to = leg.from;
+  }
+  return leg;
+}
+
+Route random_route(RandomStream& random, const Scene& scene) {
+  Route route{scene.request.start.position};
+  const auto count = random.integer(0, 8);
+  for (std::int64_t i = 0; i < count; ++i) {
+    route.push_back(random.uniform() < 0.1 ? route.back() : random.in(scene.request.volume));
+  }
+  route.push_back(scene.request.goal.position);
+  return route;
+}
+
+std::string text(const Leg& leg) {
+  return "the leg " + conformance::text(leg.from) + " to " + conformance::text(leg.to) +
+         (leg.before ? " after " + conformance::text(*leg.before) : "");
+}
+
+using conformance::text;
+
+bool equal_violations(const std::vector<Violation>& a, const std::vector<Violation>& b) {
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const Violation& x, const Violation& y) {
+        return x.at == y.at && x.value == y.value && x.limit == y.limit && x.message == y.message;
+      });
+}
+
+/// All that a constraint answers to a fixed set of questions.
+struct Answers {
+  std::vector<Figures> limits;
+  std::vector<bool> admitted;
+  std::vector<std::vector<Violation>> violations;
+};
+
+Answers ask(const Constraint& constraint, const Bench& bench, bool backward = false) {
+  Answers answers;
+  for (int n = 0; n < bench.options.rounds; ++n) {
+    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n));
+    RandomStream random = RandomStream(bench.options.seed).sub("ask", std::uint64_t(n));
+    Limits limits = random_limits(random);
+    constraint.tighten(limits, scene.request);
+    answers.limits.push_back(figures(limits));
+    std::vector<Leg> legs(50);
+    std::generate(legs.begin(), legs.end(), [&] { return random_leg(random); });
+    std::vector<bool> admitted(legs.size());
+    for (std::size_t i = 0; i < legs.size(); ++i) {
+      const std::size_t at = backward ? legs.size() - 1 - i : i;
+      admitted[at] = constraint.admits(legs[at]);
+    }
+    answers.admitted.insert(answers.admitted.end(), admitted.begin(), admitted.end());
+    for (int k = 0; k < 10; ++k) {
+      answers.violations.push_back(
+          constraint.violations(random_route(random, scene), scene.request));
+    }
+  }
+  return answers;
+}
+
+void pure(const Bench& bench, Report& report) {
+  const auto constraint = bench.make();
+  const Answers first = ask(*constraint, bench);
+  const auto same = [&](const Answers& again, const char* which) {
+    report.expect(
+        first.limits == again.limits && std::equal(first.violations.begin(), first.violations.end(),
+                                                   again.violations.begin(), equal_violations),
+        kPure, [&] {
+          return std::string("the constraint's answers differ ") + which + ", seed " +
+                 std::to_string(bench.options.seed);
+        });
+    report.expect(first.admitted == again.admitted, kLegAlone, [&] {
+      return std::string("what the constraint admits differs ") + which + ", seed " +
+             std::to_string(bench.options.seed);
+    });
+  };
+  same(ask(*constraint, bench), "at the second asking");
+  same(ask(*constraint, bench, true), "when legs are asked for from the last to the first");
+  same(ask(*bench.make(), bench), "between two objects");
+  Answers one;
+  Answers other;
+  in_two_threads([&] { one = ask(*constraint, bench); }, [&] { other = ask(*constraint, bench); });
+  same(one, "with another thread beside");
+  same(other, "with another thread beside");
+}
+
+void tightens(const Bench& bench, Report& report) {
+  const auto constraint = bench.make();
+  for (int n = 0; n < 50 * bench.options.rounds; ++n) {
+    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    RandomStream random = RandomStream(bench.options.seed).sub("limits", std::uint64_t(n));
+    const Limits before = random_limits(random);
+    Limits once = before;
+    constraint->tighten(once, scene.request);
+    const std::string limits =
+        "limits " + std::to_string(n) + " of seed " + std::to_string(bench.options.seed) + ": ";
+    report.expect(loosened(before, once).empty(), kTightens,
+                  [&] { return limits + "the constraint loosens one: " + loosened(before, once); });
+    Limits twice = once;
+    constraint->tighten(twice, scene.request);
+    report.expect(figures(twice) == figures(once), kTightens, [&] {
+      return limits + "tightened again they change once more: " + loosened(twice, once);
+    });
+    if (bench.tighter) {
+      Limits strict = before;
+      bench.tighter()->tighten(strict, scene.request);
+      report.expect(loosened(once, strict).empty(), kTightens, [&] {
+        return limits + "with the stricter parameter a limit is looser: " + loosened(once, strict);
+      });
+    }
+  }
+}
+
+void legs_and_routes(const Bench& bench, Report& report) {
+  const auto constraint = bench.make();
+  const auto stricter = bench.tighter ? bench.tighter() : nullptr;
+  bool says_anything = false;
+  for (int n = 0; n < 20 * bench.options.rounds; ++n) {
+    RandomStream random = RandomStream(bench.options.seed).sub("legs", std::uint64_t(n));
+    for (int k = 0; k < 20; ++k) {
+      const Leg leg = random_leg(random);
+      const bool admitted = constraint->admits(leg);
+      says_anything |= !admitted;
+      if (stricter != nullptr) {
+        report.expect(admitted || !stricter->admits(leg), kLegAlone, [&] {
+          return text(leg) + " is refused, and admitted with the stricter parameter";
+        });
+      }
+    }
+    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    const Route route = random_route(random, scene);
+    const auto found = constraint->violations(route, scene.request);
+    says_anything |= !found.empty();
+    for (const Violation& violation : found) {
+      report.expect(violation.at < route.size(), kViolations, [&] {
+        return "a violation at waypoint " + std::to_string(violation.at) + " of " + text(route);
+      });
+      report.expect(std::isfinite(violation.limit) && !std::isnan(violation.value) &&
+                        (violation.value != violation.limit || violation.value == 0),
+                    kViolations, [&] {
+                      return "a violation whose value, " + text(violation.value) +
+                             ", does not exceed its limit, " + text(violation.limit) + ", of " +
+                             text(route);
+                    });
+      report.expect(!violation.message.empty(), kViolations,
+                    [&] { return "a violation without a message, of " + text(route); });
+    }
+    if (stricter != nullptr) {
+      report.expect(
+          found.empty() || !stricter->violations(route, scene.request).empty(), kViolations, [&] {
+            return text(route) + " breaks the rule, and keeps it with the stricter parameter";
+          });
+    }
+    Limits limits;
+    constraint->tighten(limits, scene.request);
+    says_anything |= figures(limits) != figures(Limits{});
+  }
+  report.expect(says_anything, kNothing, [] {
+    return "the constraint tightened nothing, refused no leg and found no violation";
+  });
+}
+
+/// What the judge says with the constraint is what the constraint says: a route that keeps the
+/// limits, and whose legs are admitted, is broken where violations says so and nowhere else.
+void agrees_with_the_judge(const Bench& bench, Report& report) {
+  const std::shared_ptr<const Constraint> constraint = bench.make();
+  for (int n = 0; n < 20 * bench.options.rounds; ++n) {
+    Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    RandomStream random = RandomStream(bench.options.seed).sub("judge", std::uint64_t(n));
+    const Route route = random_route(random, scene);
+    Request& request = scene.request;
+    request.world = std::make_shared<const World>();  // only the rule speaks
+    request.vehicle.radius_m = 0;
+    request.limits = Limits{};
+    if (!check(route, request).ok()) {
+      continue;
+    }
+    const bool tracks_only = constraint->applies_to() == AppliesTo::track;
+    apply_constraints(request, {{"rule", constraint}},
+                      tracks_only ? AppliesTo::track : AppliesTo::route);
+    bool admitted = true;
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+      const auto before = i > 0 ? std::optional(route[i - 1]) : std::nullopt;
+      admitted = admitted && constraint->admits({before, route[i], route[i + 1]});
+    }
+    Request limits_alone = request;
+    limits_alone.constraints.clear();
+    const bool kept = check(route, limits_alone).ok() && admitted;
+    const bool path_kept = constraint->violations(route, request).empty();
+    report.expect(check(route, request).ok() == (kept && path_kept), kViolations,
+                  [&] { return text(route) + ": the judge and the constraint disagree"; });
+  }
+}
+
+void odd_questions(const Bench& bench, Report&) {
+  const auto constraint = bench.make();
+  const Scene scene = scene_of(bench.options.seed);
+  const Vec3 p = scene.request.start.position;
+  for (const Route& route : {Route{}, Route{p}, Route{p, p}, Route{p, p, p},
+                             Route{p, p + Vec3(0, 0, 1e6)}, Route{p, p + Vec3(1e-9, 0, 0)}}) {
+    (void)constraint->violations(route, scene.request);
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+      (void)constraint->admits({std::nullopt, route[i], route[i + 1]});
+      (void)constraint->admits({route[i], route[i], route[i + 1]});
+    }
+  }
+  Request bare;
+  bare.world = std::make_shared<const World>();
+  Limits limits;
+  constraint->tighten(limits, bare);
+}
+}  // namespace
+
+Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter,
+                       const Options& options) {
+  const Bench bench{make, tighter, options};
+  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+    return make_case(name, kPure, [bench, body](Report& report) { body(bench, report); });
+  };
+  return {made("answers_do_not_depend_on_history_or_threads", pure),
+          made("tighten_never_loosens", tightens), made("legs_and_routes", legs_and_routes),
+          made("agrees_with_the_judge", agrees_with_the_judge),
+          made("odd_questions", odd_questions)};
+}
+}  // namespace altiplan::conformance

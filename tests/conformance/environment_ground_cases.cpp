@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/world.hpp"
+#include "probe.hpp"
+
+namespace altiplan::conformance {
+namespace {
+
+using Bench = EnvironmentBench;
+
+void without_ground(const Environment& layer, Probe& probe, Report& report) {
+  for (int n = 0; n < 50; ++n) {
+    const Vec3 p = probe.point();
+    report.expect(!layer.ground(p.x(), p.y()) && layer.height_field() == nullptr,
+                  kEnvironmentGround,
+                  [&] { return "has_ground is false, and there is ground at " + text(p); });
+  }
+}
+
+void points(const Bench& bench, Report& report) {
+  Probe probe(bench, "ground");
+  const Environment& layer = probe.layer();
+  if (!layer.has_ground()) {
+    without_ground(layer, probe, report);
+    return;
+  }
+  const HeightField* field = layer.height_field();
+  int found = 0;
+  for (int n = 0; n < 300 * bench.options.rounds; ++n) {
+    Vec3 p = probe.point();
+    const auto ground = layer.ground(p.x(), p.y());
+    if (field != nullptr) {
+      const auto of_field = field->at(p.x(), p.y());
+      report.expect(of_field == ground, kEnvironmentGround, [&] {
+        return "at " + text(p) + " ground is " + text(ground.value_or(kInfinity)) +
+               ", the height field's " + text(of_field.value_or(kInfinity));
+      });
+    }
+    if (!ground) {
+      report.expect(!layer.blocked(p, p, 0), kEnvironmentGround,
+                    [&] { return "there is no ground below " + text(p) + ", which is blocked"; });
+      report.expect(layer.ground_gap(p, p) == -kInfinity && layer.ground_gap_max(p, p) == kInfinity,
+                    kEnvironmentGround, [&] {
+                      return "there is no ground below " + text(p) + ", and ground_gap is " +
+                             text(layer.ground_gap(p, p)) + ", ground_gap_max " +
+                             text(layer.ground_gap_max(p, p));
+                    });
+      continue;
+    }
+    ++found;
+    for (const double gap : {layer.ground_gap(p, p), layer.ground_gap_max(p, p)}) {
+      report.expect(std::abs(gap - (p.z() - *ground)) <= kLengthTolerance, kEnvironmentGround, [&] {
+        return "ground at " + text(p) + " is " + text(*ground) + ", the gap " + text(gap);
+      });
+    }
+    p.z() = *ground - 1;
+    report.expect(layer.blocked(p, p, 0), kEnvironmentGround,
+                  [&] { return text(p) + " is 1 m below ground, and free"; });
+  }
+  report.expect(found > 0, kEnvironmentGround, [&] {
+    return "has_ground is true, and no ground was found between " + text(probe.volume().min) +
+           " and " + text(probe.volume().max);
+  });
+}
+
+void legs(const Bench& bench, Report& report) {
+  Probe probe(bench, "ground legs");
+  const Environment& layer = probe.layer();
+  if (!layer.has_ground()) {
+    return;
+  }
+  constexpr int kSamples = 200;
+  for (int n = 0; n < 40 * bench.options.rounds; ++n) {
+    const Probe::AskedLeg leg = probe.leg();
+    const auto& [a, b, r] = leg;
+    double least = kInfinity;
+    double most = -kInfinity;
+    bool whole = true;
+    for (int k = 0; k <= kSamples; ++k) {
+      const Vec3 p = k == kSamples ? b : Vec3(a + (b - a) * k / kSamples);
+      const auto ground = layer.ground(p.x(), p.y());
+      whole = whole && ground;
+      if (ground) {
+        least = std::min(least, p.z() - *ground);
+        most = std::max(most, p.z() - *ground);
+      }
+    }
+    const double gap = layer.ground_gap(a, b);
+    const double gap_max = layer.ground_gap_max(a, b);
+    if (!whole) {
+      report.expect(gap == -kInfinity && gap_max == kInfinity, kEnvironmentGround, [&] {
+        return text(leg) + " has no ground below part of it, and ground_gap is " + text(gap) +
+               ", ground_gap_max " + text(gap_max);
+      });
+      continue;
+    }
+    if (gap == -kInfinity || gap_max == kInfinity) {
+      continue;  // a hole between two samples
+    }
+    // Between samples the height changes at most by the leg's own slope and the ground's.
+    const double steepest = layer.ground_slope(leg_box(a, b));
+    const double step = (b - a).norm() / kSamples;
+    const double between = (1 + steepest) * step + kLengthTolerance;
+    report.expect(gap <= least + kLengthTolerance && gap >= least - between, kEnvironmentGround,
+                  [&] {
+                    return text(leg) + ": ground_gap is " + text(gap) + ", the samples' least " +
+                           text(least) + ", the ground's slope " + text(steepest);
+                  });
+    report.expect(
+        gap_max >= most - kLengthTolerance && gap_max <= most + between, kEnvironmentGround, [&] {
+          return text(leg) + ": ground_gap_max is " + text(gap_max) + ", the samples' greatest " +
+                 text(most) + ", the ground's slope " + text(steepest);
+        });
+    const double enough = gap + probe.random().uniform(-1, 1) * (1 + std::abs(gap));
+    const double shown = layer.ground_gap(a, b, enough);
+    const bool right = gap >= enough ? shown >= enough : std::abs(shown - gap) <= kLengthTolerance;
+    report.expect(right, kEnvironmentGround, [&] {
+      return text(leg) + ": ground_gap is " + text(gap) + ", and " + text(shown) + " where " +
+             text(enough) + " is enough";
+    });
+  }
+}
+
+void slopes(const Bench& bench, Report& report) {
+  Probe probe(bench, "slopes");
+  const Environment& layer = probe.layer();
+  for (int n = 0; n < 150 * bench.options.rounds && layer.has_ground(); ++n) {
+    const auto [a, b, r] = probe.leg();
+    const auto ground_a = layer.ground(a.x(), a.y());
+    const auto ground_b = layer.ground(b.x(), b.y());
+    const double run = std::hypot(b.x() - a.x(), b.y() - a.y());
+    if (!ground_a || !ground_b || run < 1e-3) {
+      continue;
+    }
+    const double rise = std::abs(*ground_b - *ground_a);
+    const double steepest = layer.ground_slope(leg_box(a, b));
+    report.expect(rise <= steepest * run * (1 + 1e-9) + kLengthTolerance, kEnvironmentGround, [&] {
+      return "ground rises " + text(rise) + " m over " + text(run) + " m from " + text(a) + " to " +
+             text(b) + ", ground_slope says " + text(steepest);
+    });
+  }
+}
+/// Climbs to where the ground is steep, by steps of chance that grow smaller.
+void steepest_slopes(const Bench& bench, Report& report) {
+  Probe probe(bench, "steepest");
+  const Environment& layer = probe.layer();
+  const double apart = std::max(1e-6 * probe.size(), 1e-3);
+  // The rise along the gradient: what ground_slope promises holds for it, whichever cells it meets.
+  const auto slope = [&](double x, double y) {
+    const auto at = layer.ground(x, y);
+    const auto east = layer.ground(x + apart, y);
+    const auto north = layer.ground(x, y + apart);
+    if (!at || !east || !north) {
+      return 0.0;
+    }
+    const double length = std::hypot(*east - *at, *north - *at);
+    const auto up =
+        layer.ground(x + apart * (*east - *at) / length, y + apart * (*north - *at) / length);
+    return length > 0 && up ? std::abs(*up - *at) / apart : 0.0;
+  };
+  for (int n = 0; n < 2 * bench.options.rounds && layer.has_ground(); ++n) {
+    Vec3 best = probe.random().in(probe.volume());
+    double most = slope(best.x(), best.y());
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 next = probe.around(best, probe.size() * std::pow(10, -0.02 * k));
+      const double there = slope(next.x(), next.y());
+      if (there > most) {
+        best = next;
+        most = there;
+      }
+    }
+    const Box box{best - Vec3::Constant(2 * apart), best + Vec3::Constant(2 * apart)};
+    report.expect(most <= layer.ground_slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
+                  kEnvironmentGround, [&] {
+                    return "at " + text(best) + " the ground's slope is " + text(most) +
+                           ", ground_slope says " + text(layer.ground_slope(box));
+                  });
+  }
+}
+}  // namespace
+
+Cases environment_ground_cases(const EnvironmentBench& bench) {
+  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+    return make_case(name, kEnvironmentPure,
+                     [bench, body](Report& report) { body(bench, report); });
+  };
+  return {made("ground_at_points", points), made("ground_along_legs", legs),
+          made("ground_slopes", slopes), made("steepest_slopes", steepest_slopes)};
+}
+}  // namespace altiplan::conformance

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "worlds.hpp"
+
+namespace altiplan::conformance {
+
+Box Balls::do_bounds() const {
+  Box box = Box::empty();
+  for (const Sphere& ball : balls_) {
+    box = box.united(Box{ball.centre, ball.centre}.grown(ball.radius));
+  }
+  return box;
+}
+
+double Balls::do_clearance(const Vec3& p) const {
+  double least = kInfinity;
+  for (const Sphere& ball : balls_) {
+    least = std::min(least, (p - ball.centre).norm() - ball.radius);
+  }
+  return least;
+}
+
+bool Balls::do_blocked(const Vec3& a, const Vec3& b, double r) const {
+  return std::any_of(balls_.begin(), balls_.end(), [&](const Sphere& ball) {
+    return point_leg_distance(ball.centre, a, b) - ball.radius < r - kLengthTolerance;
+  });
+}
+
+void Balls::do_near(const Vec3& p, double reach, const NearSink& sink) const {
+  for (std::size_t i = 0; i < balls_.size(); ++i) {
+    const Vec3 off = p - balls_[i].centre;
+    const double distance = off.norm() - balls_[i].radius;
+    if (distance <= reach) {
+      const Vec3 normal = off.norm() > 0 ? Vec3(off.normalized()) : Vec3(0, 0, 1);
+      sink({balls_[i].centre + normal * balls_[i].radius, distance, normal, int(i)});
+    }
+  }
+}
+
+namespace {
+using Vec2 = std::array<double, 2>;
+
+/// Distance between a point and the side of the ridge that goes down from its crest to the left
+/// (sign -1) or right, in the plane across it.
+double side_distance(const Vec2& p, double slope, double sign) {
+  const double scale = 1 / std::sqrt(1 + slope * slope);
+  const Vec2 down{sign * scale, -slope * scale};
+  const double along = std::max(0.0, p[0] * down[0] + p[1] * down[1]);
+  return std::hypot(p[0] - along * down[0], p[1] - along * down[1]);
+}
+}  // namespace
+
+Box Ridge::do_bounds() const {
+  Box box;
+  box.max.z() = top_;
+  return box;
+}
+
+double Ridge::do_clearance(const Vec3& p) const {
+  const Vec2 at{p.x() - x_, p.z() - top_};
+  const double distance = std::min(side_distance(at, slope_, -1), side_distance(at, slope_, 1));
+  return p.z() < height(p.x()) ? -distance : distance;
+}
+
+bool Ridge::do_blocked(const Vec3& a, const Vec3& b, double r) const {
+  double least = std::min(do_clearance(a), do_clearance(b));
+  const double t = a.x() == b.x() ? -1 : (x_ - a.x()) / (b.x() - a.x());
+  if (t > 0 && t < 1) {
+    const double over = a.z() + t * (b.z() - a.z()) - top_;  // of the leg over the crest
+    const Vec3 flat_a(a.x(), 0, a.z());
+    const Vec3 flat_b(b.x(), 0, b.z());
+    const double crest = point_leg_distance({x_, 0, top_}, flat_a, flat_b);
+    least = std::min(least, over < 0 ? over : crest);
+  }
+  return least < r - kLengthTolerance;
+}
+
+double Ridge::do_ground_gap(const Vec3& a, const Vec3& b, double) const {
+  double least = std::min(a.z() - height(a.x()), b.z() - height(b.x()));
+  const double t = a.x() == b.x() ? -1 : (x_ - a.x()) / (b.x() - a.x());
+  if (t > 0 && t < 1) {
+    least = std::min(least, a.z() + t * (b.z() - a.z()) - top_);
+  }
+  return least;
+}
+
+double Ridge::do_ground_gap_max(const Vec3& a, const Vec3& b) const {
+  return std::max(a.z() - height(a.x()), b.z() - height(b.x()));
+}
+
+double Watched::do_clearance(const Vec3& p) const {
+  asked_();
+  return inner_->clearance(p);
+}
+bool Watched::do_blocked(const Vec3& a, const Vec3& b, double r) const {
+  asked_();
+  return inner_->blocked(a, b, r);
+}
+void Watched::do_near(const Vec3& p, double reach, const NearSink& sink) const {
+  asked_();
+  inner_->near(p, reach, sink);
+}
+void Watched::do_rasterize(VoxelGrid& grid) const {
+  asked_();
+  inner_->rasterize(grid);
+}
+}  // namespace altiplan::conformance

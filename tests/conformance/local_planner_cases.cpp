@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+#include "worlds.hpp"
+
+namespace altiplan::conformance {
+namespace {
+
+constexpr const char* kContinues = "Pilot law 1: continues from the observed state";
+constexpr const char* kTimeAndSpeed =
+    "Pilot law 2: 0 < next.time - state.time <= max_dt, and the speed kept is the vehicle's";
+constexpr const char* kNoAllocation = "Pilot law 3: no allocation in a step";
+constexpr const char* kEqualSteps =
+    "Pilot law 4: equal observations in equal order give equal steps";
+constexpr const char* kReach = "Pilot::reach_m: obstacles farther away do not move it";
+constexpr const char* kArrived = "PilotStep: arrived means within the goal's tolerance";
+constexpr const char* kOpen = "Pilot: arrives in an open world";
+constexpr const char* kNotThrough =
+    "Pilot: a step that says flying does not lead through an obstacle of the observed world";
+constexpr const char* kLevel = "Planner trait `plane`: level flight stays on its level";
+constexpr const char* kNoThrow = "Pilot: being stuck is an outcome, never an exception";
+
+struct Bench {
+  Factory<LocalPlanner> make;
+  Options options;
+
+  double reach() const {
+    const double reach = make()->begin(flight(nullptr))->reach_m();
+    return std::isfinite(reach) && reach > 0 ? reach : 10 * options.unit_m;
+  }
+  /// Eastward, 8 reaches far, a hundredth of the reach a second; scaled by `reach` itself while
+  /// that is not known.
+  Request flight(std::shared_ptr<const World> world, double reach = 3000) const {
+    Request request;
+    request.world = world != nullptr ? std::move(world) : std::make_shared<const World>();
+    request.start.position = {0, 0, reach};
+    request.goal.position = {8 * reach, 0.5 * reach, 1.1 * reach};
+    request.goal.tolerance_m = 0.01 * reach;
+    request.volume = {{-4 * reach, -6 * reach, 0}, {12 * reach, 6 * reach, 3 * reach}};
+    request.vehicle.speed_mps = 0.01 * reach;
+    request.vehicle.radius_m = request.limits.min_clearance = 0.001 * reach;
+    request.random = RandomStream(options.seed);
+    return request;
+  }
+};
+
+std::shared_ptr<const World> balls(std::vector<Sphere> all) {
+  return std::make_shared<const World>(
+      World().with({"balls", "conformance", std::make_shared<Balls>(std::move(all)), true}));
+}
+
+/// Balls beside and across the straight way, none within half a reach of its ends.
+std::vector<Sphere> drawn(std::uint64_t seed, const Request& request, double reach) {
+  RandomStream random = RandomStream(seed).sub("balls");
+  std::vector<Sphere> all;
+  while (all.size() < 8) {
+    const Sphere ball{{random.uniform(0, 8) * reach, random.uniform(-1.5, 1.5) * reach,
+                       random.uniform(0, 2) * reach},
+                      random.uniform(0.05, 0.5) * reach};
+    const auto far = [&](const Vec3& p) {
+      return (p - ball.centre).norm() > ball.radius + reach / 2;
+    };
+    if (far(request.start.position) && far(request.goal.position)) {
+      all.push_back(ball);
+    }
+  }
+  return all;
+}
+
+Observation first_observation(const Request& request) {
+  Observation seen;
+  seen.state = request.start;
+  seen.local_target = request.goal.position;
+  seen.goal = request.goal;
+  seen.rest = std::span(&request.goal.position, 1);
+  seen.world = request.world.get();
+  return seen;
+}
+
+double top_speed(const Vehicle& vehicle) {
+  double top = vehicle.speed_mps;
+  for (const SpeedNear& near : vehicle.speed_near) {
+    top = std::max(top, near.speed_mps);
+  }
+  return top;
+}
+
+using conformance::text;
+
+std::string text(const Observation& seen) {
+  return "observed at " + text(seen.state.position) + ", velocity " + text(seen.state.velocity) +
+         ", after " + text(seen.state.time_s) + " s";
+}
+
+/// Holds a step to laws 1 and 2, and to its own word.
+void judge(Report& report, const PilotStep& step, const Observation& seen, const Request& request) {
+  const double dt = step.next.time_s - seen.state.time_s;
+  if (step.outcome == PilotStep::Outcome::stuck) {
+    return;
+  }
+  report.expect(dt > 0 && dt <= seen.max_dt_s * (1 + 1e-9), kTimeAndSpeed, [&] {
+    return text(seen) + ": the pilot's step takes " + text(dt) + " s of at most " +
+           text(seen.max_dt_s) + " s";
+  });
+  const double way = (step.next.position - seen.state.position).norm();
+  const double most = top_speed(request.vehicle) * dt;
+  // A pilot that goes on from its own last answer seems to leap from where it was put.
+  const bool leaps = way > 3 * most + kLengthTolerance;
+  report.expect(
+      way <= most * (1 + 1e-9) + kLengthTolerance, leaps ? kContinues : kTimeAndSpeed, [&] {
+        return text(seen) + ": the pilot moves " + text(way) + " m in " + text(dt) + " s to " +
+               text(step.next.position) + ", the vehicle's speed allows " + text(most) + " m";
+      });
+  report.expect(step.next.velocity.norm() <= top_speed(request.vehicle) * (1 + 1e-9) + 1e-9,
+                kTimeAndSpeed, [&] {
+                  return text(seen) + ": the pilot's velocity is " + text(step.next.velocity) +
+                         ", the vehicle flies " + text(top_speed(request.vehicle)) + " m/s";
+                });
+  report.expect(
+      step.outcome != PilotStep::Outcome::arrived || seen.goal.reached_at(step.next.position),
+      kArrived, [&] {
+        return text(seen) + ": the pilot says arrived at " + text(step.next.position) + ", " +
+               text((step.next.position - seen.goal.position).norm()) + " m from the goal";
+      });
+  if (request.level_m) {
+    report.expect(std::abs(step.next.position.z() - *request.level_m) <= kLengthTolerance, kLevel,
+                  [&] { return text(seen) + ": the pilot goes to " + text(step.next.position); });
+  }
+}
+
+/// A step; what Pilot::step refuses of it is a finding, and ends the flight.
+PilotStep step_of(Pilot& pilot, const Observation& seen, Report& report) {
+  try {
+    return pilot.step(seen);
+  } catch (const PluginError& error) {
+    report.add(kTimeAndSpeed, text(seen) + ": " + error.what());
+    return {seen.state, PilotStep::Outcome::stuck, "broke a law"};
+  }
+}
+
+/// The step's leg, by dense samples: through is through, whatever clearance was asked for.
+void judge_way(Report& report, const PilotStep& step, const Observation& seen) {
+  if (step.outcome == PilotStep::Outcome::stuck || seen.world->clearance(seen.state.position) < 0) {
+    return;
+  }
+  for (int i = 1; i <= 40; ++i) {
+    const Vec3 p = seen.state.position + (step.next.position - seen.state.position) * (i / 40.0);
+    if (!report.expect(seen.world->clearance(p) > -kLengthTolerance, kNotThrough, [&] {
+          return text(seen) + ": the pilot's step to " + text(step.next.position) + " is " +
+                 text(-seen.world->clearance(p)) + " m inside an obstacle at " + text(p);
+        })) {
+      return;
+    }
+  }
+}
+
+struct Flight {
+  PilotStep last;
+  int steps = 0;
+};
+
+/// Flies until the pilot arrives or is stuck; `between` may change what it sees before a step.
+Flight fly(const Bench& bench, const Request& request, Report& report, int most,
+           const std::function<void(Observation&, int)>& between = {}) {
+  const auto planner = bench.make();
+  const auto pilot = planner->begin(request);
+  Observation seen = first_observation(request);
+  Flight flight;
+  while (flight.steps < most) {
+    if (between) {
+      between(seen, flight.steps);
+    }
+    flight.last = step_of(*pilot, seen, report);
+    ++flight.steps;
+    judge(report, flight.last, seen, request);
+    judge_way(report, flight.last, seen);
+    if (flight.last.outcome != PilotStep::Outcome::flying) {
+      break;
+    }
+    seen.state = flight.last.next;
+    seen.changes = {};
+  }
+  (void)pilot->counters();
+  return flight;
+}
+
+constexpr int kMost = 3000;  // more than three times the straight way
+
+void open_world(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  Request plain = bench.flight(nullptr, reach);
+  Request far = plain;  // at coordinates of a projected map
+  const Vec3 by(500'000, 4'649'776, 0);
+  far.start.position += by;
+  far.goal.position += by;
+  far.volume = {far.volume.min + by, far.volume.max + by};
+  Request level = plain;
+  level.goal.position.z() = plain.start.position.z();
+  level.level_m = level.goal.position.z();
+  Request slow = plain;
+  slow.vehicle.speed_near = {{reach / 10, reach / 400}, {reach / 2, reach / 200}};
+  std::vector<Request> requests{far, slow};
+  const Traits traits = bench.make()->traits();
+  if (traits.space) {
+    requests.push_back(plain);
+  }
+  if (traits.plane) {
+    requests.push_back(level);
+  }
+  for (const Request& request : requests) {
+    const Flight flight = fly(bench, request, report, kMost);
+    report.expect(flight.last.outcome == PilotStep::Outcome::arrived ||
+                      request.goal.reached_at(flight.last.next.position),
+                  kOpen, [&] {
+                    return "from " + text(request.start.position) + " to " +
+                           text(request.goal.position) + ": after " + std::to_string(flight.steps) +
+                           " steps the pilot is at " + text(flight.last.next.position) +
+                           " and says " + std::string(flight.last.why);
+                  });
+  }
+  Request there = plain;
+  there.goal.position = there.start.position;
+  fly(bench, there, report, 3);
+}
+
+void among_balls(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  for (int n = 0; n < bench.options.rounds; ++n) {
+    Request request = bench.flight(nullptr, reach);
+    request.world = balls(drawn(bench.options.seed * 100 + std::uint64_t(n), request, reach));
+    fly(bench, request, report, kMost);
+  }
+}
+
+void goal_out_of_reach(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  Request request = bench.flight(nullptr, reach);
+  request.world = balls({{request.goal.position, reach}});
+  const Flight flight = fly(bench, request, report, kMost);
+  report.expect(flight.last.outcome != PilotStep::Outcome::arrived, kArrived,
+                [&] { return "the goal lies inside a ball, and the pilot says arrived"; });
+}
+
+void put_elsewhere(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  for (int n = 0; n < bench.options.rounds; ++n) {
+    Request request = bench.flight(nullptr, reach);
+    request.world = balls(drawn(bench.options.seed * 100 + std::uint64_t(n), request, reach));
+    RandomStream random = RandomStream(bench.options.seed).sub("gusts", std::uint64_t(n));
+    fly(bench, request, report, 300, [&](Observation& seen, int step) {
+      if (step % 7 != 6) {
+        return;
+      }
+      const Vec3 gust = 0.2 * reach * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+      if (seen.world->clearance(seen.state.position + gust) > 0.01 * reach) {
+        seen.state.position += gust;
+        seen.state.time_s += 3;
+        seen.max_dt_s = random.uniform(0.1, 1);
+      }
+    });
+  }
+}
+
+void world_changes(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  const Request request = bench.flight(nullptr, reach);
+  std::vector<std::shared_ptr<const World>> alive;
+  std::vector<Change> changes;
+  std::vector<SensedObstacle> moving;
+  fly(bench, request, report, kMost, [&](Observation& seen, int step) {
+    if (step % 100 == 50) {
+      const Vec3 ahead = (seen.goal.position - seen.state.position).normalized();
+      const Sphere ball{seen.state.position + 0.6 * reach * ahead, 0.2 * reach};
+      if ((ball.centre - seen.goal.position).norm() > reach) {
+        alive.push_back(balls({ball}));
+        changes = {{Change::Kind::add, "balls", bounds(Shape(ball))}};
+        seen.world = alive.back().get();
+        seen.changes = changes;
+      }
+    } else if (step % 100 == 0) {
+      seen.world = request.world.get();
+    }
+    moving = {{"m", seen.state.position + Vec3(0.5 * reach, 0.1 * reach, 0), 0.02 * reach,
+               Vec3(-0.01 * reach, 0, 0)},
+              {"unknown velocity", seen.state.position - Vec3(0, 0.3 * reach, 0), 0.01 * reach,
+               std::nullopt}};
+    seen.moving = moving;
+  });
+}
+
+void reach_holds(const Bench& bench, Report& report) {
+  const Request near = bench.flight(nullptr, bench.reach());
+  const double reach = bench.make()->begin(near)->reach_m();
+  report.expect(reach > 0, kReach, [&] { return "reach_m is " + text(reach); });
+  if (!std::isfinite(reach)) {
+    return;
+  }
+  for (int n = 0; n < 8; ++n) {
+    RandomStream random = RandomStream(bench.options.seed).sub("reach", std::uint64_t(n));
+    const Vec3 off(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const double radius = random.uniform(0.1, 3) * reach;
+    Request request = near;
+    request.world =
+        balls({{request.start.position + off.normalized() * (radius + 1.001 * reach), radius}});
+    if (request.world->clearance(request.goal.position) < reach / 100) {
+      continue;
+    }
+    const auto planner = bench.make();
+    const PilotStep with = planner->begin(request)->step(first_observation(request));
+    const PilotStep without = planner->begin(near)->step(first_observation(near));
+    report.expect(with.next.position == without.next.position, kReach, [&] {
+      return "a ball whose surface is " + text(1.001 * reach) + " m away, the reach being " +
+             text(reach) + " m, moves the step from " + text(without.next.position) + " to " +
+             text(with.next.position);
+    });
+  }
+}
+
+bool equal_steps(const PilotStep& a, const PilotStep& b) {
+  return a.outcome == b.outcome && a.why == b.why && a.next.time_s == b.next.time_s &&
+         a.next.position == b.next.position && a.next.velocity == b.next.velocity;
+}
+
+void equal_flights(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  Request request = bench.flight(nullptr, reach);
+  request.world = balls(drawn(bench.options.seed, request, reach));
+  const auto planner = bench.make();
+  const auto run = [&](std::vector<PilotStep>& steps, std::vector<std::string>& why) {
+    const auto pilot = planner->begin(request);
+    Observation seen = first_observation(request);
+    for (int i = 0; i < 300; ++i) {
+      const PilotStep step = pilot->step(seen);
+      why.emplace_back(step.why);
+      steps.push_back(step);
+      steps.back().why = {};
+      if (step.outcome != PilotStep::Outcome::flying) {
+        break;
+      }
+      seen.state = step.next;
+    }
+  };
+  std::vector<PilotStep> steps[3];
+  std::vector<std::string> why[3];
+  run(steps[0], why[0]);
+  in_two_threads([&] { run(steps[1], why[1]); }, [&] { run(steps[2], why[2]); });
+  for (int i = 1; i < 3; ++i) {
+    report.expect(why[i] == why[0] && std::equal(steps[0].begin(), steps[0].end(), steps[i].begin(),
+                                                 steps[i].end(), equal_steps),
+                  kEqualSteps, [&] {
+                    return "two pilots with equal observations part, with another thread beside";
+                  });
+  }
+  // Two pilots of one planner, in turns.
+  const auto one = planner->begin(request);
+  const auto other = planner->begin(request);
+  Observation seen = first_observation(request);
+  for (int i = 0; i < 100; ++i) {
+    const PilotStep a = one->step(seen);
+    const PilotStep b = other->step(seen);
+    if (!report.expect(equal_steps(a, b), kEqualSteps,
+                       [&] {
+                         return text(seen) + ": one pilot goes to " + text(a.next.position) +
+                                ", its twin to " + text(b.next.position);
+                       }) ||
+        a.outcome != PilotStep::Outcome::flying) {
+      return;
+    }
+    seen.state = a.next;
+  }
+}
+
+void no_allocation(const Bench& bench, Report& report) {
+  const double reach = bench.reach();
+  Request request = bench.flight(nullptr, reach);
+  request.world = balls(drawn(bench.options.seed, request, reach));
+  const auto planner = bench.make();
+  const auto pilot = planner->begin(request);
+  Observation seen = first_observation(request);
+  const SensedObstacle moving{"m", {2 * reach, 0, reach}, 0.05 * reach, Vec3(-0.002 * reach, 0, 0)};
+  seen.moving = std::span(&moving, 1);
+  for (int i = 0; i < 500; ++i) {
+    const std::uint64_t before = bench.options.allocations();
+    const PilotStep step = pilot->step(seen);
+    const std::uint64_t made = bench.options.allocations() - before;
+    if (!report.expect(made == 0, kNoAllocation,
+                       [&] {
+                         return text(seen) + ": the pilot allocates " + std::to_string(made) +
+                                " times in step " + std::to_string(i);
+                       }) ||
+        step.outcome != PilotStep::Outcome::flying) {
+      return;
+    }
+    seen.state = step.next;
+  }
+}
+}  // namespace
+
+Cases local_planner_cases(const Factory<LocalPlanner>& make, const Options& options) {
+  const Bench bench{make, options};
+  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+    return make_case(name, kNoThrow, [bench, body](Report& report) { body(bench, report); });
+  };
+  Cases all{made("arrives_in_an_open_world", open_world),
+            made("flies_among_balls", among_balls),
+            made("a_goal_out_of_reach_is_not_reached", goal_out_of_reach),
+            made("continues_where_it_is_put", put_elsewhere),
+            made("takes_a_world_that_changes", world_changes),
+            made("reach_holds", reach_holds),
+            made("equal_observations_give_equal_steps", equal_flights)};
+  if (options.allocations) {
+    all.push_back(made("no_allocation_in_a_step", no_allocation));
+  }
+  return all;
+}
+}  // namespace altiplan::conformance

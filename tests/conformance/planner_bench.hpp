@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "worlds.hpp"
+
+namespace altiplan::conformance {
+
+// The laws of planner.hpp, and what goes with them.
+inline constexpr const char* kPlannerEnds =
+    "Planner law 1: the route starts at the start exactly and ends within the goal's tolerance";
+inline constexpr const char* kPlannerLegs = "Planner law 2: every leg satisfies leg_ok";
+inline constexpr const char* kPlannerStatus =
+    "Planner law 3: solved if and only if a route is returned; no route is a status, never an "
+    "exception";
+inline constexpr const char* kPlannerBudget =
+    "Planner law 4: the budget is kept, the stop token honoured within 1,024 iterations";
+inline constexpr const char* kPlannerPure =
+    "Planner law 5: equal requests give equal results, on any threads, in any order";
+inline constexpr const char* kNothingToJudge = "Suite: there must be something to judge";
+
+/// What the cases of one planner share.
+struct PlannerBench {
+  Factory<Planner> make;
+  Options options;
+
+  /// The ways in which the planner says it flies.
+  std::vector<Flight> flights() const {
+    const Traits traits = make()->traits();
+    std::vector<Flight> all;
+    if (traits.space) {
+      all.push_back(Flight::space);
+    }
+    if (traits.plane) {
+      all.push_back(Flight::level);
+    }
+    return all;
+  }
+  Flight flight() const { return make()->traits().space ? Flight::space : Flight::level; }
+  /// Gives the scene the budget of one plan, and its own seed.
+  Scene budgeted(Scene scene) const {
+    scene.request.budget.max_iterations = options.iterations;
+    scene.request.random = RandomStream(options.seed).sub("plan");
+    return scene;
+  }
+  Scene world(std::uint64_t n, Flight flight) const {
+    return budgeted(random_scene(options.unit_m, options.seed * 1000 + n, flight));
+  }
+  Scene cells(std::uint64_t n, Flight flight) const {
+    return budgeted(random_cells(options.unit_m, options.seed * 1000 + n, flight));
+  }
+};
+
+/// Holds a result to laws 1 to 3; whether it is solved.
+bool judge(Report& report, const PlanResult& result, const Scene& scene);
+
+Cases planner_law_cases(const PlannerBench& bench);
+Cases planner_budget_cases(const PlannerBench& bench);
+Cases planner_trait_cases(const PlannerBench& bench);
+Cases session_cases(const PlannerBench& bench);
+}  // namespace altiplan::conformance

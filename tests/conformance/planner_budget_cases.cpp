@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+
+#include "planner_bench.hpp"
+
+namespace altiplan::conformance {
+namespace {
+
+/// The law's bound, in iterations.
+constexpr std::int64_t kStopWithin = 1024;
+
+/// Much to search and nothing to find: a large world whose goal lies in a shell of balls.
+Scene hopeless(const PlannerBench& bench) {
+  Scene scene = bench.budgeted(open_scene(bench.options.unit_m, bench.flight()));
+  scene.name = "a goal enclosed by a box";
+  const double unit = bench.options.unit_m;
+  const Vec3 at = scene.request.goal.position;
+  std::vector<Change> changes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Box wall{at - Vec3::Constant(1.4 * unit), at + Vec3::Constant(1.4 * unit)};
+      wall.min[axis] = at[axis] + (side < 0 ? -1.4 : 1.2) * unit;
+      wall.max[axis] = at[axis] + (side < 0 ? -1.2 : 1.4) * unit;
+      with_solid(scene, BoxShape{wall}, "wall" + std::to_string(axis) + (side < 0 ? "a" : "b"),
+                 changes);
+    }
+  }
+  return scene;
+}
+
+/// The same problem, every query of its world reported.
+Request watched(const Scene& scene, const std::function<void()>& asked) {
+  World world;
+  for (const Layer& layer : scene.request.world->layers()) {
+    world = world.with(
+        {layer.id, layer.plugin, std::make_shared<Watched>(layer.environment, asked), true});
+  }
+  Request request = scene.request;
+  request.world = std::make_shared<const World>(std::move(world));
+  return request;
+}
+
+std::int64_t queries_within(const PlannerBench& bench, const Scene& scene,
+                            std::uint64_t iterations) {
+  std::atomic<std::int64_t> queries = 0;
+  Request request = watched(scene, [&] { ++queries; });
+  request.budget.max_iterations = iterations;
+  (void)bench.make()->plan(request);
+  return queries;
+}
+
+void no_iterations(const PlannerBench& bench, Report& report) {
+  for (Scene scene : {bench.budgeted(open_scene(bench.options.unit_m, bench.flight())),
+                      bench.world(0, bench.flight()), bench.cells(0, bench.flight())}) {
+    scene.request.budget.max_iterations = 0;
+    const PlanResult result = bench.make()->plan(scene.request);
+    report.expect(result.status == Status::timed_out && result.route.empty(), kPlannerBudget, [&] {
+      return scene.name + ", a budget of 0 iterations: expected timed_out, the planner said " +
+             text(result);
+    });
+  }
+}
+
+void iterations_kept(const PlannerBench& bench, Report& report) {
+  for (Scene scene :
+       {hopeless(bench), bench.world(0, bench.flight()), bench.cells(1, bench.flight())}) {
+    for (const std::uint64_t most : {1, 2, 17, 300, 2000}) {
+      scene.request.budget.max_iterations = most;
+      const PlanResult result = bench.make()->plan(scene.request);
+      judge(report, result, scene);
+      const std::int64_t expanded = counter(result.counters, "expanded");
+      report.expect(expanded <= std::int64_t(most), kPlannerBudget, [&] {
+        return scene.name + ": of a budget of " + std::to_string(most) +
+               " iterations the planner used " + std::to_string(expanded);
+      });
+      report.expect(result.status != Status::timed_out || result.budget_hit, kPlannerBudget, [&] {
+        return scene.name + ": timed_out without budget_hit, of " + std::to_string(most) +
+               " iterations";
+      });
+    }
+  }
+}
+
+void stopped_before(const PlannerBench& bench, Report& report) {
+  for (Scene scene : {hopeless(bench), bench.world(0, bench.flight())}) {
+    std::stop_source source;
+    source.request_stop();
+    scene.request.budget.stop = source.get_token();
+    const PlanResult result = bench.make()->plan(scene.request);
+    judge(report, result, scene);
+    report.expect(result.status == Status::cancelled || result.status == Status::solved ||
+                      result.status == Status::no_route,
+                  kPlannerBudget, [&] {
+                    return scene.name + ", stopped before it begins: the planner said " +
+                           text(result);
+                  });
+    report.expect(counter(result.counters, "expanded") <= kStopWithin, kPlannerBudget, [&] {
+      return scene.name + ", stopped before it begins: the planner went on for " +
+             std::to_string(counter(result.counters, "expanded")) + " iterations";
+    });
+  }
+}
+
+/// The stop fires within a query of the world. How many iterations that is, tell runs with fewer:
+/// equal requests do equal things.
+void stopped_at_a_query(const PlannerBench& bench, Report& report) {
+  const Scene scene = hopeless(bench);
+  const std::int64_t all = queries_within(bench, scene, bench.options.iterations);
+  for (const std::int64_t query : {std::int64_t(1), all / 3, 2 * all / 3}) {
+    if (query < 1) {
+      continue;
+    }
+    std::uint64_t before = 0;  // iterations that end before the query
+    std::uint64_t after = bench.options.iterations;
+    while (after - before > 1) {
+      const std::uint64_t middle = before + (after - before) / 2;
+      (queries_within(bench, scene, middle) < query ? before : after) = middle;
+    }
+    std::stop_source source;
+    std::atomic<std::int64_t> queries = 0;
+    Request request = watched(scene, [&] {
+      if (++queries == query) {
+        source.request_stop();
+      }
+    });
+    request.budget.stop = source.get_token();
+    const PlanResult result = bench.make()->plan(request);
+    judge(report, result, scene);
+    const std::int64_t expanded = counter(result.counters, "expanded");
+    report.expect(expanded <= std::int64_t(after) + kStopWithin, kPlannerBudget, [&] {
+      return scene.name + ", stopped at query " + std::to_string(query) + " (iteration " +
+             std::to_string(after) + "): the planner went on to iteration " +
+             std::to_string(expanded);
+    });
+  }
+}
+
+class StopAt final : public Trace {
+ public:
+  explicit StopAt(std::int64_t event) : event_(event) {}
+  void add(const TraceEvent& event) override {
+    if (++events_ == event_) {
+      source_.request_stop();
+    } else if (events_ > event_ && event.kind == TraceEvent::Kind::expanded) {
+      ++late_;
+    }
+  }
+  std::stop_token token() const { return source_.get_token(); }
+  std::int64_t late() const { return late_; }
+
+ private:
+  std::stop_source source_;
+  std::int64_t event_;
+  std::int64_t events_ = 0;
+  std::int64_t late_ = 0;
+};
+
+void stopped_at_an_event(const PlannerBench& bench, Report& report) {
+  Scene scene = hopeless(bench);
+  for (const std::int64_t event : {1, 500, 2500}) {
+    StopAt trace(event);
+    scene.request.trace = &trace;
+    scene.request.budget.stop = trace.token();
+    const PlanResult result = bench.make()->plan(scene.request);
+    judge(report, result, scene);
+    report.expect(trace.late() <= kStopWithin, kPlannerBudget, [&] {
+      return scene.name + ", stopped at trace event " + std::to_string(event) +
+             ": the planner expanded " + std::to_string(trace.late()) + " more";
+    });
+  }
+}
+}  // namespace
+
+Cases planner_budget_cases(const PlannerBench& bench) {
+  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
+    return make_case(name, kPlannerStatus, [bench, body](Report& report) { body(bench, report); });
+  };
+  return {made("no_iterations_give_timed_out", no_iterations),
+          made("iterations_are_kept", iterations_kept),
+          made("stopped_before_it_begins", stopped_before),
+          made("stopped_at_a_query_of_the_world", stopped_at_a_query),
+          made("stopped_at_a_trace_event", stopped_at_an_event)};
+}
+}  // namespace altiplan::conformance

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "planner_bench.hpp"
+
+namespace altiplan::conformance {
+
+bool judge(Report& report, const PlanResult& result, const Scene& scene) {
+  const auto told = [&](const std::string& what) {
+    return [&, what] { return scene.name + ": the planner " + what + "; it said " + text(result); };
+  };
+  if (result.status != Status::solved) {
+    report.expect(result.route.empty(), kPlannerStatus,
+                  told("returns a route without saying solved"));
+    const bool known = result.status == Status::no_route || result.status == Status::timed_out ||
+                       result.status == Status::cancelled ||
+                       result.status == Status::invalid_problem;
+    // Planner::plan has looked at the ends already, and says so.
+    const auto says = [&](const char* what) {
+      return result.message.find(what) != std::string::npos;
+    };
+    const bool ends = says("does not begin at the start") || says("m from the goal, outside");
+    report.expect(known, ends ? kPlannerEnds : kPlannerStatus,
+                  told("failed, or used a status that is not a planner's"));
+    return false;
+  }
+  const std::string fault = unsound(result.route, scene);
+  const bool ends = fault.find("begins at") == 0 || fault.find("ends at") == 0;
+  report.expect(fault.empty(), ends ? kPlannerEnds : kPlannerLegs, [&] {
+    return scene.name + ": the planner's route " + fault + ": " + text(result.route);
+  });
+  report.expect(counter(result.counters, "expanded") >= 0, kPlannerBudget,
+                told("does not count what it `expanded`"));
+  return true;
+}
+
+namespace {
+
+// Tops of walls, in units: one to fly over, one to go round.
+constexpr double kLow = 2.2;
+constexpr double kHigh = 7;
+
+void seeded_worlds(const PlannerBench& bench, Report& report) {
+  int solved = 0;
+  for (const Flight flight : bench.flights()) {
+    for (int n = 0; n < bench.options.rounds; ++n) {
+      for (const Scene& scene :
+           {bench.world(std::uint64_t(n), flight), bench.cells(std::uint64_t(n), flight)}) {
+        solved += judge(report, bench.make()->plan(scene.request), scene);
+      }
+    }
+    for (const Scene& scene :
+         {open_scene(bench.options.unit_m, flight), wall_scene(bench.options.unit_m, kLow, flight),
+          wall_scene(bench.options.unit_m, kHigh, flight)}) {
+      const Scene budgeted = bench.budgeted(scene);
+      solved += judge(report, bench.make()->plan(budgeted.request), budgeted);
+    }
+  }
+  report.expect(solved > 0, kNothingToJudge, [&] {
+    return "the planner solved none of the worlds: set unit_m (now " + text(bench.options.unit_m) +
+           " m) to what it resolves well, or more iterations";
+  });
+}
+
+void large_coordinates(const PlannerBench& bench, Report& report) {
+  const Flight flight = bench.flight();
+  for (const Vec3& by : {Vec3(500'000, 4'649'776, 3000), Vec3(-166'021.443, -9'997'964.5, -400)}) {
+    for (int n = 0; n < bench.options.rounds / 2; ++n) {
+      const Scene scene = moved_scene(bench.world(std::uint64_t(n), flight), by);
+      judge(report, bench.make()->plan(scene.request), scene);
+    }
+  }
+}
+
+/// Each limit in turn, on the same worlds.
+void limits_honoured(const PlannerBench& bench, Report& report) {
+  const double unit = bench.options.unit_m;
+  const std::vector<std::pair<const char*, std::function<void(Request&)>>> limits{
+      {"climb", [](Request& r) { r.limits.max_climb = radians(35); }},
+      {"turn", [](Request& r) { r.limits.max_turn_horizontal = radians(40); }},
+      {"turn in space", [](Request& r) { r.limits.max_turn_space = radians(40); }},
+      {"turn radius", [&](Request& r) { r.limits.min_turn_radius = unit; }},
+      {"clearance", [&](Request& r) { r.limits.min_clearance = unit / 2; }},
+      {"vehicle's radius", [&](Request& r) { r.vehicle.radius_m = unit / 2; }},
+      {"longest leg", [&](Request& r) { r.limits.max_leg = 4 * unit; }},
+      {"shortest leg", [&](Request& r) { r.limits.min_leg = unit / 2; }},
+      {"altitude",
+       [&](Request& r) {
+         const double highest = std::max(r.start.position.z(), r.goal.position.z());
+         r.limits.altitude.push_back({AltitudeBand::Datum::sea, unit, highest + unit / 2});
+       }},
+      {"route length",
+       [&](Request& r) {
+         r.limits.max_route_length = 1.1 * (r.goal.position - r.start.position).norm();
+       }},
+      {"heading", [](Request& r) {
+         r.start.velocity = {0, 1, 0};
+         r.limits.max_turn_horizontal = radians(100);
+       }}};
+  for (const auto& [name, set] : limits) {
+    for (int n = 0; n < 2 + bench.options.rounds / 2; ++n) {
+      const double top = n == 0 ? kLow : kHigh;
+      Scene scene = n < 2 ? bench.budgeted(wall_scene(unit, top, bench.flight()))
+                          : bench.world(std::uint64_t(n), bench.flight());
+      scene.name += std::string(", with a limit: ") + name;
+      set(scene.request);
+      judge(report, bench.make()->plan(scene.request), scene);
+    }
+  }
+  if (bench.make()->traits().space) {
+    const Scene ridge = bench.budgeted(ridge_scene(bench.options.unit_m));
+    judge(report, bench.make()->plan(ridge.request), ridge);
+  }
+}
+
+void impossible_ends(const PlannerBench& bench, Report& report) {
+  const Flight flight = bench.flight();
+  const Scene plain = bench.world(0, flight);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Vec3 inside = [&] {
+    const Box box = bounds(plain.solids[0]);
+    Vec3 p = (box.min + box.max) / 2;
+    p.z() = plain.request.level_m.value_or(p.z());
+    return p;
+  }();
+  const Vec3 outside = plain.request.volume.max + Vec3(1, 1, 0);
+  std::vector<Vec3> places{outside, {nan, 0, 0}, {0, 0, kInfinity}, {-1e300, 1e300, 0}};
+  if (own_clearance(plain, inside) < 0 && plain.request.volume.contains(inside)) {
+    places.push_back(inside);
+  }
+  for (const Vec3& place : places) {
+    for (const bool at_start : {true, false}) {
+      Request request = plain.request;
+      (at_start ? request.start.position : request.goal.position) = place;
+      const PlanResult result = bench.make()->plan(request);
+      report.expect(
+          result.status == Status::invalid_problem && result.route.empty(), kPlannerStatus, [&] {
+            return plain.name + ", " + (at_start ? "start" : "goal") + " at " + text(place) +
+                   ": expected invalid_problem, the planner said " + text(result);
+          });
+    }
+  }
+}
+
+void possible_ends(const PlannerBench& bench, Report& report) {
+  const double unit = bench.options.unit_m;
+  for (const Flight flight : bench.flights()) {
+    Scene same = bench.world(1, flight);
+    same.name += ", start = goal";
+    same.request.goal.position = same.request.start.position;
+    report.expect(judge(report, bench.make()->plan(same.request), same), kPlannerStatus,
+                  [&] { return same.name + ": the planner does not solve it"; });
+    Scene near = bench.world(1, flight);
+    near.name += ", the goal's tolerance reaches half way";
+    near.request.goal.tolerance_m =
+        (near.request.goal.position - near.request.start.position).norm() / 2;
+    judge(report, bench.make()->plan(near.request), near);
+    // Ends on the boundary of the volume, in a corner of it, and touching a solid.
+    Scene edge = bench.budgeted(open_scene(unit, flight));
+    edge.name += ", from a corner of the volume to a point of its boundary";
+    edge.request.start.position.head<2>() = edge.request.volume.min.head<2>();
+    edge.request.goal.position.x() = edge.request.volume.max.x();
+    judge(report, bench.make()->plan(edge.request), edge);
+    Scene touching = bench.budgeted(open_scene(unit, flight));
+    touching.name += " but for a ball that touches the start";
+    std::vector<Change> changes;
+    const double off = 2 * unit + touching.request.vehicle.radius_m;
+    with_solid(touching, Sphere{touching.request.start.position + Vec3(off, 0, 0), 2 * unit},
+               "ball", changes);
+    judge(report, bench.make()->plan(touching.request), touching);
+    // A volume with nothing to spare: flat in level flight, else a cell thick.
+    Scene thin = bench.budgeted(open_scene(unit, flight));
+    thin.name += " without height";
+    thin.request.volume.min.z() = thin.request.volume.max.z() = thin.request.goal.position.z() =
+        thin.request.start.position.z();
+    judge(report, bench.make()->plan(thin.request), thin);
+  }
+}
+
+void answers_again(const PlannerBench& bench, Report& report) {
+  const auto planner = bench.make();
+  const Scene a = bench.cells(0, bench.flight());
+  const Scene b = bench.world(0, bench.flight());
+  const PlanResult first_a = planner->plan(a.request);
+  const PlanResult first_b = planner->plan(b.request);
+  const auto same = [&](const PlanResult& first, const PlanResult& again, const Scene& scene,
+                        const std::string& which) {
+    return report.expect(equal(first, again), kPlannerPure, [&] {
+      return scene.name + ": " + which + " of the planner differs: first " + text(first) +
+             ", then " + text(again);
+    });
+  };
+  for (int call = 2; call <= bench.options.calls; ++call) {
+    const std::string which = "answer " + std::to_string(call);
+    if (!same(first_a, planner->plan(a.request), a, which) ||
+        (call % 10 == 0 && !same(first_b, planner->plan(b.request), b, which))) {
+      return;
+    }
+  }
+  const auto fresh = bench.make();
+  same(first_a, fresh->plan(a.request), a, "the answer of another object");
+  for (int n = 0; n < 3; ++n) {
+    PlanResult beside_a;
+    PlanResult beside_b;
+    in_two_threads([&] { beside_a = planner->plan(a.request); },
+                   [&] { beside_b = planner->plan(b.request); });
+    same(first_a, beside_a, a, "an answer with another thread beside");
+    same(first_b, beside_b, b, "an answer with another thread beside");
+  }
+  Scene many = b;
+  many.name += ", with 4 threads";
+  many.request.threads = 4;
+  same(first_b, planner->plan(many.request), many, "the answer");
+}
+
+void inputs_unchanged(const PlannerBench& bench, Report& report) {
+  const Scene scene = bench.world(2, bench.flight());
+  Request request = scene.request;
+  (void)bench.make()->plan(request);
+  RandomStream before = scene.request.random;
+  RandomStream after = request.random;
+  const bool kept = request.world == scene.request.world &&
+                    request.world->revision() == scene.request.world->revision() &&
+                    request.start.position == scene.request.start.position &&
+                    request.goal.position == scene.request.goal.position &&
+                    request.limits.min_clearance == scene.request.limits.min_clearance &&
+                    request.volume.min == scene.request.volume.min &&
+                    request.volume.max == scene.request.volume.max &&
+                    request.budget.max_iterations == scene.request.budget.max_iterations &&
+                    before() == after();
+  report.expect(kept, kPlannerPure,
+                [&] { return scene.name + ": the planner wrote into its request"; });
+}
+}  // namespace
+
+Cases planner_law_cases(const PlannerBench& bench) {
+  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
+    return make_case(name, kPlannerStatus, [bench, body](Report& report) { body(bench, report); });
+  };
+  return {made("routes_are_sound_in_seeded_worlds", seeded_worlds),
+          made("large_coordinates", large_coordinates),
+          made("limits_are_honoured", limits_honoured),
+          made("impossible_start_or_goal_is_a_status", impossible_ends),
+          made("possible_starts_and_goals", possible_ends),
+          made("answers_do_not_depend_on_history_or_threads", answers_again),
+          made("inputs_stay_as_they_are", inputs_unchanged)};
+}
+
+Cases planner_cases(const Factory<Planner>& make, const Options& options) {
+  const PlannerBench bench{make, options};
+  Cases all = planner_law_cases(bench);
+  for (const auto& more :
+       {planner_budget_cases(bench), planner_trait_cases(bench), session_cases(bench)}) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+}  // namespace altiplan::conformance

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "altiplan/conformance.hpp"
+
+namespace altiplan::conformance {
+
+/// Collects the findings of one case.
+class Report {
+ public:
+  /// Of one law the first few are kept: a broken law breaks everywhere.
+  void add(const std::string& law, std::string message);
+  /// Adds the finding unless the law is kept; `message` is called only then.
+  template <class Message>
+  bool expect(bool kept, const std::string& law, const Message& message) {
+    if (!kept) {
+      add(law, message());
+    }
+    return kept;
+  }
+  std::vector<Finding> take() { return std::move(findings_); }
+
+ private:
+  std::vector<Finding> findings_;
+};
+
+/// A case whose body reports; what the body lets escape becomes a finding of `thrown`, the law that
+/// forbids it.
+Case make_case(std::string name, std::string thrown, std::function<void(Report&)> body);
+
+/// Digits enough to make the same number again.
+std::string text(double value);
+std::string text(const Vec3& p);
+std::string text(const Route& route);
+
+bool equal(const PlanResult& a, const PlanResult& b);
+/// A result in a line: status, counters, message.
+std::string text(const PlanResult& result);
+/// The value of a counter; -1 where there is none.
+std::int64_t counter(const Counters& counters, std::string_view name);
+
+/// Runs both at the same time; rethrows what either threw.
+void in_two_threads(const std::function<void()>& one, const std::function<void()>& other);
+}  // namespace altiplan::conformance

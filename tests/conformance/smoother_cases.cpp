@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+
+#include "worlds.hpp"
+
+namespace altiplan::conformance {
+namespace {
+
+constexpr const char* kEnds = "Smoother law 1: first and last points stay";
+constexpr const char* kExcess =
+    "Smoother law 2: for every constraint the worst excess does not grow; a sound route stays "
+    "sound";
+constexpr const char* kShort = "Smoother law 3: routes of one or two points come back as they are";
+constexpr const char* kPure =
+    "Smoother: const and shareable; equal requests give equal routes, on any threads, in any order";
+constexpr const char* kStatus = "Smoother: what it cannot do is a status, never an exception";
+
+struct Bench {
+  Factory<Smoother> make;
+  Options options;
+
+  Scene world(int n) const {
+    Scene scene =
+        random_scene(options.unit_m, options.seed * 1000 + std::uint64_t(n), Flight::space);
+    scene.request.budget.max_iterations = options.iterations;
+    scene.request.random = RandomStream(options.seed).sub("smooth");
+    return scene;
+  }
+};
+
+/// What a rule is exceeded by at worst, of each rule; rules without figures count as 1.
+std::map<std::string, double> excesses(const Route& route, const Scene& scene) {
+  std::map<std::string, double> worst;
+  for (const Violation& violation : check(route, scene.request).violations) {
+    const bool too_small = violation.value < violation.limit;
+    const double by =
+        violation.value == violation.limit ? 1 : std::abs(violation.value - violation.limit);
+    double& most =
+        worst[violation.constraint + (too_small ? " below " : " above ") + text(violation.limit)];
+    most = std::max(most, by);
+  }
+  return worst;
+}
+
+/// The scene with the ends of the route.
+Scene ending_as(Scene scene, const Route& route) {
+  scene.request.start.position = route.front();
+  scene.request.goal.position = route.back();
+  return scene;
+}
+
+/// Smooths and holds the result to laws 1 and 2; the route, or the input where there is none.
+Route judged(Report& report, const Smoother& smoother, const Route& route, const Scene& scene) {
+  const Route before = route;
+  const PlanResult result = smoother.smooth(route, scene.request);
+  const auto input = [&] { return scene.name + ", smoothing " + text(before); };
+  report.expect(route == before, kPure, [&] { return input() + ": the input was changed"; });
+  // Smoother::smooth has looked at the ends already, and says so.
+  const bool ends = result.message.find("first and last points") != std::string::npos;
+  report.expect(result.status != Status::failed, ends ? kEnds : kStatus,
+                [&] { return input() + ": the smoother failed: " + result.message; });
+  if (result.status != Status::solved) {
+    return route;
+  }
+  if (!report.expect(!result.route.empty() && result.route.front() == before.front() &&
+                         result.route.back() == before.back(),
+                     kEnds,
+                     [&] { return input() + ": the smoother's route is " + text(result.route); })) {
+    return route;
+  }
+  // The tolerance of a clearance, which the judge bisects for, is the widest of all.
+  constexpr double kWidest = 1e-5;
+  const std::map<std::string, double> was = excesses(before, scene);
+  for (const auto& [rule, excess] : excesses(result.route, scene)) {
+    const auto old = was.find(rule);
+    const double allowed = old == was.end() ? 0 : old->second;
+    report.expect(excess <= allowed + kWidest, kExcess, [&, rule = rule, excess = excess] {
+      return input() + ": the worst excess of '" + rule + "' was " + text(allowed) + " and is " +
+             text(excess) + " in " + text(result.route);
+    });
+  }
+  if (unsound(before, scene).empty()) {
+    report.expect(unsound(result.route, scene).empty(), kExcess, [&] {
+      return input() + ": a sound route went in, what came out " + unsound(result.route, scene) +
+             ": " + text(result.route);
+    });
+  }
+  return result.route;
+}
+
+/// A walk through the world whose legs all keep the request's rules.
+Route sound_walk(const Scene& scene, RandomStream random) {
+  Route route{scene.request.start.position};
+  std::optional<Vec3> before = scene.request.before_start();
+  for (int tries = 0; tries < 4000 && route.size() < 12; ++tries) {
+    const Vec3 reach = scene.unit * random.uniform(0.5, 6) *
+                       Vec3(random.normal(), random.normal(), 0.3 * random.normal());
+    const Vec3 next = route.back() + reach;
+    if (leg_ok(before, route.back(), next, scene.request)) {
+      before = route.back();
+      route.push_back(next);
+    }
+  }
+  return route;
+}
+
+Route any_walk(const Scene& scene, RandomStream random) {
+  Route route{scene.request.start.position};
+  for (int i = 0; i < 8; ++i) {
+    route.push_back(random.in(scene.request.volume));
+  }
+  route.push_back(scene.request.goal.position);
+  return route;
+}
+
+/// The rules under which routes are smoothed: none, each, and all together.
+std::vector<std::pair<const char*, std::function<void(Limits&)>>> rules(double unit) {
+  std::vector<std::pair<const char*, std::function<void(Limits&)>>> all{
+      {"no limit", [](Limits&) {}},
+      {"climb", [](Limits& l) { l.max_climb = radians(20); }},
+      {"turn", [](Limits& l) { l.max_turn_horizontal = radians(80); }},
+      {"turn in space", [](Limits& l) { l.max_turn_space = radians(100); }},
+      {"turn radius", [unit](Limits& l) { l.min_turn_radius = unit; }},
+      {"clearance", [unit](Limits& l) { l.min_clearance = unit / 2; }},
+      {"leg length", [unit](Limits& l) { l.min_leg = unit / 2, l.max_leg = 9 * unit; }},
+      {"altitude", [unit](Limits& l) {
+         l.altitude.push_back({AltitudeBand::Datum::sea, unit, 4 * unit});
+       }}};
+  all.emplace_back("all of them", [some = all](Limits& limits) {
+    for (const auto& [name, set] : some) {
+      set(limits);
+    }
+    limits.max_turn_horizontal = limits.max_turn_space = radians(120);
+    limits.max_climb = radians(40);
+  });
+  return all;
+}
+
+void laws_under_every_limit(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  for (const auto& [name, set] : rules(bench.options.unit_m)) {
+    for (int n = 0; n < bench.options.rounds; ++n) {
+      Scene scene = bench.world(n);
+      scene.name += std::string(", limits: ") + name;
+      set(scene.request.limits);
+      const RandomStream random = RandomStream(bench.options.seed).sub(name, std::uint64_t(n));
+      for (const Route& route : {sound_walk(scene, random), any_walk(scene, random)}) {
+        if (route.size() < 3) {
+          continue;
+        }
+        const Scene ends = ending_as(scene, route);
+        const Route once = judged(report, *smoother, route, ends);
+        judged(report, *smoother, once, ends);
+      }
+    }
+  }
+}
+
+void over_ground_and_with_a_heading(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  Scene ridge = ridge_scene(bench.options.unit_m);
+  for (int n = 0; n < 4 * bench.options.rounds; ++n) {
+    const RandomStream random = RandomStream(bench.options.seed).sub("ridge", std::uint64_t(n));
+    if (n % 2 == 1) {
+      ridge.request.start.velocity = {1, 1, 0};
+      ridge.request.limits.max_turn_horizontal = radians(75);
+    }
+    const Route walk = sound_walk(ridge, random);
+    if (walk.size() > 2) {
+      judged(report, *smoother, walk, ending_as(ridge, walk));
+    }
+    judged(report, *smoother, any_walk(ridge, random), ridge);
+  }
+}
+
+void short_routes(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  const Scene scene = bench.world(0);
+  const Vec3 start = scene.request.start.position;
+  for (const Route& route :
+       {Route{start}, Route{start, scene.request.goal.position}, Route{start, start}}) {
+    const PlanResult result = smoother->smooth(route, ending_as(scene, route).request);
+    report.expect(result.status == Status::solved && result.route == route, kShort, [&] {
+      return text(route) + " came back as " + text(result.route) + ", " + text(result);
+    });
+  }
+}
+
+void odd_routes(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  for (int n = 0; n < bench.options.rounds; ++n) {
+    const Scene scene = bench.world(n);
+    const RandomStream random = RandomStream(bench.options.seed).sub("odd", std::uint64_t(n));
+    const Route walk = sound_walk(scene, random);
+    Route repeated;
+    for (const Vec3& p : walk) {
+      repeated.insert(repeated.end(), repeated.size() % 3 + 1, p);
+    }
+    Route collinear{walk.front()};
+    for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
+      for (int k = 1; k <= 4; ++k) {
+        collinear.push_back(k == 4 ? walk[i + 1] : Vec3(walk[i] + (walk[i + 1] - walk[i]) * k / 4));
+      }
+    }
+    Route there_and_back = walk;
+    there_and_back.insert(there_and_back.end(), walk.rbegin() + 1, walk.rend());
+    const Route still(5, walk.front());
+    for (const Route& route : {repeated, collinear, there_and_back, still}) {
+      judged(report, *smoother, route, ending_as(scene, route));
+    }
+    Scene far = moved_scene(scene, {500'000, 4'649'776, 3000});
+    judged(report, *smoother, any_walk(far, random), far);
+    const Route far_walk = sound_walk(far, random);
+    judged(report, *smoother, far_walk, ending_as(far, far_walk));
+  }
+}
+
+void budgets(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  Scene scene = bench.world(1);
+  const Route walk = sound_walk(scene, RandomStream(bench.options.seed).sub("budget"));
+  scene = ending_as(scene, walk);
+  for (const std::uint64_t most : {0, 1, 10}) {
+    scene.request.budget.max_iterations = most;
+    scene.name = "a budget of " + std::to_string(most) + " iterations";
+    judged(report, *smoother, walk, scene);
+  }
+  std::stop_source source;
+  source.request_stop();
+  scene.request.budget.stop = source.get_token();
+  scene.name = "stopped before it begins";
+  judged(report, *smoother, walk, scene);
+}
+
+void answers_again(const Bench& bench, Report& report) {
+  const auto smoother = bench.make();
+  const Scene scene = bench.world(2);
+  const Route a = sound_walk(scene, RandomStream(bench.options.seed).sub("again"));
+  const Route b = any_walk(scene, RandomStream(bench.options.seed).sub("again"));
+  const Request to_a = ending_as(scene, a).request;
+  const PlanResult first_a = smoother->smooth(a, to_a);
+  const PlanResult first_b = smoother->smooth(b, scene.request);
+  const auto same = [&](const PlanResult& first, const PlanResult& again, const char* which) {
+    report.expect(equal(first, again), kPure, [&] {
+      return scene.name + ", " + which + ": first " + text(first) + ", then " + text(again);
+    });
+  };
+  for (int call = 0; call < bench.options.calls; ++call) {
+    same(first_a, smoother->smooth(a, to_a), "called again");
+  }
+  same(first_b, smoother->smooth(b, scene.request), "called after others");
+  same(first_b, bench.make()->smooth(b, scene.request), "by another object");
+  PlanResult beside_a;
+  PlanResult beside_b;
+  in_two_threads([&] { beside_a = smoother->smooth(a, to_a); },
+                 [&] { beside_b = smoother->smooth(b, scene.request); });
+  same(first_a, beside_a, "with another thread beside");
+  same(first_b, beside_b, "with another thread beside");
+  Request threads = to_a;
+  threads.threads = 4;
+  same(first_a, smoother->smooth(a, threads), "with 4 threads");
+}
+}  // namespace
+
+Cases smoother_cases(const Factory<Smoother>& make, const Options& options) {
+  const Bench bench{make, options};
+  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+    return make_case(name, kStatus, [bench, body](Report& report) { body(bench, report); });
+  };
+  return {made("nothing_gets_worse_under_any_limit", laws_under_every_limit),
+          made("over_ground_and_with_a_heading", over_ground_and_with_a_heading),
+          made("short_routes_come_back", short_routes),
+          made("odd_routes", odd_routes),
+          made("budgets_and_stops", budgets),
+          made("answers_do_not_depend_on_history_or_threads", answers_again)};
+}
+}  // namespace altiplan::conformance

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "altiplan/check.hpp"
+#include "report.hpp"
+
+namespace altiplan::conformance {
+
+/// Solid balls in closed form: nothing allocates in a query.
+class Balls final : public Environment {
+ public:
+  explicit Balls(std::vector<Sphere> balls) : balls_(std::move(balls)) {}
+
+ private:
+  Box do_bounds() const override;
+  double do_clearance(const Vec3& p) const override;
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
+  double do_slack() const override { return 0; }
+  std::vector<Sphere> balls_;
+};
+
+/// Ground that rises on both sides to a crest along x = crest_x, in closed form.
+class Ridge final : public Environment {
+ public:
+  Ridge(double crest_x, double top, double slope) : x_(crest_x), top_(top), slope_(slope) {}
+  double height(double x) const { return top_ - slope_ * std::abs(x - x_); }
+
+ private:
+  Box do_bounds() const override;
+  double do_clearance(const Vec3& p) const override;
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
+  double do_slack() const override { return 0; }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double x, double) const override { return height(x); }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override;
+  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override;
+  double do_ground_slope(const Box&) const override { return slope_; }
+  double x_;
+  double top_;
+  double slope_;
+};
+
+/// Passes everything on to another layer, and calls `asked` at each query of obstacles.
+class Watched final : public Environment {
+ public:
+  Watched(std::shared_ptr<const Environment> inner, std::function<void()> asked)
+      : inner_(std::move(inner)), asked_(std::move(asked)) {}
+
+ private:
+  Box do_bounds() const override { return inner_->bounds(); }
+  double do_clearance(const Vec3& p) const override;
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
+  void do_rasterize(VoxelGrid& grid) const override;
+  double do_slack() const override { return inner_->slack(); }
+  std::optional<GridSpec> do_native_grid() const override { return inner_->native_grid(); }
+  std::shared_ptr<const Environment> inner_;
+  std::function<void()> asked_;
+};
+
+/// A problem, and what it is made of, so that it can be judged apart from the world's queries.
+struct Scene {
+  std::string name;  ///< says how to make it again
+  double unit = 1;
+  Request request;
+  std::vector<Shape> solids;  ///< spheres and boxes
+  std::shared_ptr<const Ridge> ridge;
+};
+
+/// How a scene is cut for a planner that knows level flight only, or should try it.
+enum class Flight { space, level };
+
+/// Nothing in the way.
+Scene open_scene(double unit, Flight flight);
+/// Balls and boxes, drawn; start and goal in opposite corners.
+Scene random_scene(double unit, std::uint64_t seed, Flight flight);
+/// A wall across the straight way, `top` units high, with a way round that is long.
+Scene wall_scene(double unit, double top, Flight flight);
+/// A crest across the straight way, to be crossed at a height above ground.
+Scene ridge_scene(double unit);
+/// Cells as drawn: one text a level from the lowest, rows by '/' from the north, '#' solid, 'S' and
+/// 'G' start and goal. The cells are the layer's own (`native_grid`), with an edge of one unit.
+Scene cell_scene(double unit, std::string name, const std::vector<std::string>& levels,
+                 Flight flight);
+/// Cells at random.
+Scene random_cells(double unit, std::uint64_t seed, Flight flight);
+/// The world of the scene with one more solid, and the change that says so.
+std::shared_ptr<const World> with_solid(Scene& scene, const Shape& solid, const std::string& id,
+                                        std::vector<Change>& changes);
+/// The scene, moved.
+Scene moved_scene(const Scene& scene, const Vec3& by);
+
+/// Distance to the nearest solid of the scene, by formulas of this library's own.
+double own_clearance(const Scene& scene, const Vec3& p);
+
+/// What is wrong with the route, judged by dense samples and own formulas; "" for a sound one.
+std::string unsound(const Route& route, const Scene& scene);
+
+/// Length of the shortest way over the scene's free cells from start to goal; infinite where there
+/// is none.
+struct Lanes {
+  int neighbours = 26;    ///< or 6; in level flight 8 or 4
+  bool free_box = false;  ///< a step needs every cell free that its box spans
+};
+double shortest(const Scene& cells, const Lanes& lanes);
+}  // namespace altiplan::conformance

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// astar against Dijkstra's algorithm on the lattice that its README describes.
+#include <gtest/gtest.h>
+
+#include "reference/random_problem.hpp"
+
+namespace altiplan::reference {
+namespace {
+
+std::int64_t expanded(const PlanResult& result) {
+  for (const Counter& counter : result.counters) {
+    if (counter.name == "expanded") {
+      return counter.value;
+    }
+  }
+  return -1;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+/// The parameters of one search, as YAML.
+struct Setting {
+  std::string heuristic = "octile";
+  double weight_g = 0.5;
+  double weight_h = 0.5;
+
+  std::string yaml(const LatticeOptions& lattice) const {
+    const Vec3& c = lattice.cell;
+    return "{cell_m: [" + number(c.x()) + ", " + number(c.y()) + ", " + number(c.z()) +
+           "], neighbours: " + std::to_string(lattice.neighbours) +
+           ", corner: " + (lattice.free_box ? "free_box" : "any") +
+           ", moves: " + (lattice.cells ? "cells" : "exact") + ", heuristic: " + heuristic +
+           ", weight_g: " + number(weight_g) + ", weight_h: " + number(weight_h) + "}";
+  }
+  /// A route is at most this often the shortest (Pohl); 1: the shortest.
+  double bound(int neighbours) const {
+    const double stretch = heuristic == "zero"                            ? 0
+                           : heuristic == "manhattan" && neighbours == 26 ? std::sqrt(3.0)
+                                                                          : 1;
+    return std::max(1.0, stretch * weight_h / weight_g);
+  }
+};
+
+const std::vector<Setting> kSettings = {
+    {"octile", 0.5, 0.5},    {"octile", 1, 0.3},      {"euclidean", 0.5, 0.5}, {"zero", 0.5, 0.5},
+    {"manhattan", 0.9, 0.5}, {"manhattan", 0.5, 0.5}, {"octile", 0.3, 0.7},    {"zero", 1, 0},
+};
+
+struct Tally {
+  int solved = 0;
+  int unreachable = 0;
+  int invalid = 0;
+  int near_goal = 0;  ///< routes that end within the tolerance only
+};
+
+/// Holds one plan to the oracle. `best`: lengths by Dijkstra's algorithm.
+void hold(const PlanResult& result, const LatticeOracle& oracle, const std::vector<double>& best,
+          const Setting& setting, const Request& request, Tally& tally) {
+  const double expected = oracle.shortest(best);
+  const double bound = setting.bound(oracle.options.neighbours);
+  const bool limited = request.limits.max_route_length < kInfinity;
+  if (expected == kInfinity) {
+    ++tally.unreachable;
+    ASSERT_EQ(result.status, Status::no_route) << result.message;
+    EXPECT_TRUE(result.proved || bound > 1 || setting.heuristic == "manhattan") << result.message;
+    return;
+  }
+  if (result.status == Status::no_route && limited && bound > 1) {
+    EXPECT_FALSE(result.proved);  // a longer way than the shortest met the limit on length
+    return;
+  }
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ++tally.solved;
+  const CheckResult judged = check(result.route, request);
+  EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
+  const double found = length(result.route);
+  EXPECT_GE(found, expected * (1 - 1e-9) - 1e-6);
+  if (result.route.back() != request.goal.position) {
+    ++tally.near_goal;
+    const double longest = request.limits.max_route_length + 1e-6;
+    EXPECT_TRUE(best[oracle.goal] == kInfinity || best[oracle.goal] > longest || bound > 1);
+    EXPECT_TRUE(found <= expected * (1 + 1e-9) + 1e-6 || bound > 1) << found << ' ' << expected;
+    return;
+  }
+  EXPECT_LE(found, bound * expected * (1 + 1e-9) + 1e-6) << expected;
+  if (bound == 1) {
+    std::int64_t within = 0;  // ties with the goal's cost included
+    for (std::size_t c = 0; c < oracle.cells; ++c) {
+      within += best[c] <= expected * (1 + 1e-9) + 1e-9;
+    }
+    EXPECT_LE(expanded(result), within);
+  }
+}
+
+/// Every setting on one problem.
+void compare(const Problem& problem, std::uint64_t seed, Tally& tally) {
+  const Request& request = problem.request;
+  const LatticeOracle oracle(request, problem.scene, problem.lattice);
+  const bool start_free = oracle.rules.point_free(request.start.position);
+  const bool goal_free = oracle.rules.point_free(request.goal.position);
+  if (oracle.rules.in_doubt() || request.goal.reached_at(request.start.position)) {
+    return;
+  }
+  const auto best = dijkstra(oracle.graph, oracle.start);
+  for (const Setting& setting : kSettings) {
+    const std::string yaml = setting.yaml(problem.lattice);
+    SCOPED_TRACE("seed " + std::to_string(seed) + " " + yaml);
+    const PlanResult result = testing::make_planner("astar", yaml)->plan(request);
+    ASSERT_EQ(result.status == Status::invalid_problem, !start_free || !goal_free)
+        << result.message;
+    if (result.status == Status::invalid_problem) {
+      ++tally.invalid;
+      return;
+    }
+    hold(result, oracle, best, setting, request, tally);
+    if (::testing::Test::HasFailure()) {
+      return;
+    }
+  }
+}
+
+void compare(std::uint64_t seed, bool cells, Tally& tally) {
+  Mix mix;
+  mix.prisms = mix.ground = !cells;
+  mix.most_cells = seed % 20 == 5 ? 12 : 6;
+  const auto problem = random_problem(seed, mix);
+  problem->lattice.cells = cells;
+  problem->lattice.free_box = seed % 4 >= 2;
+  problem->lattice.neighbours = seed % 2 == 0 ? 26 : 6;
+  compare(*problem, seed, tally);
+}
+
+/// A layer that has cells of its own: start and goal need not be centres of them.
+void compare_own_cells(std::uint64_t seed, Tally& tally) {
+  oracle::Draw draw(seed);
+  const Cell counts = {4 + draw.below(5), 4 + draw.below(5), 1 + draw.below(4)};
+  const double share = draw(0.1, 0.5);
+  Problem problem;
+  std::vector<std::string> levels;
+  for (int k = 0; k < counts[2]; ++k) {
+    std::string& level = levels.emplace_back();
+    for (int j = counts[1] - 1; j >= 0; --j) {
+      for (int i = 0; i < counts[0]; ++i) {
+        const bool solid = draw(0, 1) < share;
+        level += solid ? '#' : '.';
+        if (solid) {
+          problem.scene.solids.push_back(
+              {BoxShape{{Vec3(i, j, k), Vec3(i + 1, j + 1, k + 1)}}, {}});
+        }
+      }
+      level += '\n';
+    }
+  }
+  const testing::Drawn drawn = testing::draw(levels);
+  problem.request = drawn.request;
+  Request& request = problem.request;
+  for (Vec3* end : {&request.start.position, &request.goal.position}) {
+    const Vec3 low(draw.below(counts[0]), draw.below(counts[1]), draw.below(counts[2]));
+    const bool centre = draw.below(2) == 0;
+    *end = low + (centre ? Vec3(0.5, 0.5, 0.5)
+                         : Vec3(draw(0.05, 0.95), draw(0.05, 0.95), draw(0.05, 0.95)));
+  }
+  LatticeOptions& lattice = problem.lattice;
+  lattice.cells = draw.below(3) != 0;
+  lattice.free_box = lattice.cells && draw.below(2) == 0;
+  lattice.neighbours = draw.below(2) == 0 ? 6 : 26;
+  lattice.anchor = Vec3(0.5, 0.5, 0.5);
+  lattice.closed = [&](const Vec3& centre) {
+    return std::any_of(
+        problem.scene.solids.begin(), problem.scene.solids.end(),
+        [&](const auto& solid) { return oracle::signed_distance(solid, centre) < 0; });
+  };
+  if (!lattice.cells) {
+    request.vehicle.radius_m = draw(0.02, 0.6);
+  }
+  if (draw.below(3) == 0) {
+    request.goal.tolerance_m = draw(0.1, 2);
+  }
+  compare(problem, seed, tally);
+}
+
+void compare_many(std::uint64_t from, std::uint64_t to, bool cells) {
+  Tally tally;
+  for (std::uint64_t seed = from; seed < to && !::testing::Test::HasFailure(); ++seed) {
+    compare(seed, cells, tally);
+  }
+  const int worlds = int(to - from);
+  EXPECT_GT(tally.solved, worlds);
+  EXPECT_GT(tally.unreachable, worlds / 10);
+  EXPECT_GT(tally.near_goal, worlds / 50);
+  EXPECT_GT(tally.invalid, worlds / 50);
+}
+
+TEST(AStarOracle, ExactMovesEqualDijkstra) { compare_many(0, 400, false); }
+TEST(AStarOracle, MovesByCellsEqualDijkstra) { compare_many(0, 400, true); }
+TEST(AStarOracle, CellsOfALayerEqualDijkstra) {
+  Tally tally;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    compare_own_cells(seed, tally);
+  }
+  EXPECT_GT(tally.solved, 300);
+  EXPECT_GT(tally.unreachable, 20);
+}
+TEST(NightlyAStarOracle, CellsOfALayerEqualDijkstra) {
+  Tally tally;
+  for (std::uint64_t seed = 1000; seed < 6000; ++seed) {
+    compare_own_cells(seed, tally);
+  }
+}
+TEST(NightlyAStarOracle, ExactMovesEqualDijkstra) { compare_many(1000, 9000, false); }
+TEST(NightlyAStarOracle, MovesByCellsEqualDijkstra) { compare_many(1000, 9000, true); }
+
+/// With limits on turns astar may lose a route, but never invents one or a proof.
+void compare_turns(std::uint64_t seed, int& solved, int& lost) {
+  Mix mix;
+  mix.most_cells = 4.5;
+  mix.ground = false;
+  const auto problem = random_problem(seed, mix);
+  Request& request = problem->request;
+  oracle::Draw draw(seed + 7);
+  const double turns[] = {50, 80, 100, 140};
+  (seed % 2 == 0 ? request.limits.max_turn_horizontal : request.limits.max_turn_space) =
+      radians(turns[draw.below(4)]);
+  if (draw.below(2) == 0) {
+    request.start.velocity = draw.point(3);
+  }
+  const LatticeOracle oracle(request, problem->scene, problem->lattice);
+  const auto turn = [](Vec3 u, Vec3 v, bool flat) {
+    u.z() = flat ? 0 : u.z();
+    v.z() = flat ? 0 : v.z();
+    const double norms = u.norm() * v.norm();
+    return norms < 1e-12 ? 0 : std::acos(std::clamp(u.dot(v) / norms, -1.0, 1.0));
+  };
+  const auto turn_ok = [&](std::size_t before, std::size_t here, std::size_t next) {
+    const auto& at = oracle.graph.at;
+    const bool heading = request.start.velocity.norm() > 0;
+    if (at[here] == at[next]) {
+      return true;  // from the start to the cell whose centre it is
+    }
+    std::size_t from = before;
+    if (from != kNoNode && at[from] == at[here]) {
+      from = kNoNode;
+    }
+    if (from == kNoNode && !heading) {
+      return true;
+    }
+    const Vec3 in = from == kNoNode ? request.start.velocity : Vec3(at[here] - at[from]);
+    const Vec3 out = at[next] - at[here];
+    return turn(in, out, true) <= request.limits.max_turn_horizontal + 1e-7 &&
+           turn(in, out, false) <= request.limits.max_turn_space + 1e-7;
+  };
+  const auto best = dijkstra_with_turns(oracle.graph, oracle.start, turn_ok);
+  const double expected = oracle.shortest(best);
+  const PlanResult result =
+      testing::make_planner("astar", Setting{}.yaml(problem->lattice))->plan(request);
+  if (oracle.rules.in_doubt() || result.status == Status::invalid_problem ||
+      request.goal.reached_at(request.start.position)) {
+    return;
+  }
+  SCOPED_TRACE(seed);
+  if (result.status == Status::solved) {
+    ++solved;
+    EXPECT_TRUE(check(result.route, request).ok());
+    // The goal itself may be out of reach for the one parent of a cell: then the tolerance counts.
+    const bool at_goal = result.route.back() == request.goal.position;
+    EXPECT_GE(length(result.route), (at_goal ? best[oracle.goal] : 0) * (1 - 1e-9) - 1e-6);
+    EXPECT_LT(expected, kInfinity);
+  } else {
+    ASSERT_EQ(result.status, Status::no_route);
+    lost += expected < kInfinity;
+    EXPECT_FALSE(result.proved && expected < kInfinity) << result.message;
+  }
+}
+
+TEST(AStarOracle, WithTurnsNeverBelowTheOptimumAndNoFalseProof) {
+  int solved = 0;
+  int lost = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    compare_turns(seed, solved, lost);
+  }
+  EXPECT_GT(solved, 60);
+}
+
+TEST(AStarOracle, HoldsWhereItOnceDidNot) {
+  Tally tally;
+  compare(24, false, tally);    // a route within the goal's tolerance, and a limit on its length
+  compare(1433, false, tally);  // manhattan over faces, the goal between centres
+  EXPECT_GT(tally.solved, 8);
+  int solved = 0;
+  int lost = 0;
+  compare_turns(3976, solved, lost);  // a vertical leg after one to the south-west
+  compare_turns(4532, solved, lost);  // a vertical leg but for rounding
+  EXPECT_EQ(solved, 2);
+}
+
+TEST(NightlyAStarOracle, WithTurnsNeverBelowTheOptimumAndNoFalseProof) {
+  int solved = 0;
+  int lost = 0;
+  for (std::uint64_t seed = 1000; seed < 6000; ++seed) {
+    compare_turns(seed, solved, lost);
+  }
+  EXPECT_GT(solved, 1000);
+}
+}  // namespace
+}  // namespace altiplan::reference
