@@ -6,6 +6,10 @@
 set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
 
 function(altiplan_add_plugin kind name)
+  set(kinds environment constraint planner local_planner smoother tuner)
+  if(NOT kind IN_LIST kinds)
+    message(FATAL_ERROR "altiplan_add_plugin: expected one of ${kinds}, found '${kind}'")
+  endif()
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
   endif()

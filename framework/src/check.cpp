@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "altiplan/measures.hpp"
+#include "blame.hpp"
 
 namespace altiplan {
 namespace {
@@ -171,7 +172,7 @@ class LegJudge {
   bool keeps_constraints() const {
     return std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
-                         return named.constraint->admits({before_, a_, b_}) || report_([&] {
+                         return named.admits({before_, a_, b_}) || report_([&] {
                                   return Violation{named.name, at_, 0, 0,
                                                    "the constraint does not admit the leg from " +
                                                        place(a_) + " to " + place(b_)};
@@ -183,7 +184,15 @@ class LegJudge {
     const double needed = required_clearance(request_);
     const Layer* layer = request_.world->blocked_by(a_, b_, needed);
     return layer == nullptr || report_([&] {
-             const double clearance = leg_clearance(*layer->environment, a_, b_);
+             double clearance = leg_clearance(*layer->environment, a_, b_);
+             // Of all that block, the one that the leg comes nearest to.
+             for (const Layer& other : request_.world->layers()) {
+               const double its = leg_clearance(*other.environment, a_, b_);
+               if (its < clearance && other.environment->blocked(a_, b_, needed)) {
+                 clearance = its;
+                 layer = &other;
+               }
+             }
              // What blocks may lie around: beyond a keep-in zone.
              const std::string where =
                  clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
@@ -224,6 +233,19 @@ std::vector<Violation> leg_violations(const std::optional<Vec3>& before, const V
   return all;
 }
 
+namespace {
+/// The answer of a constraint; what it throws gets its name.
+template <class Ask>
+auto answer_of(const NamedConstraint& named, const Ask& ask) {
+  return blamed([&] { return "the constraint '" + named.name + "'"; },
+                [&] { return ask(*named.constraint); });
+}
+}  // namespace
+
+bool NamedConstraint::admits(const Leg& leg) const {
+  return answer_of(*this, [&](const Constraint& asked) { return asked.admits(leg); });
+}
+
 CheckResult check(const Route& route, const Request& request) {
   CheckResult result;
   std::vector<Violation>& found = result.violations;
@@ -257,7 +279,13 @@ CheckResult check(const Route& route, const Request& request) {
                            "the route's length", false));
   }
   for (const NamedConstraint& named : request.constraints) {
-    for (Violation& violation : named.constraint->violations(route, request)) {
+    for (Violation& violation : answer_of(
+             named, [&](const Constraint& asked) { return asked.violations(route, request); })) {
+      if (violation.at >= route.size()) {
+        throw PluginError("the constraint '" + named.name +
+                          "' broke a law of its interface: it blames waypoint " +
+                          std::to_string(violation.at) + " of " + std::to_string(route.size()));
+      }
       violation.constraint = named.name;
       found.push_back(std::move(violation));
     }
@@ -275,6 +303,27 @@ std::string point_problem(const Vec3& p, const Request& request) {
   return found.empty() ? "" : place(p) + " cannot be flown: " + found.front().message;
 }
 
+namespace {
+/// Whether every limit is at least as tight as it was; false where one is not a number.
+bool no_looser(const Limits& now, const Limits& was) {
+  const auto ground = [](const Limits& limits) {
+    return limits.min_ground_clearance.value_or(-kInfinity);
+  };
+  return now.min_clearance >= was.min_clearance && ground(now) >= ground(was) &&
+         now.altitude.size() >= was.altitude.size() && now.min_leg >= was.min_leg &&
+         now.max_leg <= was.max_leg && now.max_turn_horizontal <= was.max_turn_horizontal &&
+         now.max_turn_space <= was.max_turn_space && now.min_turn_radius >= was.min_turn_radius &&
+         now.max_climb <= was.max_climb && now.max_route_length <= was.max_route_length &&
+         std::equal(was.altitude.begin(), was.altitude.end(), now.altitude.begin(),
+                    [](const AltitudeBand& a, const AltitudeBand& b) {
+                      return a.datum == b.datum && b.min >= a.min && b.max <= a.max;
+                    }) &&
+         std::none_of(now.altitude.begin(), now.altitude.end(), [](const AltitudeBand& band) {
+           return std::isnan(band.min) || std::isnan(band.max);
+         });
+}
+}  // namespace
+
 void apply_constraints(Request& request, std::vector<NamedConstraint> constraints, AppliesTo to) {
   request.limits = Limits{};
   request.limits.min_clearance = request.vehicle.radius_m;
@@ -282,7 +331,13 @@ void apply_constraints(Request& request, std::vector<NamedConstraint> constraint
   for (NamedConstraint& named : constraints) {
     const AppliesTo applies = named.constraint->applies_to();
     if (applies == AppliesTo::both || applies == to) {
-      named.constraint->tighten(request.limits, request);
+      const Limits before = request.limits;
+      answer_of(named, [&](const Constraint& asked) { asked.tighten(request.limits, request); });
+      if (!no_looser(request.limits, before)) {
+        throw PluginError(
+            "the constraint '" + named.name +
+            "' broke a law of its interface: it loosened a limit, or made it no number");
+      }
       request.constraints.push_back(std::move(named));
     }
   }

@@ -51,8 +51,7 @@ FieldRef& FieldRef::required() {
 }
 
 Fields::Fields(const Value* source, std::string path) : source_(source), path_(std::move(path)) {
-  if (source_ != nullptr && source_->kind != Value::Kind::map) {
-    problem(*source_, path_, "expected a map of keys, found " + source_->what());
+  if (source_ != nullptr && !expect_map(*source_, path_)) {
     source_ = nullptr;
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "altiplan/params.hpp"
@@ -27,17 +28,42 @@ FieldSpec make_shape(FieldType type, std::string default_json) {
   spec.default_json = std::move(default_json);
   return spec;
 }
+
+bool is_unquoted(const Value& value) {
+  return value.kind == Value::Kind::scalar && !value.quoted && !value.text.empty();
+}
+
+/// Written as a number, but none that T can hold.
+template <class T>
+bool out_of_range(std::string_view text, T& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc::result_out_of_range && end == text.data() + text.size();
+}
+
+/// ".inf", "-Infinity", "NaN", as YAML and other programs write them.
+bool is_not_finite(std::string_view text) {
+  text.remove_prefix(text.front() == '-' || text.front() == '+' ? 1 : 0);
+  text.remove_prefix(text.starts_with('.') ? 1 : 0);
+  std::string word(text);
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return word == "inf" || word == "infinity" || word == "nan";
+}
 }  // namespace
 
 std::optional<double> Fields::read_number(const Value& value, const std::string& key) {
   double number = 0;
+  if (is_unquoted(value) && out_of_range(value.text, number)) {
+    problem(value, key, "the number is too large or too small, found " + value.what());
+    return std::nullopt;
+  }
+  if (is_unquoted(value) && is_not_finite(value.text)) {
+    problem(value, key, "expected a finite number, found " + value.what());
+    return std::nullopt;
+  }
   if (value.kind != Value::Kind::scalar || value.quoted || !is_plain_number(value.text) ||
       !parse_whole(value.text, number)) {
     problem(value, key, "expected a number, found " + value.what());
-    return std::nullopt;
-  }
-  if (!std::isfinite(number)) {
-    problem(value, key, "expected a finite number, found " + value.what());
     return std::nullopt;
   }
   return number;
@@ -53,7 +79,11 @@ bool Fields::expect_list(const Value& value, const std::string& key) {
 
 bool Fields::expect_map(const Value& value, const std::string& key) {
   if (value.kind != Value::Kind::map) {
-    problem(value, key, "expected a map of keys, found " + value.what());
+    const bool word =
+        !value.text.empty() && std::isalpha(static_cast<unsigned char>(value.text[0]));
+    problem(value, key,
+            "expected a map of keys, found " + value.what() +
+                (word ? " (as a key it needs a ':' and what belongs to it)" : ""));
     return false;
   }
   return true;
@@ -98,6 +128,10 @@ void Fields::read(const Value& value, int& t, const std::string& key, std::size_
 
 void Fields::read(const Value& value, std::int64_t& t, const std::string& key, std::size_t field) {
   std::int64_t number = 0;
+  if (is_unquoted(value) && out_of_range(value.text, number)) {
+    problem(value, key, "the integer is too large, found " + value.what());
+    return;
+  }
   if (value.kind != Value::Kind::scalar || value.quoted || !is_plain_number(value.text) ||
       !parse_whole(value.text, number)) {
     problem(value, key, "expected an integer, found " + value.what());
@@ -267,11 +301,14 @@ FieldRef Fields::point(Point& target) {
       continue;
     }
     bound_[index].where = value->where;
+    target.form = form;
     if (value->kind != Value::Kind::list || value->items.size() < 2 || value->items.size() > 3) {
-      problem(*value, key_of(name), "expected two or three numbers, found " + value->what());
+      problem(*value, key_of(name),
+              "expected two or three numbers, found " + value->what() +
+                  (value->kind == Value::Kind::list ? " of " + std::to_string(value->items.size())
+                                                    : ""));
       continue;
     }
-    target.form = form;
     target.has_height = value->items.size() == 3;
     for (std::size_t i = 0; i < value->items.size(); ++i) {
       const std::string key = key_of(name) + "." + std::to_string(i);
@@ -282,7 +319,10 @@ FieldRef Fields::point(Point& target) {
     if (form == Point::Form::lonlat &&
         (std::abs(target.at[0]) > 180 || std::abs(target.at[1]) > 90)) {
       problem(*value, key_of(name),
-              "expected longitude in [-180, 180], then latitude in [-90, 90]");
+              std::string("expected longitude in [-180, 180], then latitude in [-90, 90]") +
+                  (std::abs(target.at[1]) <= 180 && std::abs(target.at[0]) <= 90
+                       ? ": are these two swapped?"
+                       : ""));
     }
   }
   if (const Value* value = source_->find("above_ground_m")) {
@@ -316,10 +356,12 @@ FieldRef Fields::plugin(std::string_view kind, std::string& name, Value& paramet
       continue;
     }
     if (found != nullptr) {
+      const std::string near = nearest_name(entry.key, known_);
       problems_.push_back({entry.where, key_of(entry.key),
                            "unknown key beside '" + found->key +
-                               "': expected one name of a plugin" + " (" + std::string(kind) +
-                               ") over its parameters"});
+                               (near.empty() ? "': expected one name of a plugin (" +
+                                                   std::string(kind) + ") over its parameters"
+                                             : "'; did you mean '" + near + "'?")});
     } else {
       found = &entry;
     }

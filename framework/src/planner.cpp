@@ -54,6 +54,15 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
   }
 }
 
+bool same(const PlanResult& a, const PlanResult& b) {
+  return a.status == b.status && a.message == b.message && a.route == b.route &&
+         a.budget_hit == b.budget_hit && a.proved == b.proved &&
+         std::equal(a.counters.begin(), a.counters.end(), b.counters.begin(), b.counters.end(),
+                    [](const Counter& x, const Counter& y) {
+                      return x.name == y.name && x.value == y.value;
+                    });
+}
+
 /// Holds a returned route to the law on its ends; `start` and `goal` are those asked for.
 PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal) {
   if (result.status != Status::solved) {
@@ -143,7 +152,18 @@ class HeldSession final : public Session {
 const PlanResult& Session::update(const State& state, const Goal& goal,
                                   std::shared_ptr<const World> world,
                                   std::span<const Change> changes, const Budget& budget) {
-  return do_update(state, goal, std::move(world), changes, budget);
+  const PlanResult said =
+      guarded([&] { return do_update(state, goal, std::move(world), changes, budget); });
+  const PlanResult shown = guarded([&] { return do_result(); });
+  PlanResult held = held_to_law(said, state.position, goal);
+  if (held.status != Status::failed && !same(said, shown)) {
+    held = failed("the session broke a law of its interface: result() is not what update returned");
+  }
+  broken_.reset();
+  if (held.status == Status::failed) {
+    broken_ = std::move(held);
+  }
+  return result();
 }
 
 PlanResult Planner::plan(const Request& request) const {
@@ -163,8 +183,13 @@ std::unique_ptr<Session> Planner::begin(const Request& request) const {
     session = do_begin(request);
     return session == nullptr ? failed("begin returned no session") : PlanResult{};
   });
-  return session != nullptr ? std::move(session)
-                            : std::make_unique<HeldSession>(std::move(failure));
+  if (session == nullptr) {
+    return std::make_unique<HeldSession>(std::move(failure));
+  }
+  PlanResult first =
+      held_to_law(guarded([&] { return session->result(); }), request.start.position, request.goal);
+  return first.status == Status::failed ? std::make_unique<HeldSession>(std::move(first))
+                                        : std::move(session);
 }
 
 std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
@@ -180,6 +205,15 @@ std::unique_ptr<Pilot> LocalPlanner::begin(const Request& request) const {
 }
 
 Traits LocalPlanner::do_traits() const { return {}; }
+
+double Pilot::reach_m() const {
+  const double reach = do_reach_m();
+  if (!(reach >= 0 && std::isfinite(reach))) {
+    throw PluginError("the pilot broke a law of its interface: its reach is " +
+                      std::to_string(reach) + " m");
+  }
+  return reach;
+}
 
 PilotStep Pilot::step(const Observation& seen) {
   PilotStep step = do_step(seen);

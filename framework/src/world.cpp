@@ -6,9 +6,17 @@
 #include <mutex>
 #include <utility>
 
-#include "altiplan/error.hpp"
+#include "blame.hpp"
 
 namespace altiplan {
+namespace {
+/// The answer of a layer; what it throws gets its name.
+template <class Ask>
+auto answer_of(const Layer& layer, const Ask& ask) {
+  return blamed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
+                [&] { return ask(*layer.environment); });
+}
+}  // namespace
 
 /// Grids of this snapshot, and those of an earlier one with the layers that they show.
 struct World::Cache {
@@ -112,14 +120,15 @@ Box World::bounds() const {
 double World::clearance(const Vec3& p) const {
   double least = kInfinity;
   for (const Layer& layer : layers_) {
-    least = std::min(least, layer.environment->clearance(p));
+    least = std::min(
+        least, answer_of(layer, [&](const Environment& asked) { return asked.clearance(p); }));
   }
   return least;
 }
 
 const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
   for (const Layer& layer : layers_) {
-    if (layer.environment->blocked(a, b, r)) {
+    if (answer_of(layer, [&](const Environment& asked) { return asked.blocked(a, b, r); })) {
       return &layer;
     }
   }
@@ -129,7 +138,9 @@ const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
 void World::near(const Vec3& p, double reach,
                  const std::function<void(const Layer&, const Nearby&)>& sink) const {
   for (const Layer& layer : layers_) {
-    layer.environment->near(p, reach, [&](const Nearby& nearby) { sink(layer, nearby); });
+    answer_of(layer, [&](const Environment& asked) {
+      asked.near(p, reach, [&](const Nearby& nearby) { sink(layer, nearby); });
+    });
   }
 }
 
@@ -141,7 +152,8 @@ bool World::has_ground() const {
 std::optional<double> World::ground(double x, double y) const {
   std::optional<double> highest;
   for (const Layer& layer : layers_) {
-    if (const auto ground = layer.environment->ground(x, y)) {
+    if (const auto ground =
+            answer_of(layer, [&](const Environment& asked) { return asked.ground(x, y); })) {
       highest = highest ? std::max(*highest, *ground) : *ground;
     }
   }
@@ -184,7 +196,8 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
     return kInfinity;
   }
   if (std::none_of(first + 1, layers_.end(), is_ground)) {
-    return first->environment->ground_gap(a, b, enough);
+    return answer_of(*first,
+                     [&](const Environment& asked) { return asked.ground_gap(a, b, enough); });
   }
   // Neighbouring tiles: each answers for its part of the leg, and together they must cover it.
   double least = kInfinity;
@@ -195,8 +208,11 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
     if (!is_ground(layer) || t0 > t1) {
       continue;
     }
-    least = std::min(
-        least, layer.environment->ground_gap(on_leg(a, b, t0, box), on_leg(a, b, t1, box), enough));
+    const Vec3 enter = on_leg(a, b, t0, box);
+    const Vec3 leave = on_leg(a, b, t1, box);
+    least = std::min(least, answer_of(layer, [&](const Environment& asked) {
+                       return asked.ground_gap(enter, leave, enough);
+                     }));
     parts.emplace_back(t0, t1);
   }
   std::sort(parts.begin(), parts.end());
@@ -223,9 +239,12 @@ double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
       const Box box = layer.environment->bounds();
       const auto [t0, t1] = part_over(box, a, b);
       if (t0 <= t1) {
+        const Vec3 enter = on_leg(a, b, t0, box);
+        const Vec3 leave = on_leg(a, b, t1, box);
         covered = true;
-        most = std::max(
-            most, layer.environment->ground_gap_max(on_leg(a, b, t0, box), on_leg(a, b, t1, box)));
+        most = std::max(most, answer_of(layer, [&](const Environment& asked) {
+                          return asked.ground_gap_max(enter, leave);
+                        }));
       }
     }
   }
@@ -297,7 +316,7 @@ std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::ve
     VoxelGrid fresh(spec);
     for (const Layer& layer : now) {
       if (layer.environment->bounds().grown(spec.inflation + spec.cell.norm()).overlaps(gone)) {
-        layer.environment->rasterize(fresh);
+        answer_of(layer, [&](const Environment& asked) { asked.rasterize(fresh); });
       }
     }
     const auto [low, high] = cells_touching(spec, gone);
@@ -311,7 +330,7 @@ std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::ve
   }
   for (const Layer& layer : now) {
     if (!shows(then, layer)) {
-      layer.environment->rasterize(*grid);
+      answer_of(layer, [&](const Environment& asked) { asked.rasterize(*grid); });
     }
   }
   return grid;
@@ -333,7 +352,7 @@ std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
   }
   auto grid = std::make_shared<VoxelGrid>(spec);
   for (const Layer& layer : layers_) {
-    layer.environment->rasterize(*grid);
+    answer_of(layer, [&](const Environment& asked) { asked.rasterize(*grid); });
   }
   cache_->grids.push_back(std::move(grid));
   return cache_->grids.back();

@@ -296,7 +296,7 @@ events:
         self.assertTrue(out.startswith("sound: 4 waypoints"), out)
         through = self.write("through.json", "[[100,500,100],[900,500,100]]")
         out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", code=1)
-        self.assertIn("'wall'", out)
+        self.assertIn("'post'", out)
         out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", "--json",
                            code=1)
         self.assertFalse(json.loads(out)["check"]["ok"])

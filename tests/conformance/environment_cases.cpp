@@ -74,7 +74,9 @@ void clearances(const Bench& bench, Report& report) {
                          ": set the volume to where its obstacles are";
                 });
   for (int n = 0; n < 300 * bench.options.rounds; ++n) {
-    auto [a, b, r] = probe.leg();
+    const Probe::AskedLeg leg = probe.leg();
+    Vec3 a = leg.a;
+    Vec3 b = leg.b;
     double at_a = layer.clearance(a);
     double at_b = layer.clearance(b);
     report.expect(!std::isnan(at_a), kEnvironmentClearance,
@@ -107,7 +109,9 @@ void blocked_legs(const Bench& bench, Report& report) {
   constexpr int kSamples = 24;
   for (int n = 0; n < 100 * bench.options.rounds; ++n) {
     const Probe::AskedLeg leg = probe.leg();
-    const auto& [a, b, r] = leg;
+    const Vec3& a = leg.a;
+    const Vec3& b = leg.b;
+    const double r = leg.r;
     const bool blocked = layer.blocked(a, b, r);
     double least = kInfinity;
     for (int k = 0; k <= kSamples; ++k) {
@@ -140,9 +144,11 @@ void blocked_just_so(const Bench& bench, Report& report) {
   Probe probe(bench, "just so");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 150 * bench.options.rounds; ++n) {
-    const auto [a, b, r] = probe.leg();
+    const Probe::AskedLeg leg = probe.leg();
+    const Vec3& a = leg.a;
+    const Vec3& b = leg.b;
     const Vec3 middle = (a + b) / 2;
-    layer.near(middle, probe.size(), [&, a = a, b = b](const Nearby& nearby) {
+    layer.near(middle, probe.size(), [&](const Nearby& nearby) {
       const Vec3 within = nearby.point - 10 * kDeep * nearby.normal;
       if (!is_finite(within) || !probe.inside(within)) {
         return;  // of a layer whose distances are lower bounds
@@ -161,7 +167,9 @@ void symmetric_and_monotone(const Bench& bench, Report& report) {
   const Environment& layer = probe.layer();
   for (int n = 0; n < 200 * bench.options.rounds; ++n) {
     const Probe::AskedLeg leg = probe.leg();
-    const auto& [a, b, r] = leg;
+    const Vec3& a = leg.a;
+    const Vec3& b = leg.b;
+    const double r = leg.r;
     const bool blocked = layer.blocked(a, b, r);
     report.expect(blocked == layer.blocked(b, a, r), kEnvironmentSymmetric,
                   [&] { return text(leg) + " is blocked one way only"; });
@@ -175,12 +183,14 @@ void near_by(const Bench& bench, Report& report) {
   Probe probe(bench, "near");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 150 * bench.options.rounds; ++n) {
-    const auto [p, b, r] = probe.leg();
+    const Probe::AskedLeg leg = probe.leg();
+    const Vec3& p = leg.a;
+    const double r = leg.r;
     double nearest = kInfinity;
-    const auto told = [&, p = p, r = r](const std::string& what) {
+    const auto told = [&](const std::string& what) {
       return [&, what] { return "near(" + text(p) + ", " + text(r) + "): " + what; };
     };
-    layer.near(p, r, [&, p = p, r = r](const Nearby& nearby) {
+    layer.near(p, r, [&](const Nearby& nearby) {
       nearest = std::min(nearest, nearby.distance);
       report.expect(nearby.distance <= r + kDeep, kEnvironmentNear,
                     told("an obstacle is " + text(nearby.distance) + " m away"));

@@ -72,7 +72,7 @@ void rasters(const Bench& bench, Report& report) {
         spec.rule = Rule::touched;
         VoxelGrid grid(spec);
         probe.layer().rasterize(grid);
-        touched(grid, probe, 400 * bench.options.rounds, report);
+        touched(grid, probe, 4000, report);
         spec.rule = Rule::centre;
         VoxelGrid by_centre(spec);
         probe.layer().rasterize(by_centre);

@@ -73,7 +73,8 @@ void legs(const Bench& bench, Report& report) {
   constexpr int kSamples = 200;
   for (int n = 0; n < 40 * bench.options.rounds; ++n) {
     const Probe::AskedLeg leg = probe.leg();
-    const auto& [a, b, r] = leg;
+    const Vec3& a = leg.a;
+    const Vec3& b = leg.b;
     double least = kInfinity;
     double most = -kInfinity;
     bool whole = true;
@@ -126,7 +127,9 @@ void slopes(const Bench& bench, Report& report) {
   Probe probe(bench, "slopes");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 150 * bench.options.rounds && layer.has_ground(); ++n) {
-    const auto [a, b, r] = probe.leg();
+    const Probe::AskedLeg leg = probe.leg();
+    const Vec3& a = leg.a;
+    const Vec3& b = leg.b;
     const auto ground_a = layer.ground(a.x(), a.y());
     const auto ground_b = layer.ground(b.x(), b.y());
     const double run = std::hypot(b.x() - a.x(), b.y() - a.y());

@@ -4,6 +4,7 @@
 // its folder: conformance.yaml (docs/conformance.md).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -25,6 +26,11 @@ void* operator new(std::size_t size) {
     return memory;
   }
   throw std::bad_alloc();
+}
+// Else a sanitizer's own would meet the delete below.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(size);
 }
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where only one of the two is inlined
@@ -117,12 +123,20 @@ void register_set(const PluginEntry& entry, const SetParams& set, const std::str
     setup.options.volume = Box{set.volume->min_m, set.volume->max_m};
   }
   setup.options.allocations = [] { return allocations; };
-  setup.options.rounds = 30;
+  setup.options.rounds = ALTIPLAN_CONFORMANCE_ROUNDS;
   const std::string suite = std::string(entry.kind) + "/" + entry.name + suffix;
   register_cases(suite, cases_of(entry, setup));
   setup.options.seed = 2;
-  setup.options.rounds = 1000;
+  setup.options.rounds = 500;
   register_cases("Nightly/" + suite, cases_of(entry, setup));
+}
+
+/// Whether this build has the layers that the set builds upon; GDAL, say, may be off.
+bool can_be_built(const SetParams& set) {
+  const std::vector<std::string> names = registry().names("environment");
+  return std::all_of(set.before.begin(), set.before.end(), [&](const Value& layer) {
+    return std::find(names.begin(), names.end(), layer.entries.at(0).key) != names.end();
+  });
 }
 
 /// A library that cannot be loaded fails, as a case of its own.
@@ -143,7 +157,13 @@ void register_all() {
       register_cases(std::string(entry.kind) + "/" + entry.name, plugin_cases(entry));
       const std::vector<SetParams> sets = sets_of(entry.kind, entry.name);
       for (std::size_t i = 0; i < sets.size(); ++i) {
-        register_set(entry, sets[i], sets.size() > 1 ? "/" + std::to_string(i) : "");
+        const std::string suffix = sets.size() > 1 ? "/" + std::to_string(i) : "";
+        if (can_be_built(sets[i])) {
+          register_set(entry, sets[i], suffix);
+        } else {
+          std::printf("%s/%s%s left out: this build lacks a layer before it\n", entry.kind,
+                      entry.name, suffix.c_str());
+        }
       }
     }
   }

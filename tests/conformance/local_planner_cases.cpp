@@ -1,189 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/error.hpp"
-#include "worlds.hpp"
+#include "pilot_bench.hpp"
 
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kContinues = "Pilot law 1: continues from the observed state";
-constexpr const char* kTimeAndSpeed =
-    "Pilot law 2: 0 < next.time - state.time <= max_dt, and the speed kept is the vehicle's";
-constexpr const char* kNoAllocation = "Pilot law 3: no allocation in a step";
-constexpr const char* kEqualSteps =
-    "Pilot law 4: equal observations in equal order give equal steps";
-constexpr const char* kReach = "Pilot::reach_m: obstacles farther away do not move it";
-constexpr const char* kArrived = "PilotStep: arrived means within the goal's tolerance";
-constexpr const char* kOpen = "Pilot: arrives in an open world";
-constexpr const char* kNotThrough =
-    "Pilot: a step that says flying does not lead through an obstacle of the observed world";
-constexpr const char* kLevel = "Planner trait `plane`: level flight stays on its level";
-constexpr const char* kNoThrow = "Pilot: being stuck is an outcome, never an exception";
-
-struct Bench {
-  Factory<LocalPlanner> make;
-  Options options;
-
-  double reach() const {
-    const double reach = make()->begin(flight(nullptr))->reach_m();
-    return std::isfinite(reach) && reach > 0 ? reach : 10 * options.unit_m;
-  }
-  /// Eastward, 8 reaches far, a hundredth of the reach a second; scaled by `reach` itself while
-  /// that is not known.
-  Request flight(std::shared_ptr<const World> world, double reach = 3000) const {
-    Request request;
-    request.world = world != nullptr ? std::move(world) : std::make_shared<const World>();
-    request.start.position = {0, 0, reach};
-    request.goal.position = {8 * reach, 0.5 * reach, 1.1 * reach};
-    request.goal.tolerance_m = 0.01 * reach;
-    request.volume = {{-4 * reach, -6 * reach, 0}, {12 * reach, 6 * reach, 3 * reach}};
-    request.vehicle.speed_mps = 0.01 * reach;
-    request.vehicle.radius_m = request.limits.min_clearance = 0.001 * reach;
-    request.random = RandomStream(options.seed);
-    return request;
-  }
-};
-
-std::shared_ptr<const World> balls(std::vector<Sphere> all) {
-  return std::make_shared<const World>(
-      World().with({"balls", "conformance", std::make_shared<Balls>(std::move(all)), true}));
-}
-
-/// Balls beside and across the straight way, none within half a reach of its ends.
-std::vector<Sphere> drawn(std::uint64_t seed, const Request& request, double reach) {
-  RandomStream random = RandomStream(seed).sub("balls");
-  std::vector<Sphere> all;
-  while (all.size() < 8) {
-    const Sphere ball{{random.uniform(0, 8) * reach, random.uniform(-1.5, 1.5) * reach,
-                       random.uniform(0, 2) * reach},
-                      random.uniform(0.05, 0.5) * reach};
-    const auto far = [&](const Vec3& p) {
-      return (p - ball.centre).norm() > ball.radius + reach / 2;
-    };
-    if (far(request.start.position) && far(request.goal.position)) {
-      all.push_back(ball);
-    }
-  }
-  return all;
-}
-
-Observation first_observation(const Request& request) {
-  Observation seen;
-  seen.state = request.start;
-  seen.local_target = request.goal.position;
-  seen.goal = request.goal;
-  seen.rest = std::span(&request.goal.position, 1);
-  seen.world = request.world.get();
-  return seen;
-}
-
-double top_speed(const Vehicle& vehicle) {
-  double top = vehicle.speed_mps;
-  for (const SpeedNear& near : vehicle.speed_near) {
-    top = std::max(top, near.speed_mps);
-  }
-  return top;
-}
-
-using conformance::text;
-
-std::string text(const Observation& seen) {
-  return "observed at " + text(seen.state.position) + ", velocity " + text(seen.state.velocity) +
-         ", after " + text(seen.state.time_s) + " s";
-}
-
-/// Holds a step to laws 1 and 2, and to its own word.
-void judge(Report& report, const PilotStep& step, const Observation& seen, const Request& request) {
-  const double dt = step.next.time_s - seen.state.time_s;
-  if (step.outcome == PilotStep::Outcome::stuck) {
-    return;
-  }
-  report.expect(dt > 0 && dt <= seen.max_dt_s * (1 + 1e-9), kTimeAndSpeed, [&] {
-    return text(seen) + ": the pilot's step takes " + text(dt) + " s of at most " +
-           text(seen.max_dt_s) + " s";
-  });
-  const double way = (step.next.position - seen.state.position).norm();
-  const double most = top_speed(request.vehicle) * dt;
-  // A pilot that goes on from its own last answer seems to leap from where it was put.
-  const bool leaps = way > 3 * most + kLengthTolerance;
-  report.expect(
-      way <= most * (1 + 1e-9) + kLengthTolerance, leaps ? kContinues : kTimeAndSpeed, [&] {
-        return text(seen) + ": the pilot moves " + text(way) + " m in " + text(dt) + " s to " +
-               text(step.next.position) + ", the vehicle's speed allows " + text(most) + " m";
-      });
-  report.expect(step.next.velocity.norm() <= top_speed(request.vehicle) * (1 + 1e-9) + 1e-9,
-                kTimeAndSpeed, [&] {
-                  return text(seen) + ": the pilot's velocity is " + text(step.next.velocity) +
-                         ", the vehicle flies " + text(top_speed(request.vehicle)) + " m/s";
-                });
-  report.expect(
-      step.outcome != PilotStep::Outcome::arrived || seen.goal.reached_at(step.next.position),
-      kArrived, [&] {
-        return text(seen) + ": the pilot says arrived at " + text(step.next.position) + ", " +
-               text((step.next.position - seen.goal.position).norm()) + " m from the goal";
-      });
-  if (request.level_m) {
-    report.expect(std::abs(step.next.position.z() - *request.level_m) <= kLengthTolerance, kLevel,
-                  [&] { return text(seen) + ": the pilot goes to " + text(step.next.position); });
-  }
-}
-
-/// A step; what Pilot::step refuses of it is a finding, and ends the flight.
-PilotStep step_of(Pilot& pilot, const Observation& seen, Report& report) {
-  try {
-    return pilot.step(seen);
-  } catch (const PluginError& error) {
-    report.add(kTimeAndSpeed, text(seen) + ": " + error.what());
-    return {seen.state, PilotStep::Outcome::stuck, "broke a law"};
-  }
-}
-
-/// The step's leg, by dense samples: through is through, whatever clearance was asked for.
-void judge_way(Report& report, const PilotStep& step, const Observation& seen) {
-  if (step.outcome == PilotStep::Outcome::stuck || seen.world->clearance(seen.state.position) < 0) {
-    return;
-  }
-  for (int i = 1; i <= 40; ++i) {
-    const Vec3 p = seen.state.position + (step.next.position - seen.state.position) * (i / 40.0);
-    if (!report.expect(seen.world->clearance(p) > -kLengthTolerance, kNotThrough, [&] {
-          return text(seen) + ": the pilot's step to " + text(step.next.position) + " is " +
-                 text(-seen.world->clearance(p)) + " m inside an obstacle at " + text(p);
-        })) {
-      return;
-    }
-  }
-}
-
-struct Flight {
-  PilotStep last;
-  int steps = 0;
-};
-
-/// Flies until the pilot arrives or is stuck; `between` may change what it sees before a step.
-Flight fly(const Bench& bench, const Request& request, Report& report, int most,
-           const std::function<void(Observation&, int)>& between = {}) {
-  const auto planner = bench.make();
-  const auto pilot = planner->begin(request);
-  Observation seen = first_observation(request);
-  Flight flight;
-  while (flight.steps < most) {
-    if (between) {
-      between(seen, flight.steps);
-    }
-    flight.last = step_of(*pilot, seen, report);
-    ++flight.steps;
-    judge(report, flight.last, seen, request);
-    judge_way(report, flight.last, seen);
-    if (flight.last.outcome != PilotStep::Outcome::flying) {
-      break;
-    }
-    seen.state = flight.last.next;
-    seen.changes = {};
-  }
-  (void)pilot->counters();
-  return flight;
-}
+using namespace pilots;
 
 constexpr int kMost = 3000;  // more than three times the straight way
 
@@ -209,7 +32,7 @@ void open_world(const Bench& bench, Report& report) {
     requests.push_back(level);
   }
   for (const Request& request : requests) {
-    const Flight flight = fly(bench, request, report, kMost);
+    const Flown flight = fly(bench, request, report, kMost);
     report.expect(flight.last.outcome == PilotStep::Outcome::arrived ||
                       request.goal.reached_at(flight.last.next.position),
                   kOpen, [&] {
@@ -237,7 +60,7 @@ void goal_out_of_reach(const Bench& bench, Report& report) {
   const double reach = bench.reach();
   Request request = bench.flight(nullptr, reach);
   request.world = balls({{request.goal.position, reach}});
-  const Flight flight = fly(bench, request, report, kMost);
+  const Flown flight = fly(bench, request, report, kMost);
   report.expect(flight.last.outcome != PilotStep::Outcome::arrived, kArrived,
                 [&] { return "the goal lies inside a ball, and the pilot says arrived"; });
 }

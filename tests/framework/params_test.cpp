@@ -101,7 +101,7 @@ TEST(Params, SaysWhatIsWrongAndWhere) {
             "file.yaml:1:8: with.share: expected a number, found the text \"0.5\"\n");
   EXPECT_EQ(problems("share: 010"), "file.yaml:1:8: with.share: expected a number, found '010'\n");
   EXPECT_EQ(problems("share: .nan"),
-            "file.yaml:1:8: with.share: expected a number, found '.nan'\n");
+            "file.yaml:1:8: with.share: expected a finite number, found '.nan'\n");
   EXPECT_EQ(problems("reach: sometimes"),
             "file.yaml:1:8: with.reach: expected a number or auto, found 'sometimes'\n");
   EXPECT_EQ(problems("cap: 0"), "file.yaml:1:6: with.cap: expected more than 0, found 0\n");

@@ -19,6 +19,13 @@ struct Draw {
     return low + (high - low) * double(engine() >> 11) * 0x1p-53;
   }
   int below(int count) { return int(engine() % std::uint64_t(count)); }
+  /// In a box; one coordinate a statement, since compilers order arguments as they like.
+  Vec3 within(const Vec3& low, const Vec3& high) {
+    const double z = (*this)(low.z(), high.z());
+    const double y = (*this)(low.y(), high.y());
+    const double x = (*this)(low.x(), high.x());
+    return {x, y, z};
+  }
   Vec3 point(double half) {
     return {(*this)(-half, half), (*this)(-half, half), (*this)(-half, half)};
   }

@@ -77,7 +77,7 @@ TEST_F(PipelineTest, ALayerThatContradictsItselfIsNamed) {
   EXPECT_EQ(thrown.exit_code(), 4);
   EXPECT_HAS(thrown.message, "the map is torn");
   scenario("environment: [{liar: {does: refuses}}]\n");
-  EXPECT_HAS(refusal(told("straight")), "environment.0.liar) the map is blank");
+  EXPECT_HAS(refusal(told("straight")), "environment.0.liar) threw: the map is blank");
 }
 
 TEST_F(PipelineTest, ConstraintsOfBothFilesHold) {

@@ -52,7 +52,9 @@ class RegistryTest : public ::testing::Test {
       std::memcpy(&record, bytes.data() + at, sizeof record);
     }
     --at;
+    const std::uint32_t before = checksum_of(record);
     edit(record);
+    record.checksum += checksum_of(record) - before;
     std::memcpy(bytes.data() + at, &record, sizeof record);
     return write(name, bytes);
   }
@@ -104,6 +106,20 @@ TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
   EXPECT_HAS(refusal([](Manifest& m) { m.struct_size = 400; }),
              "400 bytes a plugin, this altiplan's");
   EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
+}
+
+TEST_F(RegistryTest, RefusesARecordThatDoesNotFitItsChecksum) {
+  const auto damage = [](Manifest& m) {
+    m.sentence[3] ^= 4;
+    m.checksum ^= 1;
+  };
+  const fs::path file = edited("libaltiplan_planner_alpha.so", damage);
+  EXPECT_EQ(examine_library(file).refused, "damaged manifest: a record does not fit its checksum");
+  Registry registry({folder_});
+  EXPECT_HAS(text_of<PluginError>([&] { registry.get("planner", "alpha"); }),
+             "the library of the planner 'alpha' is refused: " + file.string());
+  EXPECT_HAS(text_of<Error>([&] { registry.get("smoother", "alpha"); }),
+             "no library offers the smoother 'alpha'");
 }
 
 TEST_F(RegistryTest, RefusesADamagedManifest) {
@@ -249,6 +265,18 @@ TEST_F(RegistryTest, ALibraryThatCannotBeUsedIsAPluginError) {
   const std::string text = text_of<PluginError>([&] { registry.get("constraint", "gamma"); });
   EXPECT_HAS(text, "missing_function_of_a_test");
   EXPECT_EQ(text.find("Bad file descriptor"), std::string::npos) << text;
+}
+
+TEST_F(RegistryTest, AParameterWithoutAProperNameIsAPluginError) {
+  std::string bytes = bytes_of(kBroken / "two_plugins.so");
+  const std::size_t at = bytes.find(std::string("least_m") + '\0');
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, 2, "\xF1\0", 2);
+  const fs::path file = write("two.so", bytes);
+  Registry registry({folder_});
+  EXPECT_EQ(text_of<PluginError>([&] { registry.get("planner", "alpha"); }),
+            file.string() + ": describing the constraint 'beta': a parameter is named '??ast_m', " +
+                "expected lower-case letters, digits and '_'");
 }
 
 TEST_F(RegistryTest, SearchPath) {

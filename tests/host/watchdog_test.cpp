@@ -57,7 +57,8 @@ TEST_F(WatchdogTest, APlannerThatNeverStopsEndsTheProcess) {
   EXPECT_EXIT(
       run("steps: [{plan: told, within_s: 0.1, with: {does: never_stops}}]\n", last_words()),
       ::testing::ExitedWithCode(4),
-      "^told failed; all failed: told: did not stop within two seconds of the end of its");
+      "^told failed; all failed: told: the planner 'told' .steps.0. did not stop within two "
+      "seconds");
 }
 
 TEST_F(WatchdogTest, TheRouteSoFarIsInTheLastWords) {
@@ -66,7 +67,8 @@ TEST_F(WatchdogTest, TheRouteSoFarIsInTheLastWords) {
           "{does: nothing}}, {plan: told_pilot, within_s: 0.1, with: {does: never_stops}}]\n",
           last_words()),
       ::testing::ExitedWithCode(1),
-      "^told solved; s solved; told_pilot failed; all failed: told_pilot: did not stop");
+      "^told solved; s solved; told_pilot failed; all failed: told_pilot: the local_planner "
+      "'told_pilot'");
 }
 
 TEST_F(WatchdogTest, APilotThatNeverStopsEndsTheProcess) {

@@ -162,8 +162,7 @@ const std::vector<Harder> kHarder = {
     {"one solid more",
      [](Problem& p, oracle::Draw& draw) {
        const Box& v = p.request.volume;
-       const Vec3 at(draw(v.min.x(), v.max.x()), draw(v.min.y(), v.max.y()),
-                     draw(v.min.z(), v.max.z()));
+       const Vec3 at = draw.within(v.min, v.max);
        p.scene.solids.push_back({Sphere{at, p.lattice.cell.norm() * draw(0.2, 1)}, {}});
        p.request.world = std::make_shared<const World>(world_of(p.scene));
      }},

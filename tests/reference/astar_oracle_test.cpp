@@ -159,10 +159,12 @@ void compare_own_cells(std::uint64_t seed, Tally& tally) {
   problem.request = drawn.request;
   Request& request = problem.request;
   for (Vec3* end : {&request.start.position, &request.goal.position}) {
-    const Vec3 low(draw.below(counts[0]), draw.below(counts[1]), draw.below(counts[2]));
+    const int k = draw.below(counts[2]);
+    const int j = draw.below(counts[1]);
+    const Vec3 low(draw.below(counts[0]), j, k);
     const bool centre = draw.below(2) == 0;
-    *end = low + (centre ? Vec3(0.5, 0.5, 0.5)
-                         : Vec3(draw(0.05, 0.95), draw(0.05, 0.95), draw(0.05, 0.95)));
+    *end =
+        low + (centre ? Vec3(0.5, 0.5, 0.5) : draw.within({0.05, 0.05, 0.05}, {0.95, 0.95, 0.95}));
   }
   LatticeOptions& lattice = problem.lattice;
   lattice.cells = draw.below(3) != 0;

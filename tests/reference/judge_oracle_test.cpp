@@ -16,8 +16,7 @@ Route random_route(oracle::Draw& draw, const Request& request) {
   const Box box = request.volume.grown(0.3);
   Route route = {request.start.position};
   for (int n = draw.below(5); n > 0; --n) {
-    route.emplace_back(draw(box.min.x(), box.max.x()), draw(box.min.y(), box.max.y()),
-                       draw(box.min.z(), box.max.z()));
+    route.push_back(draw.within(box.min, box.max));
     if (request.level_m && draw.below(6) != 0) {
       route.back().z() = *request.level_m;
     }
@@ -113,7 +112,7 @@ TEST(JudgeOracle, MeasuresAreThoseOfSamples) {
       const Vec3 leg = route[i + 1] - route[i];
       total += leg.norm();
       longest = std::max(longest, leg.norm());
-      climb = std::max(climb, angle_between(leg, flat(leg)));
+      climb = std::max(climb, std::atan2(std::abs(leg.z()), flat(leg).norm()));
       clearance =
           std::min(clearance, sampled_clearance(problem->scene, route[i], route[i + 1], kSamples));
       if (i > 0) {

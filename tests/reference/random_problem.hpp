@@ -113,14 +113,11 @@ inline std::unique_ptr<Problem> random_problem(std::uint64_t seed, const Mix& mi
   problem->lattice.cell = shapes_of_cells[draw.below(3)];
   const Vec3& cell = problem->lattice.cell;
   const bool level = draw.below(4) == 0;
-  const Vec3 low(draw(-50, 50), draw(-50, 50), draw(-5, 5));
+  const Vec3 low = draw.within({-50, -50, -5}, {50, 50, 5});
   const Vec3 size = cell.cwiseProduct(
-      Vec3(draw(2, mix.most_cells), draw(2, mix.most_cells), draw(1, mix.most_cells * 0.7)));
+      draw.within({2, 2, 1}, {mix.most_cells, mix.most_cells, mix.most_cells * 0.7}));
   const Box volume{low, low + size};
-  const auto inside = [&] {
-    return Vec3(draw(volume.min.x(), volume.max.x()), draw(volume.min.y(), volume.max.y()),
-                draw(volume.min.z(), volume.max.z()));
-  };
+  const auto inside = [&] { return draw.within(volume.min, volume.max); };
   const Vec3 start = inside();
   Vec3 goal = inside();
   if (draw.below(2) == 0) {  // a centre

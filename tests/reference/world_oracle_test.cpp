@@ -18,7 +18,7 @@ Place random_place(std::uint64_t seed, bool prisms) {
   oracle::Draw draw(seed);
   Place place;
   place.box = {{0, 0, 0}, {10, 8, 6}};
-  const auto at = [&] { return Vec3(draw(0, 10), draw(0, 8), draw(0, 6)); };
+  const auto at = [&] { return draw.within({0, 0, 0}, {10, 8, 6}); };
   GridSpec asked;  // before and between the changes, so that grids are patched
   asked.counts = {10, 8, 6};
   if (seed % 3 == 0) {
@@ -93,8 +93,8 @@ void hold_queries(std::uint64_t from, std::uint64_t to) {
     oracle::Draw draw(seed + 1);
     SCOPED_TRACE(seed);
     for (int n = 0; n < 40; ++n) {
-      const Vec3 a(draw(-1, 11), draw(-1, 9), draw(-1, 7));
-      const Vec3 b(draw(-1, 11), draw(-1, 9), draw(-1, 7));
+      const Vec3 a = draw.within({-1, -1, -1}, {11, 9, 7});
+      const Vec3 b = draw.within({-1, -1, -1}, {11, 9, 7});
       EXPECT_NEAR(place.world.clearance(a), least_clearance(place.scene, a), 1e-6);
       for (const double r : {0.0, 0.4}) {
         const double least = least_distance(place.scene, a, b);
@@ -179,8 +179,7 @@ void hold_rasters(std::uint64_t from, std::uint64_t to) {
     each_cell(spec, [&](const Cell& c) {
       for (int n = 0; n < 8 && !all->blocked(c); ++n) {
         const Box box = spec.cell_box(c);
-        const Vec3 p(draw(box.min.x(), box.max.x()), draw(box.min.y(), box.max.y()),
-                     draw(box.min.z(), box.max.z()));
+        const Vec3 p = draw.within(box.min, box.max);
         EXPECT_GE(least_clearance(place.scene, p), spec.inflation - 1e-6);
       }
     });

@@ -43,6 +43,8 @@ host::Json read_json(const std::string& file, const std::string& expected) {
     in.read(before.data(), std::streamsize(before.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     throw Error(file + ":" + std::to_string(line) + ": this is not JSON: expected " + expected);
+  } catch (const host::Json::out_of_range&) {
+    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
   }
 }
 
@@ -119,7 +121,7 @@ int report(const host::Mission& mission, const Route& route,
     }
   }
   if (as_json) {
-    std::cout << json.dump(1) << '\n';
+    std::cout << host::file_text(json);
   }
   return sound ? kDone : kNoRoute;
 }

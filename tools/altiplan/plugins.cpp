@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "host/config/schema.hpp"
 #include "host/output/describe.hpp"
+#include "host/output/result_json.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -24,7 +25,7 @@ int plugins(const Arguments& arguments) {
   host::Registry registry = registry_of(arguments);
   const std::vector<host::Library> libraries = host::examine_all(registry);
   if (arguments.json) {
-    std::cout << host::plugins_json(registry, libraries).dump(1) << '\n';
+    std::cout << host::file_text(host::plugins_json(registry, libraries));
   } else {
     std::cout << host::plugins_text(registry, libraries);
   }
@@ -41,7 +42,7 @@ int describe(const Arguments& arguments) {
     for (const host::Description& description : all) {
       json.push_back(host::describe_json(description));
     }
-    std::cout << (all.size() == 1 ? json.front() : json).dump(1) << '\n';
+    std::cout << host::file_text(all.size() == 1 ? json.front() : json);
     return kDone;
   }
   for (const host::Description& description : all) {
@@ -52,7 +53,7 @@ int describe(const Arguments& arguments) {
 
 int schema(const Arguments& arguments) {
   host::Registry registry = registry_of(arguments);
-  std::cout << host::any_file_schema(host::choices_of(registry)).dump(1) << '\n';
+  std::cout << host::file_text(host::any_file_schema(host::choices_of(registry)));
   return kDone;
 }
 

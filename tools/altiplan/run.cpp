@@ -26,6 +26,7 @@ struct RunArguments {
   std::optional<std::string> trace;
   std::optional<std::string> out;
   bool json = false;
+  double patience_s = host::kDefaultStepSeconds;
 };
 
 /// Turns SIGINT and SIGTERM into a stop token: the step under way ends, the result is written.
@@ -69,8 +70,8 @@ class Interrupt {
   std::thread thread_;
 };
 
-void print_row(const std::string& id, const std::string& plugin, const std::string& status,
-               const std::optional<Measures>& m, double seconds) {
+void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
+               const std::string& status, const std::optional<Measures>& m, double seconds) {
   const auto cell = [&](std::optional<double> value, int digits) { return fixed(value, digits); };
   std::optional<double> length;
   std::optional<double> points;
@@ -78,43 +79,43 @@ void print_row(const std::string& id, const std::string& plugin, const std::stri
     length = m->length_m / 1000;
     points = double(m->waypoints);
   }
-  std::printf("  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", id.c_str(), plugin.c_str(),
-              status.c_str(), cell(length, 3).c_str(), cell(points, 0).c_str(),
-              cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
-              cell(m ? m->max_climb_deg : std::nullopt, 1).c_str(),
-              cell(m ? m->min_clearance_m : std::nullopt, 1).c_str(),
-              cell(m ? m->min_ground_clearance_m : std::nullopt, 1).c_str(),
-              fixed(seconds * 1000, 1).c_str());
+  std::fprintf(to, "  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", id.c_str(), plugin.c_str(),
+               status.c_str(), cell(length, 3).c_str(), cell(points, 0).c_str(),
+               cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
+               cell(m ? m->max_climb_deg : std::nullopt, 1).c_str(),
+               cell(m ? m->min_clearance_m : std::nullopt, 1).c_str(),
+               cell(m ? m->min_ground_clearance_m : std::nullopt, 1).c_str(),
+               fixed(seconds * 1000, 1).c_str());
 }
 
-void print_flight(const host::FlightResult& flight) {
-  std::printf("  flight: %s after %s s, %d collision%s, nearest %s m, %zu replan%s\n",
-              flight.reached ? "reached the goal" : "did not reach the goal",
-              fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
-              flight.collisions == 1 ? "" : "s", fixed(flight.min_separation_m, 1).c_str(),
-              flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
+void print_flight(std::FILE* to, const host::FlightResult& flight) {
+  std::fprintf(to, "  flight: %s after %s s, %d collision%s, nearest %s m, %zu replan%s\n",
+               flight.reached ? "reached the goal" : "did not reach the goal",
+               fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
+               flight.collisions == 1 ? "" : "s", fixed(flight.min_separation_m, 1).c_str(),
+               flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
   for (const host::Handover& handover : flight.handovers) {
-    std::printf("  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
-                handover.to.c_str(), handover.why.c_str());
+    std::fprintf(to, "  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
+                 handover.to.c_str(), handover.why.c_str());
   }
 }
 
-void print_table(const host::RunResult& result) {
-  std::printf("  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", "step", "plugin", "status",
-              "length_km", "points", "turn_d", "climb_d", "clear_m", "ground_m", "time_ms");
+void print_table(std::FILE* to, const host::RunResult& result) {
+  std::fprintf(to, "  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", "step", "plugin", "status",
+               "length_km", "points", "turn_d", "climb_d", "clear_m", "ground_m", "time_ms");
   for (const host::StepResult& step : result.steps) {
     const bool flown =
         result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
-    print_row(step.id, step.plugin, step.stands && !flown ? "stands" : name(step.status),
+    print_row(to, step.id, step.plugin, step.stands && !flown ? "stands" : name(step.status),
               flown ? result.flight->measures : step.measures, step.time_s);
   }
   if (result.flight) {
-    print_flight(*result.flight);
+    print_flight(to, *result.flight);
   }
   for (const host::StepResult& step : result.steps) {
     const std::string& said = result.message;  // printed last
     if (!step.stands && (step.message.empty() || said.find(step.message) == said.npos)) {
-      std::printf("  %s: %s\n", step.id.c_str(), step.message.c_str());
+      std::fprintf(to, "  %s: %s\n", step.id.c_str(), step.message.c_str());
     }
   }
 }
@@ -145,20 +146,39 @@ void expect_writable(const std::optional<std::string>& file, const char* option)
   }
 }
 
-void hand_out(const RunArguments& arguments, const host::Config& config,
+void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& config,
               const host::RunResult& result) {
   const host::Json json =
       arguments.out || arguments.json ? host::result_json(config, result) : host::Json();
   if (arguments.json) {
-    std::cout << json.dump(1) << '\n';
+    std::fputs(host::file_text(json).c_str(), to);
   } else {
-    std::printf("%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
-    print_table(result);
-    std::printf("  %s\n", result.message.c_str());
+    std::fprintf(to, "%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
+    print_table(to, result);
+    std::fprintf(to, "  %s\n", result.message.c_str());
   }
   if (arguments.out) {  // last: where it cannot be written, the result stands on stdout
-    host::write_file(*arguments.out, json.dump(1) + "\n");
+    host::write_file(*arguments.out, host::file_text(json));
   }
+}
+
+/// What is said where a plugin ends the process: the result as it is before that plugin is called.
+host::ProcessGuard::LastWords last_words(const RunArguments& arguments, const host::Config& config,
+                                         const host::RunResult& result) {
+  host::ProcessGuard::LastWords words;
+  words.for_user = "altiplan: " + result.message + "\n";
+  words.exit_code = result.exit_code();
+  if (arguments.out || arguments.json) {
+    words.result = host::file_text(host::result_json(config, result));
+  }
+  words.on_stdout = arguments.json;
+  if (arguments.out) {
+    std::error_code error;
+    words.in_place = std::filesystem::exists(*arguments.out, error) &&
+                     !std::filesystem::is_regular_file(*arguments.out, error);
+    words.file = std::filesystem::absolute(*arguments.out);
+  }
+  return words;
 }
 
 int run(const RunArguments& arguments) {
@@ -167,23 +187,32 @@ int run(const RunArguments& arguments) {
   const Interrupt interrupt;
   const host::Config config = host::load_config(arguments.pipeline, arguments.overrides);
   host::RunOptions options;
+  options.patience_s = arguments.patience_s;
   options.threads = arguments.threads;
   options.trace = arguments.trace;
   options.stop = interrupt.token();
+  std::optional<host::ProcessGuard> process(std::in_place);
+  options.process = &*process;
+  options.on_call = [&](const host::RunResult& result) {
+    process->set_last_words(last_words(arguments, config, result));
+  };
   options.on_stuck = [&](const host::RunResult& result) {
-    hand_out(arguments, config, result);
-    std::cout.flush();
-    std::fflush(nullptr);
+    // The plugin still runs, and may print: what it has for stdout is not given back.
+    if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
+      hand_out(out, arguments, config, result);
+      std::fclose(out);
+    }
     _exit(result.exit_code());
   };
   const host::RunResult result = host::run(config, options);
+  process.reset();
   for (const std::string& warning : result.warnings) {
     warn(warning);
   }
   for (const std::string& note : result.notes) {
     info(note);
   }
-  hand_out(arguments, config, result);
+  hand_out(stdout, arguments, config, result);
   if (!result.trace_error.empty()) {
     throw Error(result.trace_error);
   }
@@ -201,6 +230,11 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--trace", arguments->trace, "write what the searches did")
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command
+      ->add_option("--patience", arguments->patience_s,
+                   "seconds for a step without within_s, and for all that has no time of its own: "
+                   "making plugins and layers, judging")
+      ->check(CLI::Range(0.001, 1e8));
   command->add_flag("--json", arguments->json, "print the result as JSON, and nothing else");
   set_example(*command,
               "altiplan run configs/pipelines/ridge_crossing.yaml --seed 3 "

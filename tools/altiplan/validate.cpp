@@ -65,7 +65,7 @@ int explain(const Arguments& arguments) {
     }
     const host::Json json{
         {"parameters", parameters}, {"notes", mission.notes}, {"warnings", mission.warnings}};
-    std::cout << json.dump(1) << '\n';
+    std::cout << host::file_text(json);
     return kDone;
   }
   std::size_t width = 0;

@@ -82,6 +82,11 @@ bool find_scenario(Config& config, Checker& checker) {
   }
   config.scenario_path = absolute_file(named->text);
   std::error_code error;
+  if (fs::is_directory(config.scenario_path, error)) {
+    checker.problem(where, "scenario",
+                    "'" + config.scenario_path.string() + "' is a folder, expected a scenario");
+    return false;
+  }
   if (!fs::is_regular_file(config.scenario_path, error)) {
     checker.problem(where, "scenario", "there is no file '" + config.scenario_path.string() + "'");
     return false;
@@ -102,7 +107,8 @@ const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string
 }
 
 FileKind kind_of(const Value& tree) {
-  if (tree.find("pipelines") != nullptr || tree.find("scenarios") != nullptr) {
+  if (tree.find("steps") == nullptr &&
+      (tree.find("pipelines") != nullptr || tree.find("scenarios") != nullptr)) {
     return FileKind::study;
   }
   const bool scenario = tree.find("environment") != nullptr || tree.find("start") != nullptr ||

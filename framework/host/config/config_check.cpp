@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "host/config/shapes.hpp"
 #include "host/config/yaml.hpp"
+#include "src/blame.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -20,10 +22,22 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
   } catch (const PluginError&) {
     throw;  // a library that offers the name is refused: exit code 4
   } catch (const Error& error) {
-    problem(where, key, error.what());
+    std::string built_in;
+    if (kind == "environment") {
+      built_in = "; built in: ";
+      std::vector<std::string> names;
+      for (const PluginEntry& shape : built_in_environments()) {
+        built_in += names.empty() ? "" : ", ";
+        built_in += names.emplace_back(shape.name);
+      }
+      built_in += did_you_mean(name, names);
+    }
+    problem(where, key, error.what() + built_in);
     return;
   }
-  check_report(entry->describe(&parameters, path), path);
+  check_report(blamed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },
+                      [&] { return entry->describe(&parameters, path); }),
+               path);
 }
 
 void Checker::check_report(const ParamReport& report, const std::string& path) {

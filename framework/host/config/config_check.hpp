@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ class Checker {
   }
   void add(const std::vector<Problem>& problems) {
     problems_.insert(problems_.end(), problems.begin(), problems.end());
+  }
+  /// Whether anything below the key is wrong.
+  bool has_problem_within(const std::string& key) const {
+    return std::any_of(problems_.begin(), problems_.end(),
+                       [&](const Problem& problem) { return problem.key.starts_with(key + "."); });
   }
   /// The parameters of a plugin, and the files that they name; `key` is where its name stands.
   void check_plugin(std::string_view kind, const std::string& name, const Value& parameters,

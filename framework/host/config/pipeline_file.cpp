@@ -45,7 +45,7 @@ void StepEntry::describe(Fields& f) {
   f("from", from).doc("id of the step whose route this one takes; default: the last that stands");
   f("within_s", within_s).unit("s").greater_than(0).at_most(1e8).doc("time budget");
   f("within_iterations", within_iterations).at_least(0).doc("budget in units of `expanded`");
-  f("within_mb", within_mb).unit("MB").greater_than(0).at_most(1e9).doc("memory budget");
+  f("within_mb", within_mb).unit("MiB").greater_than(0).at_most(1e9).doc("memory budget");
   f("else", alternatives).doc("steps tried in order when this one does not stand");
   if (flies || !f.reading()) {
     fly.describe(f);
@@ -53,7 +53,11 @@ void StepEntry::describe(Fields& f) {
   const bool smooths = smooth && smooth->kind == Value::Kind::scalar;
   f.check(int(plan.has_value()) + int(flies) + int(smooth.has_value()) == 1,
           "expected one verb: plan, smooth or fly");
-  f.check(!smooth || smooths, "expected the name of a smoother after smooth");
+  f.check(!smooth || (smooths && !smooth->text.empty()),
+          "expected the name of a smoother after smooth");
+  f.check(!plan || !plan->empty(), "expected the name of a planner after plan, found none");
+  f.check(!pilot || !pilot->empty(),
+          "expected the name of a local planner, or route, after fly, found none");
   f.check(!plan || !from, "a plan step takes no route: from is for smooth and fly");
   verb = plan ? Verb::plan : flies ? Verb::fly : Verb::smooth;
   plugin = plan ? *plan : flies ? *pilot : smooths ? smooth->text : "";

@@ -110,6 +110,9 @@ void check_references(Checker& checker, const ScenarioFile& scenario, const Valu
 
 void check_points(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
   const auto check = [&](const Point& point, const Location& where, const std::string& key) {
+    if (checker.has_problem_within(key)) {
+      return;  // a height that is there, but wrong
+    }
     const bool plane = point.form == Point::Form::metres || point.form == Point::Form::lonlat;
     if (plane && !point.has_height && !point.above_ground_m && !scenario.level_flight_at_m) {
       checker.problem(where, key,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/scenario_file.hpp"
 
+#include <cmath>
+
 namespace altiplan::host {
 
 void LayerEntry::describe(Fields& f) {
@@ -60,6 +62,9 @@ void FrameEntry::describe(Fields& f) {
       .unit("deg")
       .doc("longitude and latitude of the origin, where no layer brings a position");
   f.check(crs.empty() || !origin_lonlat, "expected crs or origin_lonlat, not both");
+  f.check(!origin_lonlat ||
+              (std::abs((*origin_lonlat)[0]) <= 180 && std::abs((*origin_lonlat)[1]) <= 90),
+          "expected origin_lonlat as longitude in [-180, 180], then latitude in [-90, 90]");
 }
 
 void MovingEntry::describe(Fields& f) {

@@ -84,6 +84,11 @@ void check_plugins(Checker& checker, Registry& registry, const StepEntry& step, 
   }
 }
 
+bool is_text(const Value& map, std::string_view key) {
+  const Value* value = map.find(key);
+  return value != nullptr && value->kind == Value::Kind::scalar;
+}
+
 /// Walks the steps in order, knowing the ids so far.
 class StepCheck {
  public:
@@ -118,7 +123,7 @@ class StepCheck {
 
  private:
   void check_one(StepEntry& step, const Value& tree) {
-    if (step.from && !earlier_.contains(*step.from)) {
+    if (step.from && is_text(tree, "from") && !earlier_.contains(*step.from)) {
       checker_.problem(place_of(tree, "from"), step.path + ".from",
                        "there is no earlier step '" + *step.from + "'" +
                            did_you_mean(*step.from, {earlier_.begin(), earlier_.end()}));

@@ -24,8 +24,8 @@ std::string plain_words(const std::string& message) {
   using namespace YAML::ErrorMsg;
   static const std::map<std::string, std::string> kWords = {
       {END_OF_MAP,
-       "this does not fit the map around it: check the indentation, and that each key is followed "
-       "by ': '"},
+       "this does not fit the map around it: check the indentation, that each key is followed by "
+       "': ', and that each item of a list starts with '- '"},
       {END_OF_MAP_FLOW, "the map that starts with '{' is not well closed: expected ',' or '}'"},
       {END_OF_SEQ,
        "this does not fit the list around it: check the indentation, and that each item starts "
@@ -35,15 +35,22 @@ std::string plain_words(const std::string& message) {
       {DOC_IN_SCALAR, "the text that starts with a quote is not closed before '---' or '...'"},
       {MAP_VALUE,
        "a ':' with no key that it could belong to: quote the text if the ':' is part "
-       "of it, else check the indentation"},
+       "of it, else check the indentation, and that each ':' and each item's '-' before it has a "
+       "space after it"},
       {MAP_KEY, "a key cannot stand here: check the indentation"},
       {BLOCK_ENTRY, "a list item ('- ') cannot stand here: check the indentation"},
       {FLOW_END, "a closing bracket that does not match the opening one"},
       {UNKNOWN_TOKEN, "a character that cannot start a value: quote the text"},
       {UNKNOWN_ANCHOR, "an alias ('*name') whose anchor ('&name') does not stand before it"},
+      {ALIAS_NOT_FOUND, "a '*' starts an alias: quote the text if it is part of it"},
+      {ANCHOR_NOT_FOUND, "a '&' starts an anchor: quote the text if it is part of it"},
       {TAG_WITH_NO_SUFFIX, "tags ('!…') are not taken: leave the tag out"},
       {TAB_IN_INDENTATION, "a tab indents this line: indent with spaces"},
   };
+  if (message.starts_with(INVALID_ESCAPE)) {
+    return "'\\" + message.substr(std::string_view(INVALID_ESCAPE).size()) +
+           "' means nothing in a text in double quotes: write '\\\\', or use single quotes";
+  }
   const auto found = kWords.find(message);
   return found != kWords.end() ? found->second : "not well-formed YAML: " + message;
 }

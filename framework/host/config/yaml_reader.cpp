@@ -7,6 +7,15 @@ namespace altiplan::host {
 namespace {
 
 constexpr std::size_t kMaxProblems = 100;
+
+/// What a key without a value was perhaps meant to be.
+std::string hint_for_key(const std::string& key) {
+  if (key.find(':') != key.npos) {
+    return ": a space is missing after its ':'";
+  }
+  const bool digits = !key.empty() && key.find_first_not_of("0123456789") == key.npos;
+  return digits ? ": decimals are written with a point, not a comma" : "";
+}
 }  // namespace
 
 Value YamlReader::tree() const {
@@ -29,7 +38,9 @@ void YamlReader::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
                 "' is not a value: leave the key out where nothing is meant, quote it "
                 "where the text is meant");
   } else if (!root) {
-    problem(open_.back().is_map ? open_.back().key_at : empty_item(mark), path(), "has no value");
+    const bool is_map = open_.back().is_map;
+    problem(is_map ? open_.back().key_at : empty_item(mark), path(),
+            "has no value" + (is_map ? hint_for_key(open_.back().key) : ""));
   }
   if (!root || !word.empty()) {
     push(mark, Node::Kind::scalar, "");

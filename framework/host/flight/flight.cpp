@@ -106,6 +106,11 @@ void Flight::end_flight(Status status, std::string message) {
   ended_ = true;
   result_.status = status;
   result_.message = std::move(message);
+  if (status != Status::solved && !result_.replans.empty() &&
+      result_.replans.back().status == Status::failed) {
+    const Replan& last = result_.replans.back();
+    result_.message += "; the last replan, by '" + last.step + "', failed: " + last.message;
+  }
 }
 
 void Flight::hand_over(bool to_pilot, std::string why) {

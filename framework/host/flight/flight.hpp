@@ -67,6 +67,7 @@ struct Replan {
   std::string step;
   double time_s = 0;  ///< wall time
   Status status = Status::failed;
+  std::string message;
   Counters counters;
 };
 

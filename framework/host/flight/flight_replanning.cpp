@@ -40,7 +40,7 @@ PlanResult Flight::replan(const Request& request) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   replan_changes_.clear();
   result_.replans.push_back(
-      {state_.time_s, setup_.replan_step, took.count(), plan.status, plan.counters});
+      {state_.time_s, setup_.replan_step, took.count(), plan.status, plan.message, plan.counters});
   return plan;
 }
 

@@ -100,6 +100,7 @@ Json flight_json(const FlightResult& flight) {
     json["replans"].push_back({{"at_s", replan.at_s},
                                {"step", replan.step},
                                {"status", name(replan.status)},
+                               {"message", replan.message},
                                {"time_s", replan.time_s},
                                {"counters", counters_json(replan.counters)}});
   }
@@ -244,6 +245,10 @@ Json result_json(const Config& config, const RunResult& result) {
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
   json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);
   return json;
+}
+
+std::string file_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void write_file(const std::filesystem::path& named, const std::string& text) {

@@ -19,6 +19,10 @@ Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
 
+/// As files and stdout hold it, indented, with a last line end. What plugins say, damaged ones
+/// above all, need not be UTF-8: U+FFFD stands for what is not.
+std::string file_text(const Json& json);
+
 /// Writes the whole file or, where that fails, throws Error and leaves what was there: it is
 /// written beside and renamed. What is no regular file (a pipe, a device) is written in place.
 void write_file(const std::filesystem::path& file, const std::string& text);

@@ -20,13 +20,6 @@ bool ends_with_nul(const char (&text)[N]) {
   return std::memchr(text, '\0', N) != nullptr;
 }
 
-bool is_plugin_name(std::string_view name) {
-  const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !name.empty() && small(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
-    return small(c) || (c >= '0' && c <= '9') || c == '_';
-  });
-}
-
 std::string layout_text(std::uint32_t layout) {
   return std::to_string(layout / 64) + " bytes aligned to " + std::to_string(layout % 64);
 }
@@ -85,7 +78,7 @@ void take_record(const Manifest& record, Library& library) {
     throw ElfError("offers '" + std::string(record.name) + "' of the unknown kind '" + record.kind +
                    "'");
   }
-  if (!is_plugin_name(record.name)) {
+  if (!is_snake_case(record.name)) {
     throw ElfError("offers a " + std::string(record.kind) + " named '" + record.name +
                    "', expected lower-case letters, digits and '_'");
   }
@@ -121,6 +114,9 @@ void read_manifest(const std::string& bytes, Library& library) {
       throw ElfError("damaged manifest: cut off in a record");
     }
     std::memcpy(&record, bytes.data() + at, sizeof record);
+    if (record.checksum != checksum_of(record)) {
+      throw ElfError("damaged manifest: a record does not fit its checksum");
+    }
     take_record(record, library);
     at += sizeof(Manifest);
   }
@@ -140,6 +136,13 @@ std::string hash_of(const std::filesystem::path& file) {
   return SHA256File(file.c_str(), digest.data()) == nullptr ? "" : digest.data();
 }
 }  // namespace
+
+bool is_snake_case(std::string_view name) {
+  const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && small(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return small(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
 
 Library examine_library(const std::filesystem::path& file) {
   Library library;

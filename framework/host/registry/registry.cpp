@@ -10,6 +10,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "host/registry/in_child.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -41,6 +42,10 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   return files;
 }
 
+std::string with_article(std::string_view kind) {
+  return (kind.starts_with('e') ? "an " : "a ") + std::string(kind);
+}
+
 /// Refuses all libraries that offer one kind and name more than once between them.
 void refuse_conflicts(std::vector<Library>& libraries) {
   std::vector<std::string> reasons(libraries.size());
@@ -52,9 +57,8 @@ void refuse_conflicts(std::vector<Library>& libraries) {
               !share_names(a.kind, b.kind)) {
             continue;
           }
-          const std::string other_kind = std::strcmp(a.kind, b.kind) == 0
-                                             ? "it"
-                                             : "a " + std::string(b.kind) + " of that name";
+          const std::string other_kind =
+              std::strcmp(a.kind, b.kind) == 0 ? "it" : with_article(b.kind) + " of that name";
           reasons[i] += (reasons[i].empty() ? "" : "; ") + std::string("offers the ") + a.kind +
                         " '" + a.name + "', and " + libraries[j].file.string() + " offers " +
                         other_kind + " too: take one of the two away";
@@ -137,6 +141,42 @@ std::vector<const PluginEntry*> load(const Library& library) {
   }
   return entries;
 }
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+/// Whether files can hold these parameters: names that lie in damaged data are no names.
+void check_names(const FieldSpec& spec) {
+  for (const FieldSpec& field : spec.children) {
+    const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
+                          field.type == FieldType::plugin;
+    if (!is_snake_case(field.name) && !(nameless && field.name.empty())) {
+      throw PluginError("a parameter is named '" + printable(field.name) +
+                        "', expected lower-case letters, digits and '_'");
+    }
+    check_names(field);
+  }
+}
+
+/// Uses the library as reading a file will, as far as that goes without one.
+void try_out(const Library& library) {
+  for (const PluginEntry* entry : load(library)) {
+    try {
+      FieldSpec all;
+      for (const ParamReport report = entry->describe(nullptr, "");
+           const BoundField& field : report.fields) {
+        all.children.push_back(field.spec);
+      }
+      check_names(all);
+    } catch (const std::exception& error) {
+      throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
+                        entry->name + "': " + error.what());
+    }
+  }
+}
 }  // namespace
 
 Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders)) {
@@ -202,16 +242,26 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
 }
 
 const Library* Registry::offering(std::string_view kind, std::string_view name) const {
+  const auto refuse = [&](const Library& library) {
+    throw PluginError("the library of the " + std::string(kind) + " '" + std::string(name) +
+                      "' is refused: " + library.file.string() + ": " + library.refused);
+  };
   for (const Library& library : libraries_) {
     for (const Manifest& plugin : library.plugins) {
       if (plugin.kind != kind || plugin.name != name) {
         continue;
       }
       if (!library.refused.empty()) {
-        throw PluginError("the library of the " + std::string(kind) + " '" + std::string(name) +
-                          "' is refused: " + library.file.string() + ": " + library.refused);
+        refuse(library);
       }
       return &library;
+    }
+  }
+  // Where a damaged library no longer says what it offers, its file's name still does.
+  const std::string file = "libaltiplan_" + std::string(kind) + "_" + std::string(name) + ".so";
+  for (const Library& library : libraries_) {
+    if (!library.refused.empty() && library.file.filename() == file) {
+      refuse(library);
     }
   }
   return nullptr;
@@ -225,6 +275,8 @@ const PluginEntry& Registry::get(std::string_view kind, std::string_view name) {
   const std::lock_guard lock(mutex_);
   std::unique_ptr<Loaded>& loaded = loaded_[library->file];
   if (!loaded) {
+    // A damaged library can crash the dynamic loader, whose checks are few: a child goes first.
+    in_child(library->file.string() + ": ", [&] { try_out(*library); });
     loaded = std::make_unique<Loaded>(Loaded{load(*library)});
   }
   return **std::find_if(
@@ -243,7 +295,7 @@ std::string Registry::not_offered(std::string_view kind, std::string_view name) 
     }
     for (const Manifest& plugin : library.plugins) {
       if (plugin.name == name) {
-        text += " ('" + std::string(name) + "' is a " + plugin.kind + ")";
+        text += " ('" + std::string(name) + "' is " + with_article(plugin.kind) + ")";
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "altiplan/plugin_abi.hpp"
@@ -49,12 +50,13 @@ class Registry {
   /// Names offered for a kind, sorted.
   std::vector<std::string> names(std::string_view kind) const;
   /// The library that offers the plugin; null where none does. Throws PluginError where a library
-  /// that offers the name is refused. Libraries that share a name (planners and local planners
-  /// have theirs in common) are all refused.
+  /// that offers the name, or is called libaltiplan_KIND_NAME.so, is refused. Libraries that share
+  /// a name (planners and local planners have theirs in common) are all refused.
   const Library* offering(std::string_view kind, std::string_view name) const;
 
-  /// Loads at the first call. Throws PluginError where the library cannot be used, Error where no
-  /// library offers the name (with the folders searched and the nearest name).
+  /// Loads at the first call, in a child process before this one. Throws PluginError where the
+  /// library cannot be used, Error where no library offers the name (with the folders searched and
+  /// the nearest name).
   const PluginEntry& get(std::string_view kind, std::string_view name);
 
  private:
@@ -71,4 +73,7 @@ class Registry {
 /// Reads a library's ELF headers, manifest and build id without running any of its code; never
 /// throws: what is wrong stands in `refused`.
 Library examine_library(const std::filesystem::path& file);
+
+/// Lower-case letters, digits and '_', the first a letter: a plugin, and a parameter, are so named.
+bool is_snake_case(std::string_view name);
 }  // namespace altiplan::host

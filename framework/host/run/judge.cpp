@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "altiplan/error.hpp"
+
 namespace altiplan::host {
 namespace {
 
@@ -55,7 +57,12 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
                                  "the route does not pass via point " + std::to_string(passed)});
   }
   for (const Layer& layer : request.world->layers()) {
-    cross_examine(layer, route, result.violations);
+    try {
+      cross_examine(layer, route, result.violations);
+    } catch (const std::exception& error) {
+      throw PluginError("the layer '" + layer.id + "' (" + layer.plugin +
+                        ") threw: " + error.what());
+    }
   }
   return result;
 }

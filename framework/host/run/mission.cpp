@@ -6,8 +6,10 @@
 #include <tuple>
 
 #include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
 #include "altiplan/kit/iso_time.hpp"
 #include "host/config/shapes.hpp"
+#include "src/blame.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -111,13 +113,24 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
   return all;
 }
 
-std::vector<NamedConstraint> constraints_of(const Config& config) {
+using Calling = std::function<void(const std::string&)>;
+
+std::vector<NamedConstraint> constraints_of(const Config& config, const Calling& calling) {
   std::vector<NamedConstraint> all;
   for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
     for (const ConstraintEntry& entry : *entries) {
-      all.push_back(
-          {entry.plugin,
-           plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
+      const std::string who = "the constraint '" + entry.plugin + "'";
+      calling(who + ": its constructor");
+      try {
+        all.push_back(
+            {entry.plugin,
+             plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
+      } catch (const PluginError& error) {
+        throw PluginError(who + " " + error.what());
+      }
+      if (all.back().constraint == nullptr) {
+        throw PluginError(who + " made no object");
+      }
     }
   }
   return all;
@@ -153,12 +166,46 @@ Vec3 resolve_point(const Point& point, const Site& site, const std::optional<dou
   }
 }
 
+namespace {
+using namespace std::string_literals;
+
+/// What every use of a layer rests on.
+void expect_sound(const Layer& layer) {
+  if (layer.environment == nullptr) {
+    throw PluginError("made no object");
+  }
+  const auto [slack, box] =
+      blamed([] { return "when asked for its bounds, ground, cells, threats or notes"s; },
+             [&] {
+               const Environment& asked = *layer.environment;
+               // What throws at all does it here, and not to those who ask later.
+               (void)(asked.has_ground(), asked.native_grid(), asked.frame(), asked.threats(),
+                      asked.notes());
+               return std::pair(asked.slack(), asked.bounds());
+             });
+  if (!(slack >= 0 && std::isfinite(slack))) {
+    throw PluginError("broke a law of its interface: its slack is " + std::to_string(slack) +
+                      ", expected a length of at least 0");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool crossed = std::isfinite(box.min[axis]) && box.max[axis] < box.min[axis];
+    if (crossed || std::isnan(box.min[axis]) || std::isnan(box.max[axis])) {
+      throw PluginError("broke a law of its interface: its bounds reach from " +
+                        std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]) +
+                        " on an axis");
+    }
+  }
+}
+}  // namespace
+
 Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,
                   const std::string& id, bool known, Site site, const std::string& key) {
   site.random = RandomStream(std::uint64_t(config.seed)).sub("layer:" + id);
   const PluginEntry& entry = plugin(*config.registry, "environment", plugin_name);
   try {
-    return {id, plugin_name, entry.environment(&parameters, site), known};
+    Layer layer{id, plugin_name, entry.environment(&parameters, site), known};
+    expect_sound(layer);
+    return layer;
   } catch (const ConfigError&) {
     throw;
   } catch (const PluginError& error) {
@@ -172,7 +219,7 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
 
 namespace {
 /// The layers in their order, each built on those before it.
-void build_layers(const Config& config, Mission& mission) {
+void build_layers(const Config& config, Mission& mission, const Calling& calling) {
   const ScenarioFile& file = config.scenario;
   Site& site = mission.site;
   World& truth = mission.truth;
@@ -183,8 +230,10 @@ void build_layers(const Config& config, Mission& mission) {
     site.before = &truth;
     site.start = maybe_point(file.start.point, site, level);
     site.goal = maybe_point(file.goal.point, site, level);
-    Layer layer = build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site,
-                              "environment." + std::to_string(i) + "." + entry.plugin);
+    const std::string key = "environment." + std::to_string(i) + "." + entry.plugin;
+    calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
+    Layer layer =
+        build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site, key);
     for (const std::string& note : layer.environment->notes()) {
       mission.notes.push_back(entry.id + ": " + note);
     }
@@ -227,7 +276,8 @@ World known_part(const World& truth) {
 }
 }  // namespace
 
-Mission build_mission(const Config& config, int threads) {
+Mission build_mission(const Config& config, int threads, const Calling& told) {
+  const Calling calling = told ? told : [](const std::string&) {};
   const auto began = std::chrono::steady_clock::now();
   const ScenarioFile& file = config.scenario;
   const Value& tree = config.scenario_tree;
@@ -250,7 +300,7 @@ Mission build_mission(const Config& config, int threads) {
   if (file.volume.max_m) {
     site.volume.max = *file.volume.max_m;
   }
-  build_layers(config, mission);
+  build_layers(config, mission, calling);
   World& truth = mission.truth;
   const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();
@@ -279,10 +329,11 @@ Mission build_mission(const Config& config, int threads) {
   }
   mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
-  const std::vector<NamedConstraint> constraints = constraints_of(config);
+  const std::vector<NamedConstraint> constraints = constraints_of(config, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);
   apply_constraints(mission.track_request, constraints, AppliesTo::track);
+  calling("");
   site.before = nullptr;
   mission.setup_time_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,9 @@ struct Mission {
 
 /// Builds layers, volume, points and limits. Throws ConfigError naming the place in the scenario
 /// for what the files got wrong, PluginError for a plugin that misbehaves.
-Mission build_mission(const Config& config, int threads);
+/// `calling` is told who is called next, "" when all are done.
+Mission build_mission(const Config& config, int threads,
+                      const std::function<void(const std::string&)>& calling = {});
 
 /// Makes a layer as the scenario's own are made.
 Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,

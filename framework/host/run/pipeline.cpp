@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "altiplan/error.hpp"
 #include "host/run/events.hpp"
 #include "host/run/pipeline_run.hpp"
 
@@ -12,7 +13,8 @@ namespace altiplan::host {
 Run::Run(const Config& config, const RunOptions& options)
     : config_(config),
       options_(options),
-      watchdog_([this](const std::string& why) { give_up(why); }) {
+      watchdog_([this](const std::string& why) { give_up(why); },
+                [&options] { return options.process ? options.process->kept_mb() : 0; }) {
   if (options.trace) {
     trace_ = std::make_unique<TraceFile>(*options.trace);
     result_.trace = options.trace->string();
@@ -20,13 +22,21 @@ Run::Run(const Config& config, const RunOptions& options)
 }
 
 RunResult Run::operator()() {
-  mission_ = build_mission(config_, options_.threads);
+  mission_ = build_mission(config_, options_.threads, [this](const std::string& who) {
+    expect_left_alone();
+    if (!who.empty()) {
+      enter(who);
+    }
+  });
   result_.frame = mission_.truth.frame();
   result_.setup_time_s = mission_.setup_time_s;
   result_.notes = mission_.notes;
-  result_.warnings = mission_.warnings;
+  result_.warnings.insert(result_.warnings.end(), mission_.warnings.begin(),
+                          mission_.warnings.end());
   if (config_.steps.back().verb == Verb::fly) {
+    enter("the events of the scenario");
     events_ = build_events(config_, mission_);  // what is wrong with them is said before planning
+    expect_left_alone();
   }
   for (const StepEntry& step : config_.steps) {
     if (interrupted()) {
@@ -118,8 +128,62 @@ void Run::set_budget(Budget& budget, const StepEntry& entry) {
     budget.max_iterations = std::uint64_t(*entry.within_iterations);
   }
   if (entry.within_mb) {
-    budget.max_memory_bytes = std::size_t(*entry.within_mb * 1e6);
+    budget.max_memory_bytes = std::size_t(*entry.within_mb * double(1 << 20));
   }
+}
+
+void Run::name_caller(std::string who) {
+  const std::lock_guard lock(mutex_);
+  caller_ = std::move(who);
+  if (!options_.on_call) {
+    return;
+  }
+  RunResult ended = result_;
+  ended.status = Status::failed;
+  ended.message = caller_ + " " + ProcessGuard::LastWords::kCause;
+  if (!ended.steps.empty()) {
+    ended.steps.back().status = Status::failed;
+    ended.steps.back().message = ended.message;
+    ended.message = ended.steps.back().id + ": " + ended.message;
+  }
+  options_.on_call(ended);
+}
+
+void Run::enter(std::string who, std::optional<double> memory_mb) {
+  name_caller(std::move(who));
+  watchdog_.arm(options_.patience_s, memory_mb);
+}
+
+std::string Run::leave() {
+  watchdog_.disarm();
+  if (options_.process == nullptr || caller_.empty()) {
+    return "";
+  }
+  const std::string changed = options_.process->restore();
+  if (options_.process->pass_on_output()) {
+    const std::string warning = caller_ + " wrote to stdout; it stands on stderr";
+    const std::lock_guard lock(mutex_);
+    if (result_.warnings.empty() || result_.warnings.back() != warning) {
+      result_.warnings.push_back(warning);
+    }
+  }
+  return changed.empty() ? ""
+                         : "broke a law of every plugin: it changed " + changed + " of the process";
+}
+
+void Run::expect_left_alone() {
+  if (const std::string changed = leave(); !changed.empty()) {
+    throw PluginError(caller_ + " " + changed);
+  }
+}
+
+std::string Run::named(const StepEntry& entry) const {
+  std::string kind = entry.verb == Verb::smooth ? "smoother" : "local_planner";
+  if (entry.verb == Verb::plan && config_.registry->offering("planner", entry.plugin) != nullptr) {
+    kind = "planner";
+  }
+  return (entry.verb == Verb::fly ? "the flight with the " : "the ") + kind + " '" + entry.plugin +
+         "' (" + entry.path + ")";
 }
 
 Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
@@ -127,8 +191,9 @@ Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
   request.random = mission_.request.random.sub("step:" + entry.id, index);
   request.trace = trace_.get();
   set_budget(request.budget, entry);
+  name_caller(named(entry));
   request.budget.stop =
-      watchdog_.arm(entry.within_s.value_or(kDefaultStepSeconds), entry.within_mb);
+      watchdog_.arm(entry.within_s.value_or(options_.patience_s), entry.within_mb);
   interrupt_ = std::make_unique<std::stop_callback<std::function<void()>>>(
       options_.stop, [this] { watchdog_.stop_now(); });
   return request;
@@ -151,7 +216,10 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
     result.message = "threw something that is not a std::exception";
   }
   step.time_s = seconds_since(began);
-  watchdog_.disarm();
+  if (const std::string changed = leave(); !changed.empty()) {
+    result.status = Status::failed;
+    result.message = changed;
+  }
   if (watchdog_.out_of_memory() && result.status != Status::solved) {
     result.message = "stopped: it used more memory than its within_mb";
   }
@@ -198,10 +266,11 @@ void Run::give_up(const std::string& why) {
   if (!result_.steps.empty()) {
     StepResult& step = result_.steps.back();
     step.status = Status::failed;
-    step.message = why;
+    step.message = caller_ + " " + why;
   }
   result_.status = Status::failed;
-  result_.message = (result_.steps.empty() ? "" : result_.steps.back().id + ": ") + why;
+  result_.message =
+      (result_.steps.empty() ? "" : result_.steps.back().id + ": ") + caller_ + " " + why;
   options_.on_stuck(result_);
   std::abort();  // on_stuck does not return
 }
@@ -213,7 +282,7 @@ int RunResult::exit_code() const {
   const bool failed = std::any_of(steps.begin(), steps.end(), [](const StepResult& step) {
     return step.status == Status::failed;
   });
-  return !standing && failed ? 4 : 1;
+  return !standing && (failed || status == Status::failed) ? 4 : 1;
 }
 
 RunResult run(const Config& config, const RunOptions& options) { return Run(config, options)(); }

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "host/config/config.hpp"
+#include "host/run/process_guard.hpp"
 #include "host/run/run_result.hpp"
+#include "host/run/watchdog.hpp"
 
 namespace altiplan::host {
 
@@ -17,6 +19,12 @@ struct RunOptions {
   /// return.
   std::function<void(const RunResult&)> on_stuck;
   std::stop_token stop;  ///< interrupted
+  /// Told before each call of a plugin what the result is should that call end the process, with
+  /// LastWords::kCause in its message.
+  std::function<void(const RunResult&)> on_call;
+  ProcessGuard* process = nullptr;  ///< what plugins must leave alone; not watched where null
+  /// What a step without a time of its own may take, and all that has none: constructors, judging.
+  double patience_s = kDefaultStepSeconds;
 };
 
 /// Runs a pipeline: every step, its alternatives, the judge after each, the flight.

@@ -16,6 +16,22 @@ void Run::fly_step(const StepEntry& step) {
 
 FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
   FlightSetup setup;
+  if (entry.plugin != kFollowRoute) {
+    plugins.pilot = make(entry, &PluginEntry::local_planner);
+    setup.pilot = plugins.pilot.get();
+    setup.pilot_name = entry.plugin;
+  }
+  for (const SmootherEntry& smoother : entry.fly.smooth) {
+    StepEntry as_step;
+    as_step.plugin = smoother.plugin;
+    as_step.with = smoother.parameters;
+    as_step.path = entry.path + ".smooth";
+    plugins.smoothers.push_back(make(as_step, &PluginEntry::smoother));
+    setup.smoothers.push_back(plugins.smoothers.back().get());
+  }
+  const std::optional<StepEntry> planner = replan_entry(entry);
+  const PlanPlugin* made =
+      planner && !sessions_.contains(session_key(entry, *planner)) ? &make_plan(*planner) : nullptr;
   Request request = request_for(entry, result_.steps.size());
   request.limits = mission_.track_request.limits;
   request.constraints = mission_.track_request.constraints;
@@ -27,25 +43,14 @@ FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
   setup.route = result_.steps[input_of(entry)].route;
   setup.truth = mission_.truth;
   setup.events = events_;
-  if (entry.plugin != kFollowRoute) {
-    plugins.pilot = make(entry, &PluginEntry::local_planner);
-    setup.pilot = plugins.pilot.get();
-    setup.pilot_name = entry.plugin;
-  }
   setup.always = entry.fly.command == "always";
   setup.step_s = entry.fly.step_s;
   setup.when = entry.fly.when == "any_change" ? ReplanWhen::any_change : ReplanWhen::unsafe;
   setup.replan_latency_s = entry.fly.replan_latency_s;
   setup.max_time_s = entry.fly.max_time_s;
-  for (const SmootherEntry& smoother : entry.fly.smooth) {
-    StepEntry as_step;
-    as_step.plugin = smoother.plugin;
-    as_step.with = smoother.parameters;
-    as_step.path = entry.path + ".smooth";
-    plugins.smoothers.push_back(make(as_step, &PluginEntry::smoother));
-    setup.smoothers.push_back(plugins.smoothers.back().get());
+  if (planner) {
+    find_replanner(entry, *planner, made, setup);
   }
-  find_replanner(entry, setup);
   return setup;
 }
 
@@ -61,7 +66,10 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);
   }
-  watchdog_.disarm();
+  if (const std::string changed = leave(); !changed.empty()) {
+    flight.status = Status::failed;
+    flight.message = named(entry) + " " + changed;
+  }
   step.time_s = seconds_since(began) - step.setup_time_s;
   if (flight.status == Status::cancelled && !interrupted()) {
     step.budget_hit = true;
@@ -79,25 +87,31 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
   result_.flight = std::move(flight);
 }
 
-void Run::find_replanner(const StepEntry& entry, FlightSetup& setup) {
+std::optional<StepEntry> Run::replan_entry(const StepEntry& entry) const {
   const Value& replan = entry.fly.replan;
-  StepEntry planner;
   if (replan.kind == Value::Kind::map) {
+    StepEntry planner;
     bind(planner, &replan, entry.path + ".replan");
     planner.path = entry.path + ".replan";
     planner.where = replan.where;
-  } else if (replan.text.empty()) {
-    return;
-  } else {
-    planner = plan_entry(replan.text);
+    return planner;
   }
+  return replan.text.empty() ? std::nullopt : std::optional(plan_entry(replan.text));
+}
+
+std::string Run::session_key(const StepEntry& entry, const StepEntry& planner) {
+  return entry.fly.replan.text.empty() ? planner.path : planner.id;
+}
+
+void Run::find_replanner(const StepEntry& entry, const StepEntry& planner, const PlanPlugin* made,
+                         FlightSetup& setup) {
   setup.replan_step = planner.id;
   setup.replan_within_s = planner.within_s;
   set_budget(setup.route_request.budget, planner);
-  std::unique_ptr<Session>& session = sessions_[replan.text.empty() ? planner.path : planner.id];
-  if (session == nullptr) {  // also of an alternative that was not needed
+  std::unique_ptr<Session>& session = sessions_[session_key(entry, planner)];
+  if (made != nullptr) {  // also of an alternative that was not needed
     try {
-      session = begin_session(make_plan(planner), setup.route_request);
+      session = begin_session(*made, setup.route_request);
     } catch (const ParameterError& error) {
       throw at_its_key(planner, error);
     }

@@ -44,6 +44,16 @@ class Run {
   static void set_budget(Budget& budget, const StepEntry& entry);
   /// The mission's request with the step's budget, stream and trace.
   Request request_for(const StepEntry& entry, std::uint64_t index);
+  /// Says who is at work from now on, for the watchdog and for the last words.
+  void name_caller(std::string who);
+  /// The same for work without a budget: under the watchdog, with the patience of the options.
+  void enter(std::string who, std::optional<double> memory_mb = std::nullopt);
+  /// Ends what enter or request_for began; what the plugin changed of the process, "" if nothing.
+  std::string leave();
+  /// The same; throws PluginError where there is something.
+  void expect_left_alone();
+  /// "the planner 'astar' (steps.0)"
+  std::string named(const StepEntry& entry) const;
   /// Runs a plugin's work under the watchdog, timed; what it throws ends up in the step.
   void guarded(const StepEntry& entry, StepResult& step,
                const std::function<PlanResult(const Request&)>& work);
@@ -77,13 +87,20 @@ class Run {
   std::unique_ptr<Interface> make(const StepEntry& entry,
                                   std::unique_ptr<Interface> (*PluginEntry::*maker)(const Value*)) {
     const char* kind = detail::Kind<Interface>::kName;
+    const std::string who =
+        std::string("the ") + kind + " '" + entry.plugin + "' (" + entry.path + ")";
+    enter(who + ": its constructor", entry.within_mb);
     try {
-      return (plugin(*config_.registry, kind, entry.plugin).*maker)(&entry.with);
+      auto made = (plugin(*config_.registry, kind, entry.plugin).*maker)(&entry.with);
+      if (made == nullptr) {
+        throw PluginError("made no object");
+      }
+      expect_left_alone();
+      return made;
     } catch (const ConfigError&) {
       throw;
     } catch (const PluginError& error) {
-      throw PluginError(std::string("the ") + kind + " '" + entry.plugin + "' (" + entry.path +
-                        ") " + error.what());
+      throw PluginError(who + " " + error.what());
     } catch (const ParameterError& error) {
       throw at_its_key(entry, error);
     } catch (const Error& error) {
@@ -100,8 +117,12 @@ class Run {
     std::vector<std::unique_ptr<Smoother>> smoothers;
   };
   FlightSetup flight_setup(const StepEntry& entry, FlightPlugins& plugins);
-  /// The session that goes on in flight: a plan step's, or one begun now.
-  void find_replanner(const StepEntry& entry, FlightSetup& setup);
+  /// The plan step that goes on in flight, or the one that `replan` writes out.
+  std::optional<StepEntry> replan_entry(const StepEntry& entry) const;
+  /// Its session: a plan step's, or one begun now.
+  void find_replanner(const StepEntry& entry, const StepEntry& planner, const PlanPlugin* made,
+                      FlightSetup& setup);
+  static std::string session_key(const StepEntry& entry, const StepEntry& planner);
   /// The plan step, or alternative, of that id; the configuration has made sure that there is one.
   const StepEntry& plan_entry(const std::string& id) const;
   void conclude();
@@ -111,7 +132,8 @@ class Run {
   const Config& config_;
   const RunOptions& options_;
   Mission mission_;
-  std::mutex mutex_;  ///< guards result_ against the watchdog
+  std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog
+  std::string caller_;
   RunResult result_;
   std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id stands for
   std::vector<FlightEvent> events_;

@@ -79,10 +79,20 @@ void Run::judge_step(StepResult& step, const Request& request) {
   if (step.route.empty() || !std::all_of(step.route.begin(), step.route.end(), is_finite)) {
     return;
   }
+  std::string asked;
+  for (const Layer& layer : request.world->layers()) {
+    asked += (asked.empty() ? "" : ", ") + layer.id;
+  }
+  for (const NamedConstraint& constraint : request.constraints) {
+    asked += (asked.empty() ? "" : ", ") + constraint.name;
+  }
+  enter("judging the route of '" + step.id + "' by layers and constraints (" + asked + ")");
   try {
-    step.measures = measure(step.route, request);
-    if (step.status == Status::solved) {
+    if (step.status == Status::solved) {  // first: the judge knows whom to blame
       step.check = judge(step.route, request, mission_.via);
+    }
+    step.measures = measure(step.route, request);
+    if (step.check) {
       take_verdict(step);
     }
   } catch (const std::exception& error) {
@@ -91,6 +101,11 @@ void Run::judge_step(StepResult& step, const Request& request) {
   } catch (...) {
     step.status = Status::failed;
     step.message = "judging the route, a layer or constraint threw";
+  }
+  if (const std::string changed = leave(); !changed.empty()) {
+    step.stands = false;
+    step.status = Status::failed;
+    step.message = "judging the route, a layer or constraint " + changed;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "host/flight/track_judge.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -65,6 +66,11 @@ PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
       result.status = Status::no_route;
       result.message = "the pilot is stuck: " + std::string(step.why);
       break;
+    }
+    const double run = (step.next.position - seen.state.position).norm();
+    const double dt = step.next.time_s - seen.state.time_s;
+    if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
+      throw PluginError("the pilot broke a law of its interface: a step faster than the vehicle");
     }
     if (step.next.position != seen.state.position) {
       result.route.push_back(step.next.position);

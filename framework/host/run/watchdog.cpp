@@ -9,7 +9,7 @@
 namespace altiplan::host {
 namespace {
 
-/// Resident memory of this process, MB.
+/// Resident memory of this process, MiB.
 double resident_mb() {
   long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
@@ -19,12 +19,14 @@ double resident_mb() {
     }
     std::fclose(file);
   }
-  return double(pages) * double(sysconf(_SC_PAGESIZE)) / 1e6;
+  return double(pages) * double(sysconf(_SC_PAGESIZE)) / double(1 << 20);
 }
 }  // namespace
 
-Watchdog::Watchdog(std::function<void(const std::string&)> last_words)
+Watchdog::Watchdog(std::function<void(const std::string&)> last_words,
+                   std::function<double()> held_mb)
     : last_words_(std::move(last_words)),
+      held_mb_(std::move(held_mb)),
       thread_([this](const std::stop_token& done) { watch(done); }) {}
 
 Watchdog::~Watchdog() {
@@ -32,16 +34,20 @@ Watchdog::~Watchdog() {
   changed_.notify_all();
 }
 
+double Watchdog::memory_mb() const { return resident_mb() + (held_mb_ ? held_mb_() : 0); }
+
 std::stop_token Watchdog::arm(double seconds, std::optional<double> memory_mb) {
   const std::lock_guard lock(mutex_);
   stop_ = std::stop_source();
   stop_at_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                 std::chrono::duration<double>(std::min(seconds, 1e8)));
   memory_mb_ = memory_mb;
-  memory_at_start_mb_ = memory_mb ? resident_mb() : 0;
+  memory_at_start_mb_ = memory_mb ? this->memory_mb() : 0;
   stopped_ = false;
   out_of_memory_ = false;
+  interrupted_ = false;
   armed_ = true;
+  ++step_;
   changed_.notify_all();
   return stop_.get_token();
 }
@@ -54,6 +60,7 @@ void Watchdog::disarm() {
 
 void Watchdog::stop_now() {
   const std::lock_guard lock(mutex_);
+  interrupted_ = true;
   stop_at_ = Clock::now();
   changed_.notify_all();
 }
@@ -72,13 +79,14 @@ void Watchdog::watch(const std::stop_token& done) {
     if (memory_mb_) {
       wake = std::min(wake, Clock::now() + kMemoryPoll);
     }
+    const std::uint64_t step = step_;
     changed_.wait_until(lock, done, wake,
-                        [&] { return !armed_ || (!stopped_ && stop_at_ < wake); });
-    if (!armed_ || done.stop_requested()) {
+                        [&] { return !armed_ || step_ != step || (!stopped_ && stop_at_ < wake); });
+    if (!armed_ || step_ != step || done.stop_requested()) {
       continue;
     }
     const auto now = Clock::now();
-    const double grown = memory_mb_ ? resident_mb() - memory_at_start_mb_ : 0;
+    const double grown = memory_mb_ ? memory_mb() - memory_at_start_mb_ : 0;
     if (memory_mb_ && grown > *memory_mb_) {
       if (!out_of_memory_) {
         out_of_memory_ = true;
@@ -96,7 +104,8 @@ void Watchdog::watch(const std::stop_token& done) {
     } else if (stopped_ && now >= stopped_at_ + grace) {
       last_words_(out_of_memory_
                       ? "used more memory than its within_mb and did not stop when told to"
-                      : "did not stop within two seconds of the end of its time");
+                  : interrupted_ ? "did not stop within two seconds of the interruption"
+                                 : "did not stop within two seconds of the end of its time");
     }
   }
 }

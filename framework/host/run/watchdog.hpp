@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -17,8 +18,10 @@ namespace altiplan::host {
 /// step has still not returned, it calls `last_words`, which does not return.
 class Watchdog {
  public:
-  /// `last_words` gets the sentence that says why.
-  explicit Watchdog(std::function<void(const std::string&)> last_words);
+  /// `last_words` gets the sentence that says why; `held_mb` tells of memory that does not count as
+  /// resident.
+  explicit Watchdog(std::function<void(const std::string&)> last_words,
+                    std::function<double()> held_mb = {});
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
@@ -33,18 +36,22 @@ class Watchdog {
 
  private:
   void watch(const std::stop_token& done);
+  double memory_mb() const;
   using Clock = std::chrono::steady_clock;
 
   std::function<void(const std::string&)> last_words_;
+  std::function<double()> held_mb_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   bool armed_ = false;
+  std::uint64_t step_ = 0;  ///< counts arm
   Clock::time_point stop_at_;
   std::optional<double> memory_mb_;
   double memory_at_start_mb_ = 0;
   bool stopped_ = false;
   Clock::time_point stopped_at_;
   bool out_of_memory_ = false;
+  bool interrupted_ = false;
   std::stop_source stop_;
   std::jthread thread_;  // last: starts when all else is there
 };

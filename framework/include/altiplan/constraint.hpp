@@ -59,8 +59,11 @@ class ALTIPLAN_API Constraint {
 };
 
 /// A constraint under the name by which the user asked for it.
-struct NamedConstraint {
+struct ALTIPLAN_API NamedConstraint {
   std::string name;
   std::shared_ptr<const Constraint> constraint;
+
+  /// The constraint's answer; what it throws gets its name.
+  bool admits(const Leg& leg) const;
 };
 }  // namespace altiplan

@@ -47,7 +47,7 @@ class ALTIPLAN_API Pilot {
   virtual ~Pilot();
   PilotStep step(const Observation& seen);
   /// Obstacles farther away than this do not move it; the host hands over within it.
-  double reach_m() const { return do_reach_m(); }
+  double reach_m() const;
   Counters counters() const { return do_counters(); }
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "altiplan/plan_result.hpp"
@@ -15,7 +16,7 @@ namespace altiplan {
 class ALTIPLAN_API Session {
  public:
   virtual ~Session();
-  const PlanResult& result() const { return do_result(); }
+  const PlanResult& result() const { return broken_ ? *broken_ : do_result(); }
   /// The world is the known world after `changes` (since the last call).
   const PlanResult& update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
                            std::span<const Change> changes, const Budget& budget);
@@ -25,6 +26,8 @@ class ALTIPLAN_API Session {
   virtual const PlanResult& do_update(const State& state, const Goal& goal,
                                       std::shared_ptr<const World> world,
                                       std::span<const Change> changes, const Budget& budget) = 0;
+
+  std::optional<PlanResult> broken_;  ///< in place of an update that broke a law, or threw
 };
 
 /// Plans a whole route. Constructed from its parameters; const and shareable.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -35,6 +37,7 @@ struct Manifest {
   char kind[24];
   char name[64];
   char sentence[256];
+  std::uint32_t checksum;  ///< checksum_of the record; a damaged file shows before it is trusted
 };
 
 inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
@@ -46,6 +49,16 @@ inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
 template <class T>
 constexpr std::uint32_t layout_of() {
   return std::uint32_t(sizeof(T) * 64 + alignof(T));
+}
+
+/// FNV-1a of all that stands before the checksum.
+constexpr std::uint32_t checksum_of(const Manifest& m) {
+  const auto bytes = std::bit_cast<std::array<unsigned char, sizeof(Manifest)>>(m);
+  std::uint32_t sum = 2166136261U;
+  for (std::size_t i = 0; i < offsetof(Manifest, checksum); ++i) {
+    sum = (sum ^ bytes[i]) * 16777619U;
+  }
+  return sum;
 }
 
 /// The manifest of a plugin compiled here and now.
@@ -113,6 +126,7 @@ constexpr Manifest make_manifest(const char* kind, const char* name, const char*
   copy(m.kind, sizeof m.kind, kind);
   copy(m.name, sizeof m.name, name);
   copy(m.sentence, sizeof m.sentence, sentence);
+  m.checksum = checksum_of(m);
   return m;
 }
 
@@ -154,7 +168,7 @@ std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw PluginError(error.what());
+    throw PluginError(std::string("threw: ") + error.what());
   } catch (...) {
     throw PluginError("threw something that is not a std::exception");
   }

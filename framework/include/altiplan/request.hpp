@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -34,8 +35,8 @@ struct Budget {
   std::stop_token stop;
 };
 
-/// Asked once an iteration: iterations are compared every time, the stop token and the clock every
-/// 64th, so that a budget of iterations alone is deterministic.
+/// Asked once an iteration. Iterations are compared every time; the stop token and the clock are
+/// asked every time while iterations take a millisecond or more, and every 64th of quick ones.
 class BudgetWatch {
  public:
   explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
@@ -43,18 +44,24 @@ class BudgetWatch {
     if (iterations >= budget_.max_iterations) {
       return true;
     }
-    if ((calls_++ & 63) != 0) {
+    if (--calls_left_ > 0) {
       return false;
     }
+    const Budget::Clock::time_point now = Budget::Clock::now();
+    every_ = now - asked_ < std::chrono::milliseconds(1) ? std::min(2 * every_, 64) : 1;
+    calls_left_ = every_;
+    asked_ = now;
     cancelled_ = budget_.stop.stop_requested();
-    return cancelled_ || (budget_.deadline && Budget::Clock::now() >= *budget_.deadline);
+    return cancelled_ || (budget_.deadline && now >= *budget_.deadline);
   }
   /// Whether the stop token, not a budget, ended it.
   bool cancelled() const { return cancelled_; }
 
  private:
   const Budget& budget_;
-  std::uint64_t calls_ = 0;
+  Budget::Clock::time_point asked_ = Budget::Clock::now();
+  int every_ = 1;
+  int calls_left_ = 1;
   bool cancelled_ = false;
 };
 

@@ -41,7 +41,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
         return band.datum == AltitudeBand::Datum::ground;
       });
   for (const NamedConstraint& named : request.constraints) {
-    constraints_.push_back(named.constraint.get());
+    constraints_.push_back(named);
   }
   steps_ = directions_kept();
   for (int in = 0; in < kDirections; ++in) {
@@ -109,11 +109,11 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
 
 bool MoveRules::admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    if (!constraints_[i]->admits({before, a, b})) {
+    if (!constraints_[i].admits({before, a, b})) {
       ++refused_[by_constraint];
       refused_constraint_ = request_.constraints[i].name;
       admit_needed_parent_ =
-          admit_needed_parent_ || (before && constraints_[i]->admits({std::nullopt, a, b}));
+          admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b}));
       return false;
     }
   }

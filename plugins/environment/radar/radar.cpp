@@ -15,7 +15,7 @@ struct Params {
   bool masking = false;
 
   void describe(Fields& f) {
-    f.point(at).doc("the antenna");
+    f.point(at).required().doc("the antenna");
     f("range_m", range_m).unit("m").greater_than(0).doc("detection range; or give `equation`");
     f("equation", equation).doc("the quantities of the radar equation, paper 000, eq. (1)");
     f("masking", masking).doc("whether ground between the antenna and a point hides the point");

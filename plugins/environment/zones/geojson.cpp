@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr int kMaxDepth = 64;
+
 std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -147,13 +149,23 @@ Json parse(const std::string& file) {
     throw Error(file + ": cannot be read");
   }
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  // Printing a value, and freeing it, goes down as many calls as it has levels.
+  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kMaxDepth) {
+      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
+                  " levels deep");
+    }
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, shallow);
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');
     throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
                 std::to_string(line));
+  } catch (const Json::out_of_range&) {
+    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
   }
 }
 

@@ -27,7 +27,7 @@ struct CylinderParams {
   double radius_m = 0;
 
   void describe(Fields& f) {
-    f.point(at).doc("the axis; a height does not matter here");
+    f.point(at).required().doc("the axis; a height does not matter here");
     f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius");
   }
 };

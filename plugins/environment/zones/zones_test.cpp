@@ -201,6 +201,9 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
   EXPECT_TRUE(says(refused("type", feature("[]", "{}", "Curve")), "Curve"));
   EXPECT_TRUE(
       says(refused("cut", "{\n\"type\":\n"), "not JSON: it breaks off or goes wrong in line 3"));
+  EXPECT_TRUE(says(refused("large", "[1e400]"), "a number that is too large"));
+  EXPECT_TRUE(says(refused("deep", std::string(100, '[') + std::string(100, ']')),
+                   "nested over 64 levels deep"));
   EXPECT_TRUE(
       says(refused("property", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"lower": 1})")),
            "no feature has the property 'low'; present: lower"));

@@ -156,7 +156,7 @@ class Thinning {
     return kit::turn_kept(route_[j] - *before, route_[k] - route_[j], request_.limits) &&
            std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
-                         return named.constraint->admits({before, route_[j], route_[k]});
+                         return named.admits({before, route_[j], route_[k]});
                        });
   }
 

@@ -92,7 +92,7 @@ class ALTIPLAN_API MoveRules {
   double spare_;  ///< clearance beyond half a leg that makes it free for certain
   bool wants_clearance_ = false;
   bool has_ground_rules_ = false;
-  std::vector<const Constraint*> constraints_;
+  std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;
   DirectionMask steps_ = 0;
   std::array<DirectionMask, kDirections> after_{};  ///< by incoming direction

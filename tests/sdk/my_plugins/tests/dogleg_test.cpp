@@ -5,6 +5,8 @@
 
 int main(int argc, char** argv) {
   using namespace altiplan::conformance;
+  std::size_t count = 0;
+  register_cases("dogleg", plugin_cases(*altiplan_plugins(&count)[0]));
   register_cases("dogleg", planner_cases([] { return std::make_unique<Dogleg>(Params{}); }));
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

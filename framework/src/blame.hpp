@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <exception>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan {
+
+/// Runs a plugin's code; what it throws becomes an error that says whose it is. `who` is asked only
+/// then ("the layer 'north' (terrain)").
+template <class Who, class Call>
+auto blamed(const Who& who, const Call& call) {
+  try {
+    return call();
+  } catch (const ParameterError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw PluginError(who() + " threw: " + error.what());
+  } catch (...) {
+    throw PluginError(who() + " threw something that is not a std::exception");
+  }
+}
+}  // namespace altiplan

@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""damaged_libraries.py BUILD COUNT [SEED]: damages copies of the plugin libraries of a build,
+COUNT in all, and puts each through `altiplan plugins` and `altiplan run`.
+
+`plugins` must end well and say of each library why it is refused, or list it. `run` must end with
+0, 1 or 4, or crash inside the library's own code: gdb, where there is one, says where. A crash that
+the host catches is a 4, wherever it happened: a broken object crashes whoever uses it. A 3 is right
+where the library's own damaged bounds and checks refuse the file. Prints a table; exits with 1 where
+one of these does not hold.
+"""
+
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PATIENCE_S = 60
+ALLOWED = ("exit 0", "exit 1", "exit 3", "exit 4", "crash in the library's code",
+           "crash after a jump by the library's tables", "crash in the loader", "crash that gdb hides")
+SCENARIO = """altiplan: 1
+environment: [%s]
+volume: {min_m: [0, 0, 0], max_m: [100, 100, 100]}
+vehicle: {radius_m: 1}
+start: {at_m: [5, 5, 50]}
+goal: {at_m: [95, 95, 50], tolerance_m: 5}
+"""
+BALL = "{sphere: {at_m: [50, 50, 50], radius_m: 10}}"
+GRID = "{cell_m: [10, 10, 10]}"
+PARAMETERS = {
+    "hills": "{peaks: [{at_m: [50, 20], height_m: 30, sigma_m: [10, 10]}]}",
+    "radar": "{at_m: [50, 50, 0], range_m: 20}",
+    "terrain": "{file: ground.asc, crs: 'EPSG:4326'}",
+    "zones": "{list: [{cylinder: {at_m: [50, 20], radius_m: 5}}]}",
+    "altitude": "{min_m: 0, max_m: 100}",
+    "clearance": "{min_m: 1}",
+    "climb_angle": "{max_deg: 80}",
+    "ground_clearance": "{min_m: 1}",
+    "leg_length": "{min_m: 0.1}",
+    "route_length": "{max_ratio: 5}",
+    "turn_angle": "{max_deg: 170}",
+    "turn_radius": "{min_m: 0.1}",
+    "astar": GRID,
+}
+GROUND = "ncols 4\nnrows 4\nxllcorner 8\nyllcorner 47\ncellsize 0.001\n" + "1 2 3 4\n" * 4
+
+
+def problem(kind, name):
+    """The texts of a scenario and a pipeline that use the plugin."""
+    with_ = PARAMETERS.get(name, "{}")
+    layers = "{%s: %s}" % (name, with_) if kind == "environment" else BALL
+    planner = name if kind in ("planner", "local_planner") else "astar"
+    steps = "  - {plan: %s, with: %s, within_s: 5}\n" % (planner, PARAMETERS.get(planner, "{}"))
+    if kind == "smoother":
+        steps += "  - {smooth: %s}\n" % name
+    constraints = "constraints: [{%s: %s}]\n" % (name, with_) if kind == "constraint" else ""
+    pipeline = "altiplan: 1\nscenario: scenario.yaml\n" + constraints + "steps:\n" + steps
+    return SCENARIO % layers, pipeline
+
+
+def damaged(random_, whole):
+    """A copy with one kind of damage, and its name."""
+    kind = random_.choice(["truncated", "bits", "bits", "block zeroed", "blocks swapped"])
+    data = bytearray(whole)
+    if kind == "truncated":
+        return kind, bytes(data[: random_.randrange(len(data))])
+    if kind == "bits":
+        for _ in range(random_.choice([1, 2, 4, 8, 16, 32, 64])):
+            data[random_.randrange(len(data))] ^= 1 << random_.randrange(8)
+        return kind, bytes(data)
+    size = random_.choice([16, 64, 256, 1024, 4096])
+    a, b = (random_.randrange(len(data) - size) for _ in range(2))
+    if kind == "block zeroed":
+        data[a : a + size] = bytes(size)
+    else:
+        data[a : a + size], data[b : b + size] = data[b : b + size], data[a : a + size]
+    return kind, bytes(data)
+
+
+class Bench:
+    """A copy of the program that finds no plugins by itself."""
+
+    def __init__(self, build, folder):
+        self.folder = folder
+        self.program = folder / "bin/altiplan"
+        self.program.parent.mkdir()
+        shutil.copy(build / "bin/altiplan", self.program)
+        (folder / "lib").mkdir()
+        shutil.copy(build / "lib/libaltiplan.so.0", folder / "lib/libaltiplan.so.0")
+        self.libraries = {}
+        plugins = sorted((build / "lib/altiplan/plugins").glob("libaltiplan_*.so"))
+        # By its file's name a library is known when its manifest is gone.
+        two_plugins = folder / "libaltiplan_planner_alpha.so"
+        two_plugins.symlink_to(build / "tests/broken_plugins/two_plugins.so")
+        for file in plugins + [two_plugins]:
+            listed = json.loads(self.call(["plugins", "--json"], self.only(file)).stdout)
+            offers = listed["libraries"][0]["plugins"][-1]
+            kind, name = offers["kind"], offers["name"]
+            self.libraries[file] = (kind, name, file.read_bytes())
+            problem_folder = folder / "problems" / file.stem
+            problem_folder.mkdir(parents=True)
+            (problem_folder / "ground.asc").write_text(GROUND)
+            scenario, pipeline = problem(kind, name)
+            (problem_folder / "scenario.yaml").write_text(scenario)
+            (problem_folder / "pipeline.yaml").write_text(pipeline)
+            others = folder / "others" / file.stem
+            others.mkdir(parents=True)
+            for other in plugins:
+                if other != file:
+                    (others / other.name).symlink_to(other)
+
+    def only(self, file):
+        made = self.folder / "only" / file.stem
+        made.mkdir(parents=True)
+        (made / file.name).symlink_to(file)
+        return made
+
+    def call(self, arguments, *plugin_paths, around=()):
+        command = [*around, str(self.program), *arguments]
+        for path in plugin_paths:
+            command += ["--plugin-path", str(path)]
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(self.folder / "lib")}
+        environment.pop("ALTIPLAN_PLUGIN_PATH", None)
+        return subprocess.run(command, capture_output=True, text=True, errors="replace",
+                              timeout=PATIENCE_S, env=environment, check=False)
+
+    def run(self, file, folder, around=()):
+        pipeline = self.folder / "problems" / file.stem / "pipeline.yaml"
+        return self.call(["run", str(pipeline), "--patience", "5"], folder, self.folder / "others" / file.stem,
+                         around=around)
+
+    def where(self, file, folder):
+        """In whose code the run crashes: the loader's, the library's or ours, with the stack."""
+        if shutil.which("gdb") is None:
+            return "unknown (no gdb)", ""
+        gdb = ["gdb", "-nx", "-batch", "-ex", "run", "-ex", "bt 30", "-ex", "info sharedlibrary",
+               "--args"]
+        text = self.run(file, folder, around=gdb).stdout
+        frames = re.findall(r"^#\d+ .*$", text, re.MULTILINE)
+        stack = "\n".join(frames)
+        if not frames:
+            return "crash that gdb hides", text[-600:]  # with addresses of its own
+        if re.search(r" from .*" + re.escape(file.name) + "$", stack, re.MULTILINE):
+            return "crash in the library's code", stack
+        if frames and " in ?? ()" in frames[0]:
+            return "crash after a jump by the library's tables", stack
+        if re.search(r"\b(_?dl_|elf_|do_lookup|call_init|dlopen)|ld-linux", stack):
+            return "crash in the loader", stack
+        if not re.search(r" (_start|clone3?|main) \(", stack):
+            return "crash with the stack destroyed", stack
+        return "crash in ours", stack  # no code of the library on a whole stack
+
+
+def outcome(bench, file, folder):
+    try:
+        run = bench.run(file, folder)
+    except subprocess.TimeoutExpired:
+        return "hang", ""
+    if run.returncode in (1, 4) and re.search(r"(crashed|aborted) \(SIG", run.stdout + run.stderr):
+        where, detail = bench.where(file, folder)
+        return "exit %d, %s" % (run.returncode, where), run.stderr[-600:] + detail
+    if run.returncode in (0, 1, 4):
+        return "exit %d" % run.returncode, ""
+    if run.returncode > 0:
+        return "exit %d" % run.returncode, run.stderr[-600:]
+    return bench.where(file, folder)
+
+
+def round_of(bench, seed, number, libraries):
+    """One damaged copy of each library: what `plugins` and `run` say of it."""
+    random_ = random.Random("%d %d" % (seed, number))
+    root = bench.folder / ("round_%d" % number)
+    together = root / "all"
+    together.mkdir(parents=True)
+    kinds = {}
+    for file in libraries:
+        kinds[file], data = damaged(random_, bench.libraries[file][2])
+        (together / file.name).write_bytes(data)
+    results = []
+    problems = []
+    listed = {}
+    try:
+        plugins = bench.call(["plugins", "--json"], together)
+        if plugins.returncode == 0:
+            listed = {pathlib.Path(library["file"]).name: library
+                      for library in json.loads(plugins.stdout)["libraries"]}
+        else:
+            problems.append("plugins ended with %d: %s" % (plugins.returncode, plugins.stderr))
+    except subprocess.TimeoutExpired:
+        problems.append("plugins hung")
+    for file in libraries:
+        alone = root / file.stem
+        alone.mkdir()
+        (together / file.name).rename(alone / file.name)
+        library = listed.get(file.name)
+        if library is None:
+            said = "not listed"
+        elif library["refused"]:
+            said = "refused"
+        else:
+            said = "works"
+        run, detail = outcome(bench, file, alone)
+        results.append((kinds[file], said, run))
+        if said == "not listed" or run.partition(",")[0] not in ALLOWED:
+            problems.append("%s, %s: plugins: %s, run: %s\n%s"
+                            % (file.name, kinds[file], said, run, detail))
+    shutil.rmtree(root)
+    return results, problems
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    count = int(sys.argv[2])
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # also gdb's own: damaged libraries end it too
+    seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+    base = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+    with tempfile.TemporaryDirectory(dir=base, prefix="altiplan_damaged_") as folder:
+        bench = Bench(build, pathlib.Path(folder))
+        files = list(bench.libraries)
+        for file in files:
+            run = bench.run(file, bench.folder / "only" / file.stem)
+            # The planner of two_plugins breaks a law, which is the 4 of a step that failed.
+            if run.returncode not in ((4,) if "_alpha" in file.name else (0, 1)):
+                sys.exit("%s, undamaged: exit %d: %s" % (file.name, run.returncode, run.stderr))
+        results = []
+        problems = []
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            rounds = [pool.submit(round_of, bench, seed, number, files[: count - first])
+                      for number, first in enumerate(range(0, count, len(files)))]
+            for done in rounds:
+                more, wrong = done.result()
+                results += more
+                problems += wrong
+        table = collections.Counter(results)
+        for (kind, said, run), times in sorted(table.items()):
+            print("%6d  %-15s plugins: %-11s run: %s" % (times, kind, said, run))
+        print("%6d  in all" % len(results))
+        for text in problems:
+            print("problem: " + text)
+        print("%d problems" % len(problems))
+        sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()
