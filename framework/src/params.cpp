@@ -165,7 +165,8 @@ void Fields::finish() {
     if (spec.type == FieldType::list && value->kind == Value::Kind::list &&
         value->items.size() < spec.min_items) {
       problem(*value, key_of(spec.name),
-              "expected at least " + std::to_string(spec.min_items) + " items, found " +
+              "expected at least " + std::to_string(spec.min_items) +
+                  (spec.min_items == 1 ? " item, found " : " items, found ") +
                   std::to_string(value->items.size()));
     }
   }

@@ -32,7 +32,7 @@ struct Case {
 
 TEST_F(ConfigTest, WhatIsWrongWithSteps) {
   const Case cases[] = {
-      {"steps: []\n", "p.yaml:3:8: steps: expected at least 1 items, found 0"},
+      {"steps: []\n", "p.yaml:3:8: steps: expected at least 1 item, found 0"},
       {"name: x\n", "p.yaml:1:1: the key 'steps' is missing: what is done, in order"},
       {"steps: [told]\n", "p.yaml:3:9: steps.0: expected a map of keys, found 'told'"},
       {"steps: [{id: a}]\n", "p.yaml:3:9: steps.0: expected one verb: plan, smooth or fly"},

@@ -8,13 +8,17 @@ namespace {
 
 constexpr std::size_t kMaxProblems = 100;
 
-/// What a key without a value was perhaps meant to be.
-std::string hint_for_key(const std::string& key) {
+/// What a key without a value was perhaps meant to be; `next` is where the text goes on.
+std::string hint_for_key(const std::string& key, const Location& key_at, const Location& next) {
   if (key.find(':') != key.npos) {
     return ": a space is missing after its ':'";
   }
   const bool digits = !key.empty() && key.find_first_not_of("0123456789") == key.npos;
-  return digits ? ": decimals are written with a point, not a comma" : "";
+  if (digits) {
+    return ": decimals are written with a point, not a comma";
+  }
+  const bool unindented = next.line > key_at.line && next.column == key_at.column;
+  return unindented ? ": it stands after the ': ', or beneath, indented further than the key" : "";
 }
 }  // namespace
 
@@ -38,9 +42,9 @@ void YamlReader::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
                 "' is not a value: leave the key out where nothing is meant, quote it "
                 "where the text is meant");
   } else if (!root) {
-    const bool is_map = open_.back().is_map;
-    problem(is_map ? open_.back().key_at : empty_item(mark), path(),
-            "has no value" + (is_map ? hint_for_key(open_.back().key) : ""));
+    const Open& in = open_.back();
+    problem(in.is_map ? in.key_at : empty_item(mark), path(),
+            "has no value" + (in.is_map ? hint_for_key(in.key, in.key_at, source_.at(mark)) : ""));
   }
   if (!root || !word.empty()) {
     push(mark, Node::Kind::scalar, "");
@@ -176,6 +180,10 @@ void YamlReader::take_key(const Node& node) {
   }
   if (node.text == "<<" && !node.quoted) {
     problem(map.key_at, path(), "merge keys ('<<') are not taken: write the keys out");
+  }
+  if (node.text.size() > 1 && node.text.front() == '-' && !node.quoted) {
+    problem(map.key_at, path(),
+            "a key cannot start with '-': each item of a list starts with '- '");
   }
 }
 
