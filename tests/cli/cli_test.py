@@ -15,6 +15,7 @@ import unittest
 
 PROGRAM, BROKEN = sys.argv[1:3]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+BAD_FILES = os.path.join(ROOT, "tests", "bad_files")
 
 # A wall between start and goal, passed on either side; the vehicle then meets a post.
 SCENARIO = """altiplan: 1
@@ -49,6 +50,26 @@ volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
 start: {at_m: [100, 500, 100]}
 goal: {at_m: [900, 500, 100]}
 """
+
+
+def bad_files():
+    """The cases of tests/bad_files/expected.tsv: row, file, text replaced, by what, problems."""
+    plain = {"n": "\n", "r": "\r", "t": "\t"}
+
+    def unescaped(text):
+        return re.sub(rb"\\(?:x(..)|(.))", lambda found: bytes([int(found[1], 16)]) if found[1] else
+                      plain.get(found[2].decode(), found[2].decode()).encode(), text.encode())
+
+    cases = []
+    with open(os.path.join(BAD_FILES, "expected.tsv"), newline="\n") as table:
+        for row, line in enumerate(table, 1):
+            if line.strip() and not line.startswith("#"):
+                file, before, after, place, key, message = line.rstrip("\n").split("\t")
+                if file:
+                    cases.append((row, file, unescaped(before), unescaped(after), []))
+                cases[-1][4].append(("" if place == "0:0" else place + ": ") +
+                                    (key + ": " if key else "") + message)
+    return cases
 
 
 class Cli(unittest.TestCase):
@@ -227,6 +248,29 @@ class Cli(unittest.TestCase):
             self.assertIn(nameless + ":2:", err)
         for text in ("altiplan: 1\n---\naltiplan: 1\n", "a: [", "", "altiplan: 1\nsteps: null\n"):
             self.call("validate", self.write("worse.yaml", text), code=3)
+
+    def test_bad_files_are_refused_by_validate_and_run(self):
+        sample = bad_files()[::10]
+        self.assertGreaterEqual(len(sample), 40)
+        self.write("result.json", "before")
+        for row, file, before, after, problems in sample:
+            for name in ("pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson"):
+                with open(os.path.join(BAD_FILES, name), "rb") as stream:
+                    text = stream.read()
+                if name == file:
+                    self.assertTrue(before == b"*" or text.count(before) == 1, row)
+                    text = after if before == b"*" else text.replace(before, after)
+                with open(self.path(name), "wb") as stream:
+                    stream.write(text)
+            files = sorted(os.listdir(self.folder))
+            for command in (["validate"], ["run", "--out", "result.json"]):
+                with self.subTest(row=row, command=command[0]):
+                    out, err = self.call(*command, "pipeline.yaml", code=3)
+                    self.assertEqual(out, "")
+                    for problem in problems:
+                        self.assertIn(problem, err.replace(self.folder + "/", ""))
+                    self.assertEqual(self.read("result.json"), "before")
+                    self.assertEqual(sorted(os.listdir(self.folder)), files)
 
     def test_explain(self):
         out, _ = self.call("explain", self.pipeline, "--json", "--set", "steps.0.with.weight_h=0.2")
