@@ -118,7 +118,11 @@ fi
 
 # What `check` is given.
 for text in '' '5' '[' '[[1, 2, 3]' '[[1, 2], [3, 4]]' '[["a", 2, 3], [4, 5, 6]]' '{"route": 5}' \
-  '[[1, 2, 1e400], [4, 5, 6]]' '[]'; do
+  '[[1, 2, 1e400], [4, 5, 6]]' '[]' 'null' $'x,y,z\n1,2,3\n4,5,6\n' $'\xff\xfe[' \
+  '[[1, 2, null], [4, 5, 6]]' '[[1, 2, NaN], [4, 5, 6]]' '[[true, 2, 3], [4, 5, 6]]' \
+  '[[1, 2, 3, 4], [4, 5, 6, 7]]' '[{"x": 1, "y": 2, "z": 3}]' '[[1, 2, 3], [4, 5, 6]] x' \
+  '{"type": "LineString", "coordinates": [[1, 2, 3], [4, 5, 6]]}' \
+  '{"type": "FeatureCollection", "features": []}'; do
   printf '%s' "$text" > "$scratch/route.json"
   expect 3 'route.json' check --route "$scratch/route.json" --scenario "$scratch/small.yaml"
 done
@@ -129,6 +133,31 @@ for text in '' '5' '{}' '{"altiplan": 2}' '{"altiplan": 1}' '{"altiplan": 1, "ro
   printf '%s' "$text" > "$scratch/stored.json"
   expect 3 'stored.json' check "$scratch/stored.json"
 done
+"$program" run "$pipeline" --out "$scratch/sound.json" > /dev/null
+expect 0 'sound' check "$scratch/sound.json"
+# stored TEXT KEY VALUE: with this value of a key of the result, `check` refuses it.
+stored() {
+  /usr/bin/python3 - "$scratch" "$2" "$3" << 'EOF'
+import json, sys
+folder, key, value = sys.argv[1:]
+result = json.load(open(folder + "/sound.json"))
+assert key in result, key
+result[key] = json.loads(value)
+json.dump(result, open(folder + "/stored.json", "w"))
+EOF
+  expect 3 "$1" check "$scratch/stored.json"
+}
+stored 'must be number' seed '"x"'
+stored 'must be string' scenario null
+stored 'this is a pipeline, expected a scenario' scenario "\"$pipeline\""
+stored 'nowhere.yaml: there is no such file' pipeline '"nowhere.yaml"'
+stored 'is no index of this list' overrides '{"set": {"steps.9.plan": "astar"}}'
+stored 'must be string' overrides '{"set": {"steps.0.plan": 5}}'
+stored 'stored.json' files 5
+stored 'three numbers, found one of 2' route '[[1, 2]]'
+stored "'track' not found" flight '{}'
+stored 'the flight has no track' flight '{"track": []}'
+stored 'index 3 is out of range' flight '{"track": [[0, 1, 2]]}'
 
 # A decimal comma in the environment changes no number that is read or written.
 if localedef -i de_DE -f UTF-8 "$scratch/de_DE.UTF-8" 2> /dev/null &&
