@@ -118,7 +118,8 @@ fi
 
 # What `check` is given.
 for text in '' '5' '[' '[[1, 2, 3]' '[[1, 2], [3, 4]]' '[["a", 2, 3], [4, 5, 6]]' '{"route": 5}' \
-  '[[1, 2, 1e400], [4, 5, 6]]' '[]' 'null' $'x,y,z\n1,2,3\n4,5,6\n' $'\xff\xfe[' \
+  '[[1, 2, 1e400], [4, 5, 6]]' '[]' \
+  '{"a": [1, 2, 3], "b": [4, 5, 6]}' '{"route": {"0": [1, 2, 3]}}' '[{"x": 1, "y": 2, "z": 3}]' 'null' $'x,y,z\n1,2,3\n4,5,6\n' $'\xff\xfe[' \
   '[[1, 2, null], [4, 5, 6]]' '[[1, 2, NaN], [4, 5, 6]]' '[[true, 2, 3], [4, 5, 6]]' \
   '[[1, 2, 3, 4], [4, 5, 6, 7]]' '[{"x": 1, "y": 2, "z": 3}]' '[[1, 2, 3], [4, 5, 6]] x' \
   '{"type": "LineString", "coordinates": [[1, 2, 3], [4, 5, 6]]}' \
@@ -158,6 +159,12 @@ stored 'three numbers, found one of 2' route '[[1, 2]]'
 stored "'track' not found" flight '{}'
 stored 'the flight has no track' flight '{"track": []}'
 stored 'index 3 is out of range' flight '{"track": [[0, 1, 2]]}'
+
+"$program" run "$pipeline" --out "$scratch/result.json" > /dev/null
+for seed in 1.5 1e300; do
+  sed "s/\"seed\": [0-9]*/\"seed\": $seed/" "$scratch/result.json" > "$scratch/seed.json"
+  expect 3 'seed: expected a whole number' check "$scratch/seed.json"
+done
 
 # A decimal comma in the environment changes no number that is read or written.
 if localedef -i de_DE -f UTF-8 "$scratch/de_DE.UTF-8" 2> /dev/null &&

@@ -51,8 +51,8 @@ host::Json read_json(const std::string& file, const std::string& expected) {
 Route route_of(const host::Json& json, const std::string& file) {
   Route route;
   try {
-    for (const host::Json& p : json) {
-      if (p.size() != 3) {
+    for (const host::Json& p : json.get_ref<const host::Json::array_t&>()) {  // or it throws
+      if (p.is_array() && p.size() != 3) {
         throw Error(file + ": expected points of three numbers, found one of " +
                     std::to_string(p.size()));
       }
@@ -128,10 +128,17 @@ int report(const host::Mission& mission, const Route& route,
 
 host::Track track_of(const host::Json& json, const std::string& file) {
   host::Track track;
+  if (!json.is_array()) {
+    throw Error(file + ": expected the flight's track as a list of [t, x, y, z]");
+  }
   for (const host::Json& point : json) {
     track.emplace_back(
         point.at(0).get<double>(),
         Vec3(point.at(1).get<double>(), point.at(2).get<double>(), point.at(3).get<double>()));
+    if (track.size() > 1 && track.back().first < track[track.size() - 2].first) {
+      throw Error(file + ": point " + std::to_string(track.size() - 1) +
+                  " of the flight's track is earlier than the one before it");
+    }
   }
   if (track.empty()) {
     throw Error(file + ": the flight has no track");
@@ -140,8 +147,12 @@ host::Track track_of(const host::Json& json, const std::string& file) {
 }
 
 /// The overrides with which a stored run was made.
-host::Overrides stored_overrides(const host::Json& json, host::Overrides overrides) {
+host::Overrides stored_overrides(const host::Json& json, const std::string& file,
+                                 host::Overrides overrides) {
   overrides.scenario = json.at("scenario").get<std::string>();
+  if (json.at("seed").is_number_float()) {
+    throw Error(file + ": seed: expected a whole number, found " + json.at("seed").dump());
+  }
   overrides.seed = json.at("seed").get<std::int64_t>();
   const host::Json& stored = json.at("overrides");
   if (stored.contains("set")) {
@@ -163,7 +174,7 @@ int check_result(const Arguments& arguments) {
         json.at("altiplan") != host::kFileFormat) {
       throw Error(file + ": expected a result of format 1");
     }
-    overrides = stored_overrides(json, arguments.overrides);
+    overrides = stored_overrides(json, file, arguments.overrides);
     pipeline = json.at("pipeline").get<std::string>();
     for (const host::Json& used : json.at("files")) {
       if (host::sha256(used.at("path").get<std::string>()) != used.at("sha256")) {
@@ -178,7 +189,8 @@ int check_result(const Arguments& arguments) {
       track = track_of(json.at("flight").at("track"), file);
     }
   } catch (const host::Json::exception& error) {
-    throw Error(file + ": expected a result of altiplan run: " + error.what());
+    const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
+    throw Error(file + ": expected a result of altiplan run: " + why.substr(why.find("] ") + 2));
   }
   const host::Config config = host::load_config(pipeline, overrides);
   const host::Mission mission = host::build_mission(config, 1);
