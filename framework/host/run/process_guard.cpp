@@ -231,8 +231,8 @@ ProcessGuard::ProcessGuard() {
   state->locale = std::setlocale(LC_ALL, nullptr);
   state->cxx_locale = std::locale();
   std::fegetenv(&state->floating);
-  static const int registered = std::atexit(on_exit);
-  if (registered != 0) {
+  static const int kRegistered = std::atexit(on_exit);
+  if (kRegistered != 0) {
     throw Error("cannot register what to do at exit");
   }
   the_state = state.release();
