@@ -106,7 +106,7 @@ class ToldConstraint final : public Constraint {
 };
 
 /// A constraint whose stricter parameter is half of the other.
-Cases constraining(Rule rule) {
+Cases constraining(const Rule& rule) {
   Rule tighter = rule;
   tighter.limit /= 2;
   return constraint_cases([rule] { return std::make_unique<ToldConstraint>(rule); },

@@ -101,8 +101,8 @@ struct Sound {
   }
 };
 struct BadName {
-  int badName = 1;
-  void describe(Fields& f) { f("badName", badName).doc("what"); }
+  int bad_name = 1;
+  void describe(Fields& f) { f("badName", bad_name).doc("what"); }
 };
 struct Silent {
   int size = 1;

@@ -286,8 +286,9 @@ double shortest(const Scene& cells, const Lanes& lanes) {
       return g;
     }
     for (int d = 0; d < 27; ++d) {
-      const Vec3 step(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
-      const Cell n{c[0] + int(step.x()), c[1] + int(step.y()), c[2] + int(step.z())};
+      const Cell move{d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
+      const Vec3 step(move[0], move[1], move[2]);
+      const Cell n{c[0] + move[0], c[1] + move[1], c[2] + move[2]};
       const double length = g + map.spec().cell.cwiseProduct(step).norm();
       if (map.open(c, n) && length < best[map.id(n)]) {
         best[map.id(n)] = length;

@@ -25,17 +25,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) {
     return 0;
   }
-  static const altiplan::fuzz::MemoryFolder folder;
+  static const altiplan::fuzz::MemoryFolder kFolder;
   const Format& format = kFormats[data[0] % std::size(kFormats)];
   const std::uint8_t options = data[1];
   std::string_view bytes = altiplan::fuzz::text_of(data + 2, size - 2);
   if (format.beside != nullptr) {
     const std::string_view beside = bytes.substr(0, bytes.find('\0'));
-    folder.write(format.beside, beside);
+    kFolder.write(format.beside, beside);
     bytes.remove_prefix(std::min(bytes.size(), beside.size() + 1));
   }
   terrain::Params params;
-  const std::filesystem::path file = folder.write(format.name, bytes);
+  const std::filesystem::path file = kFolder.write(format.name, bytes);
   if (std::string_view(format.name) == "n36w085.hgt") {
     std::filesystem::resize_file(file, kBytesOfHgt);  // GDAL takes no other size
   }

@@ -88,8 +88,8 @@ void mend_checksums(std::string& bytes) {
 }
 
 std::string changed(const std::uint8_t* data, std::size_t size) {
-  static const std::string whole = whole_library();
-  std::string bytes = whole;
+  static const std::string kWhole = whole_library();
+  std::string bytes = kWhole;
   for (std::size_t i = 0; i + 3 <= size; i += 3) {
     const std::size_t at = (data[i] | std::size_t{data[i + 1]} << 8) % bytes.size();
     bytes[at] = static_cast<char>(bytes[at] ^ data[i + 2]);
@@ -102,7 +102,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) {
     return 0;
   }
-  static const fuzz::MemoryFolder folder;
+  static const fuzz::MemoryFolder kFolder;
   const bool as_it_is = data[0] % 2 == 0;
   std::string bytes =
       as_it_is ? std::string(fuzz::text_of(data + 1, size - 1)) : changed(data + 1, size - 1);
@@ -110,7 +110,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     mend_checksums(bytes);
   }
   const host::Library library =
-      host::examine_library(folder.write("libaltiplan_planner_fuzz.so", bytes));
+      host::examine_library(kFolder.write("libaltiplan_planner_fuzz.so", bytes));
   if (library.refused.empty() && library.plugins.empty()) {
     std::abort();  // neither refused nor offering anything
   }

@@ -25,17 +25,17 @@ bool leads_elsewhere(const Value& value) {
 }
 
 void read(std::string_view text) {
-  static const fuzz::MemoryFolder folder;
+  static const fuzz::MemoryFolder kFolder;
   const Value tree = host::parse_yaml(text, "fuzz.yaml");
   if (leads_elsewhere(tree)) {
     return;
   }
-  const std::filesystem::path file = folder.write("fuzz.yaml", text);
+  const std::filesystem::path file = kFolder.write("fuzz.yaml", text);
   host::Overrides overrides;
   if (host::kind_of(tree) == host::FileKind::scenario) {
     host::explain(host::load_scenario(file, overrides));
   } else {
-    overrides.scenario = folder.write("scenario.yaml", kScenario);
+    overrides.scenario = kFolder.write("scenario.yaml", kScenario);
     host::explain(host::load_config(file, overrides));
   }
 }

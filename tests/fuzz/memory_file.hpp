@@ -53,4 +53,5 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
 }
 }  // namespace altiplan::fuzz
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
