@@ -154,5 +154,6 @@ std::optional<Vec3> Environment::do_cell_centre(const std::array<double, 3>&) co
   return std::nullopt;
 }
 std::optional<Frame> Environment::do_frame() const { return std::nullopt; }
+std::optional<Drawing> Environment::do_drawing() const { return std::nullopt; }
 std::vector<std::string> Environment::do_notes() const { return {}; }
 }  // namespace altiplan

@@ -70,6 +70,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 }  // namespace
 
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string quoted = "'";
+  for (const char c : text.substr(0, kLongest)) {
+    quoted += c >= ' ' && c < 0x7f ? c : '?';
+  }
+  return quoted + (text.size() > kLongest ? "…'" : "'");
+}
+
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string_view head = word.substr(0, 64);  // a long word costs its square
   std::size_t best = std::max<std::size_t>(1, head.size() / 3) + 1;

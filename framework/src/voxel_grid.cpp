@@ -66,11 +66,11 @@ void VoxelGrid::set(const Cell& c, bool is_blocked) {
   fill(words_.data() + row(c[1], c[2]), c[0] + 1, c[0] + 1, is_blocked);
 }
 
-void VoxelGrid::block_run(int i0, int i1, int j, int k) {
+void VoxelGrid::set_run(int i0, int i1, int j, int k, bool is_blocked) {
   i0 = std::max(i0, 0);
   i1 = std::min(i1, spec_.counts[0] - 1);
   if (i0 <= i1 && spec_.holds({i0, j, k})) {
-    fill(words_.data() + row(j, k), i0 + 1, i1 + 1, true);
+    fill(words_.data() + row(j, k), i0 + 1, i1 + 1, is_blocked);
   }
 }
 

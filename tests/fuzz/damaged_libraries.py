@@ -36,6 +36,11 @@ goal: {at_m: [95, 95, 50], tolerance_m: 5}
 BALL = "{sphere: {at_m: [50, 50, 50], radius_m: 10}}"
 GRID = "{cell_m: [10, 10, 10]}"
 PARAMETERS = {
+    "city": "{generate: simple, seed: 1, cells: [20, 20, 20], cell_m: 5}",
+    "grid_map": "{file: cells.map, cell_m: 10, height_m: 100}",
+    "mesh": "{file: cube.obj}",
+    "octomap": "{file: voxel.bt, unknown: free}",
+    "voxel_map": "{file: voxels.3dmap, cell_m: 10}",
     "hills": "{peaks: [{at_m: [50, 20], height_m: 30, sigma_m: [10, 10]}]}",
     "radar": "{at_m: [50, 50, 0], range_m: 20}",
     "terrain": "{file: ground.asc, crs: 'EPSG:4326'}",
@@ -50,7 +55,19 @@ PARAMETERS = {
     "turn_radius": "{min_m: 0.1}",
     "astar": GRID,
 }
-GROUND = "ncols 4\nnrows 4\nxllcorner 8\nyllcorner 47\ncellsize 0.001\n" + "1 2 3 4\n" * 4
+CUBE = "".join("v %d %d %d\n" % (40 + 20 * (n & 1), 40 + 20 * (n >> 1 & 1), 40 + 20 * (n >> 2))
+               for n in range(8)) + "".join("f %s\n" % face for face in (
+                   "1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"))
+# One occupied voxel, the first from the origin.
+VOXEL = (b"# Octomap OcTree binary file\nid OcTree\nsize 17\nres 10\ndata\n" + b"\x00\xc0" +
+         14 * b"\x03\x00" + b"\x02\x00")
+FILES = {
+    "ground.asc": b"ncols 4\nnrows 4\nxllcorner 8\nyllcorner 47\ncellsize 0.001\n" + 4 * b"1 2 3 4\n",
+    "cells.map": b"type octile\nheight 10\nwidth 10\nmap\n" + 5 * b"..........\n...@@@....\n",
+    "voxels.3dmap": b"voxel 10 10 10\n5 5 5\n2 3 5\n",
+    "voxel.bt": VOXEL,
+    "cube.obj": CUBE.encode(),
+}
 
 
 def problem(kind, name):
@@ -107,7 +124,8 @@ class Bench:
             self.libraries[file] = (kind, name, file.read_bytes())
             problem_folder = folder / "problems" / file.stem
             problem_folder.mkdir(parents=True)
-            (problem_folder / "ground.asc").write_text(GROUND)
+            for file_name, content in FILES.items():
+                (problem_folder / file_name).write_bytes(content)
             scenario, pipeline = problem(kind, name)
             (problem_folder / "scenario.yaml").write_text(scenario)
             (problem_folder / "pipeline.yaml").write_text(pipeline)

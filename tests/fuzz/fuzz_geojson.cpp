@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The zones' reader of GeoJSON. The bits of the first byte say which properties are asked for.
+// The reader of GeoJSON. The bits of the first byte say which properties are asked for.
 #include "altiplan/error.hpp"
-#include "environment/zones/geojson.hpp"
+#include "altiplan/kit/geojson.hpp"
 #include "fuzz/memory_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -12,12 +12,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto asked = [&](int bit, const char* name) {
     return (data[0] >> bit & 1) != 0 ? name : "";
   };
-  const altiplan::zones::PropertyNames names = {asked(0, "floor"), asked(1, "ceiling"),
-                                                asked(2, "from"), asked(3, "until")};
   const auto file =
       kFolder.write("zones.geojson", altiplan::fuzz::text_of(data + 1, size - 1)).string();
   try {
-    altiplan::zones::read_geojson(file, names);
+    const altiplan::kit::GeoJson json = altiplan::kit::read_geojson(file);
+    altiplan::kit::expect_properties(file, json, {asked(0, "floor"), asked(1, "from")});
+    for (const altiplan::kit::GeoFeature& feature : json.features) {
+      (void)(feature.metres(asked(2, "floor")), feature.text(asked(3, "from")));
+    }
   } catch (const altiplan::Error&) {
   }
   return 0;

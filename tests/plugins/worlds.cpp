@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers that lie or throw, one with cells of its own, and constraints of every sort.
+// Layers that lie or throw, one with cells of its own, a ball, and constraints of every sort.
 #include <stdexcept>
 
 #include "altiplan/plugin.hpp"
@@ -53,6 +53,18 @@ class Cells final : public Environment {
   GridSpec spec_;
 };
 
+/// A ball that can only say how far away it is.
+class Ball final : public Environment {
+ public:
+  Ball(const NoParams&, const Site&) {}
+
+ private:
+  Box do_bounds() const override { return Box{kCentre, kCentre}.grown(kRadius); }
+  double do_clearance(const Vec3& p) const override { return (p - kCentre).norm() - kRadius; }
+  inline static const Vec3 kCentre{500, 500, 100};
+  static constexpr double kRadius = 80;
+};
+
 struct RuleParams {
   std::string does = "admits";
   std::string holds_for = "both";
@@ -97,4 +109,5 @@ class NotNorth final : public Constraint {
 
 ALTIPLAN_PLUGIN(Environment, "liar", Liar, LayerParams, "contradicts itself")
 ALTIPLAN_PLUGIN(Environment, "cells", Cells, NoParams, "ten by ten by ten free cells")
+ALTIPLAN_PLUGIN(Environment, "ball", Ball, NoParams, "a ball of 80 m at (500, 500, 100)")
 ALTIPLAN_PLUGIN(Constraint, "not_north", NotNorth, RuleParams, "forbids the north")

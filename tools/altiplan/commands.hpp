@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "guarded.hpp"
 #include "host/config/config.hpp"
 
 namespace altiplan::cli {
@@ -12,20 +13,14 @@ namespace altiplan::cli {
 /// What a command left to be done once the command line is parsed; its value is the exit code.
 using Action = std::function<int()>;
 
-inline constexpr int kDone = 0;
-inline constexpr int kNoRoute = 1;
-inline constexpr int kUsage = 2;
-inline constexpr int kBadFile = 3;
-inline constexpr int kBadPlugin = 4;
-inline constexpr int kInternal = 5;
-inline constexpr int kInterrupted = 130;
-
 // Each adds its subcommand, and sets the action when it is the one called.
 void add_run(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 void add_explain(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 void add_plugins(CLI::App& app, Action& action);
+void add_view(CLI::App& app, Action& action);
 
 /// --plugin-path, --seed, --set and --scenario as they are wanted.
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);
@@ -39,6 +34,10 @@ LogLevel& log_level();
 /// A line on stderr.
 void warn(const std::string& message);
 void info(const std::string& message);
+
+/// A folder that is not there, and what else forbids to write the file, is said before anything is
+/// computed: throws Error naming the option.
+void expect_writable(const std::optional<std::string>& file, const char* option);
 
 /// A fixed-point number for tables, "-" where there is none.
 std::string fixed(const std::optional<double>& value, int digits);

@@ -2,11 +2,9 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <map>
 
-#include "altiplan/error.hpp"
 #include "commands.hpp"
 
 namespace altiplan::cli {
@@ -81,26 +79,6 @@ std::string fixed(const std::optional<double>& value, int digits) {
 
 namespace {
 
-int guarded(const Action& action) {
-  try {
-    return action();
-  } catch (const ConfigError& error) {
-    for (const Problem& problem : error.problems()) {
-      std::cerr << problem.text() << '\n';
-    }
-    return kBadFile;
-  } catch (const PluginError& error) {
-    std::cerr << "altiplan: " << error.what() << '\n';
-    return kBadPlugin;
-  } catch (const Error& error) {
-    std::cerr << "altiplan: " << error.what() << '\n';
-    return kBadFile;
-  } catch (const std::exception& error) {
-    std::cerr << "altiplan: internal error: " << error.what() << '\n';
-    return kInternal;
-  }
-}
-
 int main_checked(int argc, char** argv) {
   CLI::App app("Plans and judges routes of unmanned aircraft with plugins composed in YAML.",
                "altiplan");
@@ -127,6 +105,8 @@ int main_checked(int argc, char** argv) {
   add_validate(app, action);
   add_explain(app, action);
   add_check(app, action);
+  add_view(app, action);
+  add_export(app, action);
   add_plugins(app, action);
   try {
     app.parse(argc, argv);
@@ -141,13 +121,7 @@ int main_checked(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? kDone : kUsage;
   }
-  const int code = guarded(action);
-  std::cout.flush();
-  if (!std::cout) {
-    std::cerr << "altiplan: cannot write to stdout\n";
-    return code == kDone ? kInternal : code;
-  }
-  return code;
+  return guarded("altiplan", action);
 }
 }  // namespace
 }  // namespace altiplan::cli

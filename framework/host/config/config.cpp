@@ -2,6 +2,7 @@
 #include "host/config/config.hpp"
 
 #include "host/config/config_check.hpp"
+#include "host/config/mission_key.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/shapes.hpp"
 #include "host/config/yaml.hpp"
@@ -52,16 +53,19 @@ void expect_kind(const Value& tree, FileKind expected) {
 
 /// False when the file cannot be read as YAML: its keys are not known then.
 bool read_scenario(Config& config, Checker& checker) {
+  std::vector<fs::path> mission;
   try {
     config.scenario_tree = load_yaml(config.scenario_path);
     expect_kind(config.scenario_tree, FileKind::scenario);
     apply_overrides(config.scenario_tree, config.overrides.set, FileOfKey::scenario);
+    add_mission(config.scenario_tree, mission);
   } catch (const ConfigError& error) {
     checker.add(error.problems());
     return false;
   }
   checker.add(bind(config.scenario, &config.scenario_tree).problems);
   config.files.push_back(config.scenario_path);
+  config.files.insert(config.files.end(), mission.begin(), mission.end());
   return true;
 }
 
@@ -112,7 +116,7 @@ FileKind kind_of(const Value& tree) {
     return FileKind::study;
   }
   const bool scenario = tree.find("environment") != nullptr || tree.find("start") != nullptr ||
-                        tree.find("goal") != nullptr;
+                        tree.find("goal") != nullptr || tree.find("mission") != nullptr;
   return scenario ? FileKind::scenario : FileKind::pipeline;
 }
 

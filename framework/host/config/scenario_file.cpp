@@ -120,6 +120,10 @@ void ScenarioFile::describe(Fields& f) {
   f("vehicle", vehicle).doc("the vehicle");
   f("level_flight_at_m", level_flight_at_m).unit("m").doc("a problem in the plane at this height");
   f("start_time", start_time).doc("UTC, ISO 8601: 2026-05-01T10:00:00Z");
+  f("mission", mission)
+      .doc(
+          "a ground station's file (.plan, .waypoints, .kml, .gpx) whose first place is the start, "
+          "whose last is the goal and whose others are via points, where they are not given here");
   f("start", start).required().doc("where the route begins");
   f("via", via).doc("points to pass, in order");
   f("goal", goal).required().doc("where it ends");

@@ -122,6 +122,7 @@ struct ScenarioFile {
   VehicleEntry vehicle;
   std::optional<double> level_flight_at_m;
   std::optional<std::string> start_time;
+  std::optional<Path> mission;
   PointEntry start;
   std::vector<GoalEntry> via;
   GoalEntry goal;

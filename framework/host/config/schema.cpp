@@ -332,7 +332,20 @@ Json file_schema(const char* title, const Json& body, Writer& writer) {
   return schema;
 }
 
-Json scenario_body(Writer& writer) { return writer.object(fields_of<ScenarioFile>()); }
+/// A mission may stand in for the start, and for the goal or its place.
+Json scenario_body(Writer& writer) {
+  Json body = writer.object(fields_of<ScenarioFile>());
+  Json& required = body["required"];
+  for (const char* key : {"start", "goal"}) {
+    required.erase(std::find(required.begin(), required.end(), key));
+  }
+  Json placed_goal = body["properties"]["goal"];
+  body["properties"]["goal"].erase("allOf");
+  body["anyOf"] = Json::array({{{"required", Json::array({"mission"})}},
+                               {{"required", Json::array({"start", "goal"})},
+                                {"properties", {{"goal", std::move(placed_goal)}}}}});
+  return body;
+}
 
 Json pipeline_body(Writer& writer) {
   Json body = writer.object(fields_of<PipelineFile>());
@@ -428,7 +441,8 @@ Json any_file_schema(const Choices& choices) {
                                                 {{"required", Json::array({"scenarios"})}}})}};
   const Json is_scenario = {{"anyOf", Json::array({{{"required", Json::array({"environment"})}},
                                                    {{"required", Json::array({"start"})}},
-                                                   {{"required", Json::array({"goal"})}}})}};
+                                                   {{"required", Json::array({"goal"})}},
+                                                   {{"required", Json::array({"mission"})}}})}};
   Json other = {
       {"if", is_scenario}, {"then", scenario_body(writer)}, {"else", pipeline_body(writer)}};
   Json body = {{"if", is_study}, {"then", study_body(writer)}, {"else", std::move(other)}};

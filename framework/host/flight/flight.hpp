@@ -33,6 +33,12 @@ struct FlightEvent {
   Vec3 vector{0, 0, 0};                     ///< move: by how much; move_goal: the new goal
   Box box;             ///< set_cells: where cells change; left out: all of the layer
   bool known = false;  ///< told to the vehicle at once, else it is met like all that is new
+
+  /// Whether it happens to a vehicle that is there then, if it has not happened yet.
+  bool is_due(double time_s, const Vec3& p) const {
+    return (at_s && time_s >= *at_s) ||
+           (when_near && (p - when_near->at).norm() <= when_near->within_m);
+  }
 };
 
 enum class ReplanWhen { unsafe, any_change };

@@ -7,10 +7,7 @@ namespace altiplan::host {
 
 void Flight::meet_events() {
   for (auto event = events_.begin(); event != events_.end();) {
-    const bool due = (event->at_s && state_.time_s >= *event->at_s) ||
-                     (event->when_near && (state_.position - event->when_near->at).norm() <=
-                                              event->when_near->within_m);
-    if (!due) {
+    if (!event->is_due(state_.time_s, state_.position)) {
       ++event;
       continue;
     }

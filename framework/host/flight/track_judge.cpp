@@ -42,10 +42,7 @@ class Replay {
 
   void meet_events(double time_s, const Vec3& p) {
     for (auto event = events_.begin(); event != events_.end();) {
-      const bool due =
-          (event->at_s && time_s >= *event->at_s) ||
-          (event->when_near && (p - event->when_near->at).norm() <= event->when_near->within_m);
-      if (!due) {
+      if (!event->is_due(time_s, p)) {
         ++event;
         continue;
       }

@@ -4,68 +4,31 @@
 #include <memory>
 #include <utility>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/cell_layer.hpp"
 
 namespace altiplan::host {
 namespace {
 
 /// The layer with some of its cells changed, drawn as a grid of its own.
-class EditedCells final : public Environment {
+class EditedCells final : public kit::CellLayer {
  public:
   EditedCells(std::shared_ptr<const Environment> original, const GridSpec& spec,
               const std::vector<Vec3>& cells, bool blocked)
-      : original_(std::move(original)), grid_(native(spec)) {
-    original_->rasterize(grid_);
-    for (const Vec3& cell : cells) {
-      const auto centre = original_->cell_centre({cell.x(), cell.y(), cell.z()});
-      grid_.set(spec.cell_of(centre.value()), blocked);
-    }
-    std::vector<Shape> boxes;
-    for (int k = 0; k < spec.counts[2]; ++k) {
-      for (int j = 0; j < spec.counts[1]; ++j) {
-        append_runs(j, k, boxes);
-      }
-    }
-    solid_ = std::make_unique<kit::ObstacleSet>(std::move(boxes));
-  }
+      : CellLayer(edited(*original, spec, cells, blocked)), original_(std::move(original)) {}
 
  private:
-  static GridSpec native(GridSpec spec) {
+  static VoxelGrid edited(const Environment& original, GridSpec spec,
+                          const std::vector<Vec3>& cells, bool blocked) {
     spec.rule = GridSpec::Rule::native;
-    return spec;
-  }
-  /// One box for every run of blocked cells in a row.
-  void append_runs(int j, int k, std::vector<Shape>& boxes) const {
-    const GridSpec& spec = grid_.spec();
-    for (int i = 0; i < spec.counts[0]; ++i) {
-      if (!grid_.blocked(i, j, k)) {
-        continue;
-      }
-      int last = i;
-      while (last + 1 < spec.counts[0] && grid_.blocked(last + 1, j, k)) {
-        ++last;
-      }
-      boxes.emplace_back(BoxShape{{spec.cell_box({i, j, k}).min, spec.cell_box({last, j, k}).max}});
-      i = last;
+    VoxelGrid grid(spec);
+    original.rasterize(grid);
+    for (const Vec3& cell : cells) {
+      const auto centre = original.cell_centre({cell.x(), cell.y(), cell.z()});
+      grid.set(spec.cell_of(centre.value()), blocked);
     }
+    return grid;
   }
   Box do_bounds() const override { return original_->bounds(); }
-  double do_clearance(const Vec3& p) const override { return solid_->clearance(p); }
-  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    return solid_->blocked(a, b, r);
-  }
-  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
-    solid_->near(p, reach, sink);
-  }
-  void do_rasterize(VoxelGrid& grid) const override {
-    if (grid.spec() == grid_.spec()) {
-      grid.merge(grid_);
-    } else {
-      solid_->rasterize(grid);
-    }
-  }
-  double do_slack() const override { return 0; }
-  std::optional<GridSpec> do_native_grid() const override { return grid_.spec(); }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return original_->cell_centre(cell);
   }
@@ -83,8 +46,6 @@ class EditedCells final : public Environment {
   double do_ground_slope(const Box& box) const override { return original_->ground_slope(box); }
 
   std::shared_ptr<const Environment> original_;
-  VoxelGrid grid_;
-  std::unique_ptr<kit::ObstacleSet> solid_;
 };
 
 /// The cells' box; throws ConfigError where the layer has no such cells.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/drawing.hpp"
 #include "altiplan/frame.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/vehicle.hpp"
@@ -100,6 +101,8 @@ class ALTIPLAN_API Environment {
   }
   /// The frame that this layer's files fix, where the world has none yet.
   std::optional<Frame> frame() const { return do_frame(); }
+  /// What to show of the layer beside its ground; none: whoever shows it asks for its cells.
+  std::optional<Drawing> drawing() const { return do_drawing(); }
   /// What a user should know of what was read ("403 x 344 posts, 236 to 1076 m"), a line each.
   std::vector<std::string> notes() const { return do_notes(); }
 
@@ -125,6 +128,7 @@ class ALTIPLAN_API Environment {
   virtual std::optional<GridSpec> do_native_grid() const;
   virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;
   virtual std::optional<Frame> do_frame() const;
+  virtual std::optional<Drawing> do_drawing() const;
   virtual std::vector<std::string> do_notes() const;
 };
 }  // namespace altiplan

@@ -71,6 +71,10 @@ class ALTIPLAN_API PluginError : public Error {
   ~PluginError() override;
 };
 
+/// What a file says, as a message quotes it: in quotes, no longer than 60 characters, with '?' for
+/// what is not printable ASCII.
+ALTIPLAN_API std::string excerpt(std::string_view text);
+
 /// The candidate nearest to `word` by edit distance, or "" when none is near.
 ALTIPLAN_API std::string nearest_name(std::string_view word,
                                       const std::vector<std::string>& candidates);

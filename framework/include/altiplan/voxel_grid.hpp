@@ -59,8 +59,9 @@ class ALTIPLAN_API VoxelGrid {
     return (words_[row(j, k) + bit / 64] >> (bit % 64)) & 1;
   }
   void set(const Cell& c, bool is_blocked);
-  /// Blocks cells i0..i1 (both included, clipped to the grid) of row (j, k).
-  void block_run(int i0, int i1, int j, int k);
+  /// Blocks, or frees, cells i0..i1 (both included, clipped to the grid) of row (j, k).
+  void block_run(int i0, int i1, int j, int k) { set_run(i0, i1, j, k, true); }
+  void free_run(int i0, int i1, int j, int k) { set_run(i0, i1, j, k, false); }
   /// Blocks what `other`, of the same spec, blocks.
   void merge(const VoxelGrid& other);
   std::size_t blocked_count() const;
@@ -74,6 +75,7 @@ class ALTIPLAN_API VoxelGrid {
   static std::vector<Cell> diff(const VoxelGrid& a, const VoxelGrid& b);
 
  private:
+  void set_run(int i0, int i1, int j, int k, bool is_blocked);
   std::size_t row(int j, int k) const {
     return (std::size_t(k + 1) * rows_per_level_ + std::size_t(j + 1)) * words_per_row_;
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/solid.hpp"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
@@ -28,35 +29,10 @@ constexpr double kMeets = 1e-9;
 
 Box box_of(const Tree::NodeType& node) { return {node.bv.min_, node.bv.max_}; }
 
-double outside(const Box& box, const Vec3& p) {
-  return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).norm();
-}
-
 // No shape within the box is deeper around p than the box itself.
 double signed_outside(const Box& box, const Vec3& p) {
   const double deepest = (box.min - p).cwiseMax(p - box.max).maxCoeff();
   return deepest <= 0 ? deepest : outside(box, p);
-}
-
-// Whether the leg may come as near to the box as `reach`: never wrongly false.
-bool may_reach(const Box& box, const Vec3& a, const Vec3& b, double reach) {
-  const Box grown = box.grown(reach);
-  double enter = 0;
-  double leave = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double along = b[axis] - a[axis];
-    const double low = grown.min[axis] - a[axis];
-    const double high = grown.max[axis] - a[axis];
-    if (along == 0) {
-      if (low > 0 || high < 0) {
-        return false;
-      }
-    } else {
-      enter = std::max(enter, (along > 0 ? low : high) / along);
-      leave = std::min(leave, (along > 0 ? high : low) / along);
-    }
-  }
-  return enter <= leave;
 }
 
 bool meets(const Shape& shape, const Vec3& a, const Vec3& b, double r) {
@@ -90,35 +66,6 @@ void check(const Shape& shape, std::size_t index) {
   }
 }
 
-int clamped_index(double value, int low, int high) {
-  return static_cast<int>(std::clamp(value, double(low), double(high)));
-}
-
-// Blocks the cells of one row that the rule blocks. The signed distance is 1-Lipschitz, so one
-// look at a centre settles many cells; only those that the grown surface may cut are looked at
-// exactly.
-void rasterize_row(const Shape& shape, VoxelGrid& grid, int i0, int i1, int j, int k) {
-  const GridSpec& spec = grid.spec();
-  const bool centre_rule = spec.rule == GridSpec::Rule::centre;
-  const double by = spec.inflation + (centre_rule ? kMeets : 0);
-  const double margin = centre_rule ? 0 : spec.cell.norm() / 2;
-  const double width = spec.cell.x();
-  for (int i = i0; i <= i1;) {
-    const double distance = signed_distance(shape, spec.centre({i, j, k}));
-    if (distance <= by) {
-      const int run = clamped_index((by - distance) / width, 0, i1 - i);
-      grid.block_run(i, i + run, j, k);
-      i += run + 1;
-    } else if (distance >= by + margin) {
-      i += std::max(1, clamped_index((distance - by - margin) / width, 0, i1 - i + 1));
-    } else {
-      if (overlaps(shape, spec.cell_box({i, j, k}), by)) {
-        grid.block_run(i, i, j, k);
-      }
-      ++i;
-    }
-  }
-}
 }  // namespace
 
 struct ObstacleSet::Impl {
@@ -234,23 +181,20 @@ void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const 
   }
 }
 
+Drawing drawing_of(const std::vector<Shape>& shapes, Drawn::Role role) {
+  Drawing drawing;
+  drawing.shapes.reserve(shapes.size());
+  for (const Shape& shape : shapes) {
+    drawing.shapes.push_back({shape, role, {}});
+  }
+  return drawing;
+}
+
 void ObstacleSet::rasterize(VoxelGrid& grid) const {
-  const GridSpec& spec = grid.spec();
   for (const Shape& shape : shapes_) {
-    const Box box = altiplan::bounds(shape).grown(spec.inflation);
-    Cell first{};
-    Cell last{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double low = (box.min[axis] - spec.origin[axis]) / spec.cell[axis];
-      const double high = (box.max[axis] - spec.origin[axis]) / spec.cell[axis];
-      first[axis] = clamped_index(std::floor(low) - 1, 0, spec.counts[axis]);
-      last[axis] = clamped_index(std::ceil(high) + 1, -1, spec.counts[axis] - 1);
-    }
-    for (int k = first[2]; k <= last[2]; ++k) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        rasterize_row(shape, grid, first[0], last[0], j, k);
-      }
-    }
+    kit::rasterize(
+        grid, altiplan::bounds(shape), [&](const Vec3& p) { return signed_distance(shape, p); },
+        [&](const Box& box, double by) { return overlaps(shape, box, by); });
   }
 }
 }  // namespace altiplan::kit

@@ -179,6 +179,7 @@ class Hills final : public Environment {
     return vehicle_radius_ * (std::hypot(1, ground_.max_slope()) - 1);
   }
 
+  std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   std::vector<std::string> do_notes() const override {
     return {std::to_string(count_) + " peaks, steepest slope " +
             std::to_string(degrees(std::atan(ground_.max_slope()))) + " degrees"};

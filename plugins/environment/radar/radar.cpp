@@ -178,6 +178,9 @@ class Radar final : public Environment {
 
   double do_slack() const override { return ground_ ? kMaskedSlack : 0; }
   std::vector<Threat> do_threats() const override { return {{at_, range_, "radar", ""}}; }
+  std::optional<Drawing> do_drawing() const override {
+    return kit::drawing_of(ball_.shapes(), Drawn::Role::threat);
+  }
   std::vector<std::string> do_notes() const override {
     std::string note = "range " + std::to_string(std::lround(range_)) + " m";
     if (!ground_id_.empty()) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
+#include "whole.hpp"
 
 namespace terrain {
 namespace {
@@ -281,6 +282,9 @@ Dem read_dem(const Params& params) {
   const gdal::Dataset dataset = open(params);
   Dem dem;
   read_size(params, dataset.get(), dem);
+  if (const std::string missing = missing_from(params.file.text, dataset.get()); !missing.empty()) {
+    refuse(params, "damaged: " + missing);
+  }
   void* band = read_band(params, dataset.get());
   read_crs(params, dataset.get(), dem);
   const bool from_north = read_position(params, dataset.get(), dem);

@@ -23,6 +23,9 @@ struct Api {
   X(GDALRegister_ENVI)                  \
   X(GDALOpenEx)                         \
   X(GDALClose)                          \
+  X(GDALGetDatasetDriver)               \
+  X(GDALGetDriverShortName)             \
+  X(GDALGetDataTypeSizeBytes)           \
   X(GDALGetRasterXSize)                 \
   X(GDALGetRasterYSize)                 \
   X(GDALGetRasterCount)                 \

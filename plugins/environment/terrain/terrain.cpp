@@ -209,6 +209,7 @@ class Terrain final : public Environment {
     return vehicle_radius_ * (std::hypot(1, field_.max_slope()) - 1) + kInDoubt;
   }
 
+  std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   std::vector<std::string> do_notes() const override {
     std::vector<std::string> notes;
     std::string voids = "no voids";

@@ -5,14 +5,17 @@
 #include "altiplan/kit/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
-#include "geojson.hpp"
+#include "clip.hpp"
 #include "keep_in.hpp"
+#include "zone_file.hpp"
 
 namespace altiplan::zones {
 namespace {
 
+using kit::Point2;
+using kit::Polygon;
+using kit::Ring;
 using Rings = std::vector<Ring>;
-enum class Kind { keep_out, keep_in };
 
 double seconds(const std::string& time) {
   const std::optional<double> result = kit::parse_iso_time(time);
@@ -82,19 +85,24 @@ struct ZoneParams {
 struct Params {
   std::vector<ZoneParams> list;
   std::optional<Path> file;
-  Kind file_kind = Kind::keep_out;
-  PropertyNames names;
+  FileRules rules;
+  bool clip = false;
   double horizon_s = 3600;
 
   void describe(Fields& f) {
     f("list", list).doc("zones written here");
-    f("file", file).doc("GeoJSON with more of them: Polygons and MultiPolygons in WGS 84");
-    f("file_kind", file_kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
-        .doc("kind of the file's zones");
-    f("floor_property", names.floor).doc("the file's property with the floor, m above sea level");
-    f("ceiling_property", names.ceiling).doc("the file's property with the ceiling, likewise");
-    f("from_property", names.from).doc("the file's property with the start of the time window");
-    f("until_property", names.until).doc("the file's property with its end");
+    f("file", file)
+        .doc(
+            "more of them: GeoJSON (Polygons and MultiPolygons in WGS 84), KML (Polygons), or the "
+            "fence of a .plan or of QGC WPL 110 (.waypoints, .txt)");
+    rules.describe(f);
+    f("clip", clip)
+        .doc(
+            "drops keep-out zones outside of the world's bounds (the volume, else the layers "
+            "before "
+            "this one) and cuts polygons at them; what is beyond does not count then, near the "
+            "bounds "
+            "neither");
     f("horizon_s", horizon_s)
         .unit("s")
         .at_least(0)
@@ -116,6 +124,7 @@ class Zones final : public Environment {
     double horizon_s;
     std::optional<Frame> frame;
     std::vector<Shape> shapes[2];  // by kind
+    Drawing drawing;
     std::size_t inactive = 0;
     std::vector<std::string> notes;
     std::vector<Threat> threats;
@@ -124,6 +133,8 @@ class Zones final : public Environment {
       if (params.file) {
         try {
           read_file(params);
+        } catch (const ParameterError&) {
+          throw;
         } catch (const Error& error) {
           throw ParameterError("file", error.what());
         }
@@ -138,6 +149,12 @@ class Zones final : public Environment {
       notes.push_back(std::to_string(shapes[0].size()) + " keep-out and " +
                       std::to_string(shapes[1].size()) + " keep-in zones, " +
                       std::to_string(inactive) + " not active");
+    }
+
+    void add(Kind kind, const Shape& shape, const std::string& name) {
+      shapes[int(kind)].push_back(shape);
+      const auto role = kind == Kind::keep_in ? Drawn::Role::keep_in : Drawn::Role::keep_out;
+      drawing.shapes.push_back({shape, role, name});
     }
 
     bool is_active(const std::string& from, const std::string& until) {
@@ -174,41 +191,52 @@ class Zones final : public Environment {
     }
 
     void read_file(const Params& params) {
-      const GeoJson json = read_geojson(params.file->text, params.names);
-      if (!site.frame.has_position() && !json.features.empty()) {
-        Point2 low{180, 90};
-        double north = -90;
-        for (const Feature& feature : json.features) {
-          for (const Point2& p : feature.polygon.outline) {
-            low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
-            north = std::max(north, p[1]);
-          }
-        }
-        site.frame = Frame::geographic(low[0], low[1], (low[1] + north) / 2);
+      const std::string& name = params.file->text;
+      FileZones file = read_zone_file(name, params.rules);
+      notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+      if (!site.frame.has_position() && !file.zones.empty()) {
+        site.frame = frame_of(file.zones);
         frame = site.frame;
       }
-      for (const Feature& feature : json.features) {
+      std::optional<Clip> clip;
+      if (params.clip) {
+        clip.emplace(site);
+      }
+      for (const FileZone& from : file.zones) {
+        const kit::MissionZone& zone = from.zone;
         try {
-          const double floor = feature.floor_m.value_or(-kInfinity);
-          const double ceiling = feature.ceiling_m.value_or(kInfinity);
-          if (!(floor < ceiling)) {
-            throw Error("the floor must be below the ceiling");
+          if (!is_active(from.from, from.until)) {
+            continue;
           }
-          if (is_active(feature.from, feature.until)) {
-            shapes[int(params.file_kind)].push_back(prism(feature.polygon, floor, ceiling));
+          const Kind kind = zone.keep_in ? Kind::keep_in : Kind::keep_out;
+          const std::vector<Shape> parts = clip && kind == Kind::keep_out
+                                               ? clip->cut(shape_of(zone))
+                                               : std::vector<Shape>{shape_of(zone)};
+          for (const Shape& part : parts) {
+            add(kind, part, zone.name);
           }
         } catch (const Error& error) {
-          throw Error(params.file->text + ": '" + feature.id + "': " + error.what());
+          throw Error(name + ": '" + zone.name + "': " + error.what());
         }
       }
-      notes.push_back(std::to_string(json.features.size()) + " polygons read, " +
-                      std::to_string(json.skipped) + " features without an area skipped");
+      if (clip) {
+        notes.push_back(clip->note());
+      }
+    }
+
+    Shape shape_of(const kit::MissionZone& zone) const {
+      const double floor = zone.floor_m.value_or(-kInfinity);
+      const double ceiling = zone.ceiling_m.value_or(kInfinity);
+      if (zone.polygon.outline.empty()) {
+        const auto [x, y] = site.frame.to_local(zone.centre[0], zone.centre[1]);
+        return Cylinder{x, y, zone.radius_m, floor, ceiling};
+      }
+      return prism(zone.polygon, floor, ceiling);
     }
 
     void read_zone(const ZoneParams& zone, std::size_t n) {
       const double floor = zone.floor_m.value_or(-kInfinity);
       const double ceiling = zone.ceiling_m.value_or(kInfinity);
-      std::vector<Shape>& into = shapes[int(zone.kind)];
       Shape shape;
       if (zone.cylinder) {
         if (zone.cylinder->at.above_ground_m) {
@@ -219,12 +247,12 @@ class Zones final : public Environment {
       } else {
         const bool is_local = !zone.polygon->outline_m.empty();
         Polygon polygon{
-            without_repeats(is_local ? zone.polygon->outline_m : zone.polygon->outline_lonlat),
+            kit::without_repeats(is_local ? zone.polygon->outline_m : zone.polygon->outline_lonlat),
             is_local ? zone.polygon->holes_m : zone.polygon->holes_lonlat};
         for (Ring& hole : polygon.holes) {
-          hole = without_repeats(hole);
+          hole = kit::without_repeats(hole);
         }
-        if (const std::string problem = polygon_problem(polygon); !problem.empty()) {
+        if (const std::string problem = kit::polygon_problem(polygon); !problem.empty()) {
           throw Error(problem);
         }
         shape = is_local ? Shape(Prism{polygon.outline, polygon.holes, floor, ceiling})
@@ -233,7 +261,7 @@ class Zones final : public Environment {
       if (!is_active(zone.from, zone.until)) {
         return;
       }
-      into.push_back(shape);
+      add(zone.kind, shape, zone.id);
       if (zone.cylinder && zone.kind == Kind::keep_out) {
         const auto& cylinder = std::get<Cylinder>(shape);
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
@@ -249,6 +277,7 @@ class Zones final : public Environment {
       : keep_out_(std::move(reader.shapes[int(Kind::keep_out)])),
         keep_in_(std::move(reader.shapes[int(Kind::keep_in)])),
         frame_(reader.frame),
+        drawing_(std::move(reader.drawing)),
         notes_(std::move(reader.notes)),
         threats_(std::move(reader.threats)) {}
 
@@ -279,16 +308,19 @@ class Zones final : public Environment {
   double do_slack() const override { return 0; }
   std::vector<Threat> do_threats() const override { return threats_; }
   std::optional<Frame> do_frame() const override { return frame_; }
+  std::optional<Drawing> do_drawing() const override { return drawing_; }
   std::vector<std::string> do_notes() const override { return notes_; }
 
   kit::ObstacleSet keep_out_;
   KeepIn keep_in_;
   std::optional<Frame> frame_;
+  Drawing drawing_;
   std::vector<std::string> notes_;
   std::vector<Threat> threats_;
 };
 }  // namespace
 }  // namespace altiplan::zones
 
-ALTIPLAN_PLUGIN(Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
-                "Keep-out and keep-in zones: cylinders, polygons, GeoJSON, time windows")
+ALTIPLAN_PLUGIN(
+    Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
+    "Keep-out and keep-in zones: cylinders, polygons, GeoJSON, KML, fences, time windows")

@@ -37,6 +37,10 @@ class ALTIPLAN_API ObstacleSet {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The shapes, each drawn in that role.
+ALTIPLAN_API Drawing drawing_of(const std::vector<Shape>& shapes,
+                                Drawn::Role role = Drawn::Role::obstacle);
+
 /// An environment that is a set of shapes.
 class ALTIPLAN_API ShapeLayer : public Environment {
  public:
@@ -54,6 +58,7 @@ class ALTIPLAN_API ShapeLayer : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override { set_.rasterize(grid); }
   double do_slack() const override { return 0; }
+  std::optional<Drawing> do_drawing() const override { return drawing_of(set_.shapes()); }
 
   ObstacleSet set_;
 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "polygon.hpp"
+#include "altiplan/kit/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-namespace altiplan::zones {
+namespace altiplan::kit {
 namespace {
 
 std::string place(const Point2& p) {
@@ -140,4 +140,4 @@ std::string polygon_problem(const Polygon& polygon) {
   }
   return "";
 }
-}  // namespace altiplan::zones
+}  // namespace altiplan::kit

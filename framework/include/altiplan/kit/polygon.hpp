@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::zones {
+#include "altiplan/api.hpp"
+
+namespace altiplan::kit {
 
 using Point2 = std::array<double, 2>;
 using Ring = std::vector<Point2>;
@@ -17,9 +19,9 @@ struct Polygon {
 };
 
 /// Drops points that repeat the one before (and the last, where it repeats the first).
-Ring without_repeats(const Ring& ring);
+ALTIPLAN_API Ring without_repeats(const Ring& ring);
 
 /// What is wrong with a polygon (a ring that meets itself or another one, a hole outside, no area),
 /// with the place in the ring's own units; "" where nothing is.
-std::string polygon_problem(const Polygon& polygon);
-}  // namespace altiplan::zones
+ALTIPLAN_API std::string polygon_problem(const Polygon& polygon);
+}  // namespace altiplan::kit

@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geojson.hpp"
+#include "altiplan/kit/geojson.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "text_file.hpp"
 
-namespace altiplan::zones {
+namespace altiplan::kit {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kMaxDepth = 64;
-
 std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::string short_text(const Json& value) {
-  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return text.size() > 40 ? text.substr(0, 40) + "…" : text;
 }
 
 Ring read_ring(const Json& points) {
@@ -69,43 +61,31 @@ Polygon read_polygon(const Json& rings) {
   return polygon;
 }
 
-const Json* property(const Json& feature, const std::string& name) {
-  if (name.empty() || !feature.contains("properties") || !feature["properties"].is_object()) {
-    return nullptr;
-  }
-  const auto found = feature["properties"].find(name);
-  return found == feature["properties"].end() || found->is_null() ? nullptr : &*found;
-}
-
-std::optional<double> height(const Json& feature, const std::string& name) {
-  const Json* value = property(feature, name);
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  double number = NAN;
-  if (value->is_number()) {
-    number = value->get<double>();
-  } else if (value->is_string()) {
-    const std::string& text = value->get_ref<const std::string&>();
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      number = NAN;
+std::map<std::string, std::string> properties_of(const Json& feature) {
+  std::map<std::string, std::string> properties;
+  if (feature.contains("properties") && feature["properties"].is_object()) {
+    for (const auto& [name, value] : feature["properties"].items()) {
+      if (!value.is_null()) {
+        properties[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+      }
     }
   }
-  if (!std::isfinite(number)) {
-    throw Error("expected metres in the property '" + name + "', found " + short_text(*value));
-  }
-  return number;
+  return properties;
 }
 
-std::string text_property(const Json& feature, const std::string& name) {
-  const Json* value = property(feature, name);
-  return value == nullptr ? "" : text_of(*value);
+/// The feature's id or name, else its number.
+std::string id_of(const Json& feature, std::size_t n) {
+  const Json* id = feature.contains("id") ? &feature["id"] : nullptr;
+  if (id == nullptr && feature.contains("properties") && feature["properties"].is_object()) {
+    const auto name = feature["properties"].find("name");
+    id = name == feature["properties"].end() ? nullptr : &*name;
+  }
+  const std::string text = id == nullptr || id->is_null() ? "" : text_of(*id);
+  return text.empty() ? std::to_string(n) : text;
 }
 
 // Takes the feature's areas; false where it has none.
-bool read_feature(const Json& feature, const std::string& id, const PropertyNames& names,
-                  std::vector<Feature>& features) {
+bool read_feature(const Json& feature, const std::string& id, std::vector<GeoFeature>& features) {
   const auto geometry = feature.find("geometry");
   if (geometry == feature.end() || geometry->is_null()) {
     return false;
@@ -136,65 +116,54 @@ bool read_feature(const Json& feature, const std::string& id, const PropertyName
     }
   }
   for (Polygon& polygon : polygons) {
-    features.push_back({id, std::move(polygon), height(feature, names.floor),
-                        height(feature, names.ceiling), text_property(feature, names.from),
-                        text_property(feature, names.until)});
+    features.push_back({id, std::move(polygon), properties_of(feature)});
   }
   return true;
 }
 
-Json parse(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Error(file + ": cannot be read");
-  }
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  // Printing a value, and freeing it, goes down as many calls as it has levels.
-  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kMaxDepth) {
-      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
-                  " levels deep");
-    }
-    return true;
-  };
-  try {
-    return Json::parse(text, shallow);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
-                std::to_string(line));
-  } catch (const Json::out_of_range&) {
-    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
-  }
+}  // namespace
+
+std::string GeoFeature::text(const std::string& property) const {
+  const auto found = properties.find(property);
+  return found == properties.end() ? "" : text_of(Json::parse(found->second));
 }
 
-// A name that stands nowhere is a slip: the zones would silently hold at all heights and times.
-void expect_properties(const std::string& file, const Json::array_t& features,
-                       const PropertyNames& names) {
+std::optional<double> GeoFeature::metres(const std::string& property) const {
+  if (!properties.contains(property)) {
+    return std::nullopt;
+  }
+  const std::string value = text(property);
+  double number = NAN;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(number)) {
+    throw Error("expected metres in the property '" + property + "', found " +
+                short_text(Json::parse(properties.at(property))));
+  }
+  return number;
+}
+
+void expect_properties(const std::string& file, const GeoJson& json,
+                       const std::vector<std::string>& names) {
   std::set<std::string> present;
-  for (const Json& feature : features) {
-    if (feature.contains("properties") && feature["properties"].is_object()) {
-      for (const auto& [name, value] : feature["properties"].items()) {
-        present.insert(name);
-      }
+  for (const GeoFeature& feature : json.features) {
+    for (const auto& [name, value] : feature.properties) {
+      present.insert(name);
     }
   }
   std::string list;
   for (const std::string& name : present) {
     list += (list.empty() ? "" : ", ") + name;
   }
-  for (const std::string& name : {names.floor, names.ceiling, names.from, names.until}) {
+  for (const std::string& name : names) {
     if (!name.empty() && !present.contains(name)) {
       throw Error(file + ": no feature has the property '" + name +
                   "'; present: " + (list.empty() ? "none" : list));
     }
   }
 }
-}  // namespace
 
-GeoJson read_geojson(const std::string& file, const PropertyNames& names) {
-  const Json document = parse(file);
+GeoJson read_geojson(const std::string& file) {
+  const Json document = parse_json(file, read_text(file));
   const std::string type = document.is_object() && document.contains("type")
                                ? text_of(document["type"])
                                : short_text(document);
@@ -214,18 +183,16 @@ GeoJson read_geojson(const std::string& file, const PropertyNames& names) {
       throw Error(file + ": features." + std::to_string(n) + ": expected a Feature, found " +
                   short_text(feature));
     }
-    std::string id =
-        feature.contains("id") ? text_of(feature["id"]) : text_property(feature, "name");
-    id = id.empty() ? std::to_string(n) : id;
+    const std::string id = id_of(feature, n);
     try {
-      result.skipped += !read_feature(feature, id, names, result.features);
+      result.skipped += !read_feature(feature, id, result.features);
     } catch (const std::exception& error) {
       throw Error(file + ": features." + std::to_string(n) + " ('" + id + "'): " + error.what());
     }
   }
-  if (!result.features.empty()) {
-    expect_properties(file, list, names);
+  if (document.contains("copyright") && document["copyright"].is_string()) {
+    result.copyright = document["copyright"].get<std::string>();
   }
   return result;
 }
-}  // namespace altiplan::zones
+}  // namespace altiplan::kit

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "altiplan/value.hpp"
+
+namespace altiplan::host {
+
+/// Where a scenario has the key `mission`, adds the start, via points and goal of that file to the
+/// tree, as far as the scenario does not write them itself: what is read later cannot tell the
+/// difference, and says where each came from. The file is added to `files`. Throws ConfigError at
+/// the key.
+void add_mission(Value& scenario, std::vector<std::filesystem::path>& files);
+}  // namespace altiplan::host

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/input/foreign_route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "altiplan/error.hpp"
+#include "host/input/route_csv.hpp"
+#include "host/output/stored_result.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using kit::AltitudeFrame;
+using kit::MissionItem;
+using kit::MissionPoint;
+
+bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }
+
+/// Within 2 cm in the plane, as degrees of seven decimals may be.
+bool same_place(const MissionPoint& a, const MissionPoint& b) {
+  constexpr double kDegrees = 2e-7;
+  return std::abs(a.lon - b.lon) <= kDegrees && std::abs(a.lat - b.lat) <= kDegrees;
+}
+
+const char* reference_of(AltitudeFrame frame) {
+  return frame == AltitudeFrame::sea      ? "above sea level"
+         : frame == AltitudeFrame::ground ? "above ground"
+                                          : "relative to home";
+}
+
+void undo_rounding(Route& route, const Vec3& start) {
+  if ((route.front() - start).norm() <= kRoundingReach) {
+    route.front() = start;
+  }
+}
+
+void note_frames(const std::vector<MissionItem>& items, std::vector<std::string>& notes) {
+  for (const auto frame : {AltitudeFrame::sea, AltitudeFrame::ground, AltitudeFrame::home}) {
+    const auto count = std::count_if(items.begin(), items.end(),
+                                     [&](const MissionItem& i) { return i.at.frame == frame; });
+    if (count > 0) {
+      notes.push_back(std::to_string(count) + " points with altitudes " + reference_of(frame));
+    }
+  }
+}
+}  // namespace
+
+std::vector<MissionItem> route_items(const kit::MissionFile& mission) {
+  if (!mission.route_problem.empty()) {
+    throw Error(mission.route_problem);
+  }
+  if (mission.items.empty()) {
+    throw Error("there is no route in it" +
+                std::string(mission.zones.empty() ? "" : ": it holds zones alone"));
+  }
+  std::vector<MissionItem> items = mission.items;
+  if (items.size() > 1 && items.back().kind == MissionItem::Kind::land &&
+      same_place(items.back().at, items[items.size() - 2].at)) {
+    items.pop_back();
+  }
+  return items;
+}
+
+Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home,
+              const World& world) {
+  if (!world.frame().has_position()) {
+    throw Error(
+        "longitude and latitude need a world with a position: a layer that brings one, or "
+        "frame: {origin_lonlat: …}");
+  }
+  const auto [x, y] = world.frame().to_local(point.lon, point.lat);
+  switch (point.frame) {
+    case AltitudeFrame::sea:
+      return {x, y, point.altitude_m};
+    case AltitudeFrame::ground: {
+      const std::optional<double> ground = world.ground(x, y);
+      if (!ground) {
+        throw Error("its altitude is above ground, and the world has no ground there");
+      }
+      return {x, y, *ground + point.altitude_m};
+    }
+    case AltitudeFrame::home:
+      break;
+  }
+  if (!home) {
+    throw Error("its altitude is relative to home, and the file has no home position");
+  }
+  return {x, y, home->altitude_m + point.altitude_m};
+}
+
+ForeignRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
+                      const std::string& file) {
+  ForeignRoute result;
+  result.notes = mission.notes;
+  try {
+    const std::vector<MissionItem> items = route_items(mission);
+    if (items.size() < mission.items.size()) {
+      result.notes.emplace_back(
+          "the landing straight below the last point is not part of the route");
+    }
+    for (const MissionItem& item : items) {
+      try {
+        result.route.push_back(to_local(item.at, mission.home, world));
+      } catch (const Error& error) {
+        throw Error(item.place + ": " + error.what());
+      }
+    }
+    note_frames(items, result.notes);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
+  undo_rounding(result.route, start);
+  return result;
+}
+
+ForeignRoute read_foreign_route(const std::string& file, const std::string& text,
+                                const World& world, const Vec3& start) {
+  if (!is_csv(file)) {
+    return route_in(kit::read_mission(file, text), world, start, file);
+  }
+  ForeignRoute result;
+  result.route = read_route_csv(file, text);
+  undo_rounding(result.route, start);
+  return result;
+}
+
+ForeignRoute read_foreign_route(const std::string& file, const Mission& mission) {
+  const Vec3& start = mission.request.start.position;
+  const World& world = mission.truth;
+  if (is_csv(file)) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) {
+      throw Error(file + ": cannot be read");
+    }
+    const std::string text{std::istreambuf_iterator<char>(stream),
+                           std::istreambuf_iterator<char>()};
+    return read_foreign_route(file, text, world, start);
+  }
+  const std::filesystem::path ending = std::filesystem::path(file).extension();
+  if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson") {
+    return route_in(kit::read_mission(file), world, start, file);
+  }
+  const Json json = read_json(file, "a route as a list of [x, y, z] in metres");
+  return {route_of(json.is_object() && json.contains("route") ? json.at("route") : json, file), {}};
+}
+}  // namespace altiplan::host

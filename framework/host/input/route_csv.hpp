@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "altiplan/route.hpp"
+
+namespace altiplan::host {
+
+/// The columns x_m, y_m and z_m of a table whose first line names its columns; others are let be.
+/// Throws Error with file and line.
+Route read_route_csv(const std::string& file, const std::string& text);
+}  // namespace altiplan::host

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/output/png.hpp"
+
+#include <zlib.h>
+
+#include <string_view>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+namespace {
+
+std::string big_endian(std::uint32_t value) {
+  return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+/// Length, type, data, and the checksum of type and data (PNG specification, section 5.3).
+std::string chunk(const std::string& type, const std::string& data) {
+  const std::string body = type + data;
+  const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(body.data()), uInt(body.size()));
+  return big_endian(std::uint32_t(data.size())) + body + big_endian(std::uint32_t(sum));
+}
+
+std::string compressed(const std::string& bytes) {
+  uLongf size = ::compressBound(uLong(bytes.size()));
+  std::string out(size, '\0');
+  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                  reinterpret_cast<const Bytef*>(bytes.data()), uLong(bytes.size()),
+                  Z_BEST_COMPRESSION) != Z_OK) {
+    throw Error("a picture could not be compressed");
+  }
+  out.resize(size);
+  return out;
+}
+}  // namespace
+
+std::string png(int width, int height, const std::vector<std::uint8_t>& rgba) {
+  const std::size_t row = 4 * std::size_t(width);
+  if (width < 1 || height < 1 || rgba.size() != row * std::size_t(height)) {
+    throw Error("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
+                " pixels cannot have " + std::to_string(rgba.size()) + " bytes");
+  }
+  // Each row as differences from the pixel on the left: filter 1, "Sub".
+  std::string rows;
+  rows.reserve((row + 1) * std::size_t(height));
+  for (std::size_t begin = 0; begin < rgba.size(); begin += row) {
+    rows += '\1';
+    for (std::size_t i = 0; i < row; ++i) {
+      rows += char(rgba[begin + i] - (i < 4 ? 0 : rgba[begin + i - 4]));
+    }
+  }
+  const std::string header = big_endian(std::uint32_t(width)) + big_endian(std::uint32_t(height)) +
+                             std::string("\x08\x06\x00\x00\x00", 5);  // 8 bits, RGBA
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", compressed(rows)) +
+         chunk("IEND", "");
+}
+}  // namespace altiplan::host

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/output/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "host/output/scene_parts.hpp"
+#include "host/run/events.hpp"
+
+namespace altiplan::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Layers' notes that begin so name whose data they show.
+constexpr std::string_view kAttribution = "attribution: ";
+
+Json goal_json(const Goal& goal) {
+  return {{"at", rounded(goal.position)}, {"tolerance", rounded(goal.tolerance_m)}};
+}
+
+Json corners_json(const Frame& frame, const Box& box) {
+  if (!frame.has_position()) {
+    return nullptr;
+  }
+  Json corners = Json::array();
+  for (const auto& [x, y] : {std::pair(box.min.x(), box.min.y()),
+                             {box.max.x(), box.min.y()},
+                             {box.max.x(), box.max.y()},
+                             {box.min.x(), box.max.y()}}) {
+    const auto at = frame.to_lonlat(x, y);
+    corners.push_back({at[0], at[1]});
+  }
+  return corners;
+}
+
+Json attribution_json(const World& truth, const std::vector<FlightEvent>& events) {
+  std::set<std::string> lines;
+  const auto read = [&](const Layer& layer) {
+    for (const std::string& note : layer.environment->notes()) {
+      if (note.starts_with(kAttribution)) {
+        lines.insert(note.substr(kAttribution.size()));
+      }
+    }
+  };
+  for (const Layer& layer : truth.layers()) {
+    read(layer);
+  }
+  for (const FlightEvent& event : events) {
+    if (event.layer) {
+      read(*event.layer);
+    }
+  }
+  return lines;
+}
+
+/// All that stands in the results' world, without the results.
+Json world_scene(const Config& config, const Mission& mission, const Box& box, SceneNotes& notes) {
+  const std::vector<FlightEvent> events = build_events(config, mission);
+  Json scene;
+  scene["altiplan_scene"] = 1;
+  scene["title"] =
+      config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
+  scene["attribution"] = attribution_json(mission.truth, events);
+  scene["box"] = Json::array();
+  scene["corners_lonlat"] = corners_json(mission.truth.frame(), box);
+  scene["start"] = rounded(mission.request.start.position);
+  scene["goal"] = goal_json(mission.request.goal);
+  scene["via"] = Json::array();
+  for (const Goal& via : mission.via) {
+    scene["via"].push_back(goal_json(via));
+  }
+  scene["ground"] = ground_json(mission.truth, box, notes);
+  for (const char* key : {"solids", "boxes", "meshes", "moving", "events"}) {
+    scene[key] = Json::array();
+  }
+  add_solids(scene, mission, events, box, notes);
+  scene["box"] = {rounded(box.min), rounded(box.max)};
+  return scene;
+}
+
+/// The part of a run's overrides that changes its world.
+std::string scenario_overrides(const StoredResult& stored) {
+  std::string text;
+  const Json& overrides = stored.json.at("overrides");
+  if (overrides.contains("set")) {
+    for (const auto& [key, value] : overrides.at("set").items()) {
+      if (key.starts_with("scenario.")) {
+        text += " --set " + key + "=" + value.get<std::string>();
+      }
+    }
+  }
+  return text;
+}
+
+std::string world_text(const StoredResult& stored) {
+  return stored.json.at("scenario").get<std::string>() + scenario_overrides(stored);
+}
+
+[[noreturn]] void refuse(const StoredResult& a, const std::string& of_a, const StoredResult& b,
+                         const std::string& of_b) {
+  throw Error("'" + a.file + "' and '" + b.file + "' are of different worlds: " + of_a + ", and " +
+              of_b);
+}
+
+/// Names that tell the results apart: the files' stems, or the files where those are the same.
+void name_apart(Json& results) {
+  std::map<std::string, int> uses;
+  for (const Json& result : results) {
+    ++uses[result.at("name").get<std::string>()];
+  }
+  for (Json& result : results) {
+    if (uses[result.at("name").get<std::string>()] > 1) {
+      result["name"] = result.at("file");
+    }
+  }
+}
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const std::vector<StoredResult>& results) : results_(results) {}
+
+  Scene operator()() {
+    Json results = Json::array();
+    for (const StoredResult& stored : results_) {
+      try {
+        results.push_back(add(stored));
+      } catch (const Json::exception& error) {
+        const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
+        throw Error(stored.file +
+                    ": expected a result of altiplan run: " + why.substr(why.find("] ") + 2));
+      }
+    }
+    name_apart(results);
+    scene_["notes"] = notes_.lines();
+    scene_["results"] = std::move(results);
+    return {std::move(scene_), notes_.warnings()};
+  }
+
+ private:
+  Json add(const StoredResult& stored) {
+    for (const std::string& changed : stored.changed) {
+      notes_.warn(changed + " is not the file that " + stored.file + " was made from");
+    }
+    const StoredResult& first = results_.front();
+    if (world_text(stored) != world_text(first)) {
+      refuse(first, world_text(first), stored, world_text(stored));
+    }
+    const Config config = load_config(stored.pipeline, stored.overrides);
+    const Mission mission = build_mission(config, 1);
+    if (scene_.is_null()) {
+      box_ = scene_box(mission, results_);
+      seed_ = config.seed;
+      scene_ = world_scene(config, mission, box_, notes_);
+    } else if (config.seed != seed_) {
+      // Whether a layer asks for the run's seed is its own affair: the worlds themselves tell.
+      SceneNotes unused;
+      if (world_scene(config, mission, box_, unused) != scene_) {
+        refuse(first, "with the seed " + std::to_string(seed_), stored,
+               "with the seed " + std::to_string(config.seed) +
+                   ", which the scenario's layers or moving obstacles follow");
+      }
+    }
+    return result_scene(stored, mission, build_events(config, mission), notes_);
+  }
+
+  const std::vector<StoredResult>& results_;
+  Json scene_;
+  Box box_;
+  std::int64_t seed_ = 0;
+  SceneNotes notes_;
+};
+}  // namespace
+
+void SceneNotes::add(const std::string& line) {
+  if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) {
+    lines_.push_back(line);
+  }
+}
+
+void SceneNotes::warn(const std::string& line) {
+  if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) {
+    warnings_.push_back(line);
+  }
+  add(line);
+}
+
+Json rounded(double value) {
+  constexpr double kPerMetre = 1000;
+  // + 0.0: a negative zero is written as one.
+  return std::isfinite(value) ? Json(std::round(value * kPerMetre) / kPerMetre + 0.0)
+                              : Json(nullptr);
+}
+
+Json rounded(const std::optional<double>& value) { return value ? rounded(*value) : Json(nullptr); }
+
+Json rounded(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
+
+Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) {
+  constexpr double kLeastShare = 0.01;  // of the longest edge; a level flight has no height
+  constexpr double kLeastEdge = 1;
+  Box box = mission.request.volume;
+  box = box.with(mission.request.start.position).with(mission.request.goal.position);
+  for (const Goal& via : mission.via) {
+    box = box.with(via.position);
+  }
+  for (const StoredResult& stored : results) {
+    for (const Vec3& p : stored.route.value_or(Route{})) {
+      box = box.with(p);
+    }
+    for (const auto& [t, p] : stored.track.value_or(Track{})) {
+      box = box.with(p);
+    }
+  }
+  const double least = std::max(kLeastEdge, kLeastShare * (box.max - box.min).maxCoeff());
+  for (int axis = 0; axis < 3; ++axis) {
+    const double missing = std::max(0.0, least - (box.max[axis] - box.min[axis]));
+    box.min[axis] -= missing / 2;
+    box.max[axis] += missing / 2;
+  }
+  return box;
+}
+
+Scene build_scene(const std::vector<StoredResult>& results) { return SceneBuilder(results)(); }
+}  // namespace altiplan::host

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_node.hpp"
+#include "mission_parts.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+using Json = nlohmann::json;
+using Node = JsonNode;
+
+/// Latitude, longitude and altitude are the last three params, or a `coordinate` beside four params
+/// in files from before 2017.
+void read_simple_item(const Node& item, CommandList& commands) {
+  const Node params = item.at("params");
+  const bool old_form = item.has("coordinate");
+  const std::size_t expected = old_form ? 4 : 7;
+  if (params.size() != expected) {
+    params.wrong("a list of " + std::to_string(expected) + " numbers");
+  }
+  const Node places = old_form ? item.at("coordinate") : params;
+  const std::size_t first = old_form ? 0 : 4;
+  if (places.size() != first + 3) {
+    places.wrong("[latitude, longitude, altitude]");
+  }
+  for (std::size_t n = 0; n < expected; ++n) {
+    params.at(n).number_or_nan();
+  }
+  item.at("autoContinue").boolean();
+  item.at("doJumpId").whole(1'000'000);
+  CommandList::Command command;
+  command.number = item.at("command").whole(65535);
+  command.frame = item.at("frame").whole(21);
+  const double acceptance = command.number == 16 ? params.at(1).number_or_nan() : 0;
+  command.acceptance_m = acceptance > 0 ? acceptance : 0;
+  command.lat = places.at(first).number_or_nan();
+  command.lon = places.at(first + 1).number_or_nan();
+  command.altitude_m = places.at(first + 2).number_or_nan();
+  command.place = item.place();
+  item.told([&] { commands.add(command); });
+}
+
+/// A survey carries the commands that the ground station made of it; a structure scan does not.
+void read_complex_item(const Node& item, CommandList& commands) {
+  item.at("complexItemType").text();
+  if (!item.has("TransectStyleComplexItem") || !item.at("TransectStyleComplexItem").has("Items")) {
+    commands.skip_complex();
+    return;
+  }
+  const Node items = item.at("TransectStyleComplexItem").at("Items");
+  for (std::size_t n = 0; n < items.size(); ++n) {
+    read_simple_item(items.at(n), commands);
+  }
+  commands.take_complex(items.size());
+}
+
+void read_items(const Node& items, MissionFile& mission) {
+  CommandList commands(mission);
+  for (std::size_t n = 0; n < items.size(); ++n) {
+    const Node item = items.at(n);
+    const std::string type = item.at("type").text();
+    if (type == "SimpleItem") {
+      read_simple_item(item, commands);
+    } else if (type == "ComplexItem") {
+      read_complex_item(item, commands);
+    } else {
+      item.at("type").wrong("SimpleItem or ComplexItem");
+    }
+  }
+  commands.finish();
+}
+
+Ring read_corners(const Node& corners) {
+  Ring ring;
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    ring.push_back(corners.at(n).place_on_earth());
+  }
+  return ring;
+}
+
+void add_zone(const Node& from, MissionZone zone, MissionFile& mission) {
+  zone.name = from.place();
+  from.told([&] { check_zone(zone); });
+  mission.zones.push_back(std::move(zone));
+}
+
+void read_fence(const Node& fence, MissionFile& mission) {
+  fence.at("version").expect_version(1, 2);
+  if (fence.at("version").whole(2) == 1) {  // one polygon, to stay in
+    const Node polygon = fence.at("polygon");
+    if (polygon.size() > 0) {
+      MissionZone zone;
+      zone.keep_in = true;
+      zone.polygon.outline = read_corners(polygon);
+      add_zone(polygon, std::move(zone), mission);
+    }
+    return;
+  }
+  const Node polygons = fence.at("polygons");
+  for (std::size_t n = 0; n < polygons.size(); ++n) {
+    const Node polygon = polygons.at(n);
+    polygon.at("version").expect_version(1, 1);
+    MissionZone zone;
+    zone.keep_in = polygon.at("inclusion").boolean();
+    zone.polygon.outline = read_corners(polygon.at("polygon"));
+    if (zone.polygon.outline.size() < 3) {
+      polygon.at("polygon").wrong("three corners or more");
+    }
+    add_zone(polygon, std::move(zone), mission);
+  }
+  const Node circles = fence.at("circles");
+  for (std::size_t n = 0; n < circles.size(); ++n) {
+    const Node circle = circles.at(n);
+    circle.at("version").expect_version(1, 1);
+    MissionZone zone;
+    zone.keep_in = circle.at("inclusion").boolean();
+    zone.centre = circle.at("circle").at("center").place_on_earth();
+    zone.radius_m = circle.at("circle").at("radius").number();
+    add_zone(circle, std::move(zone), mission);
+  }
+}
+
+void read_rally_points(const Node& rally, MissionFile& mission) {
+  rally.at("version").expect_version(1, 2);
+  if (const std::size_t count = rally.at("points").size(); count > 0) {
+    mission.notes.push_back(std::to_string(count) + " rally points skipped");
+  }
+}
+
+/// Says what a JSON file that is no plan may be instead.
+void expect_plan(const Node& root, const Json& json) {
+  if (!root.has("fileType")) {
+    if (root.has("items") && root.has("groundStation")) {
+      throw Error("this is a mission in the form from before .plan (.mission), expected a .plan");
+    }
+    throw Error("expected a plan (\"fileType\": \"Plan\"), found " + short_text(json));
+  }
+  if (root.at("fileType").text() != "Plan") {
+    root.at("fileType").wrong("\"Plan\"");
+  }
+  root.at("groundStation").text();
+  root.at("version").expect_version(1, 1);
+}
+
+MissionFile read_plan(const Node& root) {
+  MissionFile mission;
+  mission.format = MissionFile::Format::qgc_plan;
+  const Node body = root.at("mission");
+  body.at("version").expect_version(2, 2);
+  for (const char* key : {"cruiseSpeed", "hoverSpeed"}) {
+    body.at(key).number();
+  }
+  for (const char* key : {"firmwareType", "vehicleType"}) {
+    body.at(key).whole(255);
+  }
+  const Node home = body.at("plannedHomePosition");
+  if (home.size() != 3) {
+    home.wrong("[latitude, longitude, altitude]");
+  }
+  const Point2 at = home.place_on_earth();
+  mission.home = {at[0], at[1], home.at(2).number(), AltitudeFrame::sea};
+  home.told([&] { expect_altitude(mission.home->altitude_m); });
+  read_items(body.at("items"), mission);
+  read_fence(root.at("geoFence"), mission);
+  read_rally_points(root.at("rallyPoints"), mission);
+  return mission;
+}
+
+}  // namespace
+
+MissionFile read_qgc_plan(const nlohmann::json& json) {
+  const JsonNode root(json, "");
+  expect_plan(root, json);
+  return read_plan(root);
+}
+}  // namespace altiplan::kit

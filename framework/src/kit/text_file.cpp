@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "text_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kMaxDepth = 64;
+constexpr std::uintmax_t kMaxBytes = 64'000'000;
+}  // namespace
+
+std::string read_text(const std::string& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw Error(file + ": is a folder, expected a file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw Error(file + ": cannot be read: " + std::strerror(errno));
+  }
+  // A device or a pipe has no size: it is read up to the limit.
+  std::string text;
+  char block[65536];
+  while (stream.read(block, sizeof block), stream.gcount() > 0) {
+    text.append(block, std::size_t(stream.gcount()));
+    if (text.size() > kMaxBytes) {
+      throw Error(file + ": is larger than 64 MB");
+    }
+  }
+  return text;
+}
+
+std::size_t line_at(const std::string& text, std::size_t offset) {
+  const auto end = text.begin() + std::ptrdiff_t(std::min(offset, text.size()));
+  return 1 + std::size_t(std::count(text.begin(), end, '\n'));
+}
+
+Json parse_json(const std::string& file, const std::string& text) {
+  // Printing a value, and freeing it, goes down as many calls as it has levels.
+  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kMaxDepth) {
+      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
+                  " levels deep");
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text, shallow);
+  } catch (const Json::parse_error& error) {
+    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
+                std::to_string(line_at(text, error.byte)));
+  } catch (const Json::out_of_range&) {
+    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
+  }
+}
+
+std::string short_text(const Json& value) {
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() > 40 ? text.substr(0, 40) + "…" : text;
+}
+}  // namespace altiplan::kit

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/environment.hpp"
+#include "altiplan/params.hpp"
+
+namespace altiplan::city {
+
+struct Building {
+  std::string name;
+  Shape shape;  ///< local metres
+};
+
+/// What a file of buildings brings.
+struct Buildings {
+  std::vector<Building> list;
+  std::vector<std::string> notes;
+  std::optional<Frame> frame;  ///< that the file fixes, where the world has none yet
+};
+
+/// How a file without a height for every building is read.
+struct Heights {
+  std::string height_property = "height";
+  std::string levels_property;
+  double metres_per_level = 3;
+  std::optional<double> default_height_m;
+};
+
+/// GeoJSON footprints with heights, standing on the ground of the layers before or at `base_m`.
+Buildings read_footprints(const std::string& file, const Heights& heights, double base_m,
+                          const Site& site);
+
+/// CityJSON 1.x and 2.0: every Building and BuildingPart as a prism over its ground surface, as
+/// high as its highest point. The file's metres are the local ones, but for `origin_m`, the place
+/// that becomes (0, 0): the south-west corner of the buildings where it is left out.
+Buildings read_city_json(const std::string& file,
+                         const std::optional<std::array<double, 2>>& origin_m);
+
+/// Whether the file says of itself that it is CityJSON.
+bool is_city_json(const std::string& file);
+
+/// The colliders of the flying-car simulator: "lat0 …, lon0 …", the columns' names, then boxes by
+/// centre and half sizes; x is north, y east, z up.
+Buildings read_colliders(const std::string& file, const Site& site);
+}  // namespace altiplan::city

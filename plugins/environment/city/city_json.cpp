@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by their number.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "altiplan/kit/polygon.hpp"
+#include "buildings.hpp"
+
+namespace altiplan::city {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kMaxDepth = 64;
+
+Json parse(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw Error(file + ": cannot be read");
+  }
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kMaxDepth) {
+      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
+                  " levels deep");
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text, shallow);
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
+    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
+                std::to_string(1 + std::count(text.begin(), end, '\n')));
+  } catch (const Json::out_of_range&) {
+    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
+  }
+}
+
+/// Rings of vertices, the first the outline.
+using Face = std::vector<std::vector<Vec3>>;
+
+struct Model {
+  std::vector<Vec3> vertices;
+
+  explicit Model(const Json& json) {
+    Vec3 scale(1, 1, 1);
+    Vec3 translate(0, 0, 0);
+    if (json.contains("transform")) {
+      for (int axis = 0; axis < 3; ++axis) {
+        scale[axis] = json["transform"].at("scale").at(std::size_t(axis)).get<double>();
+        translate[axis] = json["transform"].at("translate").at(std::size_t(axis)).get<double>();
+      }
+    }
+    for (const Json& vertex : json.at("vertices").get_ref<const Json::array_t&>()) {
+      const Vec3 v(vertex.at(0).get<double>(), vertex.at(1).get<double>(),
+                   vertex.at(2).get<double>());
+      vertices.push_back(translate + scale.cwiseProduct(v));
+      if (!vertices.back().allFinite()) {
+        throw Error("vertex " + std::to_string(vertices.size() - 1) + " is not finite");
+      }
+    }
+  }
+
+  Face face(const Json& rings) const {
+    Face face;
+    for (const Json& ring : rings.get_ref<const Json::array_t&>()) {
+      face.emplace_back();
+      for (const Json& index : ring.get_ref<const Json::array_t&>()) {
+        if (!index.is_number_unsigned() || index.get<std::size_t>() >= vertices.size()) {
+          throw Error("expected the number of one of the " + std::to_string(vertices.size()) +
+                      " vertices, found " + index.dump());
+        }
+        face.back().push_back(vertices[index.get<std::size_t>()]);
+      }
+    }
+    return face;
+  }
+};
+
+/// The faces of a geometry, and which of them its semantics call ground.
+struct Surfaces {
+  std::vector<Face> all;
+  std::vector<Face> ground;
+
+  Surfaces(const Model& model, const Json& geometry) {
+    const Json* values = nullptr;
+    const Json* kinds = nullptr;
+    if (geometry.contains("semantics") && geometry["semantics"].is_object()) {
+      values = &geometry["semantics"].at("values");
+      kinds = &geometry["semantics"].at("surfaces");
+    }
+    const std::string type = geometry.at("type").get<std::string>();
+    const int nested = type == "MultiSurface" || type == "CompositeSurface" ? 0
+                       : type == "Solid"                                    ? 1
+                       : type == "MultiSolid" || type == "CompositeSolid"   ? 2
+                                                                            : -1;
+    if (nested < 0) {
+      throw Error("expected a geometry of surfaces or solids, found '" + type + "'");
+    }
+    add(model, geometry.at("boundaries"), nested, values, kinds);
+  }
+
+ private:
+  void add(const Model& model, const Json& boundaries, int nested, const Json* values,
+           const Json* kinds) {
+    for (std::size_t n = 0; n < boundaries.size(); ++n) {
+      const Json* value =
+          values != nullptr && values->is_array() && n < values->size() ? &(*values)[n] : nullptr;
+      if (nested > 0) {
+        add(model, boundaries.at(n), nested - 1, value, kinds);
+        continue;
+      }
+      all.push_back(model.face(boundaries.at(n)));
+      if (value != nullptr && value->is_number_unsigned() &&
+          kinds->at(value->get<std::size_t>()).at("type") == "GroundSurface") {
+        ground.push_back(all.back());
+      }
+    }
+  }
+};
+
+kit::Ring flat(const std::vector<Vec3>& ring) {
+  kit::Ring result;
+  for (const Vec3& p : ring) {
+    result.push_back({p.x(), p.y()});
+  }
+  return kit::without_repeats(result);
+}
+
+double cross(const kit::Point2& o, const kit::Point2& p, const kit::Point2& q) {
+  return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+}
+
+/// A. M. Andrew's monotone chain.
+kit::Ring convex_hull(kit::Ring points) {
+  std::sort(points.begin(), points.end());
+  kit::Ring hull;
+  for (const int pass : {0, 1}) {
+    const std::size_t kept = hull.size();
+    for (const kit::Point2& p : points) {
+      while (hull.size() >= kept + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    if (pass == 0) {
+      std::reverse(points.begin(), points.end());
+    }
+  }
+  return hull;
+}
+
+/// Whether the prisms' plans hold p, or nearly.
+bool covered(const std::vector<Prism>& prisms, const Vec3& p) {
+  constexpr double kNearly = 0.1;  // metres: models are drawn to that
+  return std::any_of(prisms.begin(), prisms.end(), [&](const Prism& prism) {
+    return signed_distance(Shape(prism), {p.x(), p.y(), (prism.floor + prism.ceiling) / 2}) <
+           kNearly;
+  });
+}
+
+/// Prisms that hold all of the geometry: over its ground, or over the hull of its plan where that
+/// is not told or something juts out.
+std::vector<Prism> prisms_of(const Surfaces& surfaces) {
+  double low = kInfinity;
+  double high = -kInfinity;
+  kit::Ring plan;
+  for (const Face& face : surfaces.all) {
+    for (const std::vector<Vec3>& ring : face) {
+      for (const Vec3& p : ring) {
+        low = std::min(low, p.z());
+        high = std::max(high, p.z());
+        plan.push_back({p.x(), p.y()});
+      }
+    }
+  }
+  if (!(low < high)) {
+    throw Error("has no height");
+  }
+  std::vector<Prism> prisms;
+  for (const Face& face : surfaces.ground) {
+    kit::Polygon polygon{flat(face.at(0)), {}};
+    for (std::size_t n = 1; n < face.size(); ++n) {
+      polygon.holes.push_back(flat(face[n]));
+    }
+    if (!kit::polygon_problem(polygon).empty()) {
+      prisms.clear();
+      break;
+    }
+    prisms.push_back({polygon.outline, polygon.holes, low, high});
+  }
+  const bool complete = std::all_of(plan.begin(), plan.end(), [&](const kit::Point2& p) {
+    return covered(prisms, {p[0], p[1], 0});
+  });
+  if (prisms.empty() || !complete) {
+    prisms = {{convex_hull(plan), {}, low, high}};
+    if (const std::string problem = kit::polygon_problem({prisms[0].outline, {}});
+        !problem.empty()) {
+      throw Error("has no plan: " + problem);
+    }
+  }
+  return prisms;
+}
+
+/// The geometry of the highest level of detail.
+const Json* finest(const Json& object) {
+  const Json* best = nullptr;
+  const auto lod = [](const Json& geometry) {
+    const Json level = geometry.value("lod", Json(0));
+    return level.is_string() ? level.get<std::string>() : level.dump();
+  };
+  if (object.contains("geometry")) {
+    for (const Json& geometry : object["geometry"].get_ref<const Json::array_t&>()) {
+      if (best == nullptr || lod(*best) < lod(geometry)) {
+        best = &geometry;
+      }
+    }
+  }
+  return best;
+}
+
+void add_object(const Model& model, const std::string& name, const Json& object,
+                Buildings& buildings) {
+  const std::string type = object.at("type").get<std::string>();
+  const Json* geometry = finest(object);
+  if ((type != "Building" && type != "BuildingPart") || geometry == nullptr) {
+    return;
+  }
+  for (Prism& prism : prisms_of(Surfaces(model, *geometry))) {
+    buildings.list.push_back({name, std::move(prism)});
+  }
+}
+}  // namespace
+
+bool is_city_json(const std::string& file) {
+  const Json json = parse(file);
+  return json.is_object() && json.contains("type") && json["type"] == "CityJSON";
+}
+
+Buildings read_city_json(const std::string& file,
+                         const std::optional<std::array<double, 2>>& origin_m) {
+  const Json json = parse(file);
+  Buildings buildings;
+  std::size_t others = 0;
+  std::string at = "it";
+  try {
+    const Model model(json);
+    for (const auto& [name, object] : json.at("CityObjects").items()) {
+      at = "'" + name + "'";
+      const std::size_t before = buildings.list.size();
+      add_object(model, name, object, buildings);
+      others += buildings.list.size() == before;
+    }
+  } catch (const Json::exception& error) {
+    const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
+    throw Error(file + ": " + at + " is not as CityJSON has it: " + why.substr(why.find("] ") + 2));
+  } catch (const Error& error) {
+    throw Error(file + ": " + at + ": " + error.what());
+  }
+  if (buildings.list.empty()) {
+    throw Error(file + ": there is no building with a geometry in it");
+  }
+  Vec3 low = bounds(buildings.list.front().shape).min;
+  for (const Building& building : buildings.list) {
+    low = low.cwiseMin(bounds(building.shape).min);
+  }
+  const std::array<double, 2> origin = origin_m.value_or(std::array<double, 2>{low.x(), low.y()});
+  for (Building& building : buildings.list) {
+    building.shape = moved(building.shape, {-origin[0], -origin[1], 0});
+  }
+  buildings.notes = {std::to_string(buildings.list.size()) + " prisms, " + std::to_string(others) +
+                         " objects without a geometry of their own, or no buildings, skipped",
+                     "origin at " + std::to_string(origin[0]) + ", " + std::to_string(origin[1]) +
+                         " of the file's metres"};
+  return buildings;
+}
+}  // namespace altiplan::city

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/kit/geojson.hpp"
+#include "altiplan/world.hpp"
+#include "buildings.hpp"
+
+namespace altiplan::city {
+namespace {
+
+/// Says where each building's height is from.
+class HeightRule {
+ public:
+  explicit HeightRule(const Heights& heights) : heights_(heights) {}
+
+  double height(const kit::GeoFeature& feature) {
+    if (const auto metres = feature.metres(heights_.height_property)) {
+      ++measured_;
+      return positive(*metres, heights_.height_property);
+    }
+    if (const auto levels = feature.metres(heights_.levels_property)) {
+      ++by_levels_;
+      return positive(*levels, heights_.levels_property) * heights_.metres_per_level;
+    }
+    if (heights_.default_height_m) {
+      ++by_default_;
+      return *heights_.default_height_m;
+    }
+    throw Error(
+        "has no '" + heights_.height_property + "'" +
+        (heights_.levels_property.empty() ? "" : " and no '" + heights_.levels_property + "'") +
+        ": give default_height_m, or another property as levels_property");
+  }
+
+  std::string note() const {
+    return std::to_string(measured_) + " heights as written, " + std::to_string(by_levels_) +
+           " by their levels, " + std::to_string(by_default_) + " by default_height_m";
+  }
+
+ private:
+  static double positive(double value, const std::string& property) {
+    if (!(value > 0)) {
+      throw Error("expected a '" + property + "' above 0, found " + std::to_string(value));
+    }
+    return value;
+  }
+
+  const Heights& heights_;
+  std::size_t measured_ = 0;
+  std::size_t by_levels_ = 0;
+  std::size_t by_default_ = 0;
+};
+
+/// Its origin is the buildings' south-west corner.
+Frame frame_around(const kit::GeoJson& json) {
+  std::array<double, 2> low{180, 90};
+  double north = -90;
+  for (const kit::GeoFeature& feature : json.features) {
+    for (const kit::Point2& p : feature.polygon.outline) {
+      low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
+      north = std::max(north, p[1]);
+    }
+  }
+  return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
+}
+
+kit::Ring local(const kit::Ring& lonlat, const Frame& frame) {
+  kit::Ring ring;
+  for (const kit::Point2& p : lonlat) {
+    ring.push_back(frame.to_local(p[0], p[1]));
+  }
+  return ring;
+}
+
+/// Lowest and highest ground at the outline's corners.
+std::array<double, 2> ground_below(const kit::Ring& outline, const World& before, double base_m) {
+  std::array<double, 2> range{kInfinity, -kInfinity};
+  for (const kit::Point2& p : outline) {
+    if (const auto ground = before.ground(p[0], p[1])) {
+      range = {std::min(range[0], *ground), std::max(range[1], *ground)};
+    }
+  }
+  return range[0] <= range[1] ? range : std::array<double, 2>{base_m, base_m};
+}
+}  // namespace
+
+Buildings read_footprints(const std::string& file, const Heights& heights, double base_m,
+                          const Site& site) {
+  const kit::GeoJson json = kit::read_geojson(file);
+  if (json.features.empty()) {
+    throw Error(file + ": there is no building in it");
+  }
+  kit::expect_properties(file, json, {heights.levels_property});
+  Buildings buildings;
+  Frame frame = site.frame;
+  if (!frame.has_position()) {
+    frame = frame_around(json);
+    buildings.frame = frame;
+  }
+  HeightRule rule(heights);
+  for (const kit::GeoFeature& feature : json.features) {
+    try {
+      Prism prism{local(feature.polygon.outline, frame), {}, 0, 0};
+      for (const kit::Ring& hole : feature.polygon.holes) {
+        prism.holes.push_back(local(hole, frame));
+      }
+      const auto [low, high] = ground_below(prism.outline, *site.before, base_m);
+      prism.floor = low;
+      prism.ceiling = high + rule.height(feature);
+      buildings.list.push_back({feature.id, std::move(prism)});
+    } catch (const Error& error) {
+      throw Error(file + ": '" + feature.id + "': " + error.what());
+    }
+  }
+  buildings.notes = {std::to_string(buildings.list.size()) + " buildings, " +
+                         std::to_string(json.skipped) + " features without an area skipped",
+                     rule.note()};
+  if (!json.copyright.empty()) {
+    buildings.notes.push_back("attribution: " + json.copyright);
+  }
+  return buildings;
+}
+}  // namespace altiplan::city

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// The oracle is OctoMap itself: it writes the files, and says what is in them.
+#include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <cstring>
+
+#include "altiplan/error.hpp"
+#include "altiplan/random.hpp"
+#include "altiplan/world.hpp"
+#include "support/files.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::testing {
+namespace {
+
+const World kNothing;
+
+std::unique_ptr<Environment> load(const std::filesystem::path& file, const std::string& more = "") {
+  Site site;
+  site.before = &kNothing;
+  return make_environment("octomap", "{file: " + file.string() + more + "}", site);
+}
+
+std::string refusal(const std::filesystem::path& file, const std::string& more = "") {
+  try {
+    load(file, more);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A tree with leaves of many sizes: a room, its walls, and some noise.
+template <class Tree>
+void fill(Tree& tree, std::uint64_t seed) {
+  RandomStream random(seed);
+  for (int n = 0; n < 400; ++n) {
+    const Vec3 p = random.in({{-3, -2, 0}, {4, 3, 2}});
+    tree.updateNode(float(p.x()), float(p.y()), float(p.z()), random.uniform() < 0.4);
+  }
+  for (float x = -2; x < 2; x += 0.2F) {
+    for (float y = -1; y < 1; y += 0.2F) {
+      for (float z = 0; z < 1; z += 0.2F) {
+        tree.updateNode(x + 0.1F, y + 0.1F, z + 0.1F, false);
+      }
+      tree.updateNode(x + 0.1F, y + 0.1F, -0.1F, true);
+    }
+  }
+  tree.updateInnerOccupancy();
+}
+
+/// Every voxel of the layer's box is as the tree has it.
+template <class Tree>
+void expect_equal(const Environment& layer, const Tree& tree, bool unknown_blocked) {
+  VoxelGrid grid(layer.native_grid().value());
+  layer.rasterize(grid);
+  const Cell& counts = grid.spec().counts;
+  std::size_t differ = 0;
+  for (int k = 0; k < counts[2]; ++k) {
+    for (int j = 0; j < counts[1]; ++j) {
+      for (int i = 0; i < counts[0]; ++i) {
+        const Vec3 p = grid.spec().centre({i, j, k});
+        const auto* node = tree.search(p.x(), p.y(), p.z());
+        const bool blocked = node == nullptr ? unknown_blocked : tree.isNodeOccupied(node);
+        differ += grid.blocked(i, j, k) != blocked;
+      }
+    }
+  }
+  EXPECT_EQ(differ, 0U);
+  double low[3];
+  double high[3];
+  tree.getMetricMin(low[0], low[1], low[2]);
+  tree.getMetricMax(high[0], high[1], high[2]);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(layer.bounds().min[axis], low[axis], 1e-9);
+    EXPECT_NEAR(layer.bounds().max[axis], high[axis], 1e-9);
+  }
+}
+
+TEST(OctoMap, ReadsWhatOctoMapWrites) {
+  const TempFolder folder;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    octomap::OcTree tree(0.2);
+    fill(tree, seed);
+    const std::string full = (folder / "full.ot").string();
+    ASSERT_TRUE(tree.write(full));
+    for (const bool blocked : {true, false}) {
+      const std::string unknown = blocked ? ", unknown: blocked" : ", unknown: free";
+      expect_equal(*load(full, unknown), tree, blocked);
+    }
+    octomap::OcTree most_likely(tree);
+    const std::string binary = (folder / "binary.bt").string();
+    ASSERT_TRUE(most_likely.writeBinary(binary));  // makes the tree one of yes and no
+    expect_equal(*load(binary), most_likely, true);
+  }
+}
+
+TEST(OctoMap, LeavesOutColours) {
+  const TempFolder folder;
+  octomap::ColorOcTree tree(0.2);
+  fill(tree, 4);
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    leaf->setColor(10, 200, 30);
+  }
+  const std::string full = (folder / "colour.ot").string();
+  ASSERT_TRUE(tree.write(full));
+  expect_equal(*load(full), tree, true);
+  const std::string binary = (folder / "colour.bt").string();
+  ASSERT_TRUE(tree.writeBinary(binary));
+  expect_equal(*load(binary), tree, true);
+}
+
+TEST(OctoMap, TheThresholdIsTheUsers) {
+  const TempFolder folder;
+  octomap::OcTree tree(1);
+  tree.setNodeValue(0.5F, 0.5F, 0.5F, octomap::logodds(0.6));
+  tree.setNodeValue(3.5F, 0.5F, 0.5F, octomap::logodds(0.9));
+  const std::string file = (folder / "a.ot").string();
+  ASSERT_TRUE(tree.write(file));
+  const auto blocked = [&](const std::string& from) {
+    const auto layer = load(file, ", unknown: free, occupied_from: " + from);
+    return std::pair(layer->clearance({0.5, 0.5, 0.5}) < 0, layer->clearance({3.5, 0.5, 0.5}) < 0);
+  };
+  EXPECT_EQ(blocked("0.5"), std::pair(true, true));
+  EXPECT_EQ(blocked("0.8"), std::pair(false, true));
+  EXPECT_EQ(blocked("0.95"), std::pair(false, false));
+}
+
+TEST(OctoMap, RealMapsHaveTheirVoxels) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "voxel3d");
+  EXPECT_NE(refusal(folder / "laberynth.bt").find("with unknown: free"), std::string::npos);
+  const auto known = [&](const char* file) {
+    const std::string note = load(folder / file, ", unknown: free")->notes().front();
+    return note.substr(0, note.find("), ", note.find("free")) + 1);
+  };
+  EXPECT_EQ(known("geb079.bt"), "143729 occupied leaves (185673 voxels), 284415 free (950759)");
+  EXPECT_EQ(known("mbzirc_challenge3.bt"),
+            "137342 occupied leaves (148633 voxels), 224494 free (1970679)");
+  EXPECT_EQ(known("laberynth.bt"), "93888 occupied leaves (469886 voxels), 0 free (0)");
+}
+
+std::string header(const std::string& kind, const std::string& lines) {
+  return "# Octomap OcTree " + kind + "\n" + lines + "data\n";
+}
+
+TEST(OctoMap, WhatIsWrongIsNamed) {
+  const TempFolder folder;
+  const std::string binary = header("binary file", "id OcTree\nsize 2\nres 0.1\n");
+  const std::string full = header("file", "id OcTree\nsize 2\nres 0.1\n");
+  const auto nodes = [](std::initializer_list<int> bytes) {
+    std::string text;
+    for (const int byte : bytes) {
+      text += char(byte);
+    }
+    return text;
+  };
+  std::string nan(5, '\0');
+  const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(nan.data(), &not_a_number, sizeof not_a_number);
+  std::string deep = binary;
+  for (int n = 0; n < 40; ++n) {
+    deep += nodes({3, 0});
+  }
+  std::string deep_full = full;
+  for (int n = 0; n < 40; ++n) {
+    deep_full += nodes({0, 0, 0, 0, 1});
+  }
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", ":1: expected a line of an OctoMap header"},
+      {"type octile\n", ":1: expected '# Octomap OcTree file'"},
+      {std::string(5000, 'x'), ":1: expected a line"},
+      {header("binary file", "id OcTree\nsize 2\n"), "has no resolution"},
+      {header("binary file", "id OcTree\nres 0\n"), ":3: expected 'res' and metres"},
+      {header("binary file", "id OcTree\nres -0.1\n"), ":3: expected 'res' and metres"},
+      {header("binary file", "id OcTree\nres nan\n"), ":3: expected 'res' and metres"},
+      {header("binary file", "id OcTree\nres 1e99\n"), ":3: expected 'res' and metres"},
+      {header("binary file", "id OcTree\nres 0,1\n"), ":3: expected 'res' and metres"},
+      {header("binary file", "res 0.1\n"), "expected the id OcTree or ColorOcTree, found ''"},
+      {header("file", "id CountingOcTree\nres 0.1\n"), "found 'CountingOcTree'"},
+      {header("file", "id OcTreeStamped\nres 0.1\n"), "found 'OcTreeStamped'"},
+      {header("file", "id OcTree\nres 0.1\nwhat 3\n"), ":4: expected id, size, res or data"},
+      {"# Octomap OcTree binary file\nid OcTree\nres 0.1\n", ":4: expected a line"},
+      {binary, "the nodes break off"},
+      {binary + nodes({3}), "the nodes break off"},
+      {binary + nodes({3, 0}), "the nodes break off"},
+      {binary + nodes({0, 0}), "there is nothing known in the map"},
+      {binary + nodes({2, 0, 0}), "1 bytes follow the tree's nodes"},
+      {deep, "children below the finest level"},
+      {full, "the nodes break off"},
+      {full + nodes({0, 0, 0, 0}), "the nodes break off"},
+      {full + nan, "is not a number"},
+      {deep_full, "children below the finest level"},
+      {full + nodes({0, 0, 0, 0, 0, 9}), "1 bytes follow"},
+      {full + nodes({0, 0, 0, 0, 0}), "more than max_cells"},  // the whole tree is one leaf
+      {binary + nodes({2, 128}), "more than max_cells"}};
+  for (const auto& [text, why] : cases) {
+    const std::string said = refusal(folder.write("a.bt", text));
+    EXPECT_NE(said.find(why), std::string::npos) << why << "\n" << said;
+  }
+  EXPECT_NE(refusal("/nowhere.bt").find("/nowhere.bt"), std::string::npos);
+}
+
+TEST(OctoMap, DamageIsAnErrorOrAMap) {
+  const TempFolder folder;
+  octomap::OcTree tree(0.2);
+  fill(tree, 7);
+  for (const bool binary : {true, false}) {
+    const std::string file = (folder / "whole").string();
+    ASSERT_TRUE(binary ? tree.writeBinary(file) : tree.write(file));
+    const std::string whole = text_of(file);
+    RandomStream random(binary ? 1 : 2);
+    for (int n = 0; n < 200; ++n) {
+      std::string damaged = whole;
+      const auto at = std::size_t(random.integer(0, std::int64_t(whole.size()) - 1));
+      if (n % 4 == 0) {
+        damaged.resize(at);
+      } else {
+        damaged[at] = char(random.integer(0, 255));
+      }
+      const auto path = folder.write("damaged", damaged);
+      try {
+        const auto layer = load(path, ", max_cells: 1000000");
+        EXPECT_LE(layer->native_grid()->cell_count(), 1000000U);
+      } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+      }
+    }
+  }
+}
+}  // namespace
+}  // namespace altiplan::testing

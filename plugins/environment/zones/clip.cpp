@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clip.hpp"
+
+#include <boost/geometry/algorithms/correct.hpp>
+#include <boost/geometry/algorithms/intersection.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+#include "altiplan/kit/polygon.hpp"
+#include "altiplan/world.hpp"
+
+namespace altiplan::zones {
+namespace {
+
+namespace bg = boost::geometry;
+using Point = bg::model::d2::point_xy<double>;
+using Polygon = bg::model::polygon<Point, true, false>;  // clockwise, not closed
+
+Polygon to_boost(const Prism& prism) {
+  Polygon polygon;
+  for (const auto& p : prism.outline) {
+    polygon.outer().emplace_back(p[0], p[1]);
+  }
+  for (const auto& hole : prism.holes) {
+    auto& inner = polygon.inners().emplace_back();
+    for (const auto& p : hole) {
+      inner.emplace_back(p[0], p[1]);
+    }
+  }
+  bg::correct(polygon);
+  return polygon;
+}
+
+template <class Ring>
+kit::Ring from_boost(const Ring& ring) {
+  kit::Ring result;
+  for (const Point& p : ring) {
+    result.push_back({p.x(), p.y()});
+  }
+  return kit::without_repeats(result);
+}
+}  // namespace
+
+Clip::Clip(const Site& site) : bounds_(site.volume) {
+  const Box layers = site.before->bounds();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!std::isfinite(bounds_.min[axis])) {
+      bounds_.min[axis] = layers.min[axis];
+    }
+    if (!std::isfinite(bounds_.max[axis])) {
+      bounds_.max[axis] = layers.max[axis];
+    }
+    if (!std::isfinite(bounds_.min[axis]) || !std::isfinite(bounds_.max[axis])) {
+      throw ParameterError("clip",
+                           "needs a world with bounds: give the scenario's volume, or put a layer "
+                           "with bounds before this one");
+    }
+  }
+}
+
+std::vector<Shape> Clip::cut(const Shape& shape) {
+  const Box box = bounds(shape);
+  bool outside = false;
+  bool inside = true;
+  for (int axis = 0; axis < 2; ++axis) {
+    outside |= box.max[axis] <= bounds_.min[axis] || box.min[axis] >= bounds_.max[axis];
+    inside &= box.min[axis] >= bounds_.min[axis] && box.max[axis] <= bounds_.max[axis];
+  }
+  const Prism* prism = std::get_if<Prism>(&shape);
+  if (outside) {
+    ++dropped_;
+    return {};
+  }
+  if (inside || prism == nullptr) {
+    return {shape};
+  }
+  std::vector<Polygon> pieces;
+  bg::intersection(
+      to_boost(*prism),
+      bg::model::box<Point>({bounds_.min.x(), bounds_.min.y()}, {bounds_.max.x(), bounds_.max.y()}),
+      pieces);
+  std::vector<Shape> parts;
+  for (const Polygon& piece : pieces) {
+    kit::Polygon polygon{from_boost(piece.outer()), {}};
+    for (const auto& hole : piece.inners()) {
+      polygon.holes.push_back(from_boost(hole));
+    }
+    if (!kit::polygon_problem(polygon).empty()) {
+      return {shape};  // pieces that touch each other: whole, it is as right
+    }
+    parts.emplace_back(Prism{polygon.outline, polygon.holes, prism->floor, prism->ceiling});
+  }
+  ++(parts.empty() ? dropped_ : cut_);
+  return parts;
+}
+
+std::string Clip::note() const {
+  return std::to_string(dropped_) + " zones outside of the bounds dropped, " +
+         std::to_string(cut_) + " cut at them";
+}
+}  // namespace altiplan::zones

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zone_file.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "altiplan/error.hpp"
+#include "altiplan/kit/geojson.hpp"
+
+namespace altiplan::zones {
+namespace {
+
+using kit::GeoFeature;
+using kit::GeoJson;
+using kit::MissionZone;
+
+void expect_limits(const MissionZone& zone) {
+  if (!(zone.floor_m.value_or(-kInfinity) < zone.ceiling_m.value_or(kInfinity))) {
+    throw Error("the floor must be below the ceiling");
+  }
+}
+
+const TypeRule* rule_for(const FileRules& rules, const std::string& type) {
+  const auto found = std::find_if(rules.types.begin(), rules.types.end(),
+                                  [&](const TypeRule& rule) { return rule.is == type; });
+  return found == rules.types.end() ? nullptr : &*found;
+}
+
+/// "26 of type L, 2 of type R"
+std::string counted(const std::map<std::string, std::size_t>& types) {
+  std::string text;
+  for (const auto& [type, count] : types) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) +
+            (type.empty() ? " without a type" : " of type " + type);
+  }
+  return text;
+}
+
+/// A feature's own limits go before those of its type.
+FileZone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* rule) {
+  FileZone result;
+  MissionZone& zone = result.zone;
+  zone.name = feature.id;
+  zone.polygon = feature.polygon;
+  zone.keep_in = rules.kind == Kind::keep_in;
+  zone.floor_m = feature.metres(rules.floor);
+  zone.ceiling_m = feature.metres(rules.ceiling);
+  if (rule != nullptr) {
+    zone.floor_m = zone.floor_m ? zone.floor_m : rule->floor_m;
+    zone.ceiling_m = zone.ceiling_m ? zone.ceiling_m : rule->ceiling_m;
+  }
+  expect_limits(zone);
+  result.from = feature.text(rules.from);
+  result.until = feature.text(rules.until);
+  return result;
+}
+
+FileZones read_features(const std::string& file, const FileRules& rules) {
+  const GeoJson json = kit::read_geojson(file);
+  if (!json.features.empty()) {
+    kit::expect_properties(file, json,
+                           {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
+  }
+  FileZones result;
+  std::map<std::string, std::size_t> types;
+  std::size_t skipped = 0;
+  for (const GeoFeature& feature : json.features) {
+    const std::string type = feature.text(rules.type);
+    const TypeRule* rule = rules.type.empty() ? nullptr : rule_for(rules, type);
+    ++types[type];
+    if (rule != nullptr && rule->skip) {
+      ++skipped;
+      continue;
+    }
+    try {
+      result.zones.push_back(zone_of(feature, rules, rule));
+    } catch (const Error& error) {
+      throw Error(file + ": '" + feature.id + "': " + error.what());
+    }
+  }
+  result.notes.push_back(std::to_string(json.features.size()) + " polygons read" +
+                         (rules.type.empty() ? "" : " (" + counted(types) + ")") + ", " +
+                         std::to_string(json.skipped) + " features without an area skipped" +
+                         (skipped > 0 ? ", " + std::to_string(skipped) + " by their type" : ""));
+  return result;
+}
+
+/// KML's polygons and the fences of ground stations.
+FileZones read_fence(const std::string& file, const FileRules& rules) {
+  for (const std::string& name :
+       {rules.floor, rules.ceiling, rules.from, rules.until, rules.type}) {
+    if (!name.empty()) {
+      throw Error(file + ": has no property '" + name + "': properties are GeoJSON's");
+    }
+  }
+  const kit::MissionFile mission = kit::read_mission(file);
+  if (mission.zones.empty()) {
+    throw Error(file + ": there is no zone in it");
+  }
+  FileZones result;
+  for (const MissionZone& zone : mission.zones) {
+    result.zones.push_back({zone, "", ""});
+    MissionZone& read = result.zones.back().zone;
+    if (!read.has_role) {
+      read.keep_in = rules.kind == Kind::keep_in;
+    }
+    expect_limits(read);
+  }
+  result.notes.push_back(std::to_string(mission.zones.size()) + " zones read, " +
+                         std::to_string(mission.items.size()) + " places of a route let be");
+  result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
+  return result;
+}
+}  // namespace
+
+void TypeRule::describe(Fields& f) {
+  f("is", is).required().doc("the word");
+  f("floor_m", floor_m).unit("m").doc("floor of its zones that say none, above sea level");
+  f("ceiling_m", ceiling_m).unit("m").doc("their ceiling, likewise");
+  f("skip", skip).doc("its zones do not count");
+  f.check(floor_m.value_or(-kInfinity) < ceiling_m.value_or(kInfinity),
+          "floor_m must be below ceiling_m");
+}
+
+void FileRules::describe(Fields& f) {
+  f("file_kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
+      .doc("kind of the zones of GeoJSON and KML; a fence says itself what each one is");
+  f("floor_property", floor).doc("GeoJSON's property with the floor, m above sea level");
+  f("ceiling_property", ceiling).doc("GeoJSON's property with the ceiling, likewise");
+  f("from_property", from).doc("GeoJSON's property with the start of the time window");
+  f("until_property", until).doc("GeoJSON's property with its end");
+  f("type_property", type).doc("GeoJSON's property with a word that `types` explains");
+  f("types", types).doc("what its words mean; others: closed at every height");
+  f.check(types.empty() || !type.empty(), "types needs type_property");
+}
+
+FileZones read_zone_file(const std::string& file, const FileRules& rules) {
+  return kit::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
+}
+
+Frame frame_of(const std::vector<FileZone>& zones) {
+  kit::Point2 low{180, 90};
+  double north = -90;
+  const auto take = [&](const kit::Point2& p) {
+    low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
+    north = std::max(north, p[1]);
+  };
+  for (const FileZone& zone : zones) {
+    std::for_each(zone.zone.polygon.outline.begin(), zone.zone.polygon.outline.end(), take);
+    if (zone.zone.polygon.outline.empty()) {
+      take(zone.zone.centre);
+    }
+  }
+  return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
+}
+}  // namespace altiplan::zones

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/frame.hpp"
+#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/params.hpp"
+
+namespace altiplan::zones {
+
+enum class Kind { keep_out, keep_in };
+
+/// What a word of the file's type property means.
+struct TypeRule {
+  std::string is;
+  std::optional<double> floor_m;
+  std::optional<double> ceiling_m;
+  bool skip = false;
+
+  void describe(Fields& f);
+};
+
+/// How a file's features become zones; the names of properties are "" where the file has none.
+struct FileRules {
+  Kind kind = Kind::keep_out;
+  std::string floor;
+  std::string ceiling;
+  std::string from;
+  std::string until;
+  std::string type;
+  std::vector<TypeRule> types;
+
+  void describe(Fields& f);
+};
+
+struct FileZone {
+  kit::MissionZone zone;
+  std::string from;  ///< time window, "" where it has no such end
+  std::string until;
+};
+
+struct FileZones {
+  std::vector<FileZone> zones;
+  std::vector<std::string> notes;
+};
+
+/// Reads GeoJSON, KML, or the fence of a ground station's file. Throws Error naming the file.
+FileZones read_zone_file(const std::string& file, const FileRules& rules);
+
+/// A frame for a world that has none: its origin is the south-west corner of the zones.
+Frame frame_of(const std::vector<FileZone>& zones);
+}  // namespace altiplan::zones

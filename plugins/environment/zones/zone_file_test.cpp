@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Zones from GeoJSON with types, from KML and from the fences of ground stations; clip.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+#include "altiplan/world.hpp"
+#include "support/files.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::testing {
+namespace {
+
+const World kNothing;
+
+Site site_of(const Box& volume = {}) {
+  Site site;
+  site.before = &kNothing;
+  site.frame = Frame::geographic(25, 60, 60);
+  site.volume = volume;
+  return site;
+}
+
+class ZoneFile : public ::testing::Test {
+ protected:
+  std::unique_ptr<Environment> zones(const std::string& name, const std::string& text,
+                                     const std::string& more = "",
+                                     const Site& site = site_of()) const {
+    return make_environment("zones", "{file: " + folder_.write(name, text).string() + more + "}",
+                            site);
+  }
+  std::string refusal(const std::string& name, const std::string& text,
+                      const std::string& more = "", const Site& site = site_of()) const {
+    try {
+      zones(name, text, more, site);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TempFolder folder_;
+};
+
+bool says(const Environment& layer, const std::string& part) {
+  const auto notes = layer.notes();
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+Vec3 at(double lon, double lat, double z) {
+  const auto [x, y] = Frame::geographic(25, 60, 60).to_local(lon, lat);
+  return {x, y, z};
+}
+
+std::string feature(const std::string& id, double west, const std::string& properties) {
+  const auto corner = [](double lon, const char* lat) {
+    return "[" + std::to_string(lon) + ", " + lat + "]";
+  };
+  return R"({"type": "Feature", "id": ")" + id + R"(", "properties": )" + properties +
+         R"(, "geometry": {"type": "Polygon", "coordinates": [[)" + corner(west, "60.0") + "," +
+         corner(west + 0.1, "60.0") + "," + corner(west + 0.1, "60.1") + "," +
+         corner(west, "60.1") + "," + corner(west, "60.0") + "]]}}";
+}
+
+const std::string kTyped =
+    R"({"type": "FeatureCollection", "features": [)" + feature("A", 25.0, R"({"type": "R"})") +
+    "," + feature("B", 25.2, R"({"type": "L"})") + "," +
+    feature("C", 25.4, R"({"type": "L", "low": 120})") + "," +
+    feature("D", 25.6, R"({"type": "X"})") + "," + feature("E", 25.8, "{}") + "]}";
+
+TEST_F(ZoneFile, TypesGiveLimitsThatTheFeatureDoesNot) {
+  const auto layer = zones("t.geojson", kTyped,
+                           ", type_property: type, floor_property: low,"
+                           " types: [{is: L, floor_m: 50}, {is: X, skip: true}]");
+  EXPECT_LT(layer->clearance(at(25.05, 60.05, 10)), 0);           // R: closed from the ground
+  EXPECT_NEAR(layer->clearance(at(25.25, 60.05, 10)), 40, 1e-6);  // L: free below 50 m
+  EXPECT_LT(layer->clearance(at(25.25, 60.05, 51)), 0);
+  EXPECT_NEAR(layer->clearance(at(25.45, 60.05, 110)), 10, 1e-6);  // its own floor
+  EXPECT_GT(layer->clearance(at(25.65, 60.05, 10)), 1000);         // X: does not count
+  EXPECT_LT(layer->clearance(at(25.85, 60.05, 10)), 0);            // no type: closed
+  EXPECT_TRUE(says(*layer,
+                   "5 polygons read (1 without a type, 2 of type L, 1 of type R, 1 of "
+                   "type X), 0 features without an area skipped, 1 by their type"));
+}
+
+TEST_F(ZoneFile, TypesAreCheckedBeforeTheyMislead) {
+  EXPECT_NE(refusal("t.geojson", kTyped, ", type_property: kind").find("present: low, type"),
+            std::string::npos);
+  EXPECT_NE(parameter_problems("environment", "zones", "{file: a, types: [{is: L}]}"), "");
+  EXPECT_NE(parameter_problems("environment", "zones",
+                               "{file: a, type_property: t, types: [{floor_m: 5}]}"),
+            "");
+  EXPECT_NE(parameter_problems("environment", "zones",
+                               "{file: a, type_property: t,"
+                               " types: [{is: L, floor_m: 5, ceiling_m: 5}]}"),
+            "");
+  EXPECT_NE(refusal("t.geojson", kTyped,
+                    ", type_property: type, floor_property: low, types: [{is: L, ceiling_m: 90}]")
+                .find("'C': the floor must be below the ceiling"),
+            std::string::npos);
+}
+
+const std::string kKml =
+    "<kml><Placemark><name>park</name><Polygon><extrude>1</extrude>"
+    "<altitudeMode>absolute</altitudeMode><outerBoundaryIs><LinearRing><coordinates>"
+    "25,60,200 25.1,60,200 25.1,60.1,200 25,60.1,200 25,60,200"
+    "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>";
+
+TEST_F(ZoneFile, KmlPolygonsReachUpToWhereTheyAreExtrudedFrom) {
+  const auto layer = zones("p.kml", kKml);
+  EXPECT_NEAR(layer->clearance(at(25.05, 60.05, 190)), -10, 1e-6);
+  EXPECT_NEAR(layer->clearance(at(25.05, 60.05, 230)), 30, 1e-6);
+  EXPECT_LT(layer->clearance(at(25.05, 60.05, -500)), 0);
+  EXPECT_EQ(layer->drawing()->shapes.at(0).name, "park");
+  const auto inside = zones("p.kml", kKml, ", file_kind: keep_in");
+  EXPECT_NEAR(inside->clearance(at(25.05, 60.05, 190)), 10, 1e-6);
+  EXPECT_LT(inside->clearance(at(25.05, 60.05, 230)), 0);
+  EXPECT_NE(refusal("p.kml", kKml, ", floor_property: low").find("properties are GeoJSON's"),
+            std::string::npos);
+  EXPECT_NE(refusal("p.kml", "<kml/>").find("there is no zone in it"), std::string::npos);
+}
+
+TEST_F(ZoneFile, FencesSayThemselvesWhatIsKeptInAndOut) {
+  const auto layer = zones(
+      "f.waypoints",
+      "QGC WPL 110\n0\t0\t0\t5001\t3\t0\t0\t0\t60\t25\t0\t0\n1\t0\t0\t5001\t3\t0\t0\t0\t60\t26\t0"
+      "\t0\n2\t0\t0\t5001\t3\t0\t0\t0\t61\t25.5\t0\t0\n3\t0\t0\t5004\t500\t0\t0\t0\t60.3\t25.5\t0"
+      "\t0\n");
+  EXPECT_NEAR(layer->clearance(at(25.5, 60.3, 10)), -500, 1e-6);
+  EXPECT_GT(layer->clearance(at(25.5, 60.2, 10)), 1000);
+  EXPECT_LT(layer->clearance(at(25.1, 60.9, 10)), 0);
+  EXPECT_TRUE(says(*layer, "1 keep-out and 1 keep-in zones"));
+}
+
+TEST_F(ZoneFile, AFileFixesTheFrameOfAWorldWithoutOne) {
+  Site nowhere;
+  nowhere.before = &kNothing;
+  const auto layer = zones("p.kml", kKml, "", nowhere);
+  ASSERT_TRUE(layer->frame().has_value());
+  const auto corner = layer->frame()->to_local(25, 60);
+  EXPECT_NEAR(std::hypot(corner[0], corner[1]), 0, 1e-6);
+}
+
+TEST_F(ZoneFile, ClipDropsAndCutsWithoutChangingWhatIsInside) {
+  const Vec3 corner = at(25.25, 60.05, 0);
+  const Site site = site_of({{0, 0, 0}, {corner.x(), corner.y(), 500}});
+  const auto whole = zones("t.geojson", kTyped);
+  const auto clipped = zones("t.geojson", kTyped, ", clip: true", site);
+  EXPECT_TRUE(says(*clipped, "3 zones outside of the bounds dropped, 2 cut at them"));
+  EXPECT_EQ(clipped->drawing()->shapes.size(), 2U);
+  EXPECT_NEAR(clipped->bounds().max.x(), corner.x(), 1e-9);
+  EXPECT_GT(whole->bounds().max.x(), 2 * corner.x());
+  RandomStream random;
+  int blocked = 0;
+  for (int n = 0; n < 1000; ++n) {
+    const Vec3 p = random.in(site.volume);
+    EXPECT_EQ(whole->blocked(p, p, 0), clipped->blocked(p, p, 0)) << n;
+    blocked += whole->blocked(p, p, 0);
+  }
+  EXPECT_GT(blocked, 300);
+  EXPECT_LT(blocked, 900);
+  EXPECT_NE(refusal("t.geojson", kTyped, ", clip: true").find("needs a world with bounds"),
+            std::string::npos);
+}
+
+TEST_F(ZoneFile, ClipCutsConcaveZonesIntoPieces) {
+  const std::string comb =
+      R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[)"
+      "[25, 60], [25.3, 60], [25.3, 60.3], [25.2, 60.3], [25.2, 60.1], [25.1, 60.1], [25.1, 60.3],"
+      " [25, 60.3], [25, 60]]]}}";
+  const Vec3 low = at(24.9, 60.2, 0);
+  const Vec3 high = at(25.5, 60.5, 500);
+  const auto layer = zones("c.geojson", comb, ", clip: true", site_of({low, high}));
+  EXPECT_EQ(layer->drawing()->shapes.size(), 2U);
+  EXPECT_LT(layer->clearance(at(25.05, 60.25, 10)), 0);
+  EXPECT_GT(layer->clearance(at(25.15, 60.25, 10)), 100);
+  EXPECT_LT(layer->clearance(at(25.25, 60.25, 10)), 0);
+}
+
+TEST_F(ZoneFile, ClipLeavesKeepInZonesWhole) {
+  const Site site = site_of({{0, 0, 0}, {1000, 1000, 500}});
+  const auto layer = zones("p.kml", kKml, ", file_kind: keep_in, clip: true", site);
+  EXPECT_GT(layer->drawing()->shapes.size(), 0U);
+  EXPECT_FALSE(layer->blocked({1000, 500, 100}, {1000, 500, 100}, 50));
+}
+
+TEST_F(ZoneFile, FilesOfOthers) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "missions");
+  const auto of = [&](const char* name) {
+    return make_environment("zones", "{file: " + (folder / name).string() + "}", site_of());
+  };
+  EXPECT_TRUE(says(*of("qgc_PolygonGood.kml"), "1 keep-out and 0 keep-in zones"));
+  EXPECT_TRUE(says(*of("qgc_geofence_home_base.plan"), "1 keep-out and 1 keep-in zones"));
+  EXPECT_TRUE(
+      says(*of("mavproxy_springvalleybottom-foamy-fence.txt"), "0 keep-out and 1 keep-in zones"));
+  EXPECT_THROW(of("px4_avoidance.plan"), Error);
+}
+}  // namespace
+}  // namespace altiplan::testing

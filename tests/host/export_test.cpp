@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is exported, read back by our own reader and judged again; what cannot be said is.
+#include "host/output/export.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+#include "host/input/foreign_route.hpp"
+#include "host/output/thinning.hpp"
+#include "host/run/judge.hpp"
+#include "support/files.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using kit::AltitudeFrame;
+using kit::MissionItem;
+using kit::MissionZone;
+using Format = kit::MissionFile::Format;
+
+/// Level ground at 120 m.
+class Plain final : public Environment {
+  Box do_bounds() const override { return {}; }
+  double do_clearance(const Vec3& p) const override { return p.z() - 120; }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double, double) const override { return 120; }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z(), b.z()) - 120;
+  }
+  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+    return std::max(a.z(), b.z()) - 120;
+  }
+  double do_ground_slope(const Box&) const override { return 0; }
+};
+
+/// A circle with a ceiling, a square with a hole, a keep-in square around all.
+constexpr const char* kZones =
+    "{list: [{id: site, cylinder: {at_m: [500, 500], radius_m: 100}, ceiling_m: 400},"
+    " {id: yard, polygon: {outline_m: [[700, 100], [900, 100], [900, 300], [700, 300]],"
+    "   holes_m: [[[750, 150], [850, 150], [850, 250], [750, 250]]]}},"
+    " {id: county, kind: keep_in, polygon: {outline_m: [[-9, -9], [1009, -9], [1009, 1009],"
+    "   [-9, 1009]]}}]}";
+
+const Route kAround{
+    {50, 50, 300}, {350, 600, 310.12345}, {500, 650, 320}, {700, 700, 320.5}, {950, 950, 300}};
+
+struct Scene {
+  Mission mission;
+  explicit Scene(const Route& route = kAround, bool positioned = true, const char* zones = kZones) {
+    World world;
+    if (positioned) {
+      world = world.with_frame(Frame::geographic(-84.3, 36.5, 36.6));
+    }
+    mission.truth = world.with({"ground", "plain", std::make_shared<Plain>(), true});
+    if (zones != nullptr) {
+      Site site;
+      site.frame = world.frame();
+      site.before = &mission.truth;
+      mission.truth = mission.truth.with(
+          {"zones", "zones", altiplan::testing::make_environment("zones", zones, site), true});
+    }
+    mission.known = mission.truth;
+    mission.request = altiplan::testing::request_in(mission.known, route.front(), route.back(),
+                                                    {{-9, -9, 0}, {1009, 1009, 1000}});
+    mission.request.goal.tolerance_m = 1;
+    mission.track_request = mission.request;
+  }
+};
+
+ExportOptions options_of(std::optional<Format> format,
+                         AltitudeFrame altitude = AltitudeFrame::sea) {
+  ExportOptions options;
+  options.format = format;
+  options.altitude = altitude;
+  return options;
+}
+
+Exported exported(const Scene& scene, const ExportOptions& options, const Route& route = kAround) {
+  return export_route(scene.mission, {"a <name> & more", route, {}, {}}, options);
+}
+
+bool says(const Exported& exported, const std::string& words) {
+  return std::any_of(exported.messages.begin(), exported.messages.end(),
+                     [&](const std::string& m) { return m.find(words) != std::string::npos; });
+}
+
+/// Metres between what was written and what it stands for.
+double farthest(const Route& a, const Route& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
+    most = std::max(most, (a[n] - b[n]).norm());
+  }
+  return most;
+}
+
+TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
+  const Scene scene;
+  const std::pair<std::optional<Format>, const char*> formats[] = {
+      {Format::qgc_plan, "r.plan"}, {Format::waypoints, "r.waypoints"},
+      {Format::kml, "r.kml"},       {Format::geojson, "r.geojson"},
+      {Format::gpx, "r.gpx"},       {std::nullopt, "r.csv"}};
+  int written = 0;
+  for (const auto& [format, file] : formats) {
+    for (const auto frame : {AltitudeFrame::sea, AltitudeFrame::ground, AltitudeFrame::home}) {
+      const ExportOptions options = options_of(format, frame);
+      if (!options.problem().empty()) {
+        continue;
+      }
+      SCOPED_TRACE(std::string(file) + " " + name(frame));
+      const Exported result = exported(scene, options);
+      ASSERT_TRUE(result.text.has_value());
+      EXPECT_TRUE(says(result, "read back and judged: sound with 7 decimals"));
+      EXPECT_TRUE(says(result, frame == AltitudeFrame::sea ? "above sea level"
+                               : frame == AltitudeFrame::ground
+                                   ? "above the ground"
+                                   : "relative to home, which is 120 m"));
+      EXPECT_EQ(says(result, "warning: judged with straight legs"), frame == AltitudeFrame::ground);
+      const ForeignRoute back =
+          read_foreign_route(file, *result.text, scene.mission.truth, kAround.front());
+      EXPECT_EQ(back.route.front(), kAround.front());
+      EXPECT_LT(farthest(back.route, kAround), 0.01);
+      EXPECT_GT(farthest(back.route, kAround), 0);
+      EXPECT_TRUE(judge(back.route, scene.mission.request, {}).ok());
+      ++written;
+    }
+  }
+  EXPECT_EQ(written, 15);  // 6 formats by 3, without GPX above ground, GPX and KML above home
+}
+
+TEST(Export, HeightsOfAPlanAreInTheFrameThatItNames) {
+  const Scene scene;
+  for (const auto& [frame, numbers] : {std::pair(AltitudeFrame::sea, std::array{0, 2, 310}),
+                                       std::pair(AltitudeFrame::ground, std::array{10, 4, 190}),
+                                       std::pair(AltitudeFrame::home, std::array{3, 1, 190})}) {
+    const Json plan = Json::parse(*exported(scene, options_of(Format::qgc_plan, frame)).text);
+    const Json& item = plan.at("mission").at("items").at(1);
+    EXPECT_EQ(item.at("frame"), numbers[0]);
+    EXPECT_EQ(item.at("AltitudeMode"), numbers[1]);
+    EXPECT_EQ(item.at("Altitude"), numbers[2] + 0.123);
+    EXPECT_EQ(item.at("params").at(6), item.at("Altitude"));
+    EXPECT_EQ(plan.at("mission").at("plannedHomePosition").at(2), 120);
+  }
+}
+
+TEST(Export, MoreDecimalsWhereFewerBreakTheRoute) {
+  Scene scene;
+  scene.mission.request.goal.tolerance_m = 0;
+  const Exported result = exported(scene, options_of(Format::kml));
+  ASSERT_TRUE(result.text.has_value());
+  EXPECT_TRUE(says(result, "sound with 13 decimals of a degree and 8 of a metre (fewer break: "));
+}
+
+TEST(Export, WritesNothingThatIsNotSound) {
+  const Scene scene;
+  const Route through{{50, 50, 300}, {500, 500, 300}, {950, 950, 300}};
+  const Exported result = exported(scene, options_of(Format::qgc_plan), through);
+  EXPECT_FALSE(result.text.has_value());
+  EXPECT_TRUE(says(result, "not written: the route is not sound: point 0, clearance"));
+}
+
+TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
+  const Scene scene;
+  const Exported result = exported(scene, options_of(Format::qgc_plan));
+  EXPECT_TRUE(says(result, "zone 'site' (ceiling 400 m) stands in the fence at every height"));
+  EXPECT_TRUE(says(result, "zone 'yard' stands in the fence without its holes"));
+  const kit::MissionFile plan = kit::read_mission("r.plan", *result.text);
+  ASSERT_EQ(plan.zones.size(), 3U);
+  EXPECT_EQ(std::count_if(plan.zones.begin(), plan.zones.end(),
+                          [](const MissionZone& zone) { return zone.keep_in; }),
+            1);
+  const MissionZone& circle = plan.zones.back();  // circles stand after polygons
+  EXPECT_EQ(circle.radius_m, 100);
+  const auto centre = scene.mission.truth.frame().to_local(circle.centre[0], circle.centre[1]);
+  EXPECT_NEAR(centre[0], 500, 0.01);
+  EXPECT_NEAR(centre[1], 500, 0.01);
+}
+
+// A fence without heights would stop a vehicle that flies over the zone, as it was planned to.
+TEST(Export, AZoneThatTheRouteFliesOverStaysOutOfTheFence) {
+  const Route over{{50, 50, 500}, {950, 950, 500}};
+  const Scene scene(over);
+  const Exported result = exported(scene, options_of(Format::qgc_plan), over);
+  ASSERT_TRUE(result.text.has_value());
+  EXPECT_TRUE(says(result,
+                   "zone 'site' is left out of the fence: the route passes beyond its "
+                   "ceiling 400 m"));
+  EXPECT_EQ(kit::read_mission("r.plan", *result.text).zones.size(), 2U);
+}
+
+TEST(Export, KmlAndItsReaderKeepLimitsRolesAndHoles) {
+  const Scene scene;
+  const Exported result = exported(scene, options_of(Format::kml));
+  const kit::MissionFile map = kit::read_mission("r.kml", *result.text);
+  ASSERT_EQ(map.zones.size(), 3U);
+  EXPECT_EQ(map.zones[0].name, "site");
+  EXPECT_EQ(map.zones[0].ceiling_m, 400);
+  EXPECT_EQ(map.zones[0].polygon.outline.size(), 64U);
+  EXPECT_EQ(map.zones[1].polygon.holes.size(), 1U);
+  EXPECT_TRUE(map.zones[2].keep_in);
+}
+
+TEST(Export, FormatsWithoutAPlaceForZonesSaySo) {
+  const Scene scene;
+  for (const Format format : {Format::waypoints, Format::gpx}) {
+    EXPECT_TRUE(says(exported(scene, options_of(format)), "3 zones are not written"));
+  }
+}
+
+TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
+  const Scene scene;
+  for (const auto frame : {AltitudeFrame::sea, AltitudeFrame::ground, AltitudeFrame::home}) {
+    for (const auto& [format, file] :
+         {std::pair(Format::qgc_plan, "r.plan"), std::pair(Format::waypoints, "r.waypoints")}) {
+      ExportOptions options = options_of(format, frame);
+      options.takeoff = options.land = true;
+      const Exported result = exported(scene, options);
+      ASSERT_TRUE(result.text.has_value());
+      const kit::MissionFile read = kit::read_mission(file, *result.text);
+      ASSERT_EQ(read.items.size(), kAround.size() + 1);
+      EXPECT_EQ(read.items.front().kind, MissionItem::Kind::takeoff);
+      EXPECT_EQ(read.items.back().kind, MissionItem::Kind::land);
+      EXPECT_EQ(read.items.back().at.altitude_m, frame == AltitudeFrame::sea ? 120 : 0);
+      EXPECT_EQ(read.items.back().at.lat, read.items[kAround.size() - 1].at.lat);
+      EXPECT_EQ(
+          read_foreign_route(file, *result.text, scene.mission.truth, kAround.front()).route.size(),
+          kAround.size());
+    }
+  }
+}
+
+TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
+  Route dense;
+  for (std::size_t n = 0; n + 1 < kAround.size(); ++n) {
+    for (int k = 0; k < 10; ++k) {
+      dense.push_back(kAround[n] + (kAround[n + 1] - kAround[n]) * (k / 10.0));
+    }
+  }
+  dense.push_back(kAround.back());
+  const Scene scene(dense);
+  ExportOptions options = options_of(Format::waypoints);
+  options.max_items = 6;
+  const Exported six = exported(scene, options, dense);
+  ASSERT_TRUE(six.text.has_value());
+  EXPECT_TRUE(says(six, "35 of 41 points dropped"));
+  EXPECT_EQ(kit::read_mission("r.waypoints", *six.text).items.size(), 6U);
+  options.land = true;
+  EXPECT_EQ(kit::read_mission("r.waypoints", *exported(scene, options, dense).text).items.size(),
+            6U);
+  options.land = false;
+  options.max_items = 2;  // straight through the site
+  const Exported two = exported(scene, options, dense);
+  EXPECT_FALSE(two.text.has_value());
+  EXPECT_TRUE(says(two, "not written: the route needs 3 items to stay sound"));
+}
+
+TEST(Export, ThinningKeepsEndsAndViaPoints) {
+  const Scene scene(kAround, true, nullptr);
+  const std::vector<Goal> via{{kAround[2], 0.5}};
+  EXPECT_EQ(thinned(kAround, 2, scene.mission.request, {}), (std::vector<std::size_t>{0, 4}));
+  EXPECT_EQ(thinned(kAround, 2, scene.mission.request, via), (std::vector<std::size_t>{0, 2, 4}));
+  EXPECT_EQ(thinned(kAround, 9, scene.mission.request, {}).size(), kAround.size());
+}
+
+TEST(Export, AFlightIsJudgedAsATrackWithItsTimes) {
+  Scene scene;
+  scene.mission.track_request.vehicle.speed_mps = 20;
+  ExportSource source{"flight", kAround, {0, 40, 60, 80, 120}, {}};
+  const Exported csv = export_route(scene.mission, source, options_of(std::nullopt));
+  ASSERT_TRUE(csv.text.has_value());
+  EXPECT_TRUE(csv.text->starts_with("time_s,x_m,y_m,z_m,longitude_deg,latitude_deg,altitude_m,"));
+  source.times = {0, 4, 6, 8, 12};
+  const Exported fast = export_route(scene.mission, source, options_of(std::nullopt));
+  EXPECT_FALSE(fast.text.has_value());
+  EXPECT_TRUE(says(fast, "speed"));
+}
+
+TEST(Export, SaysWhatTheWorldLacks) {
+  const Scene nowhere(kAround, false, nullptr);
+  EXPECT_THROW(exported(nowhere, options_of(Format::kml)), Error);
+  const Exported csv = exported(nowhere, options_of(std::nullopt, AltitudeFrame::home));
+  ASSERT_TRUE(csv.text.has_value());
+  EXPECT_TRUE(csv.text->starts_with("x_m,y_m,z_m,altitude_m,altitude_frame\n50,50,300,180,home\n"));
+  Scene groundless(kAround, true, nullptr);
+  groundless.mission.truth = groundless.mission.truth.without("ground");
+  EXPECT_THROW(exported(groundless, options_of(Format::kml, AltitudeFrame::ground)), Error);
+  ExportOptions land = options_of(Format::qgc_plan);
+  land.land = true;
+  EXPECT_THROW(exported(groundless, land), Error);
+  // Home is at the start's height where no ground is known.
+  EXPECT_TRUE(says(exported(groundless, options_of(Format::qgc_plan, AltitudeFrame::home)),
+                   "relative to home, which is 300 m"));
+}
+
+TEST(Export, OptionsThatDoNotGoTogether) {
+  EXPECT_EQ(options_of(Format::qgc_plan, AltitudeFrame::home).problem(), "");
+  EXPECT_NE(options_of(Format::gpx, AltitudeFrame::ground).problem(), "");
+  EXPECT_NE(options_of(Format::kml, AltitudeFrame::home).problem(), "");
+  for (const auto format : {Format::kml, Format::gpx, Format::geojson}) {
+    ExportOptions options = options_of(format);
+    options.takeoff = true;
+    EXPECT_NE(options.problem(), "");
+  }
+}
+
+TEST(ForeignRoute, FramesAreResolvedInTheWorld) {
+  const Scene scene;
+  const World& world = scene.mission.truth;
+  const std::optional<kit::MissionPoint> home = kit::MissionPoint{-84.3, 36.5, 55};
+  EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::sea}, home, world).z(), 7);
+  EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::ground}, home, world).z(), 127);
+  EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::home}, home, world).z(), 62);
+  EXPECT_THROW(to_local({-84.3, 36.5, 7, AltitudeFrame::home}, {}, world), Error);
+  EXPECT_THROW(to_local({-84.3, 36.5, 7, AltitudeFrame::ground}, home, World()), Error);
+}
+
+TEST(ForeignRoute, RefusesTablesWithTheLine) {
+  const auto refusal = [](const std::string& text) {
+    try {
+      read_foreign_route("r.csv", text, World(), {0, 0, 0});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string head = "z_m,x_m,y_m,note\n";
+  EXPECT_EQ(refusal(head + "3,1,2,a\r\n\r\n4,1,2,b\r\n"), "");
+  const std::pair<std::string, const char*> damaged[] = {
+      {"", "r.csv: there is no route in it"},
+      {head, "r.csv: there is no route in it"},
+      {"x_m,y_m\n1,2\n", "r.csv:1: expected a first line that names the columns x_m, y_m and z_m"},
+      {head + "1,2,3\n", "r.csv:2: expected 4 columns, found 3"},
+      {head + "1,2,3,a\n1,2,b,a\n", "r.csv:3: expected a number of metres, found 'b'"},
+      {head + "1,nan,3,a\n", "r.csv:2: expected a number of metres, found 'nan'"},
+      {head + "1,1e999,3,a\n", "r.csv:2: expected a number of metres"},
+      {head + "1,,3,a\n", "r.csv:2: expected a number of metres, found ''"},
+      {std::string("\0\0\n", 3), "r.csv:1: expected a first line"}};
+  for (const auto& [text, words] : damaged) {
+    EXPECT_NE(refusal(text).find(words), std::string::npos) << refusal(text);
+  }
+}
+}  // namespace
+}  // namespace altiplan::host

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/measures.hpp"
+#include "host/run/events.hpp"
+#include "scene_files.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using testing::numbers;
+constexpr const char* kTold = "steps: [{plan: told}]\n";
+constexpr const char* kPast =
+    "steps: [{plan: told, with: {does: past, past_m: [500, 600, 550]}}]\n";
+constexpr const char* kFlown = "steps: [{plan: told}, {fly: route}]\n";
+
+class SceneResult : public testing::SceneFiles {
+ protected:
+  /// The stored result, changed.
+  void edit(const std::string& name, const std::function<void(Json&)>& change) const {
+    Json json = read_json((folder_ / name).string(), "");
+    change(json);
+    write(name, file_text(json));
+  }
+  Json shown(const std::string& name = "result.json") const {
+    return scene_of({(folder_ / name).string()}).json.at("results").at(0);
+  }
+};
+
+TEST_F(SceneResult, TheProfileIsThatOfTheRoute) {
+  scenario(
+      "environment: [{sphere: {at_m: [500, 700, 500], radius_m: 50}}]\n"
+      "vehicle: {radius_m: 2, speed_mps: 30, speed_near: [{within_m: 60, speed_mps: 10}]}\n");
+  result(kPast);
+  const Json got = shown();
+  const Route route{{100, 500, 500}, {500, 600, 550}, {900, 500, 500}};
+  EXPECT_EQ(got.at("route"), to_json(route));
+  const Json& profile = got.at("profile");
+  const std::size_t samples = profile.at("s").size();
+  EXPECT_LE(samples, 2000U);
+  EXPECT_GT(samples, 1900U);
+  const Mission made = mission();
+  const Measures measures = measure(route, made.request);
+  std::size_t waypoint = 0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const Json& at = profile.at("at")[i];
+    const Vec3 p(at[0].get<double>(), at[1].get<double>(), at[2].get<double>());
+    const double clearance = made.known.clearance(p);
+    EXPECT_NEAR(profile.at("clearance")[i].get<double>(), clearance, 3e-3);
+    EXPECT_EQ(profile.at("altitude")[i], at[2]);
+    EXPECT_TRUE(profile.at("ground")[i].is_null());
+    if (std::abs(clearance - 60) > 0.01) {
+      EXPECT_EQ(profile.at("speed")[i], clearance < 60 ? 10 : 30);
+    }
+    if (waypoint < 3 && (p - route[waypoint]).norm() < 1e-9) {
+      ++waypoint;
+    }
+    EXPECT_EQ(profile.at("turn")[i].is_null(), p != route[1]);
+  }
+  EXPECT_EQ(waypoint, 3U) << "every waypoint is a sample";
+  EXPECT_NEAR(profile.at("s").back().get<double>(), length(route), 1e-3);
+  const Json& turns = profile.at("turn");
+  const auto turn =
+      std::find_if(turns.begin(), turns.end(), [](const Json& t) { return !t.is_null(); });
+  EXPECT_NEAR(turn->get<double>(), measures.max_turn_deg.value(), 1e-3);
+}
+
+TEST_F(SceneResult, LimitsAreThoseOfTheRun) {
+  result(kTold +
+         std::string("constraints: [{turn_angle: {max_deg: 60}}, {clearance: {min_m: 5}}]\n"));
+  EXPECT_EQ(shown().at("limits"), Json::parse(R"({"clearance_m": 5.0, "ground_clearance_m": null,
+    "turn_deg": 60.0, "climb_deg": null})"));
+}
+
+TEST_F(SceneResult, AResultWithoutARouteShowsItsWorldAndWhy) {
+  scenario("environment: [{box: {min_m: [400, 0, 0], max_m: [500, 1000, 1000]}}]\n");
+  const Json all = scene(kTold);
+  const Json& got = all.at("results").at(0);
+  EXPECT_EQ(all.at("solids").size(), 1U);
+  EXPECT_EQ(got.at("status"), "rejected");
+  EXPECT_NE(got.at("message"), "");
+  EXPECT_TRUE(got.at("route").is_null());
+  EXPECT_TRUE(got.at("profile").is_null());
+  EXPECT_TRUE(got.at("flight").is_null());
+  EXPECT_EQ(got.at("steps").at(0).at("route").size(), 2U) << "what was rejected";
+  EXPECT_EQ(got.at("steps").at(0).at("check").at("ok"), false);
+}
+
+TEST_F(SceneResult, EventsHappenAtTheFirstPointAtOrAfter) {
+  scenario(R"(vehicle: {speed_mps: 10}
+moving:
+  - sphere: {at_m: [500, 400, 500], radius_m: 10, velocity_mps: [0, 1, 0]}
+    known: false
+events:
+  - {at_s: 20.5, id: late, add: {sphere: {at_m: [500, 900, 500], radius_m: 20}}}
+  - {at_s: 500, remove: late}
+  - {when_near: {at_m: [600, 500, 500], within_m: 100}, move_goal: {at_m: [900, 500, 500]}}
+)");
+  result(kFlown);
+  const Json flight = shown().at("flight");
+  ASSERT_EQ(flight.at("event_times").size(), 3U);
+  const Json& track = flight.at("track");
+  const auto first = [&](const auto& fits) {
+    return (*std::find_if(track.begin(), track.end(), fits))[0];
+  };
+  EXPECT_EQ(flight.at("event_times")[0], first([](const Json& p) { return p[0] >= 20.5; }));
+  EXPECT_TRUE(flight.at("event_times")[1].is_null()) << "the flight had ended";
+  EXPECT_EQ(flight.at("event_times")[2], first([](const Json& p) { return p[1] >= 500; }));
+
+  const Json& profile = flight.at("profile");
+  ASSERT_EQ(profile.at("t").size(), track.size());
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const double t = track[i][0];
+    const Vec3 p(track[i][1].get<double>(), track[i][2].get<double>(), track[i][3].get<double>());
+    double clearance = (p - Vec3(500, 400 + t, 500)).norm() - 10;
+    if (t >= flight.at("event_times")[0].get<double>()) {
+      clearance = std::min(clearance, (p - Vec3(500, 900, 500)).norm() - 20);
+    }
+    EXPECT_NEAR(profile.at("clearance")[i].get<double>(), clearance, 3e-3) << t;
+    EXPECT_NEAR(profile.at("s")[i].get<double>(), p.x() - 100, 2e-3);
+    EXPECT_NEAR(profile.at("speed")[i].get<double>(), 10, 0.05);
+  }
+}
+
+TEST_F(SceneResult, ALongTrackIsThinnedAndKeepsWhatHappens) {
+  result(kFlown);
+  edit("result.json", [](Json& json) {
+    Json track = Json::array();
+    for (int i = 0; i <= 60'000; ++i) {  // to the east, and at 41,003 to the north
+      track.push_back(
+          {i * 0.01, 100 + std::min(i, 41'003) * 0.01, 500 + std::max(0, i - 41'003) * 0.01, 500});
+    }
+    json["flight"]["track"] = track;
+    json["flight"]["handovers"] = {{{"at_s", 123.45}, {"to", "route"}, {"why", "so"}}};
+    json["flight"]["check"]["violations"] = {
+        {{"constraint", "speed"}, {"at", 41'003}, {"value", 1}, {"limit", 0}, {"message", "m"}}};
+  });
+  const Json all = scene_of({(folder_ / "result.json").string()}).json;
+  const Json& flight = all.at("results").at(0).at("flight");
+  const Json& track = flight.at("track");
+  EXPECT_LE(track.size(), 20'000U);
+  EXPECT_GT(track.size(), 10'000U);
+  EXPECT_EQ(track.front()[0], 0);
+  EXPECT_EQ(track.back()[0], 600);
+  const auto has = [&](double t) {
+    return std::any_of(track.begin(), track.end(), [&](const Json& p) { return p[0] == t; });
+  };
+  EXPECT_TRUE(has(123.45)) << "a handover";
+  EXPECT_TRUE(has(410.03)) << "a turn";
+  EXPECT_EQ(track.at(flight.at("check").at("violations")[0].at("at").get<std::size_t>())[0], 410.03)
+      << "a violation's point is counted in the thinned track";
+  EXPECT_LE(flight.at("profile").at("t").size(), 2000U);
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    ASSERT_LE(track[i][0].get<double>() - track[i - 1][0].get<double>(), 0.1) << "evenly, too";
+  }
+  ASSERT_EQ(all.at("notes").size(), 1U);
+  EXPECT_HAS(all.at("notes")[0].get<std::string>(), " of its 60001 points");
+}
+
+TEST_F(SceneResult, ManyViolationsAreCut) {
+  result(kTold);
+  edit("result.json", [](Json& json) {
+    json["check"]["violations"] = Json::array();
+    for (int i = 0; i < 1500; ++i) {
+      json["check"]["violations"].push_back({{"at", 0}, {"constraint", "c"}, {"message", "m"}});
+    }
+  });
+  EXPECT_EQ(shown().at("check").at("violations").size(), 1000U);
+}
+
+TEST_F(SceneResult, SeveralResultsOfOneWorld) {
+  scenario("environment: [{sphere: {at_m: [500, 900, 100], radius_m: 20}}]\n");
+  const std::string a = result(kTold, "a.json");
+  const std::string b = result(kPast, "b.json");
+  std::filesystem::create_directories(folder_ / "other");
+  const std::string c = result(kTold, "other/a.json");
+  const Json both = scene_of({a, b}).json;
+  EXPECT_EQ(both.at("solids").size(), 1U);
+  EXPECT_EQ(both.at("results")[0].at("name"), "a");
+  EXPECT_EQ(both.at("results")[1].at("name"), "b");
+  EXPECT_EQ(both.at("results")[1].at("route").size(), 3U);
+  EXPECT_EQ(scene_of({a, c}).json.at("results")[1].at("name"), c) << "names that tell them apart";
+}
+
+TEST_F(SceneResult, ResultsOfDifferentWorldsAreRefused) {
+  const std::string a = result(kTold, "a.json");
+  overrides_.set = {"scenario.vehicle.radius_m=3"};
+  const std::string b = result(kTold, "b.json");
+  EXPECT_EQ(scene_refusal({a, b}),
+            "'a.json' and 'b.json' are of different worlds: s.yaml, and s.yaml --set "
+            "scenario.vehicle.radius_m=3");
+  overrides_.set.clear();
+  overrides_.seed = 5;
+  const std::string c = result(kTold, "c.json");
+  EXPECT_EQ(scene_refusal({a, c}), "") << "nothing in this world follows the seed";
+  scenario("moving: [{random: {count: 3, radius_m: 4, speed_mps: 7}, id: bird}]\n");
+  const std::string d = result(kTold, "d.json");
+  overrides_.seed = 6;
+  const std::string e = result(kTold, "e.json");
+  EXPECT_EQ(scene_refusal({d, d}), "");
+  EXPECT_HAS(scene_refusal({d, e}),
+             "'d.json' and 'e.json' are of different worlds: with the seed "
+             "5, and with the seed 6, which");
+}
+
+TEST_F(SceneResult, ChangedFilesAreNamed) {
+  const std::string file = result(kTold);
+  scenario("environment: [{sphere: {at_m: [500, 900, 100], radius_m: 20}}]\n");
+  const Scene changed = scene_of({file});
+  ASSERT_EQ(changed.warnings.size(), 1U);
+  EXPECT_EQ(without_folder(changed.warnings[0]),
+            "s.yaml is not the file that result.json was made from");
+  EXPECT_EQ(changed.json.at("notes").size(), 1U);
+}
+
+class SceneTrace : public SceneResult {
+ protected:
+  /// The trace of a step with two iterations and `count` nodes, each the child of the one before.
+  void traced(int count) const {
+    std::string text = "{\"altiplan_trace\": 1}\n";
+    for (int i = 0; i < count; ++i) {
+      text += event("added", i, i - 1, i);
+      if (i == 1 || i == count - 1) {
+        text += event("iteration", -1, -1, 0);
+      }
+    }
+    write("t.jsonl", text);
+    result(kTold);
+    edit("result.json", [&](Json& json) { json["trace"] = (folder_ / "t.jsonl").string(); });
+  }
+  static std::string event(const char* kind, int node, int parent, double x) {
+    return "{\"step\": \"told\", \"kind\": \"" + std::string(kind) +
+           "\", \"node\": " + std::to_string(node) + ", \"parent\": " + std::to_string(parent) +
+           ", \"at\": [" + std::to_string(x) + ", 2, 3], \"value\": 7.5}\n";
+  }
+};
+
+TEST_F(SceneTrace, EventsAndTheirParents) {
+  traced(3);
+  const Json trace = shown().at("trace");
+  EXPECT_EQ(trace.at("events"), 5);
+  EXPECT_EQ(trace.at("kept"), 5);
+  EXPECT_EQ(trace.at("steps"), Json{"told"});
+  EXPECT_EQ(numbers<std::uint8_t>(trace.at("kind")), (std::vector<std::uint8_t>{1, 1, 4, 1, 4}));
+  const auto at = numbers<float>(trace.at("at"));
+  const auto parent = numbers<float>(trace.at("parent"));
+  EXPECT_EQ(at[9], 2);
+  EXPECT_EQ(parent[9], 1);
+  EXPECT_EQ(parent[0], at[0]) << "a root is its own parent";
+  EXPECT_EQ(numbers<float>(trace.at("value")).at(3), 7.5);
+}
+
+TEST_F(SceneTrace, ManyEventsAreThinnedEvenly) {
+  traced(250'001);
+  const Json trace = shown().at("trace");
+  EXPECT_EQ(trace.at("events"), 250'003);
+  const auto kind = numbers<std::uint8_t>(trace.at("kind"));
+  const auto at = numbers<float>(trace.at("at"));
+  EXPECT_EQ(trace.at("kept"), kind.size());
+  EXPECT_EQ(std::count(kind.begin(), kind.end(), 4), 2) << "no iteration is lost";
+  float expected = 0;
+  for (std::size_t i = 0; i < kind.size(); ++i) {
+    if (kind[i] != 4) {
+      ASSERT_EQ(at[3 * i], expected);
+      expected += 2;
+    }
+  }
+  EXPECT_EQ(expected, 250'002);
+}
+
+TEST_F(SceneTrace, WhatIsNoTraceIsSaid) {
+  traced(3);
+  const auto warning = [&] {
+    const Scene got = scene_of({(folder_ / "result.json").string()});
+    EXPECT_EQ(got.warnings.size(), 1U);
+    return without_folder(got.warnings.at(0));
+  };
+  const std::string begin = "{\"altiplan_trace\": 1}\n" + event("added", 0, -1, 1);
+  for (const char* wrong :
+       {"{\"step\": \"told\", \"ki", "7", "{}", "{\"step\": 1, \"kind\": \"added\"}",
+        "{\"step\": \"told\", \"kind\": \"grown\"}"}) {
+    write("t.jsonl", begin + wrong);
+    EXPECT_EQ(warning(), "t.jsonl:3: this is not an event of a search: it is shown up to here");
+    EXPECT_EQ(shown().at("trace").at("events"), 1);
+  }
+  for (const char* wrong : {"", "{}\n", "[1]\n", "{\"altiplan_trace\": 2}\n"}) {
+    write("t.jsonl", wrong);
+    EXPECT_EQ(warning(), "t.jsonl:1: expected a trace of altiplan run: the search is not shown");
+    EXPECT_TRUE(shown().at("trace").is_null());
+  }
+  std::filesystem::remove(folder_ / "t.jsonl");
+  EXPECT_EQ(warning(), "t.jsonl: the trace is not there: the search is not shown");
+}
+}  // namespace
+}  // namespace altiplan::host

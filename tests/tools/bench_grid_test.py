@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""altiplan-bench grid: the lengths of published scenarios, and what it says of wrong files.
+
+python3 bench_grid_test.py PROGRAM SOURCES LIMIT_2D LIMIT_3D
+plans the first scenarios of each map in ALTIPLAN_TEST_DATA (default SOURCES/../shared/data); where it
+is absent only files made here are used.
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SOURCES, LIMIT_2D, LIMIT_3D = sys.argv[1:5]
+DATA = os.environ.get("ALTIPLAN_TEST_DATA", os.path.join(SOURCES, "..", "shared", "data"))
+
+MAP = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n"
+SCEN = "version 1\n0\ta.map\t4\t3\t0\t0\t3\t2\t{}\n"
+
+
+def bench(*arguments):
+    done = subprocess.run([PROGRAM, "grid", *arguments], capture_output=True, text=True,
+                          timeout=2000, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Made(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, name, text):
+        path = os.path.join(self.folder.name, name)
+        with open(path, "w", encoding="utf-8") as out:
+            out.write(text)
+        return path
+
+    def figures(self, scen, *more):
+        code, out, err = bench(self.file("a.map", MAP), self.file("a.scen", scen), "--json", *more)
+        self.assertEqual((code, err), (0, ""))
+        return json.loads(out)
+
+    def test_a_length_that_is_right_matches(self):
+        figures = self.figures(SCEN.format(5))
+        self.assertEqual((figures["scenarios"], figures["matched"], figures["unsound"]), (1, 1, 0))
+        self.assertLess(figures["worst_error"], 1e-12)
+
+    def test_a_length_that_is_wrong_does_not(self):
+        figures = self.figures(SCEN.format("5.002"))
+        self.assertEqual(figures["matched"], 0)
+        self.assertAlmostEqual(figures["worst_error"], 0.002)
+
+    def test_two_decimals_are_taken_as_rounded(self):
+        self.assertEqual(self.figures(SCEN.format("5.00"))["matched"], 1)
+        self.assertEqual(self.figures(SCEN.format("5.01"))["matched"], 0)
+
+    def test_corners_may_be_cut_when_told_so(self):
+        figures = self.figures(SCEN.format("4.41421"), "--corner", "any")
+        self.assertEqual(figures["matched"], 1)
+        self.assertEqual(self.figures(SCEN.format("4.41421"))["matched"], 0)
+
+    def test_the_limit_counts_scenarios(self):
+        line = SCEN.format(5).split("\n", 1)[1]
+        self.assertEqual(self.figures(SCEN.format(5) + 3 * line, "--limit", "2")["scenarios"], 2)
+
+    def test_wrong_files_are_named_with_their_line(self):
+        good = self.file("a.map", MAP)
+        for text, why in [
+                ("", "there is no scenario in it"),
+                ("version 2\n", ":1: expected 'version 1'"),
+                ("version 1\n0 a 4 3 0 0 3\n", ":2: expected nine columns"),
+                ("version 1\n0 a 5 3 0 0 3 2 5\n", ":2: is for a map of 5 x 3 cells"),
+                ("version 1\n0 a 4 3 0 0 4 2 5\n", ":2: expected the goal within the map's 4"),
+                ("version 1\n0 a 4 3 0 -1 3 2 5\n", ":2: expected the start within"),
+                ("version 1\n0 a 4 3 0 0 3 2 nan\n", ":2: expected the length as a number"),
+                ("version 1\n0 a 4 3 0 0 3 1.5 5\n", ":2: expected the goal within"),
+        ]:
+            code, out, err = bench(good, self.file("b.scen", text))
+            self.assertEqual((code, out), (3, ""), text)
+            self.assertIn(why, err)
+        code, _, err = bench(good, self.file("b.txt", "version 1\n"))
+        self.assertEqual(code, 3)
+        self.assertIn("expected a .scen or a .3dscen file", err)
+        code, _, err = bench(self.file("a.png", ""), "b.scen")
+        self.assertEqual(code, 3)
+        self.assertIn("expected a .map or a .3dmap file", err)
+        code, _, err = bench("/nowhere.map", "b.scen")
+        self.assertEqual(code, 3)
+        self.assertIn("/nowhere.map", err)
+
+    def test_wrong_usage(self):
+        self.assertEqual(bench()[0], 2)
+        self.assertEqual(bench("a.map", "a.scen", "--limit", "0")[0], 2)
+        good = (self.file("a.map", MAP), self.file("a.scen", SCEN.format(5)))
+        code, _, err = bench(*good, "--planner", "astarr")
+        self.assertEqual(code, 3)
+        self.assertIn("astar", err)
+        code, _, err = bench(*good, "--corner", "round")
+        self.assertEqual(code, 3)
+        self.assertIn("free_box", err)
+
+
+@unittest.skipUnless(os.path.isdir(os.path.join(DATA, "grid2d")),
+                     "no test data: set ALTIPLAN_TEST_DATA")
+class Published(unittest.TestCase):
+    def hold(self, folder, suffix, scen, limit):
+        folder = os.path.join(DATA, folder)
+        for name in sorted(os.listdir(folder)):
+            if name.endswith(suffix):
+                path = os.path.join(folder, name)
+                with self.subTest(name):
+                    code, out, err = bench(path, path + scen, "--limit", limit, "--json")
+                    self.assertEqual((code, err), (0, ""))
+                    figures = json.loads(out)
+                    self.assertEqual(figures["matched"], figures["scenarios"], out)
+                    self.assertEqual(figures["unsound"], 0, out)
+
+    def test_grid_maps(self):
+        self.hold("grid2d", ".map", ".scen", LIMIT_2D)
+
+    def test_voxel_maps(self):
+        self.hold("voxel3d", ".3dmap", ".3dscen", LIMIT_3D)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""page_test.py: the page of `altiplan view` in headless Chromium, from a file, with no network.
+
+`/usr/bin/python3 page_test.py Page.test_time` runs one case; skipped without Chromium."""
+import copy
+import math
+import re
+import shutil
+import sys
+import unittest
+
+SKIPPED = 77
+try:
+    import selenium
+    MISSING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
+except ImportError as error:
+    MISSING = [str(error)]
+if MISSING:
+    print(f"skipped: needs Debian's chromium, chromium-driver and python3-selenium: {MISSING}")
+    sys.exit(SKIPPED)
+
+import scenes
+from both import Both
+from browser import NO_GL
+from case import TEMPLATE, Case
+from cut import Cut, CutIn3
+from signs import Signs
+
+
+class File(unittest.TestCase):
+    """The committed page as a text."""
+
+    def test_size(self):
+        self.assertLessEqual(len(TEMPLATE.encode()), 9e5)
+
+    def test_no_address_but_name_spaces(self):
+        found = set(re.findall(r"https?://[^\s\"'`)]*", TEMPLATE))
+        self.assertEqual([address for address in found
+                          if not address.startswith("http://www.w3.org/")], [])
+
+    def test_one_place_for_the_scene_and_all_licences(self):
+        self.assertEqual(TEMPLATE.count(scenes.PLACE), 1)
+        for holder in ("three.js authors", "Leon Sorokin", "Apache-2.0"):
+            self.assertIn(holder, TEMPLATE)
+
+
+class Page(Both, Cut, CutIn3, Signs, Case):
+    def test_camera_of_the_still(self):
+        self.run_js("altiplan.still()")
+        eye = self.run_js("return altiplan.camera()")
+        away = [p - t for p, t in zip(eye["position"], eye["target"])]
+        pitch = math.degrees(math.asin(away[2] / math.hypot(*away)))
+        self.assertAlmostEqual(pitch, 35, delta=0.01)
+        self.assertAlmostEqual(math.degrees(math.atan2(away[0], away[1])), -135, delta=0.01)
+
+    def test_far_from_the_origin(self):
+        """100 km around a place 4,000 km off, heights stretched: still right to a centimetre."""
+        low = [4_000_000.0, 5_500_000.0, 0.0]
+        box = [low, [low[0] + 1e5, low[1] + 1e5, 3000.0]]
+        scene = scenes.empty(box)
+        route = [[low[0] + x, low[1] + y, z] for x, y, z in (
+            (0.123, 0.456, 10.01), (33333.337, 77777.771, 999.99), (99999.876, 99999.543, 2999.99))]
+        scene["results"] = [scenes.result("far", route, [])]
+        self.open(scene, "?z=5")
+        self.assert_all_lines(scene)
+
+    def test_ground_corners_and_holes(self):
+        scene = scenes.empty([[0.0, 0.0, 0.0], [5000.0, 4000.0, 1500.0]])
+        scene["ground"] = scenes.ground(51, 41, scene["box"], hole=(20, 10))
+        self.open(scene)
+        drawn = self.drawn()["ground"]
+        expected = [[x, y, scenes.hills(x / 1000, y / 1000)] for y in (0, 4000) for x in (0, 5000)]
+        self.assert_points(drawn["corners"], expected)
+        # The four cells around the missing post.
+        self.assertEqual(drawn["cells"], 50 * 40 - 4)
+
+    def test_the_route_is_seen(self):
+        self.click("[data-line='0.flight']")
+        route = self.scene["results"][1]["route"]
+        middle = [(a + b) / 2 for a, b in zip(route[0], route[1])]
+        place = self.run_js("return altiplan.project(arguments[0])", middle)
+        left, top = self.run_js("const r = document.getElementById('stage')"
+                                ".getBoundingClientRect(); return [r.left, r.top]")
+        color = self.pixel(left + place["x"], top + place["y"])
+        self.assertLess(math.dist(color, [230, 159, 0]), 30)
+
+    def test_stretching_moves_the_picture_and_not_the_data(self):
+        before = self.mark("goal")
+        for _ in range(4):
+            self.press("]")
+        self.assertEqual(self.text(".slider output"), "3.0×")
+        self.assertGreater(math.dist(self.mark("goal"), before), 5)
+        top = self.run_js("return altiplan.project(arguments[0])", self.scene["box"][1])
+        self.assertGreaterEqual(top["y"], 0)
+        self.assert_all_lines(self.scene)
+
+    def test_views(self):
+        self.press("t")
+        eye = self.run_js("return altiplan.camera()")
+        away = [p - t for p, t in zip(eye["position"], eye["target"])]
+        self.assertGreater(away[2] / math.hypot(*away), 0.999)
+        self.press("r")
+        eye = self.run_js("return altiplan.camera()")
+        self.assertLess(eye["position"][0], eye["target"][0])
+
+    def test_dark_and_light(self):
+        sky = {}
+        for scheme in ("light", "dark"):
+            self.browser.scheme(scheme)
+            self.browser.settle()
+            sky[scheme] = sum(self.pixel(1100, 60))
+        self.assertLess(sky["dark"], 200)
+        self.assertGreater(sky["light"], 600)
+        self.click("#do_theme")
+        self.assertGreater(sum(self.pixel(1100, 60)), 600)
+
+    def test_a_failed_result_shows_its_world_and_why(self):
+        scene = copy.deepcopy(self.scene)
+        scene["results"] = [scene["results"][2]]
+        self.open(scene)
+        self.assertEqual(self.drawn()["routes"], [])
+        self.assertEqual(self.drawn()["solids"], 67)
+        for place in ("#alert", "#side .message", ".pane.profiles"):
+            self.assertTrue(self.visible(place))
+            self.assertIn("the goal is closed in by wall", self.text(place))
+
+    def test_no_result_and_no_extent(self):
+        self.open(scenes.empty([[7, 7, 7], [7, 7, 7]]))
+        self.assertTrue(self.run_js("return altiplan.ready"))
+        self.assertEqual(self.drawn()["solids"], 0)
+
+    def test_names_are_text(self):
+        scene = copy.deepcopy(self.scene)
+        bad = "</script><img src=x onerror=\"altiplan.errors.push('ran')\"><b>$&"
+        scene["title"] = bad
+        scene["attribution"] = scene["notes"] = [bad]
+        scene["results"][0]["name"] = scene["results"][2]["message"] = bad
+        for solid in scene["solids"]:
+            solid["layer"] = solid["name"] = bad
+        self.open(scene)
+        self.assertEqual(self.text("#title"), bad)
+        self.assertEqual(self.run_js("return document.images.length"), 0)
+
+    def test_narrow_screen(self):
+        self.browser.size(400, 780)
+        self.open(self.scene)
+        wide = self.run_js("return document.documentElement.scrollWidth")
+        self.click("#menu")
+        opened = self.run_js("return document.body.classList.contains('side_open')")
+        self.browser.size(1280, 720)
+        self.assertEqual(wide, 400)
+        self.assertTrue(opened)
+
+    def test_what_is_no_scene(self):
+        short = scenes.ridge(20, 20)
+        short["ground"]["nx"] = 21
+        for page, sentence in (
+                (TEMPLATE, "This page holds no scene: make one with `altiplan view RESULT "
+                           "-o page.html`."),
+                (scenes.page(TEMPLATE, {"altiplan_scene": 2}),
+                 "This page reads scenes of version 1, found 2."),
+                (scenes.page(TEMPLATE, short),
+                 "The scene's heights hold 1600 bytes, expected 1680.")):
+            self.browser.open(page)
+            self.assertEqual(self.text("#alert"), sentence)
+            self.assertFalse(self.run_js("return altiplan.ready"))
+            self.expected = [sentence]
+
+    def test_many_boxes(self):
+        scene = scenes.empty([[0, 0, 0], [1000, 1000, 400]])
+        places = [(x * 5, y * 5, z * 40) for x in range(200) for y in range(100) for z in range(10)]
+        scene["boxes"] = [scenes.thing("obstacle", count=200_000, data=scenes.packed("f", [
+            value for x, y, z in places for value in (x, y, z, x + 3, y + 3, z + 3)]))]
+        self.open(scene)
+        self.assertEqual(self.drawn()["solids"], 200_000)
+
+    def test_a_million_posts_within_two_seconds(self):
+        """The best of three, on a machine that may do other things besides."""
+        page = scenes.page(TEMPLATE, scenes.ridge(1000, 1000))
+        times = []
+        while len(times) < 3 and min(times, default=math.inf) > 2000:
+            self.browser.open(page)
+            times.append(self.run_js("return altiplan.ready_ms"))
+        self.assertEqual(self.drawn()["ground"]["cells"], 999 * 999)
+        print(f"1,000 × 1,000 posts: first full frame after {min(times):.0f} ms", file=sys.stderr)
+        self.assertLessEqual(min(times), 2000)
+
+
+class Flat(Both, Cut, Signs, Case):
+    """Without WebGL: the same from above."""
+    graphics = NO_GL
+    view = "2d"
+
+    def test_it_says_so(self):
+        note = self.run_js("return document.getElementById('readout').dataset.note")
+        self.assertEqual(note, "2-D: this browser has no WebGL")
+
+    def test_north_is_up(self):
+        start, goal = self.mark("start"), self.mark("goal")
+        self.assertLess(goal[1], start[1])
+        self.assertGreater(goal[0], start[0])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <map>
+
+#include "commands.hpp"
+#include "host/output/export.hpp"
+#include "host/output/stored_result.hpp"
+#include "host/run/events.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using Format = kit::MissionFile::Format;
+
+struct Arguments {
+  std::string result;
+  std::string to;
+  std::string altitude = "sea";
+  std::optional<std::string> out;
+  bool flight = false;
+  host::ExportOptions options;
+  host::Overrides overrides;
+};
+
+const std::map<std::string, std::optional<Format>>& formats() {
+  static const std::map<std::string, std::optional<Format>> all{
+      {"qgc-plan", Format::qgc_plan}, {"waypoints", Format::waypoints},
+      {"kml", Format::kml},           {"geojson", Format::geojson},
+      {"gpx", Format::gpx},           {"csv", std::nullopt}};
+  return all;
+}
+
+const std::map<std::string, kit::AltitudeFrame>& altitudes() {
+  static const std::map<std::string, kit::AltitudeFrame> all{{"sea", kit::AltitudeFrame::sea},
+                                                             {"ground", kit::AltitudeFrame::ground},
+                                                             {"home", kit::AltitudeFrame::home}};
+  return all;
+}
+
+void say(const std::string& message) {
+  if (log_level() != LogLevel::quiet) {
+    std::cerr << "altiplan: " << message << '\n';
+  }
+}
+
+/// The standing route, or the track that was flown; none where the result has not got it.
+std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bool flight) {
+  host::ExportSource source;
+  if (flight) {
+    if (!stored.track) {
+      return std::nullopt;
+    }
+    for (const auto& [time, place] : *stored.track) {
+      source.times.push_back(time);
+      source.route.push_back(place);
+    }
+    return source;
+  }
+  if (!stored.route) {
+    return std::nullopt;
+  }
+  source.route = *stored.route;
+  return source;
+}
+
+int export_result(const Arguments& arguments) {
+  const host::StoredResult stored = host::read_result(arguments.result, arguments.overrides);
+  for (const std::string& changed : stored.changed) {
+    warn(changed + " is not the file that the result was made from");
+  }
+  std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
+  if (!source) {
+    say("there is no " + std::string(arguments.flight ? "flight" : "standing route") + " in " +
+        stored.file);
+    return kNoRoute;
+  }
+  const host::Config config = host::load_config(stored.pipeline, stored.overrides);
+  const host::Mission mission = host::build_mission(config, 1);
+  source->name =
+      config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
+  if (arguments.flight) {
+    source->events = host::build_events(config, mission);
+  }
+  const host::Exported exported = host::export_route(mission, *source, arguments.options);
+  for (const std::string& message : exported.messages) {
+    say(message);
+  }
+  if (!exported.text) {
+    return kNoRoute;
+  }
+  if (arguments.out) {
+    host::write_file(*arguments.out, *exported.text);
+  } else {
+    std::cout << *exported.text;
+  }
+  return kDone;
+}
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("export", "write a result's route for ground stations and maps");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("result", arguments->result, "a result of altiplan run")->required();
+  command->add_option("--to", arguments->to, "qgc-plan, waypoints, kml, geojson, gpx or csv")
+      ->required()
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
+  command->add_option("-o,--out", arguments->out, "file to write; left out: stdout")
+      ->type_name("FILE");
+  command
+      ->add_option("--altitude", arguments->altitude,
+                   "what heights are counted from: sea, ground or home")
+      ->type_name("FROM")
+      ->check(CLI::IsMember({"sea", "ground", "home"}));
+  command->add_flag("--flight", arguments->flight, "the flown track in place of the route");
+  command->add_flag("--takeoff", arguments->options.takeoff, "the first item is a take-off");
+  command->add_flag("--land", arguments->options.land,
+                    "a landing below the last point ends the mission");
+  command
+      ->add_option("--max-items", arguments->options.max_items,
+                   "at most so many items; points go while the route stays sound")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1'000'000));
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command, "altiplan export result.json --to qgc-plan --takeoff --land -o ridge.plan");
+  command->callback([&action, arguments] {
+    arguments->options.format = formats().at(arguments->to);
+    arguments->options.altitude = altitudes().at(arguments->altitude);
+    if (const std::string problem = arguments->options.problem(); !problem.empty()) {
+      throw CLI::ValidationError(problem);
+    }
+    action = [arguments] { return export_result(*arguments); };
+  });
+}
+}  // namespace altiplan::cli

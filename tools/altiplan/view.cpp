@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "commands.hpp"
+#include "host/output/picture_svg.hpp"
+#include "host/output/scene.hpp"
+#include "host/output/screenshot.hpp"
+#include "host/output/viewer_page.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> results;
+  std::optional<std::string> page;
+  std::optional<std::string> png;
+  std::optional<std::string> svg;
+  std::optional<double> cut_m;
+  host::Overrides overrides;
+};
+
+/// Browsers take their time with more than that.
+constexpr double kLargePage = 64e6;
+
+std::string count(std::size_t n, const std::string& what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+/// What there is to see: "2 routes, 1 flight, ground 403 x 344".
+std::string contents(const host::Json& scene) {
+  std::size_t routes = 0;
+  std::size_t flights = 0;
+  for (const host::Json& result : scene.at("results")) {
+    routes += !result.at("route").is_null();
+    flights += !result.at("flight").is_null();
+  }
+  std::size_t solids = scene.at("solids").size() + scene.at("meshes").size();
+  for (const host::Json& boxes : scene.at("boxes")) {
+    solids += boxes.at("count").get<std::size_t>();
+  }
+  std::string text = count(routes, "route") + ", " + count(flights, "flight");
+  if (const host::Json& ground = scene.at("ground"); !ground.is_null()) {
+    text += ", ground " + ground.at("nx").dump() + " x " + ground.at("ny").dump();
+  }
+  text += ", " + count(solids, "solid");
+  if (const std::size_t moving = scene.at("moving").size(); moving > 0) {
+    text += ", " + std::to_string(moving) + " moving";
+  }
+  return text;
+}
+
+void say_written(const std::string& file, std::size_t bytes, const host::Json& scene) {
+  std::printf("%s: %s MB: %s\n", file.c_str(), fixed(double(bytes) / 1e6, 2).c_str(),
+              contents(scene).c_str());
+}
+
+void write(const std::string& file, const std::string& text, const host::Json& scene) {
+  host::write_file(file, text);
+  say_written(file, text.size(), scene);
+}
+
+/// Why there is no PNG of the page; "" where it has been written.
+std::string try_png(const Arguments& arguments, const std::string& page, const host::Json& scene) {
+  const auto chromium = host::find_chromium();
+  if (!chromium) {
+    return "no Chromium was found (ALTIPLAN_CHROMIUM may name one)";
+  }
+  std::string png;
+  try {
+    png = host::screenshot(
+        *chromium, page,
+        "?still&theme=light" +
+            (arguments.cut_m ? "&cut=" + fixed(arguments.cut_m, 3) : std::string()));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  write(*arguments.png, png, scene);
+  return "";
+}
+
+int view(const Arguments& arguments) {
+  expect_writable(arguments.page, "-o");
+  expect_writable(arguments.png, "--png");
+  expect_writable(arguments.svg, "--svg");
+  std::vector<host::StoredResult> results;
+  for (const std::string& file : arguments.results) {
+    results.push_back(host::read_result(file, arguments.overrides));
+  }
+  const host::Scene scene = host::build_scene(results);
+  for (const std::string& warning : scene.warnings) {
+    warn(warning);
+  }
+  const std::string page = host::viewer_page(scene.json);
+  if (arguments.page) {
+    write(*arguments.page, page, scene.json);
+    if (double(page.size()) > kLargePage) {
+      warn(*arguments.page + ": a browser will need long to open " +
+           fixed(double(page.size()) / 1e6, 0) + " MB");
+    }
+  }
+  if (arguments.svg) {
+    write(*arguments.svg, host::picture_svg(scene.json), scene.json);
+  }
+  if (arguments.png) {
+    if (const std::string why = try_png(arguments, page, scene.json); !why.empty()) {
+      const auto instead = std::filesystem::path(*arguments.png).replace_extension(".svg");
+      warn(why + ": the picture is an SVG from above, " + instead.string());
+      write(instead.string(), host::picture_svg(scene.json), scene.json);
+    }
+  }
+  return kDone;
+}
+}  // namespace
+
+void add_view(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("view", "show results: one page that needs no network");
+  auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("results", arguments->results,
+                   "results of altiplan run, all of one world: shown together")
+      ->required();
+  command->add_option("-o,--out", arguments->page, "the page (HTML)")->type_name("FILE");
+  auto* png =
+      command
+          ->add_option("--png", arguments->png,
+                       "a picture of the page, drawn by Chromium; without one an SVG from above")
+          ->type_name("FILE");
+  command
+      ->add_option("--cut", arguments->cut_m,
+                   "metres above sea level, above which the PNG leaves out all but the routes")
+      ->type_name("M")
+      ->check(CLI::Range(-1e6, 1e6))
+      ->needs(png);
+  command->add_option("--svg", arguments->svg, "a picture from above, with the routes' heights")
+      ->type_name("FILE");
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command, "altiplan view result.json -o page.html");
+  command->callback([&action, arguments] {
+    if (!arguments->page && !arguments->png && !arguments->svg) {
+      throw CLI::RequiredError("-o, --png or --svg");
+    }
+    action = [arguments] { return view(*arguments); };
+  });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenarios.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::bench {
+namespace {
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+/// A line's columns, read by number.
+class Row {
+ public:
+  Row(std::string where, std::vector<std::string> words)
+      : where_(std::move(where)), words_(std::move(words)) {}
+
+  std::size_t size() const { return words_.size(); }
+  const std::string& text(std::size_t column) const { return words_[column]; }
+  [[noreturn]] void refuse(const std::string& why) const { throw Error(where_ + ": " + why); }
+
+  double number(std::size_t column, const std::string& what) const {
+    const std::string& word = words_[column];
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
+      refuse("expected " + what + " as a number, found " + excerpt(word));
+    }
+    return value;
+  }
+
+  /// A cell whose indices begin at the column.
+  std::array<double, 3> cell(std::size_t column, const std::array<int, 3>& counts,
+                             const std::string& what) const {
+    std::array<double, 3> cell{0, 0, 0};
+    for (std::size_t axis = 0; axis < (counts[2] > 1 ? 3 : 2); ++axis) {
+      const double index = number(column + axis, what);
+      if (index != std::floor(index) || index < 0 || index >= counts[axis]) {
+        refuse("expected " + what + " within the map's " + std::to_string(counts[axis]) +
+               " cells, found " + words_[column + axis]);
+      }
+      cell[axis] = index;
+    }
+    return cell;
+  }
+
+ private:
+  std::string where_;
+  std::vector<std::string> words_;
+};
+
+int decimals_of(const std::string& number) {
+  const std::size_t point = number.find('.');
+  return point == number.npos ? 0 : int(number.size() - point - 1);
+}
+
+/// bucket, map, width, height, start x y, goal x y, length
+GridScenario plane_scenario(const Row& row, const std::array<int, 3>& counts) {
+  if (row.size() != 9) {
+    row.refuse(
+        "expected nine columns (bucket, map, width, height, start x and y, goal x and y, "
+        "length), found " +
+        std::to_string(row.size()));
+  }
+  if (row.number(2, "the width") != counts[0] || row.number(3, "the height") != counts[1]) {
+    row.refuse("is for a map of " + row.text(2) + " x " + row.text(3) + " cells, the map has " +
+               std::to_string(counts[0]) + " x " + std::to_string(counts[1]));
+  }
+  return {row.cell(4, counts, "the start"), row.cell(6, counts, "the goal"),
+          row.number(8, "the length"), decimals_of(row.text(8)), 0};
+}
+
+/// start x y z, goal x y z, length, ratio of the heuristic
+GridScenario space_scenario(const Row& row, const std::array<int, 3>& counts) {
+  if (row.size() != 8) {
+    row.refuse(
+        "expected eight columns (start x, y, z, goal x, y, z, length, heuristic ratio), "
+        "found " +
+        std::to_string(row.size()));
+  }
+  return {row.cell(0, counts, "the start"), row.cell(3, counts, "the goal"),
+          row.number(6, "the length"), decimals_of(row.text(6)), 0};
+}
+}  // namespace
+
+GridScenarios read_scenarios(const std::filesystem::path& file, const std::array<int, 3>& counts,
+                             std::size_t limit) {
+  GridScenarios scenarios;
+  scenarios.is_3d = file.extension() == ".3dscen";
+  if (!scenarios.is_3d && file.extension() != ".scen") {
+    throw Error(file.string() + ": expected a .scen or a .3dscen file");
+  }
+  std::ifstream in(file);
+  if (!in) {
+    throw Error(file.string() + ": cannot be read");
+  }
+  int number = 0;
+  for (std::string line; scenarios.list.size() < limit && std::getline(in, line);) {
+    ++number;
+    Row row(file.string() + ":" + std::to_string(number), words_of(line));
+    if (number == 1) {
+      if (row.size() != 2 || row.text(0) != "version" || row.number(1, "the version") != 1) {
+        row.refuse("expected 'version 1', found " + excerpt(line));
+      }
+    } else if (row.size() > 0 && !(scenarios.is_3d && number == 2)) {  // there: the map's name
+      scenarios.list.push_back(scenarios.is_3d ? space_scenario(row, counts)
+                                               : plane_scenario(row, counts));
+      scenarios.list.back().line = number;
+    }
+  }
+  if (scenarios.list.empty()) {
+    throw Error(file.string() + ": there is no scenario in it");
+  }
+  return scenarios;
+}
+}  // namespace altiplan::bench

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+import {read_scene} from './scene.js';
+import {by_id} from './dom.js';
+import {Store} from './store.js';
+import {Frame, lines_of} from './world.js';
+import {build_panels} from './ui/panels.js';
+import {follow_theme} from './ui/theme.js';
+import {View2} from './view2/view.js';
+import {View3} from './view3/view.js';
+
+const query = new URLSearchParams(location.search);
+const altiplan = window.altiplan = {ready: false, ready_ms: null, errors: []};
+
+function complain(sentence) {
+  altiplan.errors.push(sentence);
+  const alert = by_id('alert');
+  alert.textContent = sentence;
+  alert.hidden = false;
+}
+addEventListener('error', (event) => complain(event.message));
+addEventListener('unhandledrejection', (event) => complain(String(event.reason)));
+
+/** Nothing above this height is drawn but lines. */
+function asked_cut(text) {
+  const height = Number(text);
+  if (text.trim() !== '' && Number.isFinite(height)) return height;
+  complain(`The address says cut=${text}: expected a height in metres.`);
+  return Infinity;
+}
+
+function first_state(scene, lines) {
+  const shown = new Set(lines.filter(({kind}) => kind !== 'attempt').map(({key}) => key));
+  const with_route = scene.results.findIndex(({route, flight}) => route?.length || flight);
+  const selected = Math.max(0, with_route);
+  const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
+  const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
+  return {shown, hidden: new Set(), selected, source: 'route', time: 0, playing: false, speed: 1,
+    cursor: null, exaggeration, cut, grid: true, everything: false, theme: 'light', tab: 'profiles',
+    search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
+}
+
+function make_view(stage, world, store) {
+  if (query.has('flat')) return new View2(stage, world, store);
+  try {
+    return new View3(stage, world, store, query.has('still'));
+  } catch (error) {
+    if (!/WebGL/i.test(error.message)) throw error;
+    by_id('readout').dataset.note = '2-D: this browser has no WebGL';
+    return new View2(stage, world, store);
+  }
+}
+
+/** Only the picture: no panels, all that happened, seen from the south-west at 35°. */
+function still(view, store) {
+  document.body.classList.add('still');
+  const last = Math.max(0, ...view.world.lines.map(({times}) => times?.at(-1) ?? 0));
+  store.set({time: last});
+  view.resize();
+  view.look('fit');
+}
+
+function start() {
+  const scene = read_scene(by_id('scene').textContent);
+  const lines = lines_of(scene.results);
+  const world = {scene, frame: new Frame(scene.box), lines};
+  const store = new Store(first_state(scene, lines));
+  follow_theme(store, query.get('theme'));
+  if (query.has('still')) document.body.classList.add('still');
+  const has_flight = lines.some(({kind}) => kind === 'track');
+  by_id('clock').hidden = !has_flight;
+  const view = make_view(by_id('stage'), world, store);
+  build_panels(view, world, store);
+  if (query.has('still')) still(view, store);
+  Object.assign(altiplan, {drawn: () => view.drawn(), camera: () => view.where(),
+    project: (point) => view.project(point), state: store.state, still: () => still(view, store)});
+  view.first_frame();
+  altiplan.ready_ms = performance.now();
+  altiplan.ready = true;
+}
+
+try {
+  start();
+} catch (error) {
+  complain(error.message);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+import {Ground} from './ground.js';
+
+const kVersion = 1;
+
+function bytes(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+
+function floats(text, count, what) {
+  const raw = bytes(text);
+  if (raw.length !== 4 * count) {
+    throw new Error(`The scene's ${what} hold ${raw.length} bytes, expected ${4 * count}.`);
+  }
+  return new Float32Array(raw.buffer);
+}
+
+/** The scene of the page, its binary parts decoded; throws one sentence where it is not one. */
+export function read_scene(text) {
+  if (text.trim() === '' || text.trimStart().startsWith('/*')) {
+    throw new Error('This page holds no scene: make one with `altiplan view RESULT -o page.html`.');
+  }
+  const scene = JSON.parse(text);
+  if (scene.altiplan_scene !== kVersion) {
+    throw new Error(`This page reads scenes of version ${kVersion}, found ` +
+      `${JSON.stringify(scene.altiplan_scene)}.`);
+  }
+  const {ground} = scene;
+  if (ground) {
+    ground.heights = floats(ground.heights, ground.nx * ground.ny, 'heights');
+    scene.ground = Object.assign(new Ground(ground), {of: ground.of ?? null});
+  }
+  for (const boxes of scene.boxes) {
+    boxes.data = floats(boxes.data, 6 * boxes.count, 'boxes');
+  }
+  for (const mesh of scene.meshes) {
+    const raw = bytes(mesh.triangles);
+    mesh.triangles = new Float32Array(raw.buffer, 0, Math.floor(raw.length / 36) * 9);
+  }
+  for (const moving of scene.moving) {
+    Object.assign(moving, {layer: 'moving', role: 'obstacle', name: moving.id, ...moving});
+  }
+  return scene;
+}
+
+/** A trace is large and seldom looked at: decoded when it is asked for, once. */
+export function read_trace(trace) {
+  trace.decoded ??= {
+    step: bytes(trace.step), kind: bytes(trace.kind),
+    at: floats(trace.at, 3 * trace.kept, 'points of the trace'),
+    parent: floats(trace.parent, 3 * trace.kept, 'parents of the trace'),
+    value: floats(trace.value, trace.kept, 'values of the trace'),
+  };
+  return trace.decoded;
+}

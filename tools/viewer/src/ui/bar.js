@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+import {by_id, element} from '../dom.js';
+
+const kButtons = [
+  ['fit', '⌂ Overview', 'All of the box, from the south-west (R)'],
+  ['top', '⊤ From above', 'From above, north up (T)'],
+  ['theme', '◐ Theme', 'Light or dark (D)'],
+  ['help', '?', 'Keys and signs (?)'],
+];
+
+export function build_bar(world, actions) {
+  by_id('menu').onclick = actions.menu;
+  by_id('actions').append(...kButtons.map(([name, text, title]) =>
+    element('button', {id: `do_${name}`, textContent: text, title, onclick: actions[name]})));
+  by_id('north').onclick = actions.north;
+  const {results} = world.scene;
+  const solved = results.filter(({status}) => status === 'solved').length;
+  by_id('verdict').textContent = `${solved} of ${results.length} solved`;
+  const unsolved = results.filter(({status}) => status !== 'solved');
+  if (unsolved.length > 0 && solved === 0) show_failure(unsolved[0]);
+}
+
+/** Nothing was solved: say so where the route would be. */
+function show_failure({name, status, message}) {
+  const alert = by_id('alert');
+  alert.replaceChildren(element('strong', {}, `${name}: ${status.replaceAll('_', ' ')}. `), message,
+    element('button', {title: 'Close', textContent: '×',
+      onclick: () => { alert.hidden = true; }}));
+  alert.hidden = false;
+}

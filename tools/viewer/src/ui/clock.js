@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+import {by_id, element} from '../dom.js';
+import {clock, number} from '../units.js';
+
+const kSpeeds = [1, 2, 5, 10, 20, 50, 100];
+// By default a flight takes at most this long to watch.
+const kWatchSeconds = 40;
+
+/** The flight's time: slider, play, speed, and marks where something happened. */
+export function build_clock(world, store) {
+  const tracks = world.lines.filter(({kind}) => kind === 'track');
+  if (tracks.length === 0) return;
+  const last = Math.max(...tracks.map(({times}) => times.at(-1)));
+  const play = element('button', {id: 'play', title: 'Play or pause (space)',
+    onclick: () => store.set({playing: !store.state.playing})});
+  const slider = element('input', {type: 'range', id: 'time', min: 0, max: last, step: 'any',
+    ariaLabel: 'Time of flight',
+    oninput: () => store.set({time: Number(slider.value), playing: false})});
+  const shown = element('output', {id: 'time_text'});
+  const marks = element('div', {className: 'marks'});
+  const speed = element('select', {id: 'speed', title: 'Speed',
+    onchange: () => store.set({speed: Number(speed.value)})},
+    kSpeeds.map((factor) => element('option', {value: factor}, `${factor}×`)));
+  store.set({speed: kSpeeds.find((factor) => last / factor <= kWatchSeconds) ?? kSpeeds.at(-1)});
+  by_id('clock').append(play, element('div', {className: 'rail'}, marks, slider), shown, speed);
+
+  const reflect = () => {
+    const {time, playing} = store.state;
+    slider.value = time;
+    shown.textContent = `${clock(time)} / ${clock(last)}`;
+    play.textContent = playing ? '❚❚' : '▶';
+    play.ariaLabel = playing ? 'Pause' : 'Play';
+    speed.value = store.state.speed;
+  };
+  const reflect_marks = () => marks.replaceChildren(...
+    happenings(world.scene, store.state.selected).map((mark) => sign(mark, last, store)));
+  store.on(['time', 'playing', 'speed'], reflect);
+  store.on(['selected'], reflect_marks);
+  store.on(['playing'], () => store.state.playing && run(store, last));
+  reflect();
+  reflect_marks();
+}
+
+/** What happened in the selected flight, when, and what is said of it. */
+function happenings({results, events}, selected) {
+  const flight = results[selected]?.flight;
+  if (!flight) return [];
+  return [
+    ...(flight.handovers ?? []).map(({at_s, to, why}) =>
+      ({at_s, kind: 'handover', text: `Handover to ${to}: ${why}`})),
+    ...(flight.replans ?? []).map(({at_s, step, status, message}) =>
+      ({at_s, kind: 'replan', text: `Replan with ${step}, ${status}: ${message}`})),
+    ...(flight.event_times ?? []).map((at_s, event) =>
+      ({at_s, kind: 'event', text: events[event]?.text ?? ''})),
+  ].filter(({at_s}) => at_s !== null);
+}
+
+function sign({at_s, kind, text}, last, store) {
+  const made = element('button', {className: kind, title: `${number(at_s, 's')}: ${text}`,
+    onclick: () => store.set({time: at_s, playing: false})});
+  made.style.left = `${100 * at_s / last}%`;
+  return made;
+}
+
+function run(store, last) {
+  if (store.state.time >= last) store.set({time: 0});
+  let before = performance.now();
+  const step = (now) => {
+    if (!store.state.playing) return;
+    const time = store.state.time + Math.max(0, now - before) / 1000 * store.state.speed;
+    before = now;
+    store.set(time >= last ? {time: last, playing: false} : {time});
+    requestAnimationFrame(step);
+  };
+  requestAnimationFrame(step);
+}

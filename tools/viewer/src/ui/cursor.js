@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+import {last_before, place_at} from '../world.js';
+
+/** The profile looked at: of the route over distance, or of the flight over time. */
+export function profile_of(world, {selected, source}) {
+  const result = world.scene.results[selected];
+  const flight = result?.flight?.profile;
+  const route = result?.profile;
+  if (flight && (source === 'flight' || !route)) {
+    const line = world.lines.find(({kind, result: of}) => kind === 'track' && of === selected);
+    return {...flight, kind: 'flight', x: flight.t, line};
+  }
+  return route ? {...route, kind: 'route', x: route.s} : null;
+}
+
+/** The place in the world of sample `index` of a profile. */
+export function profile_cursor(profile, index) {
+  const x = profile.x[index];
+  return {x, index,
+    at: profile.kind === 'route' ? profile.at[index] : place_at(profile.line, x).at};
+}
+
+/** The place found on a line, as a cursor: with the profile's sample where that shows the line. */
+export function route_cursor({line, at, time}, world, state) {
+  const profile = profile_of(world, state);
+  if (!profile || profile.line === undefined && line.kind === 'track' ||
+    profile.kind === 'flight' && line.kind !== 'track') return {at, x: null, index: null};
+  const index = profile.kind === 'flight' ? last_before(profile.x, time) :
+    nearest_sample(profile.at, at);
+  return {at, x: profile.kind === 'flight' ? time : profile.x[index], index};
+}
+
+function nearest_sample(samples, at) {
+  let [best, least] = [0, Infinity];
+  samples.forEach((sample, index) => {
+    const away = Math.hypot(sample[0] - at[0], sample[1] - at[1], sample[2] - at[2]);
+    if (away < least) [best, least] = [index, away];
+  });
+  return best;
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+import {by_id, element} from '../dom.js';
+import {build_metrics} from './metrics.js';
+import {build_profiles} from './profiles.js';
+import {build_search} from './search.js';
+import {build_violations, violations_of} from './violations.js';
+
+/** The four panes under the picture, one at a time. */
+export function build_dock(view, world, store) {
+  const count = violations_of(world).length;
+  const panes = {
+    profiles: ['Profiles', build_profiles(world, store)],
+    metrics: ['Metrics', build_metrics(world, store)],
+    violations: [`Violations (${count})`, build_violations(view, world, store)],
+    search: ['Search', build_search(world, store)],
+  };
+  const tabs = element('div', {className: 'tabs', role: 'tablist'});
+  const dock = by_id('dock');
+  dock.append(tabs);
+  for (const [name, [title, pane]] of Object.entries(panes)) {
+    pane.classList.add('pane', name);
+    tabs.append(element('button', {id: `tab_${name}`, role: 'tab', textContent: title,
+      onclick: () => store.set({tab: name})}));
+    dock.append(pane);
+  }
+  const fold = element('button', {id: 'fold', title: 'Fold or unfold', textContent: '▾',
+    onclick: () => document.body.classList.toggle('folded')});
+  tabs.append(fold);
+  const reflect = () => {
+    for (const [name, [, pane]] of Object.entries(panes)) {
+      pane.hidden = name !== store.state.tab;
+      by_id(`tab_${name}`).ariaSelected = String(name === store.state.tab);
+    }
+  };
+  store.on(['tab'], () => {
+    document.body.classList.remove('folded');
+    reflect();
+  });
+  reflect();
+}

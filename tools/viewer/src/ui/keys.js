@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+import {kKindNames, kKinds} from '../colors.js';
+import {by_id, element, swatch} from '../dom.js';
+import {next_cut} from './cut.js';
+
+const kKeys = [
+  ['Space', 'play or pause the flight'],
+  ['← →', 'one second (with Shift: ten) of the flight back or on'],
+  ['1 … 9', 'show or hide a result'],
+  ['R', 'overview: all of the box from the south-west'],
+  ['T', 'from above'], ['N', 'from the south, north up'],
+  ['[ ]', 'heights drawn less or more steeply'],
+  [', .', 'cut lower or higher: nothing above is drawn but routes'], ['C', 'nothing cut'],
+  ['G', 'grid and box'], ['L', 'legend'], ['D', 'light or dark'],
+  ['P M V S', 'profiles, metrics, violations, search'],
+  ['B', 'results and layers (narrow screens)'], ['?', 'this list'],
+];
+
+/** One letter each; none acts while something is being typed or chosen. */
+export function listen_to_keys(world, store, actions) {
+  const state = store.state;
+  const exaggerate = (by) =>
+    store.set({exaggeration: Math.min(5, Math.max(1, state.exaggeration + by))});
+  const cut = (way) => store.set({cut: next_cut(state.cut, world.frame, way)});
+  const tab = (name) => () => store.set({tab: name});
+  const deeds = {
+    r: actions.fit, t: actions.top, n: actions.north, d: actions.theme, b: actions.menu,
+    '?': actions.help, '[': () => exaggerate(-0.5), ']': () => exaggerate(0.5),
+    ',': () => cut(-1), '.': () => cut(1), c: () => store.set({cut: Infinity}),
+    g: () => store.set({grid: !state.grid}), l: () => store.set({legend: !state.legend}),
+    p: tab('profiles'), m: tab('metrics'),
+    v: tab('violations'), s: tab('search'),
+    ' ': () => store.set({playing: !state.playing}),
+    ArrowLeft: (shift) => move_time(world, store, shift ? -10 : -1),
+    ArrowRight: (shift) => move_time(world, store, shift ? 10 : 1),
+  };
+  addEventListener('keydown', (event) => {
+    const {target} = event;
+    if (event.ctrlKey || event.altKey || event.metaKey || by_id('help').open) return;
+    if (target.matches('select, input[type=range]') && !/^[a-z?[\],. ]$/.test(event.key)) return;
+    if (event.key === ' ' && target.matches('button, input, summary')) return;
+    const digit = Number(event.key);
+    if (digit >= 1 && digit <= 9) toggle_result(digit - 1, world, store);
+    else if (deeds[event.key.toLowerCase()] ?? deeds[event.key]) {
+      (deeds[event.key.toLowerCase()] ?? deeds[event.key])(event.shiftKey);
+      event.preventDefault();
+    }
+  });
+  by_id('help').append(...help_text());
+}
+
+function move_time(world, store, by) {
+  const ends = world.lines.map(({times}) => times?.at(-1) ?? 0);
+  store.set({time: Math.min(Math.max(0, ...ends), Math.max(0, store.state.time + by)),
+    playing: false});
+}
+
+function toggle_result(index, world, store) {
+  const keys = world.lines.filter(({result, kind}) => result === index && kind !== 'attempt')
+    .map(({key}) => key);
+  const on = !keys.some((key) => store.state.shown.has(key));
+  const shown = new Set(store.state.shown);
+  for (const key of keys) if (on) shown.add(key); else shown.delete(key);
+  store.set({shown});
+}
+
+function help_text() {
+  return [
+    element('h2', {}, 'Keys'),
+    element('dl', {}, kKeys.flatMap(([key, what]) =>
+      [element('dt', {}, element('kbd', {}, key)), element('dd', {}, what)])),
+    element('h2', {}, 'Mouse and fingers'),
+    element('p', {}, 'Drag turns, drag with the right button or two fingers moves, wheel or ' +
+      'pinch comes nearer. Point at a route to move the cursor of the profiles; click it to look ' +
+      'at that result. Click a profile of a flight to go to that time.'),
+    element('h2', {}, 'Search events'),
+    element('p', {className: 'kinds'}, kKindNames.slice(0, 4).flatMap((name, kind) =>
+      element('span', {}, swatch(kKinds[kind]), name))),
+    element('form', {method: 'dialog'}, element('button', {}, 'Close')),
+  ];
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+import {kRoleNames, role_color, route_color} from '../colors.js';
+import {by_id, element, swatch} from '../dom.js';
+import {thinning} from '../playback.js';
+import {ramp_gradient} from '../ramp.js';
+import {metres, number} from '../units.js';
+import {grid_lines, layers_of} from '../world.js';
+import {violations_of} from './violations.js';
+
+/** What the colours and lines on the picture mean, with units. */
+export function build_legend(world, store) {
+  const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
+    ...routes(world, store.state), ...roles(world.scene), ...violations(world, store.state),
+    grid(world.frame, store.state), ...search(store.state));
+  store.on(['theme', 'shown', 'grid', 'exaggeration', 'cut', 'search'], reflect);
+  reflect();
+  const fold = () => {
+    by_id('legend').hidden = !store.state.legend;
+  };
+  store.on(['legend'], fold);
+  fold();
+}
+
+function heights(ground) {
+  if (!ground) return [];
+  const bar = element('div', {className: 'ramp'});
+  bar.style.background = ramp_gradient();
+  return [element('div', {className: 'heights'}, element('span', {}, number(ground.min)), bar,
+    element('span', {}, `${metres(ground.max)} above sea`))];
+}
+
+function routes({scene, lines}, {shown, theme}) {
+  return lines.filter(({key}) => shown.has(key)).map(({kind, result, step}) => {
+    const what = {route: 'route', track: 'flown', attempt: step}[kind];
+    return element('div', {}, swatch(route_color(result, theme), `line ${kind}`),
+      `${scene.results[result].name}, ${what}`);
+  });
+}
+
+function roles(scene) {
+  const seen = new Map(layers_of(scene).map(({role, known}) => [`${role}${known}`, {role, known}]));
+  return [...seen.values()].map(({role, known}) => element('div', {},
+    swatch(role_color(role), known ? 'fill' : 'fill unknown'),
+    `${kRoleNames[role] ?? role}${known ? '' : ', unknown to the planner'}`));
+}
+
+function violations(world, {shown}) {
+  if (!violations_of(world).some(({line, place}) => place && shown.has(line))) return [];
+  return [element('div', {}, element('span', {className: 'swatch violation'}), 'Violation')];
+}
+
+/** Whoever looks at a search sees what is left out of it, whichever pane is open. */
+function search({search: shown}) {
+  return shown ? [element('div', {className: 'note'}, `Search. ${thinning(shown.trace)}`)] : [];
+}
+
+function grid(frame, state) {
+  const parts = state.grid ? [`Grid ${metres(grid_lines(frame.box, 0).step)}`] : [];
+  if (state.exaggeration > 1) parts.push(`heights drawn ${state.exaggeration.toFixed(1)}×`);
+  if (state.cut < Infinity) parts.push(`cut above ${metres(state.cut)}`);
+  return element('div', {className: 'note'}, parts.join(', '));
+}

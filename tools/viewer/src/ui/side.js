@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+import {kRoleNames, role_color, route_color} from '../colors.js';
+import {by_id, checkbox, element, swatch} from '../dom.js';
+import {layers_of} from '../world.js';
+import {cut_slider} from './cut.js';
+
+const kStatusClass = (status) => status === 'solved' ? 'good' : 'bad';
+
+export function pill(status) {
+  return element('span', {className: `pill ${kStatusClass(status)}`},
+    status.replaceAll('_', ' '));
+}
+
+/** The panel on the left: results with what each can show, and the world's layers. */
+export function build_side(world, store) {
+  by_id('side').append(
+    element('h2', {}, 'Results'),
+    ...world.scene.results.map((result, index) => result_card(result, index, world, store)),
+    element('h2', {}, 'World'), ...world_controls(world, store), ...notes(world.scene));
+}
+
+function result_card(result, index, world, store) {
+  const lines = world.lines.filter((line) => line.result === index);
+  const name = element('button', {className: 'name', textContent: result.name,
+    title: `Look at the profiles of ${result.file}`,
+    onclick: () => store.set({selected: index, cursor: null})});
+  const mark = swatch('#000', 'line');
+  const card = element('section', {className: 'result'},
+    element('div', {className: 'head'}, mark, name, pill(result.status)),
+    result.status === 'solved' ? null : element('p', {className: 'message'}, result.message));
+  const attempts = element('details', {}, element('summary', {}, 'Steps'));
+  for (const line of lines) {
+    const label = {route: 'Route', track: 'Flown track',
+      attempt: attempt_label(result.steps.find(({id}) => id === line.step))}[line.kind];
+    const {input, row} = checkbox(label, false, (on) => store.toggle('shown', line.key, on));
+    input.dataset.line = line.key;
+    const reflect = () => { input.checked = store.state.shown.has(line.key); };
+    reflect();
+    store.on(['shown'], reflect);
+    (line.kind === 'attempt' ? attempts : card).append(row);
+  }
+  for (const step of result.steps.filter(({route}) => !route?.length)) {
+    attempts.append(element('p', {className: 'note'}, attempt_label(step), ' ',
+      step.stands ? '' : step.message));
+  }
+  if (result.steps.length > 0) card.append(attempts);
+  if (result.flight && result.flight.status !== 'solved') {
+    card.append(element('p', {className: 'message'}, `Flight: ${result.flight.message}`));
+  }
+  const reflect = () => {
+    card.classList.toggle('selected', store.state.selected === index);
+    mark.style.setProperty('--swatch', route_color(index, store.state.theme));
+  };
+  reflect();
+  store.on(['selected', 'theme'], reflect);
+  return card;
+}
+
+function attempt_label(step) {
+  if (!step) return '';
+  const stand_in = step.instead_of ? `, instead of ${step.instead_of}` : '';
+  const fate = step.stands ? '' : ` (${step.status.replaceAll('_', ' ')})`;
+  return `${step.id}: ${step.verb} ${step.plugin}${stand_in}${fate}`;
+}
+
+function world_controls(world, store) {
+  const {scene} = world;
+  const rows = [exaggeration_slider(store), cut_slider(world.frame, store)];
+  for (const layer of layers_of(scene)) rows.push(layer_row(layer, scene, store));
+  const grid = checkbox('Grid and box', true, (on) => store.set({grid: on}));
+  store.on(['grid'], () => { grid.input.checked = store.state.grid; });
+  const legend = checkbox('Legend', store.state.legend, (on) => store.set({legend: on}));
+  store.on(['legend'], () => { legend.input.checked = store.state.legend; });
+  rows.push(grid.row, legend.row);
+  if (layers_of(scene).some(({events}) => events.size > 0)) {
+    rows.push(checkbox('All that events bring, at any time', false,
+      (on) => store.set({everything: on})).row);
+  }
+  return rows;
+}
+
+function layer_row(layer, scene, store) {
+  const {input, row} = checkbox(layer.name, true,
+    (on) => store.toggle('hidden', layer.key, !on), swatch(role_color(layer.role)));
+  input.dataset.layer = layer.key;
+  const remarks = [kRoleNames[layer.role]];
+  if (layer.count > 1) remarks.push(`${layer.count.toLocaleString('en')} shapes`);
+  if (!layer.known) remarks.push('unknown to the planner');
+  for (const event of layer.events) remarks.push(`comes with “${scene.events[event]?.text}”`);
+  row.append(element('small', {}, remarks.join(', ')));
+  return row;
+}
+
+function exaggeration_slider(store) {
+  const value = element('output', {});
+  const input = element('input', {type: 'range', id: 'exaggeration', min: 1, max: 5, step: 0.1,
+    oninput: () => store.set({exaggeration: Number(input.value)})});
+  const reflect = () => {
+    input.value = store.state.exaggeration;
+    value.textContent = `${store.state.exaggeration.toFixed(1)}×`;
+  };
+  reflect();
+  store.on(['exaggeration'], reflect);
+  return element('label', {className: 'slider stretch'}, 'Exaggeration', input, value);
+}
+
+function notes({notes: lines, ground}) {
+  const all = [...(lines ?? [])];
+  if (ground?.of) {
+    all.push(`Ground drawn with ${ground.nx} × ${ground.ny} of ${ground.of[0]} × ` +
+      `${ground.of[1]} posts.`);
+  }
+  return all.map((line) => element('p', {className: 'note'}, line));
+}

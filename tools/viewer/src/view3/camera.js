@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+import {PerspectiveCamera, Vector3} from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+
+const kFieldDeg = 40;
+const kFlightMs = 700;
+const kRadians = Math.PI / 180;
+
+/** The eye: where it is, what it looks at, and how it gets elsewhere. */
+export class Camera {
+  constructor(canvas, frame, changed) {
+    this.frame = frame;
+    this.changed = changed;
+    this.eye = new PerspectiveCamera(kFieldDeg, 1, 1, 10);
+    this.eye.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.eye, canvas);
+    this.controls.maxPolarAngle = 0.495 * Math.PI;
+    this.controls.screenSpacePanning = false;
+    this.controls.minDistance = frame.diagonal / 2000;
+    this.controls.maxDistance = frame.diagonal * 6;
+    this.controls.addEventListener('change', changed);
+    this.flight = null;
+  }
+
+  resize(width, height) {
+    this.eye.aspect = width / height;
+    this.eye.updateProjectionMatrix();
+  }
+
+  /** Looks from `azimuth` (degrees from north, where the eye stands) down at `pitch` and steps
+   *  back until all of the box is in the picture. */
+  fit(exaggeration, azimuth_deg = 225, pitch_deg = 35, margin = 1.04) {
+    const [azimuth, pitch] = [azimuth_deg * kRadians, Math.min(pitch_deg, 89.9) * kRadians];
+    const back = new Vector3(Math.sin(azimuth) * Math.cos(pitch),
+      Math.cos(azimuth) * Math.cos(pitch), Math.sin(pitch));
+    const right = new Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const [x, y, z] = this.frame.size.map((length) => length / 2);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => new Vector3(bits & 1 ? x : -x,
+      bits & 2 ? y : -y, (bits & 4 ? z : -z) * exaggeration));
+    const high = Math.tan(kFieldDeg / 2 * kRadians) / margin;
+    const wide = high * this.eye.aspect;
+    const target = new Vector3();
+    let distance = 0;
+    // Perspective puts the box's middle off the picture's: aim at the middle of what is seen.
+    for (let round = 0; round < 8; round++) {
+      const seen = corners.map((corner) => corner.clone().sub(target));
+      distance = Math.max(...seen.map((corner) => corner.dot(back) +
+        Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / high)));
+      for (const axis of [right, up]) {
+        const at = seen.map((corner) => corner.dot(axis) / (distance - corner.dot(back)));
+        target.addScaledVector(axis, (Math.min(...at) + Math.max(...at)) / 2 * distance);
+      }
+    }
+    return {target, position: target.clone().addScaledVector(back, distance)};
+  }
+
+  put({target, position}) {
+    this.flight = null;
+    this.controls.target.copy(target);
+    this.eye.position.copy(position);
+    this.controls.update();
+    this.changed();
+  }
+
+  /** Moves there in a moment, or at once for those who want no motion. */
+  fly({target, position}) {
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
+      this.put({target, position});
+      return;
+    }
+    this.flight = {since: performance.now(), target, position,
+      from_target: this.controls.target.clone(), from_position: this.eye.position.clone()};
+    this.changed();
+  }
+
+  /** Flies towards `target`, seen from the same side, near enough to see what is there. */
+  fly_to(target) {
+    const back = this.eye.position.clone().sub(this.controls.target);
+    back.setLength(Math.min(back.length(), this.frame.diagonal * 0.22));
+    this.fly({target, position: target.clone().add(back)});
+  }
+
+  /** One step of the flight; whether it goes on. */
+  advance(now) {
+    if (!this.flight) return false;
+    const share = Math.min(1, (now - this.flight.since) / kFlightMs);
+    const eased = share * share * (3 - 2 * share);
+    this.controls.target.lerpVectors(this.flight.from_target, this.flight.target, eased);
+    this.eye.position.lerpVectors(this.flight.from_position, this.flight.position, eased);
+    if (share === 1) this.flight = null;
+    this.controls.update();
+    return share < 1;
+  }
+
+  /** Near and far planes around what there is to see: depth keeps its resolution. */
+  before_frame(exaggeration) {
+    const distance = this.eye.position.distanceTo(this.controls.target);
+    this.eye.near = distance / 100;
+    this.eye.far = distance + this.frame.diagonal * (1 + exaggeration);
+    this.eye.updateProjectionMatrix();
+  }
+
+  /** Where the eye stands, in degrees clockwise from north. */
+  heading_deg() {
+    return this.controls.getAzimuthalAngle() / kRadians;
+  }
+}

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+import {AmbientLight, Color, DirectionalLight, Group, Raycaster, Scene, Vector2, Vector3,
+  WebGLRenderer} from 'three';
+import {style_of} from '../colors.js';
+import {event_times} from '../world.js';
+import {Camera} from './camera.js';
+import {Goals} from './goals.js';
+import {Grid} from './grid.js';
+import {Lines} from './lines.js';
+import {Search} from './search.js';
+import {Solids} from './solids.js';
+import {Terrain} from './terrain.js';
+
+// A full frame that takes longer than this is replaced by a coarse one while the picture moves.
+const kSlowMs = 60;
+const kRestMs = 160;
+const kHair = 1e-4;
+// Above all that there is: shaders may not know infinity.
+const kNowhere = 1e9;
+
+/** The world in three dimensions. Its root is stretched upwards by the exaggeration. */
+export class View3 {
+  constructor(stage, world, store, for_picture) {
+    Object.assign(this, {stage, world, store, listeners: []});
+    const {scene, frame, lines} = world;
+    const software = is_software();
+    this.renderer = new WebGLRenderer({antialias: for_picture || !software,
+      powerPreference: 'high-performance'});
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    // Asking after each shader waits for its compiler: a third of the first frame.
+    this.renderer.debug.checkShaderErrors = false;
+    this.canvas = this.renderer.domElement;
+    this.canvas.tabIndex = 0;
+    stage.prepend(this.canvas);
+    this.root = new Group();
+    this.picture = new Scene().add(this.root, ...lights());
+    this.camera = new Camera(this.canvas, frame, () => this.draw());
+    this.cut = {value: kNowhere};
+    this.terrain = scene.ground && new Terrain(scene.ground, frame, this.cut);
+    this.solids = new Solids(scene, frame);
+    this.lines = new Lines(lines, scene.ground, frame);
+    this.grid = new Grid(frame, scene.ground, this.cut);
+    this.goals = new Goals(scene, frame);
+    this.root.add(...(this.terrain ? [this.terrain.object] : []), this.grid.object,
+      this.goals.object, this.solids.object, this.lines.object);
+    this.full_frame_ms = 0;
+    this.#rest_after_motion();
+    new ResizeObserver(() => this.resize()).observe(stage);
+    this.resize();
+    this.update(store.state, new Set(['theme', 'exaggeration']));
+    this.look('fit');
+    // Shaders are compiled while the panels are built.
+    this.renderer.compile(this.picture, this.camera.eye);
+    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'theme', 'exaggeration',
+      'cut', 'search', 'searched'], (state, changed) => this.update(state, changed));
+  }
+
+  on_frame(listener) {
+    this.listeners.push(listener);
+  }
+
+  resize() {
+    const {clientWidth: width, clientHeight: height} = this.stage;
+    if (width === 0 || height === 0 || width === this.width && height === this.height) return;
+    Object.assign(this, {width, height});
+    this.renderer.setSize(width, height);
+    this.camera.resize(width, height);
+    if (this.overview) this.look('fit');
+    // At once: an emptied canvas would flicker.
+    if (this.started) this.#paint();
+  }
+
+  update(state, changed) {
+    this.root.scale.z = state.exaggeration;
+    this.root.updateMatrixWorld();
+    // A hair lower than the tops of solids that are cut: in one plane the two would flicker.
+    const {centre, diagonal} = this.world.frame;
+    this.cut.value = Math.min(kNowhere, state.cut - centre[2] - kHair * diagonal);
+    this.lines.update(state);
+    this.solids.update(state, event_times(this.world.scene, state.selected));
+    this.grid.update(state);
+    this.goals.update(state);
+    this.terrain?.paint(state);
+    if (changed.has('theme')) this.picture.background = new Color(style_of('--sky'));
+    if (changed.has('exaggeration')) this.#stretched(state.exaggeration);
+    if (changed.has('search')) this.#replace_search(state.search);
+    this.search?.show(state.searched);
+    this.draw();
+  }
+
+  /** An eye that nobody has moved keeps all in the picture. The hillshade follows once the slider
+   *  rests. */
+  #stretched(exaggeration) {
+    if (this.overview) this.look('fit');
+    clearTimeout(this.relighting);
+    if (!this.terrain || exaggeration === (this.lit ?? 1)) return;
+    this.relighting = setTimeout(() => {
+      this.lit = exaggeration;
+      this.terrain.light(exaggeration);
+      this.draw();
+    }, 120);
+  }
+
+  #replace_search(playback) {
+    if (this.search) this.root.remove(this.search.object);
+    this.search = playback && new Search(playback, this.world.frame);
+    if (this.search) this.root.add(this.search.object);
+  }
+
+  #rest_after_motion() {
+    const {controls} = this.camera;
+    controls.addEventListener('start', () => {
+      this.moving = true;
+      this.overview = false;
+    });
+    controls.addEventListener('end', () => {
+      this.moving = false;
+      this.draw();
+    });
+    // The wheel starts and ends at once; it is motion while it turns.
+    this.canvas.addEventListener('wheel', () => { this.moved = performance.now(); });
+  }
+
+  /** Asks for a frame; many wishes make one. */
+  draw() {
+    if (!this.started) return;
+    this.wanted ??= requestAnimationFrame((now) => {
+      this.wanted = null;
+      const flying = this.camera.advance(now);
+      this.#paint(flying);
+      if (flying) this.draw();
+    });
+  }
+
+  #paint(flying = false) {
+    const state = this.store.state;
+    const in_motion = flying || this.moving || state.playing ||
+      performance.now() - (this.moved ?? -Infinity) < kRestMs;
+    const coarse = in_motion && this.full_frame_ms > kSlowMs;
+    this.terrain?.show_coarse(coarse);
+    clearTimeout(this.resting);
+    if (coarse) this.resting = setTimeout(() => this.draw(), kRestMs + 20);
+    this.camera.before_frame(state.exaggeration);
+    this.renderer.render(this.picture, this.camera.eye);
+    for (const listener of this.listeners) listener();
+  }
+
+  /** Draws all there is and waits until it is in the picture's buffer. */
+  first_frame() {
+    const since = performance.now();
+    // The panels have taken their room by now.
+    this.resize();
+    this.look('fit');
+    this.started = true;
+    this.#paint();
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    // About half of the first frame is the upload of the buffers, which does not come again.
+    this.full_frame_ms = (performance.now() - since) / 2;
+  }
+
+  #place(point) {
+    const local = this.world.frame.local(point);
+    local[2] *= this.store.state.exaggeration;
+    return new Vector3(...local);
+  }
+
+  /** Pixels from the stage's top left, how far before the eye, and whether it is there. */
+  project(point) {
+    const {eye} = this.camera;
+    const before_eye = this.#place(point).applyMatrix4(eye.matrixWorldInverse);
+    const depth = -before_eye.z;
+    const seen = before_eye.applyMatrix4(eye.projectionMatrix);
+    return {depth, x: (seen.x + 1) / 2 * this.stage.clientWidth,
+      y: (1 - seen.y) / 2 * this.stage.clientHeight, visible: seen.z < 1 && seen.z > -1};
+  }
+
+  #ray(x, y) {
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2(2 * x / this.stage.clientWidth - 1,
+      1 - 2 * y / this.stage.clientHeight), this.camera.eye);
+    return caster;
+  }
+
+  /** The ground under a pixel; where there is none, the floor of the box. */
+  ground_at(x, y) {
+    const {origin, direction} = this.#ray(x, y).ray;
+    const {frame, scene} = this.world;
+    const stretch = this.store.state.exaggeration;
+    const from = frame.world([origin.x, origin.y, origin.z / stretch]);
+    const along = [direction.x, direction.y, direction.z / stretch];
+    if (scene.ground) return scene.ground.hit(from, along, this.camera.eye.far,
+      this.store.state.cut);
+    const t = (frame.box[0][2] - from[2]) / along[2];
+    return t > 0 ? from.map((value, axis) => value + t * along[axis]) : null;
+  }
+
+  /** The name of the solid under a pixel. */
+  solid_at(x, y) {
+    return this.solids.name_at(this.#ray(x, y));
+  }
+
+  look(from) {
+    const stretch = this.store.state.exaggeration;
+    this.overview = from === 'fit';
+    if (from === 'fit') this.camera.put(this.camera.fit(stretch));
+    if (from === 'top') this.camera.fly(this.camera.fit(stretch, 180, 90));
+    if (from === 'north') {
+      const pitch = 90 - this.camera.controls.getPolarAngle() * 180 / Math.PI;
+      this.camera.fly(this.camera.fit(stretch, 180, pitch));
+    }
+  }
+
+  fly_to(point) {
+    this.overview = false;
+    this.camera.fly_to(this.#place(point));
+  }
+
+  /** How far the north arrow is turned, clockwise. */
+  north_deg() {
+    return this.camera.heading_deg();
+  }
+
+  where() {
+    const {eye, controls} = this.camera;
+    return {position: eye.position.toArray(), target: controls.target.toArray(),
+      flying: this.camera.flight !== null};
+  }
+
+  drawn() {
+    return {view: '3d', ...this.lines.drawn(), ...this.solids.drawn(),
+      moving: this.solids.moved(),
+      ground: this.terrain?.drawn() ?? null, searched: this.search ?
+        this.search.points.material.uniforms.now.value : null};
+  }
+}
+
+function lights() {
+  const sun = new DirectionalLight(0xffffff, 1.7);
+  sun.position.set(-1, 1, 1.6);
+  return [sun, new AmbientLight(0xffffff, 1.7)];
+}
+
+/** Multisampling on a processor takes more time than all the rest. */
+function is_software() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) throw new Error('no WebGL');
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+}

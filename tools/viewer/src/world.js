@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+import {round_step} from './units.js';
+
+/** Coordinates around the middle of the box: with 32 bits a point 50 km from it is right to 2 mm,
+ *  one 5,000 km from the origin of the map would be right to half a metre. */
+export class Frame {
+  constructor(box) {
+    this.box = box;
+    this.centre = [0, 1, 2].map((axis) => (box[0][axis] + box[1][axis]) / 2);
+    this.size = [0, 1, 2].map((axis) => Math.max(box[1][axis] - box[0][axis], 1e-3));
+    this.diagonal = Math.hypot(...this.size);
+  }
+
+  local(point) {
+    return [0, 1, 2].map((axis) => point[axis] - this.centre[axis]);
+  }
+
+  world(point) {
+    return [0, 1, 2].map((axis) => point[axis] + this.centre[axis]);
+  }
+
+  /** The height down to which the terrain is a block. */
+  base(ground) {
+    if (!ground || !(ground.max >= ground.min)) return this.box[0][2];
+    const depth = Math.max((ground.max - ground.min) * 0.1, this.diagonal * 0.01);
+    return Math.min(ground.min - depth, this.box[0][2]);
+  }
+
+  /** x, y, z of all points in a row, local. */
+  flat(points) {
+    const values = new Float32Array(points.length * 3);
+    points.forEach((point, at) => values.set(this.local(point), 3 * at));
+    return values;
+  }
+}
+
+/** Every line that can be shown: of each result its route, the route of each step, the track. */
+export function lines_of(results) {
+  const lines = [];
+  results.forEach((result, index) => {
+    if (result.route?.length) {
+      lines.push({key: `${index}`, kind: 'route', result: index, step: null,
+        points: result.route});
+    }
+    result.steps.forEach((step, at) => {
+      if (step.route?.length) {
+        lines.push({key: `${index}.${at}`, kind: 'attempt', result: index, step: step.id,
+          points: step.route});
+      }
+    });
+    const track = result.flight?.track;
+    if (track?.length) {
+      lines.push({key: `${index}.flight`, kind: 'track', result: index, step: null,
+        points: track.map((sample) => sample.slice(1, 4)), times: track.map(([t]) => t)});
+    }
+  });
+  return lines;
+}
+
+export const layer_key = (thing) => `${thing.layer}|${thing.role}|${thing.known}`;
+
+/** The layers in the order of the scene, each once. */
+export function layers_of(scene) {
+  const layers = new Map();
+  for (const thing of [...scene.solids, ...scene.boxes, ...scene.meshes, ...scene.moving]) {
+    const key = layer_key(thing);
+    const layer = layers.get(key) ?? {key, name: thing.layer, role: thing.role,
+      known: thing.known, events: new Set(), count: 0};
+    if (thing.added_by !== null) layer.events.add(thing.added_by);
+    layer.count += thing.count ?? 1;
+    layers.set(key, layer);
+  }
+  return [...layers.values()];
+}
+
+/** Whether something is in the world at `time` of the flight whose events happened at `times`;
+ *  before and without a flight the world is as it was at the start. */
+export function present(thing, times, {time, everything}) {
+  if (everything) return true;
+  const happened = (event) =>
+    event !== null && event !== undefined && (times?.[event] ?? Infinity) <= time;
+  const added = thing.added_by === null || thing.added_by === undefined ||
+    happened(thing.added_by);
+  return added && !happened(thing.removed_by);
+}
+
+/** Where a moving obstacle's shape is at `time`, relative to its place at since_s. */
+export function drift(moving, time) {
+  const passed = Math.max(0, time - moving.since_s);
+  return moving.velocity.map((speed) => speed * passed);
+}
+
+/** Goal and points on the way that are reached within some distance. */
+export const tolerances = (scene) => [scene.goal, ...(scene.via ?? [])]
+  .filter((goal) => goal?.tolerance > 0);
+
+export function event_times(scene, selected) {
+  return scene.results[selected]?.flight?.event_times ?? null;
+}
+
+/** Index of the last entry of `values` (rising) that is ≤ value, at least 0. */
+export function last_before(values, value) {
+  let [low, high] = [0, values.length - 1];
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (values[middle] <= value) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+export const between = (a, b, share) => a.map((value, axis) => value + (b[axis] - value) * share);
+
+/** Where a flight is at `time`, and where it heads. */
+export function place_at(line, time) {
+  const from = Math.min(last_before(line.times, time), Math.max(0, line.points.length - 2));
+  const to = Math.min(from + 1, line.points.length - 1);
+  const span = line.times[to] - line.times[from];
+  const share = span > 0 ? Math.min(1, Math.max(0, (time - line.times[from]) / span)) : 0;
+  const at = between(line.points[from], line.points[to], share);
+  return {at, ahead: between(at, line.points[to], share < 1 ? 1 : 0), from};
+}
+
+/** Longitude and latitude of (x, y), bilinear between the corners of the box. */
+export function lonlat(scene, [x, y]) {
+  if (!scene.corners_lonlat) return null;
+  const [sw, se, ne, nw] = scene.corners_lonlat;
+  const [low, high] = scene.box;
+  const u = (x - low[0]) / (high[0] - low[0]);
+  const v = (y - low[1]) / (high[1] - low[1]);
+  return [0, 1].map((axis) => (sw[axis] * (1 - u) + se[axis] * u) * (1 - v) +
+    (nw[axis] * (1 - u) + ne[axis] * u) * v);
+}
+
+/** Where the grid's lines run: round coordinates within the box. */
+export function grid_lines(box, axis) {
+  const length = Math.max(box[1][0] - box[0][0], box[1][1] - box[0][1], 1e-3);
+  const step = round_step(length, 8);
+  const lines = [];
+  for (let at = Math.ceil(box[0][axis] / step) * step; at <= box[1][axis] + step * 1e-6;
+    at += step) lines.push(at);
+  return {step, lines};
+}
