@@ -290,9 +290,40 @@ TEST(Export, SaysWhatTheWorldLacks) {
   ExportOptions land = options_of(Format::qgc_plan);
   land.land = true;
   EXPECT_THROW(exported(groundless, land), Error);
-  // Home is at the start's height where no ground is known.
-  EXPECT_TRUE(says(exported(groundless, options_of(Format::qgc_plan, AltitudeFrame::home)),
-                   "relative to home, which is 300 m"));
+  // A height that nobody gave is not made up: it would be flown.
+  EXPECT_THROW(exported(groundless, options_of(Format::qgc_plan, AltitudeFrame::home)), Error);
+  EXPECT_TRUE(says(exported(groundless, options_of(Format::qgc_plan)),
+                   "home is written at the start's own height"));
+  ExportOptions home = options_of(Format::qgc_plan, AltitudeFrame::home);
+  home.takeoff = home.land = true;
+  home.home_altitude_m = 80;
+  const Exported with_home = exported(groundless, home);
+  EXPECT_TRUE(says(with_home, "relative to home, which is 80 m"));
+  const kit::MissionFile file = kit::read_mission("a.plan", with_home.text.value());
+  EXPECT_EQ(file.items.front().at.altitude_m, 220);
+  EXPECT_EQ(file.items.back().at.altitude_m, 0);
+  home.home_altitude_m = 300;
+  EXPECT_THROW(exported(groundless, home), Error);
+}
+
+TEST(Export, TheWaysUpAndDownAreJudgedToo) {
+  const char* below_start =
+      "{list: [{id: roof, cylinder: {at_m: [50, 50], radius_m: 20},"
+      " ceiling_m: 200}]}";
+  const char* below_goal =
+      "{list: [{id: roof, cylinder: {at_m: [950, 950], radius_m: 20},"
+      " ceiling_m: 200}]}";
+  for (const bool start : {true, false}) {
+    const Scene scene(kAround, true, start ? below_start : below_goal);
+    ExportOptions options = options_of(Format::qgc_plan);
+    EXPECT_TRUE(exported(scene, options).text.has_value());
+    (start ? options.land : options.takeoff) = true;
+    EXPECT_TRUE(exported(scene, options).text.has_value());
+    (start ? options.takeoff : options.land) = true;
+    const Exported refused = exported(scene, options);
+    EXPECT_FALSE(refused.text.has_value());
+    EXPECT_TRUE(says(refused, "comes too near to 'zones'"));
+  }
 }
 
 TEST(Export, OptionsThatDoNotGoTogether) {

@@ -17,6 +17,9 @@ import tempfile
 import unittest
 
 PROGRAM, SOURCES = sys.argv[1:3]
+# A sanitizer takes memory and time of its own: of a reader, each third file.
+SANITIZED = os.environ.get("ALTIPLAN_SANITIZED")
+EACH = 3 if SANITIZED else 1
 MEGABYTES = 400  # of a process that refuses a file, at most
 
 
@@ -203,7 +206,7 @@ class Damaged(unittest.TestCase):
 
     def hold(self, reader):
         name, layer, damaged = READERS[reader]
-        for what, content in damaged.items():
+        for what, content in list(damaged.items())[::EACH]:
             with self.subTest(f"{reader}: {what}"):
                 if isinstance(content, tuple):
                     self.write(name.replace(".img", ".hdr"), content[0])
@@ -213,7 +216,7 @@ class Damaged(unittest.TestCase):
                 self.refused(name, layer)
         # Of all children so far; KiB.
         most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-        if not os.environ.get("ALTIPLAN_SANITIZED"):
+        if not SANITIZED:
             self.assertLess(most, MEGABYTES)
 
 

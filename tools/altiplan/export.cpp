@@ -23,18 +23,19 @@ struct Arguments {
 };
 
 const std::map<std::string, std::optional<Format>>& formats() {
-  static const std::map<std::string, std::optional<Format>> all{
+  static const std::map<std::string, std::optional<Format>> kAll{
       {"qgc-plan", Format::qgc_plan}, {"waypoints", Format::waypoints},
       {"kml", Format::kml},           {"geojson", Format::geojson},
       {"gpx", Format::gpx},           {"csv", std::nullopt}};
-  return all;
+  return kAll;
 }
 
 const std::map<std::string, kit::AltitudeFrame>& altitudes() {
-  static const std::map<std::string, kit::AltitudeFrame> all{{"sea", kit::AltitudeFrame::sea},
-                                                             {"ground", kit::AltitudeFrame::ground},
-                                                             {"home", kit::AltitudeFrame::home}};
-  return all;
+  static const std::map<std::string, kit::AltitudeFrame> kAll{
+      {"sea", kit::AltitudeFrame::sea},
+      {"ground", kit::AltitudeFrame::ground},
+      {"home", kit::AltitudeFrame::home}};
+  return kAll;
 }
 
 void say(const std::string& message) {
@@ -117,6 +118,11 @@ void add_export(CLI::App& app, Action& action) {
   command->add_flag("--takeoff", arguments->options.takeoff, "the first item is a take-off");
   command->add_flag("--land", arguments->options.land,
                     "a landing below the last point ends the mission");
+  command
+      ->add_option("--home-altitude", arguments->options.home_altitude_m,
+                   "height of home above sea level; left out: the ground below the start")
+      ->type_name("M")
+      ->check(CLI::Range(-1e4, 1e5));
   command
       ->add_option("--max-items", arguments->options.max_items,
                    "at most so many items; points go while the route stays sound")

@@ -443,9 +443,9 @@ Json any_file_schema(const Choices& choices) {
                                                    {{"required", Json::array({"start"})}},
                                                    {{"required", Json::array({"goal"})}},
                                                    {{"required", Json::array({"mission"})}}})}};
-  Json other = {
+  const Json other = {
       {"if", is_scenario}, {"then", scenario_body(writer)}, {"else", pipeline_body(writer)}};
-  Json body = {{"if", is_study}, {"then", study_body(writer)}, {"else", std::move(other)}};
+  Json body = {{"if", is_study}, {"then", study_body(writer)}, {"else", other}};
   return file_schema("altiplan file: pipeline, scenario or study", std::move(body), writer);
 }
 }  // namespace altiplan::host

@@ -19,8 +19,15 @@ using Format = kit::MissionFile::Format;
 /// the judge's tolerance.
 constexpr Decimals kDecimals[] = {{7, 3}, {9, 5}, {13, 8}};
 
+/// Height of home above sea level, where it is known.
+std::optional<double> home_altitude(const Mission& mission, const ExportOptions& options,
+                                    const Vec3& start) {
+  return options.home_altitude_m ? options.home_altitude_m
+                                 : mission.truth.ground(start.x(), start.y());
+}
+
 /// What the options ask for and the world has not.
-void expect_possible(const Mission& mission, const ExportOptions& options) {
+void expect_possible(const Mission& mission, const ExportOptions& options, const Vec3& start) {
   if (options.format && !mission.truth.frame().has_position()) {
     throw Error(
         "the scenario's world has no position on the Earth: give it a layer that brings one, or "
@@ -29,8 +36,15 @@ void expect_possible(const Mission& mission, const ExportOptions& options) {
   if (options.altitude == AltitudeFrame::ground && !mission.truth.has_ground()) {
     throw Error("--altitude ground needs a world with ground");
   }
-  if (options.land && !mission.truth.has_ground()) {
-    throw Error("--land needs a world with ground");
+  const std::optional<double> home = home_altitude(mission, options, start);
+  if (!home && (options.altitude == AltitudeFrame::home || options.takeoff || options.land)) {
+    throw Error(
+        "--altitude home, --takeoff and --land need to know how high home is, and the world has no "
+        "ground below the start: --home-altitude M, in metres above sea level, says it");
+  }
+  if (options.takeoff && *home >= start.z()) {
+    throw Error("--takeoff: the start, " + rounded_text(start.z(), 3) +
+                " m above sea level, is not above home, " + rounded_text(*home, 3) + " m");
   }
 }
 
@@ -48,7 +62,7 @@ class Placing {
   Placing(const Mission& mission, const ExportOptions& options, const Vec3& start)
       : world_(mission.truth), frame_(options.altitude) {
     const auto at = lonlat(start);
-    home_ = {at[0], at[1], world_.ground(start.x(), start.y()).value_or(start.z()),
+    home_ = {at[0], at[1], home_altitude(mission, options, start).value_or(start.z()),
              AltitudeFrame::sea};
   }
   const MissionPoint& home() const { return home_; }
@@ -83,6 +97,35 @@ class Placing {
   MissionPoint home_;
 };
 
+/// Where the landing below the last point ends.
+Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
+  Vec3 down = route.back();
+  down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
+  return down;
+}
+
+/// What the ways up and down, which are not part of the route, come too near to; the ground, where
+/// they begin and end, aside. "" where they are free.
+std::string column_problem(const Mission& mission, const Route& route, const Placing& place,
+                           const ExportOptions& options) {
+  Vec3 home = route.front();
+  home.z() = place.home().altitude_m;
+  const Vec3 down = landing(mission, route, place);
+  for (const Layer& layer : mission.truth.layers()) {
+    const auto blocked = [&](const Vec3& foot, const Vec3& top) {
+      return !layer.environment->has_ground() &&
+             layer.environment->blocked(foot, top, mission.request.vehicle.radius_m);
+    };
+    if (options.takeoff && blocked(home, route.front())) {
+      return "the way up from home to the start comes too near to '" + layer.id + "'";
+    }
+    if (options.land && blocked(down, route.back())) {
+      return "the way down from the last point comes too near to '" + layer.id + "'";
+    }
+  }
+  return "";
+}
+
 kit::MissionFile mission_of(const Mission& mission, const ExportSource& source,
                             const Placing& place, const ExportOptions& options) {
   const Route& route = source.route;
@@ -97,9 +140,7 @@ kit::MissionFile mission_of(const Mission& mission, const ExportSource& source,
     file.items.front().kind = MissionItem::Kind::takeoff;
   }
   if (options.land) {
-    Vec3 down = route.back();
-    down.z() = ground_at(mission.truth, down);
-    file.items.push_back({MissionItem::Kind::land, place(down), 0, ""});
+    file.items.push_back({MissionItem::Kind::land, place(landing(mission, route, place)), 0, ""});
   }
   return file;
 }
@@ -236,7 +277,7 @@ std::string ExportOptions::problem() const {
 
 Exported export_route(const Mission& mission, const ExportSource& wanted,
                       const ExportOptions& options) {
-  expect_possible(mission, options);
+  expect_possible(mission, options, wanted.route.front());
   Exported result;
   ExportSource source = wanted;
   std::vector<std::string> notes;
@@ -249,6 +290,16 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     return result;
   }
   const Placing place(mission, options, source.route.front());
+  if (const std::string problem = column_problem(mission, source.route, place, options);
+      !problem.empty()) {
+    result.messages.push_back("not written: " + problem);
+    return result;
+  }
+  if (options.format && !home_altitude(mission, options, source.route.front())) {
+    notes.emplace_back(
+        "the world has no ground below the start: home is written at the start's own height "
+        "(--home-altitude says another)");
+  }
   MissionText text;
   text.speed_mps = mission.request.vehicle.speed_mps;
   if (options.format) {

@@ -17,6 +17,8 @@ struct ExportOptions {
   kit::AltitudeFrame altitude = kit::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
+  /// Of home, above sea level; left out: the ground below the start.
+  std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
 
   /// Which of them do not go together, "" where they do.

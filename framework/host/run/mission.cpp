@@ -253,8 +253,11 @@ void note_scale(Mission& mission) {
     mission.notes.push_back("frame: " + frame.crs() + ", greatest scale error " + percent(error));
   }
   if (error > 0.005) {
-    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
-                               "; a projected system mends it: frame: {crs: …}");
+    mission.warnings.push_back(
+        "lengths in the local frame are off by up to " + percent(error) +
+        (mission.truth.has_ground()
+             ? "; a projected system mends it: frame: {crs: …}"
+             : "; an origin near the flight mends it: frame: {origin_lonlat: [lon, lat]}"));
   }
 }
 
@@ -302,6 +305,11 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   }
   build_layers(config, mission, calling);
   World& truth = mission.truth;
+  if (!file.frame.crs.empty() && !truth.has_ground()) {
+    throw ConfigError(place(tree, "frame"), "frame.crs",
+                      "only an elevation model (terrain) can be brought into a coordinate system, "
+                      "and the world has none: give origin_lonlat, a place near the flight");
+  }
   const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();
   site.before = &truth;

@@ -15,7 +15,8 @@ namespace {
 const World kNothing;
 
 std::unique_ptr<Environment> city(const std::string& yaml, const World& before = kNothing,
-                                  std::optional<Vec3> start = {}, std::optional<Vec3> goal = {}) {
+                                  const std::optional<Vec3>& start = {},
+                                  const std::optional<Vec3>& goal = {}) {
   Site site;
   site.before = &before;
   site.frame = before.frame();
