@@ -7,6 +7,7 @@
 
 #include "guarded.hpp"
 #include "host/config/config.hpp"
+#include "host/output/stored_result.hpp"
 
 namespace altiplan::cli {
 
@@ -38,6 +39,11 @@ void info(const std::string& message);
 /// A folder that is not there, and what else forbids to write the file, is said before anything is
 /// computed: throws Error naming the option.
 void expect_writable(const std::optional<std::string>& file, const char* option);
+/// Throws Error where the file is one of the others, which the call reads or writes.
+void expect_apart(const std::optional<std::string>& file, const char* option,
+                  const std::vector<std::string>& others);
+/// The result's file, and those that it was made from.
+std::vector<std::string> files_of(const host::StoredResult& stored);
 
 /// A fixed-point number for tables, "-" where there is none.
 std::string fixed(const std::optional<double>& value, int digits);

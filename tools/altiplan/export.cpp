@@ -69,6 +69,7 @@ int export_result(const Arguments& arguments) {
   for (const std::string& changed : stored.changed) {
     warn(changed + " is not the file that the result was made from");
   }
+  expect_apart(arguments.out, "-o", files_of(stored));
   std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
   if (!source) {
     say("there is no " + std::string(arguments.flight ? "flight" : "standing route") + " in " +

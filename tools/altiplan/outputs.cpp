@@ -34,4 +34,24 @@ void expect_writable(const std::optional<std::string>& file, const char* option)
     throw Error(std::string(option) + ": '" + *file + "' is a folder");
   }
 }
+
+void expect_apart(const std::optional<std::string>& file, const char* option,
+                  const std::vector<std::string>& others) {
+  std::error_code error;
+  for (const std::string& other : others) {
+    const bool same = file && (*file == other || std::filesystem::equivalent(*file, other, error));
+    if (same && !std::filesystem::is_other(*file, error)) {
+      throw Error(std::string(option) + ": '" + *file +
+                  "' is read, or written, by this call already: give another name");
+    }
+  }
+}
+
+std::vector<std::string> files_of(const host::StoredResult& stored) {
+  std::vector<std::string> files{stored.file};
+  for (const host::Json& used : stored.json.at("files")) {
+    files.push_back(used.at("path").get<std::string>());
+  }
+  return files;
+}
 }  // namespace altiplan::cli

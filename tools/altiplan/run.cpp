@@ -158,6 +158,13 @@ int run(const RunArguments& arguments) {
   expect_writable(arguments.trace, "--trace");
   const Interrupt interrupt;
   const host::Config config = host::load_config(arguments.pipeline, arguments.overrides);
+  std::vector<std::string> read{config.pipeline_path.string(), config.scenario_path.string()};
+  for (const std::filesystem::path& file : config.files) {
+    read.push_back(file.string());
+  }
+  expect_apart(arguments.out, "--out", read);
+  read.push_back(arguments.out.value_or(""));
+  expect_apart(arguments.trace, "--trace", read);
   host::RunOptions options;
   options.patience_s = arguments.patience_s;
   options.threads = arguments.threads;

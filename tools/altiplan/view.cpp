@@ -85,6 +85,12 @@ int view(const Arguments& arguments) {
   std::vector<host::StoredResult> results;
   for (const std::string& file : arguments.results) {
     results.push_back(host::read_result(file, arguments.overrides));
+    std::vector<std::string> files = files_of(results.back());
+    expect_apart(arguments.page, "-o", files);
+    files.push_back(arguments.page.value_or(""));
+    expect_apart(arguments.png, "--png", files);
+    files.push_back(arguments.png.value_or(""));
+    expect_apart(arguments.svg, "--svg", files);
   }
   const host::Scene scene = host::build_scene(results);
   for (const std::string& warning : scene.warnings) {

@@ -58,7 +58,7 @@ bool read_scenario(Config& config, Checker& checker) {
     config.scenario_tree = load_yaml(config.scenario_path);
     expect_kind(config.scenario_tree, FileKind::scenario);
     apply_overrides(config.scenario_tree, config.overrides.set, FileOfKey::scenario);
-    add_mission(config.scenario_tree, mission);
+    config.notes = add_mission(config.scenario_tree, mission);
   } catch (const ConfigError& error) {
     checker.add(error.problems());
     return false;

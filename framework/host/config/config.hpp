@@ -33,6 +33,7 @@ struct Config {
   Overrides overrides;
   std::vector<std::filesystem::path> files;  ///< all that the run reads by name, in order
   std::shared_ptr<Registry> registry;
+  std::vector<std::string> notes;  ///< what reading the files left out
 };
 
 /// Reads and checks both files; throws ConfigError with every problem of both.

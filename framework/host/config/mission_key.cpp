@@ -122,11 +122,12 @@ void add_points(Value& scenario, const kit::MissionFile& mission, const std::str
 }
 }  // namespace
 
-void add_mission(Value& scenario, std::vector<fs::path>& files) {
+std::vector<std::string> add_mission(Value& scenario, std::vector<fs::path>& files) {
   const Value* written = scenario.find("mission");
   if (written == nullptr) {
-    return;
+    return {};
   }
+  std::vector<std::string> notes;
   Value alone;
   alone.kind = Value::Kind::map;
   alone.where = scenario.where;
@@ -142,6 +143,9 @@ void add_mission(Value& scenario, std::vector<fs::path>& files) {
   }
   try {
     const kit::MissionFile mission = kit::read_mission(file);
+    for (const std::string& note : mission.notes) {
+      notes.push_back("mission: " + note);
+    }
     try {
       add_points(scenario, mission, file);
     } catch (const Error& error) {
@@ -152,5 +156,6 @@ void add_mission(Value& scenario, std::vector<fs::path>& files) {
     throw ConfigError(where, "mission", error.what());
   }
   files.emplace_back(file);
+  return notes;
 }
 }  // namespace altiplan::host

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "altiplan/value.hpp"
@@ -10,7 +11,7 @@ namespace altiplan::host {
 
 /// Where a scenario has the key `mission`, adds the start, via points and goal of that file to the
 /// tree, as far as the scenario does not write them itself: what is read later cannot tell the
-/// difference, and says where each came from. The file is added to `files`. Throws ConfigError at
-/// the key.
-void add_mission(Value& scenario, std::vector<std::filesystem::path>& files);
+/// difference, and says where each came from. The file is added to `files`. Returns what of it was
+/// left out, a line each. Throws ConfigError at the key.
+std::vector<std::string> add_mission(Value& scenario, std::vector<std::filesystem::path>& files);
 }  // namespace altiplan::host

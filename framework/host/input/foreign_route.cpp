@@ -132,6 +132,12 @@ ForeignRoute read_foreign_route(const std::string& file, const Mission& mission)
   const Vec3& start = mission.request.start.position;
   const World& world = mission.truth;
   if (is_csv(file)) {
+    constexpr std::uintmax_t kMostBytes = 64'000'000;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) ||
+        std::filesystem::file_size(file, error) > kMostBytes) {
+      throw Error(file + ": expected a file of at most 64 MB");
+    }
     std::ifstream stream(file, std::ios::binary);
     if (!stream) {
       throw Error(file + ": cannot be read");
@@ -141,7 +147,8 @@ ForeignRoute read_foreign_route(const std::string& file, const Mission& mission)
     return read_foreign_route(file, text, world, start);
   }
   const std::filesystem::path ending = std::filesystem::path(file).extension();
-  if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson") {
+  if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||
+      ending == ".mission") {
     return route_in(kit::read_mission(file), world, start, file);
   }
   const Json json = read_json(file, "a route as a list of [x, y, z] in metres");

@@ -28,10 +28,24 @@ kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
   return result;
 }
 
-Zone circle_of(const Frame& frame, double x, double y, double radius) {
+/// The circle of true metres around the local one, or inside it where it is to be kept in: the
+/// world's frame has a scale of its own away from its origin.
+Zone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
+  constexpr int kDirections = 64;
   Zone result;
   result.zone.centre = frame.to_lonlat(x, y);
-  result.zone.radius_m = radius;
+  const auto [lon, lat] = result.zone.centre;
+  const Frame around = Frame::geographic(lon, lat, lat);
+  double low = kInfinity;
+  double high = 0;
+  for (int n = 0; n < kDirections; ++n) {
+    const double angle = 2 * kPi * n / kDirections;
+    const auto at = frame.to_lonlat(x + radius * std::cos(angle), y + radius * std::sin(angle));
+    const auto [east, north] = around.to_local(at[0], at[1]);
+    low = std::min(low, std::hypot(east, north));
+    high = std::max(high, std::hypot(east, north));
+  }
+  result.zone.radius_m = keep_in ? low : high;
   result.flat = Cylinder{x, y, radius};
   return result;
 }
@@ -55,9 +69,9 @@ Zone zone_of(const Frame& frame, const Drawn& drawn) {
   Zone result;
   const Box box = bounds(drawn.shape);
   if (const auto* cylinder = std::get_if<Cylinder>(&drawn.shape)) {
-    result = circle_of(frame, cylinder->x, cylinder->y, cylinder->radius);
+    result = circle_of(frame, cylinder->x, cylinder->y, cylinder->radius, keep_in);
   } else if (const auto* sphere = std::get_if<Sphere>(&drawn.shape)) {
-    result = circle_of(frame, sphere->centre.x(), sphere->centre.y(), sphere->radius);
+    result = circle_of(frame, sphere->centre.x(), sphere->centre.y(), sphere->radius, keep_in);
   } else if (const auto* prism = std::get_if<Prism>(&drawn.shape)) {
     result = prism_of(frame, *prism, keep_in);
   } else {

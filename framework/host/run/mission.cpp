@@ -261,6 +261,18 @@ void note_scale(Mission& mission) {
   }
 }
 
+/// A layer that touches nothing of the volume protects from nothing: mostly a slip, such as
+/// latitude and longitude swapped in its file.
+void warn_of_distant_layers(Mission& mission) {
+  for (const Layer& layer : mission.truth.layers()) {
+    const Box box = layer.environment->bounds();
+    if (!box.is_empty() && box.intersected(mission.site.volume).is_empty()) {
+      mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin +
+                                 ") touches nothing of the volume: is it where it should be?");
+    }
+  }
+}
+
 /// What may be known at take-off.
 World known_part(const World& truth) {
   World known = truth;
@@ -285,6 +297,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   const ScenarioFile& file = config.scenario;
   const Value& tree = config.scenario_tree;
   Mission mission;
+  mission.notes = config.notes;
   Site& site = mission.site;
   site.vehicle = vehicle_of(file.vehicle);
   site.frame_crs = file.frame.crs;
@@ -315,6 +328,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   site.before = &truth;
   site.volume = volume_of(config, truth, level);
   note_scale(mission);
+  warn_of_distant_layers(mission);
   truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
 
   Request& request = mission.request;
