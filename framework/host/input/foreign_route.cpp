@@ -124,6 +124,7 @@ ForeignRoute read_foreign_route(const std::string& file, const std::string& text
   }
   ForeignRoute result;
   result.route = read_route_csv(file, text);
+  expect_reachable(result.route, file);
   undo_rounding(result.route, start);
   return result;
 }

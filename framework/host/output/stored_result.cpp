@@ -18,6 +18,7 @@ Track track_of(const Json& json, const std::string& file) {
     track.emplace_back(
         point.at(0).get<double>(),
         Vec3(point.at(1).get<double>(), point.at(2).get<double>(), point.at(3).get<double>()));
+    expect_reachable({track.back().second}, file);
     if (track.size() > 1 && track.back().first < track[track.size() - 2].first) {
       throw Error(file + ": point " + std::to_string(track.size() - 1) +
                   " of the flight's track is earlier than the one before it");
@@ -68,6 +69,16 @@ Json read_json(const std::string& file, const std::string& expected) {
   }
 }
 
+void expect_reachable(const Route& route, const std::string& file) {
+  constexpr double kFarthest = 1e8;  // metres
+  for (std::size_t n = 0; n < route.size(); ++n) {
+    if (!(route[n].cwiseAbs().maxCoeff() <= kFarthest)) {
+      throw Error(file + ": point " + std::to_string(n) +
+                  " lies beyond 1e8 m, farther away than anything flies");
+    }
+  }
+}
+
 Route route_of(const Json& json, const std::string& file) {
   Route route;
   try {
@@ -84,6 +95,7 @@ Route route_of(const Json& json, const std::string& file) {
   if (route.empty()) {
     throw Error(file + ": there is no route in it");
   }
+  expect_reachable(route, file);
   return route;
 }
 

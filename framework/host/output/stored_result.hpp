@@ -30,6 +30,10 @@ StoredResult read_result(const std::string& file, const Overrides& overrides);
 /// Throws Error with the line where the file is not JSON; `expected` says what it should hold.
 Json read_json(const std::string& file, const std::string& expected);
 
+/// Throws Error for a place farther away than anything that flies: queries of the world would take
+/// for ever.
+void expect_reachable(const Route& route, const std::string& file);
+
 /// A list of [x, y, z]; `file` is for messages. Throws Error, for an empty list too.
 Route route_of(const Json& json, const std::string& file);
 }  // namespace altiplan::host
