@@ -4,32 +4,10 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "height_patch.hpp"
 
 namespace altiplan {
 namespace {
-
-// A bilinear cell, by the fractions s (east) and w (north) of it.
-struct Patch {
-  double sw, se, nw, ne;
-
-  bool has_ground() const { return !std::isnan(sw + se + nw + ne); }
-  Patch scaled(double by) const { return {by * sw, by * se, by * nw, by * ne}; }
-  double max() const { return std::max({sw, se, nw, ne}); }
-  double at(double s, double w) const {
-    return (1 - w) * ((1 - s) * sw + s * se) + w * ((1 - s) * nw + s * ne);
-  }
-  // Each component of the gradient runs between the slopes of two opposite edges, independently of
-  // the other one: this is the steepest point exactly.
-  double slope(double dx, double dy) const {
-    const double east = std::max(std::abs(se - sw), std::abs(ne - nw)) / dx;
-    const double north = std::max(std::abs(nw - sw), std::abs(ne - se)) / dy;
-    return std::hypot(east, north);
-  }
-};
-
-Patch patch(const HeightField& field, int i, int j) {
-  return {field.post(i, j), field.post(i + 1, j), field.post(i, j + 1), field.post(i + 1, j + 1)};
-}
 
 // Least height above the patch of a straight piece from (s0, w0, z0) to (s1, w1, z1): a quadratic
 // in the share of the piece, so the least of the ends and, where convex, of the stationary point.
@@ -62,26 +40,26 @@ struct Walk {
   // are what rounding leaves where the leg runs through a post.
   template <class Visit>
   void pieces(double from, double to, int step, const Visit& visit) const {
-    double line[2];
     const double start[2] = {u0, v0};
     const double delta[2] = {du, dv};
+    double line[2];
+    double crossing[2] = {kInfinity, kInfinity};
     for (int axis = 0; axis < 2; ++axis) {
       const double at = (start[axis] + from * delta[axis]) / step;
       line[axis] = step * (delta[axis] > 0 ? std::floor(at) : std::ceil(at));
+      if (delta[axis] != 0) {
+        crossing[axis] = (line[axis] - start[axis]) / delta[axis];
+      }
     }
     double t = from;
     while (t < to) {
-      double next = to;
       for (int axis = 0; axis < 2; ++axis) {
-        if (delta[axis] != 0) {
-          double crossing = (line[axis] - start[axis]) / delta[axis];
-          while (crossing <= t) {
-            line[axis] += delta[axis] > 0 ? step : -step;
-            crossing = (line[axis] - start[axis]) / delta[axis];
-          }
-          next = std::min(next, crossing);
+        while (crossing[axis] <= t) {
+          line[axis] += delta[axis] > 0 ? step : -step;
+          crossing[axis] = (line[axis] - start[axis]) / delta[axis];
         }
       }
+      const double next = std::min({to, crossing[0], crossing[1]});
       if (next - t > 1e-14 && !visit(t, next)) {
         return;
       }
@@ -90,9 +68,41 @@ struct Walk {
   }
 };
 
-int clamped_floor(double value, int last) {
-  return static_cast<int>(std::clamp(std::floor(value), 0.0, double(last)));
+// The floor, as `first` is not negative.
+int clamped_floor(double value, int first, int last) {
+  return static_cast<int>(std::clamp(value, double(first), double(last)));
 }
+
+// The cell whose south-west post has these indices in the whole grid.
+Patch patch(const HeightField& field, int i, int j) {
+  i -= field.part().column;
+  j -= field.part().row;
+  return {field.post(i, j), field.post(i + 1, j), field.post(i, j + 1), field.post(i + 1, j + 1)};
+}
+
+// Places and cells are counted in the whole grid, so that a part rounds as the whole does.
+struct Extent {
+  explicit Extent(const HeightField& field)
+      : origin(field.whole_origin()),
+        spacing(field.spacing()),
+        first{field.part().column, field.part().row},
+        last{first[0] + field.columns() - 1, first[1] + field.rows() - 1} {}
+  bool holds(double x, double y) const {
+    return x >= origin[0] + first[0] * spacing[0] && y >= origin[1] + first[1] * spacing[1] &&
+           x <= origin[0] + last[0] * spacing[0] && y <= origin[1] + last[1] * spacing[1];
+  }
+  double u(double x) const { return (x - origin[0]) / spacing[0]; }
+  double v(double y) const { return (y - origin[1]) / spacing[1]; }
+  double u_within(double x) const { return std::clamp(u(x), double(first[0]), double(last[0])); }
+  double v_within(double y) const { return std::clamp(v(y), double(first[1]), double(last[1])); }
+  int column(double u) const { return clamped_floor(u, first[0], last[0] - 1); }
+  int row(double v) const { return clamped_floor(v, first[1], last[1] - 1); }
+
+  std::array<double, 2> origin;
+  std::array<double, 2> spacing;
+  std::array<int, 2> first;  // post
+  std::array<int, 2> last;
+};
 
 bool is_whole(double value) { return value == std::floor(value); }
 
@@ -111,20 +121,14 @@ double least_gap(const HeightField& field, double sign, const Vec3& a_in, const 
     const std::optional<double> ground = field.at(a.x(), a.y());
     return ground ? std::min(sign * (a.z() - *ground), sign * (b.z() - *ground)) : -kInfinity;
   }
-  const auto [x0, y0] = field.origin();
-  const auto [dx, dy] = field.spacing();
-  const double last_u = field.columns() - 1;
-  const double last_v = field.rows() - 1;
-  for (const Vec3* p : {&a, &b}) {
-    if (!(p->x() >= x0 && p->y() >= y0 && p->x() <= x0 + last_u * dx &&
-          p->y() <= y0 + last_v * dy)) {
-      return -kInfinity;
-    }
+  const Extent extent(field);
+  if (!extent.holds(a.x(), a.y()) || !extent.holds(b.x(), b.y())) {
+    return -kInfinity;
   }
-  const double u0 = std::clamp((a.x() - x0) / dx, 0.0, last_u);
-  const double v0 = std::clamp((a.y() - y0) / dy, 0.0, last_v);
-  const double u1 = std::clamp((b.x() - x0) / dx, 0.0, last_u);
-  const double v1 = std::clamp((b.y() - y0) / dy, 0.0, last_v);
+  const double u0 = extent.u_within(a.x());
+  const double v0 = extent.v_within(a.y());
+  const double u1 = extent.u_within(b.x());
+  const double v1 = extent.v_within(b.y());
   const Walk walk{u0, v0, u1 - u0, v1 - v0};
   const double z0 = sign * a.z();
   const double dz = sign * (b.z() - a.z());
@@ -132,26 +136,36 @@ double least_gap(const HeightField& field, double sign, const Vec3& a_in, const 
   double gap = kInfinity;
   const auto visit_cell = [&](double t0, double t1) {
     const double middle = (t0 + t1) / 2;
-    const int i = clamped_floor(walk.u(middle), field.columns() - 2);
-    const int j = clamped_floor(walk.v(middle), field.rows() - 2);
-    // Along a line of posts either side will do.
+    const int i = extent.column(walk.u(middle));
+    const int j = extent.row(walk.v(middle));
+    const double z_from = z0 + t0 * dz;
+    const double z_to = z0 + t1 * dz;
+    Patch p = patch(field, i, j);
     int use_i = i;
     int use_j = j;
-    if (!patch(field, i, j).has_ground()) {
-      use_i -= walk.du == 0 && walk.u0 == i && i > 0;
-      use_j -= walk.dv == 0 && walk.v0 == j && j > 0;
+    if (!p.has_ground()) {  // along a line of posts either side will do
+      use_i -= walk.du == 0 && walk.u0 == i && i > extent.first[0];
+      use_j -= walk.dv == 0 && walk.v0 == j && j > extent.first[1];
+      p = patch(field, use_i, use_j);
     }
-    const Patch p = patch(field, use_i, use_j).scaled(sign);
-    gap = !p.has_ground()
-              ? -kInfinity
-              : std::min(gap, piece_gap(p, walk.u(t0) - use_i, walk.v(t0) - use_j, z0 + t0 * dz,
-                                        walk.u(t1) - use_i, walk.v(t1) - use_j, z0 + t1 * dz));
-    return gap > -kInfinity;
+    if (!p.has_ground()) {
+      gap = -kInfinity;
+      return false;
+    }
+    p = p.scaled(sign);
+    // High above a cell nothing is least, rounding included.
+    const double top = p.max();
+    const double rounding = 1e-12 * (std::abs(z_from) + std::abs(z_to) + std::abs(top));
+    if (std::min(z_from, z_to) - top <= std::min(gap, enough) + rounding) {
+      gap = std::min(gap, piece_gap(p, walk.u(t0) - use_i, walk.v(t0) - use_j, z_from,
+                                    walk.u(t1) - use_i, walk.v(t1) - use_j, z_to));
+    }
+    return true;
   };
   walk.pieces(0, 1, block, [&](double t0, double t1) {
     const double middle = (t0 + t1) / 2;
-    const int i = clamped_floor(walk.u(middle), field.columns() - 2) / block;
-    const int j = clamped_floor(walk.v(middle), field.rows() - 2) / block;
+    const int i = extent.column(walk.u(middle)) / block;
+    const int j = extent.row(walk.v(middle)) / block;
     const double lowest = z0 + (dz < 0 ? t1 : t0) * dz;
     if (lowest - roof(i, j) < std::min(gap, enough)) {
       walk.pieces(t0, t1, 1, visit_cell);
@@ -162,83 +176,33 @@ double least_gap(const HeightField& field, double sign, const Vec3& a_in, const 
 }
 }  // namespace
 
-HeightField::HeightField(std::array<double, 2> origin, std::array<double, 2> spacing, int columns,
-                         int rows, std::vector<float> heights)
-    : origin_(origin),
-      spacing_(spacing),
-      columns_(columns),
-      rows_(rows),
-      heights_(std::move(heights)) {
-  const std::string size = std::to_string(columns) + " x " + std::to_string(rows);
-  if (columns < 2 || rows < 2) {
-    throw Error("a height field needs at least 2 x 2 posts, found " + size);
-  }
-  for (int axis = 0; axis < 2; ++axis) {
-    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(origin[axis])) {
-      throw Error("a height field needs a finite origin and positive spacings, found origin " +
-                  std::to_string(origin[axis]) + " m and spacing " + std::to_string(spacing[axis]) +
-                  " m");
-    }
-  }
-  if (heights_.size() != std::size_t(columns) * std::size_t(rows)) {
-    throw Error("a height field of " + size + " posts needs as many heights, found " +
-                std::to_string(heights_.size()));
-  }
-  for (const float height : heights_) {
-    if (std::isnan(height)) {
-      ++void_posts_;
-    } else if (!std::isfinite(height)) {
-      throw Error("a height field's heights must be finite or NaN (a void)");
-    } else {
-      max_height_ = std::max(max_height_, double(height));
-      min_height_ = std::min(min_height_, double(height));
-    }
-  }
-  block_columns_ = (columns_ - 2) / kBlock + 1;
-  const int block_rows = (rows_ - 2) / kBlock + 1;
-  block_max_.assign(std::size_t(block_columns_) * std::size_t(block_rows), -float(kInfinity));
-  block_slope_.assign(block_max_.size(), 0);
-  for (int j = 0; j + 1 < rows_; ++j) {
-    for (int i = 0; i + 1 < columns_; ++i) {
-      const std::size_t block = std::size_t(j / kBlock) * block_columns_ + i / kBlock;
-      const Patch p = patch(*this, i, j);
-      if (!p.has_ground()) {
-        block_max_[block] = float(kInfinity);  // never skipped
-        continue;
-      }
-      block_max_[block] = std::max(block_max_[block], float(p.max()));
-      const double slope = p.slope(spacing_[0], spacing_[1]);
-      max_slope_ = std::max(max_slope_, slope);
-      block_slope_[block] =
-          std::max(block_slope_[block], std::nextafter(float(slope), float(kInfinity)));
-    }
-  }
-}
-
 double HeightField::max_slope(double x0, double y0, double x1, double y1) const {
-  const double u0 = (x0 - origin_[0]) / spacing_[0];
-  const double v0 = (y0 - origin_[1]) / spacing_[1];
-  const double u1 = (x1 - origin_[0]) / spacing_[0];
-  const double v1 = (y1 - origin_[1]) / spacing_[1];
-  if (!(u0 <= columns_ - 1 && v0 <= rows_ - 1 && u1 >= 0 && v1 >= 0)) {
+  const Extent extent(*this);
+  const double u0 = extent.u(x0);
+  const double v0 = extent.v(y0);
+  const double u1 = extent.u(x1);
+  const double v1 = extent.v(y1);
+  if (!(u0 <= extent.last[0] && v0 <= extent.last[1] && u1 >= extent.first[0] &&
+        v1 >= extent.first[1])) {
     return 0;
   }
   // Cells that the closed box touches.
-  const int i0 = clamped_floor(std::ceil(u0) - 1, columns_ - 2);
-  const int j0 = clamped_floor(std::ceil(v0) - 1, rows_ - 2);
-  const int i1 = clamped_floor(u1, columns_ - 2);
-  const int j1 = clamped_floor(v1, rows_ - 2);
+  const int i0 = extent.column(std::ceil(u0) - 1);
+  const int j0 = extent.row(std::ceil(v0) - 1);
+  const int i1 = extent.column(u1);
+  const int j1 = extent.row(v1);
+  double squared = 0;
   double slope = 0;
   for (int j = j0; j <= j1; ++j) {
     for (int i = i0; i <= i1; ++i) {
-      const double block = block_slope_[std::size_t(j / kBlock) * block_columns_ + i / kBlock];
-      if (block <= slope) {
+      if (block_slope_[block(i, j)] <= slope) {
         i = (i / kBlock + 1) * kBlock - 1;
         continue;
       }
       const Patch p = patch(*this, i, j);
-      if (p.has_ground()) {
-        slope = std::max(slope, p.slope(spacing_[0], spacing_[1]));
+      if (const double here = p.squared_slope(per_m_); p.has_ground() && here > squared) {
+        squared = here;
+        slope = std::sqrt(squared);
       }
     }
   }
@@ -246,22 +210,22 @@ double HeightField::max_slope(double x0, double y0, double x1, double y1) const 
 }
 
 double HeightField::max_height(double x0, double y0, double x1, double y1) const {
-  if (!(x0 >= origin_[0] && y0 >= origin_[1] && x1 <= origin_[0] + (columns_ - 1) * spacing_[0] &&
-        y1 <= origin_[1] + (rows_ - 1) * spacing_[1])) {
+  const Extent extent(*this);
+  if (!extent.holds(x0, y0) || !extent.holds(x1, y1)) {
     return kInfinity;
   }
-  const double u0 = (x0 - origin_[0]) / spacing_[0];
-  const double v0 = (y0 - origin_[1]) / spacing_[1];
-  const double u1 = (x1 - origin_[0]) / spacing_[0];
-  const double v1 = (y1 - origin_[1]) / spacing_[1];
-  const int i0 = clamped_floor(u0, columns_ - 2);
-  const int j0 = clamped_floor(v0, rows_ - 2);
-  const int i1 = clamped_floor(u1, columns_ - 2);
-  const int j1 = clamped_floor(v1, rows_ - 2);
+  const double u0 = extent.u(x0);
+  const double v0 = extent.v(y0);
+  const double u1 = extent.u(x1);
+  const double v1 = extent.v(y1);
+  const int i0 = extent.column(u0);
+  const int j0 = extent.row(v0);
+  const int i1 = extent.column(u1);
+  const int j1 = extent.row(v1);
   double height = -kInfinity;
   for (int j = j0; j <= j1; ++j) {
     for (int i = i0; i <= i1; ++i) {
-      if (block_max_[std::size_t(j / kBlock) * block_columns_ + i / kBlock] <= height) {
+      if (block_max_[block(i, j)] <= height) {
         i = (i / kBlock + 1) * kBlock - 1;
         continue;
       }
@@ -281,17 +245,17 @@ double HeightField::max_height(double x0, double y0, double x1, double y1) const
 }
 
 std::optional<double> HeightField::at(double x, double y) const {
-  if (!(x >= origin_[0] && y >= origin_[1] && x <= origin_[0] + (columns_ - 1) * spacing_[0] &&
-        y <= origin_[1] + (rows_ - 1) * spacing_[1])) {
+  const Extent extent(*this);
+  if (!extent.holds(x, y)) {
     return std::nullopt;
   }
-  const double u = std::clamp((x - origin_[0]) / spacing_[0], 0.0, double(columns_ - 1));
-  const double v = std::clamp((y - origin_[1]) / spacing_[1], 0.0, double(rows_ - 1));
+  const double u = extent.u_within(x);
+  const double v = extent.v_within(y);
   // A point on a border has the ground of whichever of its cells has one.
-  const int i1 = clamped_floor(u, columns_ - 2);
-  const int j1 = clamped_floor(v, rows_ - 2);
-  for (int j = j1; j >= (is_whole(v) ? std::max(j1 - 1, 0) : j1); --j) {
-    for (int i = i1; i >= (is_whole(u) ? std::max(i1 - 1, 0) : i1); --i) {
+  const int i1 = extent.column(u);
+  const int j1 = extent.row(v);
+  for (int j = j1; j >= (is_whole(v) ? std::max(j1 - 1, extent.first[1]) : j1); --j) {
+    for (int i = i1; i >= (is_whole(u) ? std::max(i1 - 1, extent.first[0]) : i1); --i) {
       const Patch p = patch(*this, i, j);
       if (u - i <= 1 && v - j <= 1 && p.has_ground()) {
         return p.at(u - i, v - j);
@@ -303,15 +267,13 @@ std::optional<double> HeightField::at(double x, double y) const {
 
 double HeightField::gap(const Vec3& a, const Vec3& b, double enough) const {
   const double lowest = std::min(a.z(), b.z());
-  const Box posts{{origin_[0], origin_[1], -kInfinity},
-                  {origin_[0] + (columns_ - 1) * spacing_[0],
-                   origin_[1] + (rows_ - 1) * spacing_[1], kInfinity}};
-  if (lowest - max_height_ >= enough && void_posts_ == 0 && posts.contains(a) &&
-      posts.contains(b)) {
+  const Extent extent(*this);
+  if (lowest - max_height_ >= enough && void_posts_ == 0 && extent.holds(a.x(), a.y()) &&
+      extent.holds(b.x(), b.y())) {
     return lowest - max_height_;
   }
   return least_gap(*this, 1, a, b, enough, kBlock, [this](int i, int j) {
-    return double(block_max_[std::size_t(j) * block_columns_ + i]);
+    return double(block_max_[block(i * kBlock, j * kBlock)]);
   });
 }
 

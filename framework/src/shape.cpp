@@ -11,30 +11,39 @@ using namespace shape_parts;
 // All shapes but the sphere are products of a plane region and an interval of heights: distances
 // combine by Pythagoras outside, depths by their minimum inside.
 double product_distance(double horizontal, double vertical) {
-  if (horizontal <= 0 && vertical <= 0) {
-    return std::max(horizontal, vertical);
-  }
-  return std::hypot(std::max(horizontal, 0.0), std::max(vertical, 0.0));
+  // With one of them 0 the hypotenuse is the other.
+  return horizontal <= 0 || vertical <= 0 ? std::max(horizontal, vertical)
+                                          : std::hypot(horizontal, vertical);
 }
 
-Point2 nearest_on_outline(const Prism& prism, double x, double y) {
+// What the outline is to a place: its point nearest to it, and whether it holds the place.
+struct Plan {
   Point2 nearest{kInfinity, kInfinity};
+  bool is_inside = false;
+};
+
+Plan plan_at(const Prism& prism, double x, double y) {
+  Plan plan;
   double least2 = kInfinity;
   for_each_edge(prism, [&](const Point2& e, const Point2& f) {
     const Point2 q = nearest_on_edge(e, f, x, y);
     const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
     if (distance2 < least2) {
       least2 = distance2;
-      nearest = q;
+      plan.nearest = q;
     }
+    plan.is_inside ^= crosses(e, f, x, y);
   });
-  return nearest;
+  return plan;
+}
+
+double plane_distance(const Plan& plan, double x, double y) {
+  const double distance = std::hypot(x - plan.nearest[0], y - plan.nearest[1]);
+  return plan.is_inside ? -distance : distance;
 }
 
 double plane_distance(const Prism& prism, double x, double y) {
-  const Point2 q = nearest_on_outline(prism, x, y);
-  const double distance = std::hypot(x - q[0], y - q[1]);
-  return covers(prism, x, y) ? -distance : distance;
+  return plane_distance(plan_at(prism, x, y), x, y);
 }
 
 double plane_distance(const Cylinder& c, double x, double y) {
@@ -150,8 +159,8 @@ Vec3 nearest_surface_point(const Shape& shape, const Vec3& p) {
                    return q;
                  },
                  [&](const Prism& prism) {
-                   const Point2 side = nearest_on_outline(prism, p.x(), p.y());
-                   return nearest_of_product(p, plane_distance(prism, p.x(), p.y()), side,
+                   const Plan plan = plan_at(prism, p.x(), p.y());
+                   return nearest_of_product(p, plane_distance(plan, p.x(), p.y()), plan.nearest,
                                              prism.floor, prism.ceiling);
                  }},
       shape);

@@ -8,38 +8,70 @@ namespace {
 
 using namespace shape_parts;
 
+// A look at the distance along the leg: at the share t of it, and its slope there.
+struct Look {
+  double t;
+  double distance;
+  double slope;
+};
+
+// What a search for the least distance is after: the distance itself, …
+struct Exactly {
+  static bool is_below(double) { return false; }
+  static bool is_beyond(double) { return false; }
+  static bool is_beyond(const Look&, const Look&, double) { return false; }
+};
+
+// … or whether it is below a limit. The answer is the one that the distance would give: below as
+// soon as any look is, beyond only by more than rounding can be wrong.
+struct Below {
+  double limit;
+  double rounding;  // of coordinates, metres
+
+  bool is_below(double distance) const { return distance < limit; }
+  bool is_beyond(double distance) const { return distance - rounding > limit; }
+  // A convex function lies above its tangents, so nowhere below where these two cross.
+  bool is_beyond(const Look& low, const Look& high, double length) const {
+    const double width = high.t - low.t;
+    const double share = (high.distance - high.slope * width - low.distance) /
+                         (low.slope - high.slope);  // from low to the crossing
+    // Rounding turns the direction away from the solid, the more the nearer it is.
+    const double turned = rounding * length / std::min(low.distance, high.distance);
+    return is_beyond(low.distance + low.slope * share - turned);
+  }
+};
+
 // Least distance from the leg to a convex set, given the set's point nearest to a point: the
 // distance is a convex function along the leg, so its slope is halved down to the minimum. What is
 // left to gain is at most slope x interval.
-template <class Nearest>
-double convex_leg_distance(const Vec3& a, const Vec3& b, const Nearest& nearest) {
+template <class Goal, class Nearest>
+double convex_leg_distance(const Vec3& a, const Vec3& b, const Goal& goal, const Nearest& nearest) {
   const Vec3 along = b - a;
-  const double enough = 1e-13 * (1 + along.norm());
-  double slope = 0;
-  const auto distance_at = [&](const Vec3& p) {
+  const double length = along.norm();
+  const double enough = 1e-13 * (1 + length);
+  const auto look = [&](double t, const Vec3& p) {
     const Vec3 away = p - nearest(p);
     const double distance = away.norm();
-    slope = distance > 0 ? away.dot(along) / distance : 0;
-    return distance;
+    return Look{t, distance, distance > 0 ? away.dot(along) / distance : 0};
   };
-  const double at_a = distance_at(a);
-  if (slope >= 0) {
-    return at_a;
+  Look low = look(0, a);
+  if (low.slope >= 0 || goal.is_below(low.distance)) {
+    return low.distance;
   }
-  const double at_b = distance_at(b);
-  if (slope <= 0) {
-    return at_b;
+  Look high = look(1, b);
+  if (high.slope <= 0) {
+    return high.distance;
   }
-  double least = std::min(at_a, at_b);
-  double low = 0;
-  double high = 1;
-  while (least > 0 && high - low > 1e-16) {
-    const double t = (low + high) / 2;
-    least = std::min(least, distance_at(a + t * along));
-    if (std::abs(slope) * (high - low) <= enough) {
+  double least = std::min(low.distance, high.distance);
+  while (least > 0 && high.t - low.t > 1e-16 && !goal.is_below(least) &&
+         !goal.is_beyond(low, high, length)) {
+    const double t = (low.t + high.t) / 2;
+    const Look middle = look(t, a + t * along);
+    least = std::min(least, middle.distance);
+    if (std::abs(middle.slope) * (high.t - low.t) <= enough) {
       break;
     }
-    (slope > 0 ? high : low) = t;
+    (middle.slope > 0 ? high : low) = middle;
   }
   return least;
 }
@@ -60,7 +92,8 @@ double crossing(const Vec3& a, const Vec3& b, const Point2& e, const Point2& f) 
 // The nearest point of a prism lies inside it, on a side (a vertical rectangle over an edge), or on
 // its floor or ceiling away from the edges; there it is below an end of the leg, or the leg goes
 // through.
-double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b) {
+template <class Goal>
+double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b, const Goal& goal) {
   double least = kInfinity;
   for (const Vec3* p : {&a, &b}) {
     if (covers(prism, p->x(), p->y())) {
@@ -81,7 +114,8 @@ double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b) {
         interval_gap(std::min(e[0], f[0]), std::max(e[0], f[0]), leg.min.x(), leg.max.x());
     const double gap_y =
         interval_gap(std::min(e[1], f[1]), std::max(e[1], f[1]), leg.min.y(), leg.max.y());
-    if (std::max(gap_x, gap_y) >= least) {
+    const double gap = std::max(gap_x, gap_y);
+    if (gap >= least || goal.is_below(least) || goal.is_beyond(gap)) {
       return;
     }
     const double t = crossing(a, b, e, f);
@@ -91,12 +125,50 @@ double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b) {
       return;
     }
     least =
-        std::min(least, convex_leg_distance(a, b, [&](const Vec3& p) {
+        std::min(least, convex_leg_distance(a, b, goal, [&](const Vec3& p) {
                    const Point2 q = nearest_on_edge(e, f, p.x(), p.y());
                    return Vec3(q[0], q[1], std::max(prism.floor, std::min(prism.ceiling, p.z())));
                  }));
   });
   return least;
+}
+
+template <class Goal>
+double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b, const Goal& goal) {
+  return std::visit(
+      Overloaded{[&](const Sphere& s) {
+                   return std::max(0.0, point_leg_distance(s.centre, a, b) - s.radius);
+                 },
+                 [&](const Cylinder& c) {
+                   return convex_leg_distance(a, b, goal, [&](const Vec3& p) {
+                     const double dx = p.x() - c.x;
+                     const double dy = p.y() - c.y;
+                     const double far = std::sqrt(dx * dx + dy * dy);
+                     const double z = std::max(c.floor, std::min(c.ceiling, p.z()));
+                     return far <= c.radius
+                                ? Vec3(p.x(), p.y(), z)
+                                : Vec3(c.x + dx / far * c.radius, c.y + dy / far * c.radius, z);
+                   });
+                 },
+                 [&](const BoxShape& s) {
+                   return convex_leg_distance(a, b, goal,
+                                              [&](const Vec3& p) { return clamped(s.box, p); });
+                 },
+                 [&](const Prism& prism) { return prism_leg_distance(prism, a, b, goal); }},
+      shape);
+}
+
+// Greatest of the coordinates that points of the surface are worked out from.
+double extent(const Shape& shape) {
+  double most = 0;
+  if (const auto* c = std::get_if<Cylinder>(&shape)) {
+    most = std::max(std::abs(c->x), std::abs(c->y)) + c->radius;
+  } else if (const auto* prism = std::get_if<Prism>(&shape)) {
+    for_each_edge(*prism, [&](const Point2& e, const Point2&) {
+      most = std::max({most, std::abs(e[0]), std::abs(e[1])});
+    });
+  }
+  return most;
 }
 
 // Shares of the leg where it meets a circle or sphere: |from + t along| = radius.
@@ -155,27 +227,13 @@ struct Breaks {
 }  // namespace
 
 double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b) {
-  return std::visit(
-      Overloaded{[&](const Sphere& s) {
-                   return std::max(0.0, point_leg_distance(s.centre, a, b) - s.radius);
-                 },
-                 [&](const Cylinder& c) {
-                   return convex_leg_distance(a, b, [&](const Vec3& p) {
-                     const double dx = p.x() - c.x;
-                     const double dy = p.y() - c.y;
-                     const double far = std::sqrt(dx * dx + dy * dy);
-                     const double z = std::max(c.floor, std::min(c.ceiling, p.z()));
-                     return far <= c.radius
-                                ? Vec3(p.x(), p.y(), z)
-                                : Vec3(c.x + dx / far * c.radius, c.y + dy / far * c.radius, z);
-                   });
-                 },
-                 [&](const BoxShape& s) {
-                   return convex_leg_distance(a, b,
-                                              [&](const Vec3& p) { return clamped(s.box, p); });
-                 },
-                 [&](const Prism& prism) { return prism_leg_distance(prism, a, b); }},
-      shape);
+  return leg_distance(shape, a, b, Exactly{});
+}
+
+bool comes_within(const Shape& shape, const Vec3& a, const Vec3& b, double limit) {
+  constexpr double kRounding = 1e-14;  // of the greatest coordinate, with room to spare
+  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(shape);
+  return leg_distance(shape, a, b, Below{limit, kRounding * most}) < limit;
 }
 
 double leg_depth(const Shape& shape, const Vec3& a, const Vec3& b) {

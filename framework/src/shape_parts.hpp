@@ -30,8 +30,11 @@ inline Vec3 clamped(const Box& box, const Vec3& p) { return p.cwiseMax(box.min).
 template <class Visit>
 void for_each_edge(const Prism& prism, const Visit& visit) {
   const auto ring = [&](const std::vector<Point2>& points) {
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      visit(points[n], points[n + 1 < points.size() ? n + 1 : 0]);
+    for (std::size_t n = 1; n < points.size(); ++n) {
+      visit(points[n - 1], points[n]);
+    }
+    if (!points.empty()) {
+      visit(points.back(), points.front());
     }
   };
   ring(prism.outline);
@@ -40,15 +43,19 @@ void for_each_edge(const Prism& prism, const Visit& visit) {
   }
 }
 
-// Whether (x, y) lies in the polygon: a ray to the east crosses its edges an odd number of times.
+// Whether a ray from (x, y) to the east crosses the edge; without branches, as nothing foretells
+// it.
+inline bool crosses(const Point2& e, const Point2& f, double x, double y) {
+  const double side = (f[0] - e[0]) * (y - e[1]) - (x - e[0]) * (f[1] - e[1]);
+  const bool spans = (e[1] > y) != (f[1] > y);
+  const bool is_east = (side > 0) == (f[1] > e[1]);
+  return spans & is_east;
+}
+
+// Whether (x, y) lies in the polygon: the ray crosses its edges an odd number of times.
 inline bool covers(const Prism& prism, double x, double y) {
   bool inside = false;
-  for_each_edge(prism, [&](const Point2& e, const Point2& f) {
-    if ((e[1] > y) != (f[1] > y)) {
-      const double side = (f[0] - e[0]) * (y - e[1]) - (x - e[0]) * (f[1] - e[1]);
-      inside ^= (side > 0) == (f[1] > e[1]);
-    }
-  });
+  for_each_edge(prism, [&](const Point2& e, const Point2& f) { inside ^= crosses(e, f, x, y); });
   return inside;
 }
 

@@ -11,14 +11,21 @@ namespace {
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// Sets or clears bits first..last (both included) of a row.
-void fill(std::uint64_t* row, int first, int last, bool value) {
+// Calls change(word, mask) for the words of a row that hold bits first..last (both included).
+template <class Change>
+void for_each_word(int first, int last, const Change& change) {
   for (int word = first / 64; word <= last / 64; ++word) {
     const int from = std::max(first - 64 * word, 0);
     const int to = std::min(last - 64 * word, 63);
-    const std::uint64_t mask = (kAll << from) & (kAll >> (63 - to));
-    row[word] = value ? row[word] | mask : row[word] & ~mask;
+    change(std::size_t(word), (kAll << from) & (kAll >> (63 - to)));
   }
+}
+
+// Sets or clears bits first..last (both included) of a row.
+void fill(std::uint64_t* row, int first, int last, bool value) {
+  for_each_word(first, last, [&](std::size_t word, std::uint64_t mask) {
+    row[word] = value ? row[word] | mask : row[word] & ~mask;
+  });
 }
 }  // namespace
 
@@ -50,7 +57,8 @@ VoxelGrid::VoxelGrid(const GridSpec& spec) : spec_(spec) {
   }
   words_per_row_ = (std::size_t(spec.counts[0]) + 2 + 63) / 64;
   rows_per_level_ = std::size_t(spec.counts[1]) + 2;
-  words_.assign(words_per_row_ * rows_per_level_ * (std::size_t(spec.counts[2]) + 2), kAll);
+  // One word to spare: readers of a few bits may load a few bytes beyond them.
+  words_.assign(words_per_row_ * rows_per_level_ * (std::size_t(spec.counts[2]) + 2) + 1, kAll);
   for (int k = 0; k < spec.counts[2]; ++k) {
     for (int j = 0; j < spec.counts[1]; ++j) {
       fill(words_.data() + row(j, k), 1, spec.counts[0], false);
@@ -80,6 +88,26 @@ void VoxelGrid::merge(const VoxelGrid& other) {
   }
   for (std::size_t w = 0; w < words_.size(); ++w) {
     words_[w] |= other.words_[w];
+  }
+}
+
+void VoxelGrid::copy(const VoxelGrid& other, const Cell& low, const Cell& high) {
+  if (!(spec_ == other.spec_)) {
+    throw Error("cells cannot be taken over from a voxel grid of another spec");
+  }
+  const int i0 = std::max(low[0], 0);
+  const int i1 = std::min(high[0], spec_.counts[0] - 1);
+  if (i0 > i1) {
+    return;
+  }
+  for (int k = std::max(low[2], 0); k <= std::min(high[2], spec_.counts[2] - 1); ++k) {
+    for (int j = std::max(low[1], 0); j <= std::min(high[1], spec_.counts[1] - 1); ++j) {
+      std::uint64_t* words = words_.data() + row(j, k);
+      const std::uint64_t* from = other.row_words(j, k);
+      for_each_word(i0 + 1, i1 + 1, [&](std::size_t word, std::uint64_t mask) {
+        words[word] = (words[word] & ~mask) | (from[word] & mask);
+      });
+    }
   }
 }
 

@@ -320,13 +320,7 @@ std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::ve
       }
     }
     const auto [low, high] = cells_touching(spec, gone);
-    for (int k = low[2]; k <= high[2]; ++k) {
-      for (int j = low[1]; j <= high[1]; ++j) {
-        for (int i = low[0]; i <= high[0]; ++i) {
-          grid->set({i, j, k}, fresh.blocked(i, j, k));
-        }
-      }
-    }
+    grid->copy(fresh, low, high);
   }
   for (const Layer& layer : now) {
     if (!shows(then, layer)) {

@@ -75,6 +75,53 @@ TEST(HeightField, GapEqualsDenseSampling) {
   }
 }
 
+TEST(HeightField, PartAnswersAsTheWholeToTheLastBit) {
+  constexpr int kColumns = 200;
+  constexpr int kRows = 170;
+  std::vector<float> heights(std::size_t(kColumns) * kRows);
+  Draw draw{std::mt19937_64(21)};
+  for (float& height : heights) {
+    height = draw(0, 1) < 0.01 ? kVoid : float(draw(0, 300));
+  }
+  const std::array<double, 2> origin{1000.3, -500.7};
+  const std::array<double, 2> spacing{90.1, 71.3};
+  const HeightField whole(origin, spacing, kColumns, kRows, heights);
+  const HeightField::Part part{48, 64, 65, 49};
+  std::vector<float> some;
+  for (int j = 0; j < part.rows; ++j) {
+    const auto row = heights.begin() + (part.row + j) * kColumns + part.column;
+    some.insert(some.end(), row, row + part.columns);
+  }
+  const HeightField field(origin, spacing, part, some);
+  EXPECT_EQ(field.origin()[0], origin[0] + 48 * spacing[0]);
+  EXPECT_EQ(field.columns(), 65);
+  EXPECT_EQ(field.rows(), 49);
+  const auto x = [&] { return origin[0] + spacing[0] * draw(49, 111); };
+  const auto y = [&] { return origin[1] + spacing[1] * draw(65, 111); };
+  int with_ground = 0;
+  for (int n = 0; n < 5000; ++n) {
+    const Vec3 a(x(), y(), draw(0, 400));
+    const Vec3 b = n % 3 == 0 ? Vec3(x(), y(), draw(0, 400))
+                              : Vec3(a + Vec3(draw(-1, 1), draw(-1, 1), draw(-50, 50)));
+    ASSERT_EQ(field.at(a.x(), a.y()), whole.at(a.x(), a.y())) << n;
+    ASSERT_EQ(field.gap(a, b), whole.gap(a, b)) << n;
+    ASSERT_EQ(field.gap_max(a, b), whole.gap_max(a, b)) << n;
+    const Vec3 low = a.cwiseMin(b);
+    const Vec3 high = a.cwiseMax(b);
+    ASSERT_EQ(field.max_slope(low.x(), low.y(), high.x(), high.y()),
+              whole.max_slope(low.x(), low.y(), high.x(), high.y()))
+        << n;
+    ASSERT_EQ(field.max_height(low.x(), low.y(), high.x(), high.y()),
+              whole.max_height(low.x(), low.y(), high.x(), high.y()))
+        << n;
+    with_ground += whole.gap(a, b) > -kInfinity ? 1 : 0;
+  }
+  EXPECT_GT(with_ground, 1000);
+  EXPECT_LT(with_ground, 4500);
+  EXPECT_FALSE(field.at(origin[0] + 40 * spacing[0], origin[1] + 70 * spacing[1]));
+  EXPECT_THROW(HeightField(origin, spacing, HeightField::Part{-1, 0, 65, 49}, some), Error);
+}
+
 TEST(HeightField, GapOfLegsAlongPostsAxesVerticalsAndTheBorder) {
   const HeightField field = rough(40, 40, 5);
   Draw draw{std::mt19937_64(4)};

@@ -105,6 +105,57 @@ TEST(Lattice, LinksAreTheCellsAtMostOneEdgeAway) {
   EXPECT_EQ(lattice.links({50, 50, 49}).size(), 8u);   // at the edge
 }
 
+TEST(Lattice, NearestIsTheCellOfTheNearestCentre) {
+  for (const bool level : {false, true}) {
+    Request request = testing::request_in(World(), {1, 2, 3}, {1, 1, 3}, {{0, 0, 0}, {50, 33, 21}});
+    if (level) {
+      request.level_m = 3;
+    }
+    const Lattice lattice(request, {10, 7, 5}, Neighbourhood::all, {});
+    RandomStream random(8);
+    for (int n = 0; n < 3000; ++n) {
+      Vec3 p = random.in({{-30, -30, -30}, {90, 90, 60}});
+      p.z() = level ? 3 : p.z();
+      double least = kInfinity;
+      for (std::uint32_t index = 0; index < lattice.size(); ++index) {
+        least = std::min(least, (lattice.position(lattice.cell(index)) - p).norm());
+      }
+      const Lattice::Link nearest = lattice.nearest(p);
+      ASSERT_TRUE(lattice.spec().holds(nearest.cell));
+      ASSERT_NEAR((lattice.position(nearest.cell) - p).norm(), least, 1e-12);
+      ASSERT_EQ(nearest.length, (lattice.position(nearest.cell) - p).norm());
+    }
+    for (std::uint32_t index = 0; index < lattice.size(); ++index) {
+      const Cell c = lattice.cell(index);
+      const Lattice::Link own = lattice.nearest(lattice.position(c) + Vec3(4e-7, -4e-7, 4e-7));
+      ASSERT_EQ(own.cell, c);
+      ASSERT_EQ(own.length, 0);
+      ASSERT_GT(lattice.nearest(lattice.position(c) + Vec3(6e-7, 0, 0)).length, 0);
+    }
+    EXPECT_EQ(lattice.nearest({1e300, -1e300, 3}).cell[0], lattice.spec().counts[0] - 1);
+    EXPECT_EQ(lattice.nearest({1e300, -1e300, 3}).cell[1], 0);
+  }
+}
+
+TEST(Lattice, ACentreJustBeyondTheVolumeIsNoCell) {
+  for (const double edge : {10.0, 4000.0}) {
+    for (const double beyond : {3e-7, 9e-7, 3e-6}) {
+      const Vec3 last(5 * edge - beyond, 50, 50);
+      const Request request =
+          testing::request_in(World(), {0, 0, 0}, last, {{0, 0, 0}, {last.x(), 100, 100}});
+      const Lattice lattice(request, {edge, 50, 50}, Neighbourhood::all, {});
+      // The judge lets a centre pass that is less than a micrometre outside.
+      const int inside = edge == 4000 && beyond == 3e-7 ? 6 : 5;
+      ASSERT_EQ(lattice.spec().counts[0], inside) << edge << " " << beyond;
+      ASSERT_TRUE(request.volume.contains(lattice.position({inside - 1, 0, 0}), kLengthTolerance));
+      EXPECT_EQ(lattice.nearest(last).cell, (Cell{inside - 1, 1, 1}));
+      EXPECT_EQ(lattice.nearest(last).length == 0, inside == 6);
+      // The goal joins the lattice all the same, by the cells one edge away.
+      EXPECT_EQ(lattice.links(last).size(), inside == 6 ? 1u : 9u);
+    }
+  }
+}
+
 TEST(Lattice, BlockedAroundAndFreeStepsEqualTheirDefinition) {
   SplitMix64 random(7);
   GridSpec spec;
@@ -162,6 +213,25 @@ TEST(MoveRules, AgreeWithTheJudgeOnEveryPairOfSteps) {
     }
   }
   EXPECT_GT(kept, 20);
+}
+
+TEST(Lattice, CellUndoesIndex) {
+  for (const Cell& counts : {Cell{1, 1, 1}, {1, 7, 3}, {64, 1, 5}, {3, 5, 1}, {1000, 999, 998}}) {
+    const Vec3 size(counts[0], counts[1], counts[2]);
+    const Lattice lattice(
+        testing::request_in(World(), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {{0, 0, 0}, size}),
+        {1, 1, 1}, Neighbourhood::all, {});
+    SplitMix64 random(2);
+    for (int n = 0; n < 2000; ++n) {
+      Cell c{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        c[axis] = int(random.integer(0, counts[axis] - 1));
+      }
+      ASSERT_EQ(lattice.cell(lattice.index(c)), c);
+    }
+    const Cell last = {counts[0] - 1, counts[1] - 1, counts[2] - 1};
+    EXPECT_EQ(lattice.cell(std::uint32_t(lattice.size() - 1)), last);
+  }
 }
 }  // namespace
 }  // namespace altiplan::kit

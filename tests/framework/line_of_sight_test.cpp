@@ -85,5 +85,59 @@ TEST(LineOfSight, TouchingACornerIsEnoughToBlock) {
   EXPECT_TRUE(line_of_sight(grid, {0, 0, 0}, {0, 0, 0}));
   EXPECT_FALSE(line_of_sight(grid, {2, 1, 1}, {2, 1, 1}));
 }
+TEST(LineOfSight, SeesWhatTheWalkSees) {
+  SplitMix64 random(9);
+  int free = 0;
+  for (int world = 0; world < 40; ++world) {
+    GridSpec spec;
+    for (int& count : spec.counts) {
+      count = random.integer(1, world % 4 == 0 ? 200 : 40);
+    }
+    VoxelGrid grid(spec);
+    const auto draw = [&] {
+      return Cell{random.integer(0, spec.counts[0] - 1), random.integer(0, spec.counts[1] - 1),
+                  random.integer(0, spec.counts[2] - 1)};
+    };
+    const std::size_t blocked = spec.cell_count() / std::size_t(random.integer(10, 150));
+    for (std::size_t n = 0; n < blocked; ++n) {
+      grid.set(draw(), true);
+    }
+    for (int n = 0; n < 3000; ++n) {
+      const Cell a = draw();
+      Cell b = draw();
+      if (n % 2 == 0) {  // short, often through edges and corners
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          b[axis] = std::clamp(a[axis] + random.integer(-6, 6), 0, spec.counts[axis] - 1);
+        }
+      }
+      const bool walked = walk_cells(a, b, [&](const Cell& c) { return !grid.blocked(c); });
+      ASSERT_EQ(line_of_sight(grid, a, b), walked);
+      free += walked;
+    }
+  }
+  EXPECT_GT(free, 20000);
+  EXPECT_LT(free, 100000);
+}
+
+TEST(LineOfSight, EveryCellOfALegCounts) {
+  SplitMix64 random(10);
+  GridSpec spec;
+  spec.counts = {70, 12, 12};
+  VoxelGrid grid(spec);
+  for (int n = 0; n < 300; ++n) {
+    const auto draw = [&] {
+      return Cell{random.integer(0, 69), random.integer(0, 11), random.integer(0, 11)};
+    };
+    const Cell a = draw();
+    const Cell b = draw();
+    ASSERT_TRUE(line_of_sight(grid, a, b));
+    walk_cells(a, b, [&](const Cell& c) {
+      grid.set(c, true);
+      EXPECT_FALSE(line_of_sight(grid, a, b));
+      grid.set(c, false);
+      return true;
+    });
+  }
+}
 }  // namespace
 }  // namespace altiplan::kit

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <thread>
 
+#include "altiplan/random.hpp"
+
 namespace altiplan::kit {
 namespace {
 
@@ -28,6 +30,26 @@ TEST(NodeStore, EveryGenerationStartsUnseenAlsoAfterTheStampWraps) {
       ASSERT_EQ(store.at(i, {-1, 0}).value, round);
     }
   }
+}
+
+TEST(ScratchArray, IsZeroAfterEveryReset) {
+  SplitMix64 random(1);
+  ScratchArray<std::uint32_t> array;
+  std::size_t largest = 0;
+  for (int round = 0; round < 300; ++round) {
+    const std::size_t count = std::size_t(random.integer(1, 5000));
+    largest = std::max(largest, count);
+    array.reset(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(array[i], 0u) << round;
+    }
+    for (int n = 0; n < 40; ++n) {
+      const auto i = std::size_t(random.integer(0, int(count) - 1));
+      array.at(i) = std::uint32_t(round + 1);
+      ASSERT_EQ(array[i], unsigned(round + 1));
+    }
+  }
+  EXPECT_GE(array.bytes(), largest * sizeof(std::uint32_t));
 }
 
 TEST(ScratchPool, LendsToOneAtATimeAndKeepsWhatComesBack) {

@@ -47,6 +47,60 @@ TEST(VoxelGrid, IsFreeInsideABlockedBorder) {
   }
 }
 
+TEST(VoxelGrid, RunsAreThoseOfItsCells) {
+  unsigned seed = 0;
+  for (const int nx : {1, 61, 62, 63, 64, 126, 127, 130, 300}) {
+    for (const double share : {0.0, 0.02, 0.5, 0.98, 1.0}) {
+      const VoxelGrid grid = speckled({nx, 3, 2}, {1, 1, 1}, share, ++seed);
+      for (int k = 0; k < 2; ++k) {
+        for (int j = 0; j < 3; ++j) {
+          std::vector<bool> seen(std::size_t(nx), false);
+          int last_end = -2;
+          grid.for_each_run(j, k, [&](int first, int last) {
+            EXPECT_GT(first, last_end + 1) << "runs that meet are one";
+            ASSERT_LE(first, last);
+            ASSERT_LT(last, nx);
+            std::fill(seen.begin() + first, seen.begin() + last + 1, true);
+            last_end = last;
+          });
+          for (int i = 0; i < nx; ++i) {
+            EXPECT_EQ(seen[std::size_t(i)], grid.blocked(i, j, k))
+                << nx << ' ' << share << ' ' << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(VoxelGrid, CopiesABoxAndNoMore) {
+  const Cell counts{150, 5, 4};
+  const VoxelGrid from = speckled(counts, {1, 1, 1}, 0.5, 1);
+  for (const auto& [low, high] : std::vector<std::pair<Cell, Cell>>{{{0, 0, 0}, {149, 4, 3}},
+                                                                    {{-3, -1, -1}, {400, 9, 9}},
+                                                                    {{62, 1, 1}, {64, 3, 2}},
+                                                                    {{7, 2, 0}, {7, 2, 3}},
+                                                                    {{127, 0, 1}, {140, 4, 1}},
+                                                                    {{9, 1, 1}, {8, 3, 3}},
+                                                                    {{150, 0, 0}, {160, 4, 3}}}) {
+    const VoxelGrid before = speckled(counts, {1, 1, 1}, 0.5, 2);
+    VoxelGrid grid = before;
+    grid.copy(from, low, high);
+    for (int k = -1; k <= counts[2]; ++k) {
+      for (int j = -1; j <= counts[1]; ++j) {
+        for (int i = -1; i <= counts[0]; ++i) {
+          const bool within = i >= low[0] && i <= high[0] && j >= low[1] && j <= high[1] &&
+                              k >= low[2] && k <= high[2];
+          EXPECT_EQ(grid.blocked(i, j, k), (within ? from : before).blocked(i, j, k))
+              << i << ' ' << j << ' ' << k;
+        }
+      }
+    }
+  }
+  VoxelGrid other(GridSpec{});
+  EXPECT_THROW(other.copy(from, {0, 0, 0}, {1, 1, 1}), Error);
+}
+
 TEST(VoxelGrid, BlocksRunsClippedToTheGrid) {
   GridSpec spec;
   spec.counts = {200, 4, 4};

@@ -4,7 +4,7 @@
 // (ENVI's header, the .prj of an ASCII grid), the text up to the first NUL is that file.
 #include "altiplan/error.hpp"
 #include "altiplan/world.hpp"
-#include "environment/terrain/place.hpp"
+#include "environment/terrain/model.hpp"
 #include "fuzz/memory_file.hpp"
 
 namespace {
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     site.frame = altiplan::Frame::geographic(-85, 36, 36.5);
   }
   try {
-    terrain::place(terrain::read_dem(params), site, params);
+    terrain::Model(params, site);
   } catch (const altiplan::Error&) {
   }
   return 0;

@@ -55,6 +55,24 @@ class Made(unittest.TestCase):
         self.assertEqual(self.figures(SCEN.format("5.00"))["matched"], 1)
         self.assertEqual(self.figures(SCEN.format("5.01"))["matched"], 0)
 
+    def test_each_scenario_has_a_line_when_asked_for(self):
+        scen = SCEN.format(5) + "0\ta.map\t4\t3\t0\t0\t0\t0\t0\n"
+        code, out, err = bench(self.file("a.map", MAP), self.file("a.scen", scen), "--each",
+                               "--repeat", "3", "--with", "heuristic=zero")
+        self.assertEqual((code, err), (0, ""))
+        rows = [line.split() for line in out.splitlines()[:2]]
+        self.assertEqual([row[:3] for row in rows], [["0", "1", "5"], ["1", "1", "0"]])
+        self.assertEqual(rows[1][3], "0")
+        self.assertGreater(float(rows[0][4]), 0)
+
+    def test_wrong_parameters_are_named(self):
+        for text, said in (("heuristic", "expected KEY=VALUE"), ("=1", "expected KEY=VALUE"),
+                           ("heuristic=best", "octile"), ("speed=1", "speed")):
+            code, out, err = bench(self.file("a.map", MAP), self.file("a.scen", SCEN.format(5)),
+                                   "--with", text)
+            self.assertEqual((code, out), (3, ""), text)
+            self.assertIn(said, err)
+
     def test_corners_may_be_cut_when_told_so(self):
         figures = self.figures(SCEN.format("4.41421"), "--corner", "any")
         self.assertEqual(figures["matched"], 1)

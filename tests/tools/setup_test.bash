@@ -59,7 +59,7 @@ try 0 build
 says "2 packages, 2.1 MB to download"
 calls "^install .*--no-install-recommends -q .*cmake" 1
 calls "^update" 0
-for heavy in ompl clang chromium scipy gtest; do
+for heavy in ompl fcl benchmark clang chromium scipy gtest; do
   calls "$heavy" 0
 done
 sed -n 's/^tools.setup: installing for .build.: \(.*\) (.*/\1/p' "$work/stderr" | tr ' ' '\n' \
@@ -71,6 +71,10 @@ calls . 0
 try 0 test
 calls "^install .* libgtest-dev" 2
 calls "cmake" 0
+
+# The peers come with bench only.
+try 0 bench
+calls "^install .* libbenchmark-dev .*libompl-dev" 2
 
 # Package lists are fetched once where they are missing.
 rm "$work/updated"
@@ -85,5 +89,5 @@ says "E: no space left"
 says "apt-get install failed"
 
 try 1 everything
-says "expected build, test, ci or docs, found 'everything'"
+says "expected build, test, ci, docs or bench, found 'everything'"
 calls . 0

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "altiplan/check.hpp"
@@ -51,10 +52,18 @@ std::unique_ptr<Planner> make_planner(host::Registry& registry, const GridArgume
   const bool has_corner = std::any_of(fields.begin(), fields.end(), [](const BoundField& field) {
     return field.spec.name == "corner";
   });
-  Value parameters = map_of({});
+  std::vector<std::pair<std::string, std::string>> texts;
   if (has_corner || arguments.corner) {
-    parameters = map_of({{"corner", arguments.corner.value_or("free_box")}});
+    texts.emplace_back("corner", arguments.corner.value_or("free_box"));
   }
+  for (const std::string& text : arguments.with) {
+    const std::size_t equals = text.find('=');
+    if (equals == text.npos || equals == 0) {
+      throw Error("--with: expected KEY=VALUE, found " + excerpt(text));
+    }
+    texts.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  const Value parameters = map_of(texts);
   return entry.planner(&parameters);
 }
 
@@ -90,19 +99,39 @@ Request request_for(std::shared_ptr<const World> world, const GridSpec& spec, bo
   return request;
 }
 
+PlanResult timed_plan(const Planner& planner, const Request& request, int repeat, double& median) {
+  PlanResult result;
+  std::vector<double> times_us;
+  for (int n = 0; n < repeat; ++n) {
+    const auto began = std::chrono::steady_clock::now();
+    result = planner.plan(request);
+    const auto took = std::chrono::steady_clock::now() - began;
+    times_us.push_back(std::chrono::duration<double, std::micro>(took).count());
+  }
+  std::nth_element(times_us.begin(), times_us.begin() + repeat / 2, times_us.end());
+  median = times_us[std::size_t(repeat / 2)];
+  return result;
+}
+
 void run_scenario(const Planner& planner, Request& request, const GridScenario& scenario,
-                  Tally& tally) {
+                  const GridArguments& arguments, Tally& tally) {
   const Environment& map = *request.world->layers().front().environment;
   request.start.position = *map.cell_centre(scenario.start);
   request.goal = {*map.cell_centre(scenario.goal), 0};
-  const auto began = std::chrono::steady_clock::now();
-  const PlanResult result = planner.plan(request);
-  tally.times_us.push_back(
-      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());
+  double time_us = 0;
+  const PlanResult result = timed_plan(planner, request, arguments.repeat, time_us);
+  double expanded = 0;
   for (const Counter& counter : result.counters) {
-    tally.expanded += counter.name == "expanded" ? double(counter.value) : 0;
+    expanded += counter.name == "expanded" ? double(counter.value) : 0;
   }
-  if (result.status != Status::solved) {
+  const bool solved = result.status == Status::solved;
+  if (arguments.each) {
+    std::printf("%zu %d %.9g %.0f %.3f\n", tally.times_us.size(), int(solved),
+                solved ? length(result.route) : 0.0, expanded, time_us);
+  }
+  tally.times_us.push_back(time_us);
+  tally.expanded += expanded;
+  if (!solved) {
     ++tally.unsolved;
     return;
   }
@@ -126,7 +155,7 @@ nlohmann::ordered_json run_grid(const GridArguments& arguments) {
   Tally tally;
   const std::size_t before = allocated();
   for (const GridScenario& scenario : scenarios.list) {
-    run_scenario(*planner, request, scenario, tally);
+    run_scenario(*planner, request, scenario, arguments, tally);
     // The planner's pool keeps its buffers: after a plan they are as large as they were within.
     tally.bytes = std::max(tally.bytes, allocated() - std::min(before, allocated()));
   }

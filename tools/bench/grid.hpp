@@ -14,7 +14,10 @@ struct GridArguments {
   std::string scenarios;
   std::string planner = "astar";
   std::optional<std::string> corner;
+  std::vector<std::string> with;  ///< further parameters of the planner, KEY=VALUE
   std::size_t limit = ~std::size_t{0};
+  int repeat = 1;     ///< times that each scenario is planned; its time is the median
+  bool each = false;  ///< a line for each scenario on stdout
   std::vector<std::filesystem::path> plugin_path;
 };
 

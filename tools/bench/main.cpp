@@ -33,6 +33,17 @@ int run(int argc, char** argv) {
                    "the planner's rule for diagonal steps; free_box by default, by which the "
                    "printed lengths were made")
       ->type_name("RULE");
+  command
+      ->add_option("--with", grid.with, "a further parameter of the planner: heuristic=euclidean")
+      ->type_name("KEY=VALUE");
+  command
+      ->add_option("--repeat", grid.repeat,
+                   "plan each scenario N times and take the median of its times")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  command->add_flag("--each", grid.each,
+                    "first print a line for each scenario: number from 0, solved (0 or 1), length "
+                    "in cells, cells expanded, microseconds");
   command->add_option("--limit", grid.limit, "plan the first N scenarios only")
       ->type_name("N")
       ->check(CLI::PositiveNumber);

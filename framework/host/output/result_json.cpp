@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/output/result_json.hpp"
 
-#include <sha2.h>
-
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -282,10 +280,5 @@ void write_file(const std::filesystem::path& named, const std::string& text) {
   }
   throw Error("cannot write '" + file.string() +
               "': " + (code ? code.message() : std::strerror(error)));
-}
-
-std::string sha256(const std::filesystem::path& file) {
-  char text[SHA256_DIGEST_STRING_LENGTH];
-  return SHA256File(file.c_str(), text) == nullptr ? "" : text;
 }
 }  // namespace altiplan::host

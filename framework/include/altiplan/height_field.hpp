@@ -18,11 +18,31 @@ class ALTIPLAN_API HeightField {
   HeightField(std::array<double, 2> origin, std::array<double, 2> spacing, int columns, int rows,
               std::vector<float> heights);
 
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
+  /// Which posts of a larger grid a field has.
+  struct Part {
+    int column = 0;
+    int row = 0;
+    int columns = 0;
+    int rows = 0;
+  };
+  /// A part of a larger grid, whose post (0, 0) stands at `whole_origin`. Where it begins at
+  /// multiples of kBlock it answers as the whole grid does, to the last bit, for all that lies a
+  /// post's spacing within it. Throws Error likewise.
+  HeightField(std::array<double, 2> whole_origin, std::array<double, 2> spacing, const Part& part,
+              std::vector<float> heights);
+  /// Greatest height and slope are known of blocks of kBlock × kBlock cells.
+  static constexpr int kBlock = 16;
+
+  int columns() const { return part_.columns; }
+  int rows() const { return part_.rows; }
+  /// Of post (0, 0) of this field.
   const std::array<double, 2>& origin() const { return origin_; }
+  const Part& part() const { return part_; }
+  const std::array<double, 2>& whole_origin() const { return whole_origin_; }
   const std::array<double, 2>& spacing() const { return spacing_; }
-  float post(int i, int j) const { return heights_[std::size_t(j) * std::size_t(columns_) + i]; }
+  float post(int i, int j) const {
+    return heights_[std::size_t(j) * std::size_t(part_.columns) + i];
+  }
   double max_height() const { return max_height_; }
   double min_height() const { return min_height_; }
   std::size_t void_posts() const { return void_posts_; }
@@ -45,17 +65,26 @@ class ALTIPLAN_API HeightField {
   double gap_max(const Vec3& a, const Vec3& b) const;
 
  private:
+  void measure_posts();
+  void measure_blocks();
+  void measure_block(int block_column, int block_row, float& top, double& squared) const;
+  /// The block of a cell, its indices those in the whole grid.
+  std::size_t block(int i, int j) const {
+    return std::size_t(j / kBlock - first_block_[1]) * std::size_t(block_columns_) +
+           std::size_t(i / kBlock - first_block_[0]);
+  }
+
+  std::array<double, 2> whole_origin_;
   std::array<double, 2> origin_;
   std::array<double, 2> spacing_;
-  int columns_;
-  int rows_;
+  std::array<double, 2> per_m_;
+  Part part_;
   std::vector<float> heights_;
   double max_height_ = -kInfinity;
   double min_height_ = kInfinity;
   double max_slope_ = 0;
   std::size_t void_posts_ = 0;
-  // Greatest height and slope of blocks of kBlock × kBlock cells.
-  static constexpr int kBlock = 16;
+  std::array<int, 2> first_block_{0, 0};
   int block_columns_ = 0;
   std::vector<float> block_max_;
   std::vector<float> block_slope_;

@@ -29,5 +29,10 @@ struct Limits {
   double min_turn_radius = 0;  ///< of the circle through a waypoint and its neighbours
   double max_climb = kPi / 2;
   double max_route_length = kInfinity;
+
+  /// Whether two legs that each keep the limits may break one together.
+  bool turns() const {
+    return max_turn_horizontal < kPi || max_turn_space < kPi || min_turn_radius > 0;
+  }
 };
 }  // namespace altiplan

@@ -36,7 +36,7 @@ struct Budget {
 };
 
 /// Asked once an iteration. Iterations are compared every time; the stop token and the clock are
-/// asked every time while iterations take a millisecond or more, and every 64th of quick ones.
+/// asked every time while iterations take a millisecond or more, and every 512th of quick ones.
 class BudgetWatch {
  public:
   explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
@@ -48,7 +48,7 @@ class BudgetWatch {
       return false;
     }
     const Budget::Clock::time_point now = Budget::Clock::now();
-    every_ = now - asked_ < std::chrono::milliseconds(1) ? std::min(2 * every_, 64) : 1;
+    every_ = now - asked_ < std::chrono::milliseconds(1) ? std::min(2 * every_, 512) : 1;
     calls_left_ = every_;
     asked_ = now;
     cancelled_ = budget_.stop.stop_requested();

@@ -46,6 +46,8 @@ ALTIPLAN_API Shape moved(const Shape& shape, const Vec3& offset);
 ALTIPLAN_API double signed_distance(const Shape& shape, const Vec3& p);
 /// Least distance between the leg a–b and the solid shape, 0 where they meet; closed form.
 ALTIPLAN_API double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b);
+/// Whether leg_distance(shape, a, b) < limit, mostly known much sooner.
+ALTIPLAN_API bool comes_within(const Shape& shape, const Vec3& a, const Vec3& b, double limit);
 /// How deep the leg a–b gets into the shape, 0 where it does not: between half the greatest depth
 /// and all of it (exactly 0 for a leg that only touches).
 ALTIPLAN_API double leg_depth(const Shape& shape, const Vec3& a, const Vec3& b);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -64,18 +66,50 @@ class ALTIPLAN_API VoxelGrid {
   void free_run(int i0, int i1, int j, int k) { set_run(i0, i1, j, k, false); }
   /// Blocks what `other`, of the same spec, blocks.
   void merge(const VoxelGrid& other);
+  /// Takes over cells low to high (both included, clipped to the grid) of another grid of the same
+  /// spec.
+  void copy(const VoxelGrid& other, const Cell& low, const Cell& high);
+  /// Calls visit(first, last) for the runs of blocked cells in row (j, k), both included.
+  template <class Visit>
+  void for_each_run(int j, int k, const Visit& visit) const {
+    for (int first = find(0, j, k, true); first < spec_.counts[0];) {
+      const int end = find(first, j, k, false);
+      visit(first, end - 1);
+      first = find(end, j, k, true);
+    }
+  }
   std::size_t blocked_count() const;
   std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
 
   /// Bits of row (j, k), cell -1 first; `words_per_row()` words.
   const std::uint64_t* row_words(int j, int k) const { return words_.data() + row(j, k); }
   std::size_t words_per_row() const { return words_per_row_; }
+  /// All words, border rows included; the bit of a cell, and how far on the next row's and the next
+  /// level's are, in bits.
+  const std::vector<std::uint64_t>& words() const { return words_; }
+  std::size_t bit(int i, int j, int k) const { return 64 * row(j, k) + std::size_t(i + 1); }
+  std::size_t bit(const Cell& c) const { return bit(c[0], c[1], c[2]); }
+  std::size_t row_bits() const { return 64 * words_per_row_; }
+  std::size_t level_bits() const { return row_bits() * rows_per_level_; }
 
   /// Cells whose state differs between two grids of one spec.
   static std::vector<Cell> diff(const VoxelGrid& a, const VoxelGrid& b);
 
  private:
   void set_run(int i0, int i1, int j, int k, bool is_blocked);
+  /// The first cell from i on of row (j, k) that is blocked, or free; counts[0] where none is.
+  int find(int i, int j, int k, bool is_blocked) const {
+    const std::uint64_t* words = row_words(j, k);
+    const std::uint64_t flip = is_blocked ? 0 : ~std::uint64_t{0};
+    const std::size_t bit = std::size_t(i + 1);
+    std::size_t word = bit / 64;
+    std::uint64_t rest = (words[word] ^ flip) & (~std::uint64_t{0} << bit % 64);
+    while (rest == 0 && ++word < words_per_row_) {
+      rest = words[word] ^ flip;
+    }
+    return rest == 0 ? spec_.counts[0]
+                     : std::min(int(64 * word) + std::countr_zero(rest) - 1, spec_.counts[0]);
+  }
   std::size_t row(int j, int k) const {
     return (std::size_t(k + 1) * rows_per_level_ + std::size_t(j + 1)) * words_per_row_;
   }

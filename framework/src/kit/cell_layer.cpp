@@ -25,6 +25,14 @@ namespace {
 /// Columns i0 to i1 of rows j0 to j1, both included, of one level.
 using Rectangle = std::array<int, 4>;
 
+using Row = std::array<int, 2>;  ///< j and k
+
+/// Whether so many rows from one on have the same cells blocked as those from another on.
+bool same_words(const VoxelGrid& cells, const Row& a, const Row& b, std::size_t rows) {
+  const std::uint64_t* words = cells.row_words(a[0], a[1]);
+  return std::equal(words, words + rows * cells.words_per_row(), cells.row_words(b[0], b[1]));
+}
+
 /// Rectangles that cover a level's blocked cells.
 std::vector<Rectangle> rectangles_of(const VoxelGrid& cells, int k) {
   const GridSpec& spec = cells.spec();
@@ -32,17 +40,15 @@ std::vector<Rectangle> rectangles_of(const VoxelGrid& cells, int k) {
   using Run = std::pair<int, int>;
   std::map<Run, int> open;  // and the row that the run began in
   for (int j = 0; j <= spec.counts[1]; ++j) {
+    if (j > 0 && j < spec.counts[1] && same_words(cells, {j, k}, {j - 1, k}, 1)) {
+      continue;
+    }
     std::map<Run, int> still;
-    for (int i = 0; j < spec.counts[1] && i < spec.counts[0]; ++i) {
-      if (!cells.blocked(i, j, k)) {
-        continue;
-      }
-      const int first = i;
-      while (i + 1 < spec.counts[0] && cells.blocked(i + 1, j, k)) {
-        ++i;
-      }
-      const auto before = open.find({first, i});
-      still[{first, i}] = before == open.end() ? j : before->second;
+    if (j < spec.counts[1]) {
+      cells.for_each_run(j, k, [&](int first, int last) {
+        const auto before = open.find({first, last});
+        still[{first, last}] = before == open.end() ? j : before->second;
+      });
     }
     for (const auto& [run, from] : open) {
       if (still.count(run) == 0) {
@@ -60,6 +66,10 @@ std::vector<Shape> boxes_of(const VoxelGrid& cells) {
   std::vector<Shape> boxes;
   std::map<Rectangle, int> open;  // and the level that the rectangle began in
   for (int k = 0; k <= spec.counts[2]; ++k) {
+    if (k > 0 && k < spec.counts[2] &&
+        same_words(cells, {0, k}, {0, k - 1}, std::size_t(spec.counts[1]))) {
+      continue;
+    }
     std::map<Rectangle, int> still;
     if (k < spec.counts[2]) {
       for (const Rectangle& rectangle : rectangles_of(cells, k)) {

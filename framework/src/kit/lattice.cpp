@@ -9,8 +9,9 @@
 namespace altiplan::kit {
 namespace {
 
-/// Slack for "this centre is still inside", in cells: what rounding can do.
-constexpr double kRounding = 1e-9;
+/// Slack for "this centre is still inside", in cells: what rounding can do, and the judge's
+/// tolerance lets pass.
+double rounding(double edge) { return std::min(1e-9, kLengthTolerance / 2 / edge); }
 
 /// Where centres may lie: the volume, and the altitude bands over sea.
 Box room(const Request& request) {
@@ -22,24 +23,6 @@ Box room(const Request& request) {
     }
   }
   return box;
-}
-
-std::array<DirectionMask, kDirections> spanned_boxes() {
-  std::array<DirectionMask, kDirections> boxes{};
-  for (int d = 0; d < kDirections; ++d) {
-    const Cell to = offset(d);
-    for (int other = 0; other < kDirections; ++other) {
-      const Cell o = offset(other);
-      bool within = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        within = within && (o[axis] == 0 || o[axis] == to[axis]);
-      }
-      if (within) {
-        boxes[std::size_t(d)] |= DirectionMask{1} << other;
-      }
-    }
-  }
-  return boxes;
 }
 }  // namespace
 
@@ -54,8 +37,8 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   std::array<double, 3> counts{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
     const double edge = spec_.cell[axis];
-    double first = std::ceil((box.min[axis] - anchor[axis]) / edge - kRounding);
-    double last = std::floor((box.max[axis] - anchor[axis]) / edge + kRounding);
+    double first = std::ceil((box.min[axis] - anchor[axis]) / edge - rounding(edge));
+    double last = std::floor((box.max[axis] - anchor[axis]) / edge + rounding(edge));
     if (axis == 2 && level_m_) {
       first = last = native ? std::floor((*level_m_ - anchor.z()) / edge + 0.5) : 0;
     }
@@ -87,9 +70,15 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   for (std::size_t axis = 0; axis < 3; ++axis) {
     spec_.counts[axis] = int(counts[axis]);
   }
+  per_row_ = divisor(spec_.counts[0]);
+  per_level_ = divisor(spec_.counts[1]);
+  std::array<double, 8> along{};  // by the axes, as bits, that a step leads along
+  for (int set = 0; set < 8; ++set) {
+    along[std::size_t(set)] = step(direction(set & 1, set >> 1 & 1, set >> 2 & 1)).norm();
+  }
   for (int d = 0; d < kDirections; ++d) {
     const Cell o = offset(d);
-    lengths_[std::size_t(d)] = step(d).norm();
+    lengths_[std::size_t(d)] = along[std::size_t((o[0] & 1) | (o[1] & 1) << 1 | (o[2] & 1) << 2)];
     strides_[std::size_t(d)] =
         (std::int64_t(o[2]) * spec_.counts[1] + o[1]) * spec_.counts[0] + o[0];
     const int moved = (o[0] != 0) + (o[1] != 0) + (o[2] != 0);
@@ -98,12 +87,6 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
       steps_ |= DirectionMask{1} << d;
     }
   }
-}
-
-Cell Lattice::cell(std::uint32_t index) const {
-  const auto nx = std::uint32_t(spec_.counts[0]);
-  const auto ny = std::uint32_t(spec_.counts[1]);
-  return {int(index % nx), int(index / nx % ny), int(index / nx / ny)};
 }
 
 DirectionMask Lattice::inside(const Cell& c) const {
@@ -144,10 +127,25 @@ double Lattice::distance(const Cell& a, const Cell& b) const {
          (n[most] - n[middle]) * along(std::size_t{1} << most);
 }
 
+Lattice::Link Lattice::nearest(const Vec3& p) const {
+  Cell c{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = std::size_t(axis);
+    const double at = std::floor((p[axis] - spec_.origin[axis]) / spec_.cell[axis]);
+    c[a] = int(std::clamp(at, 0.0, spec_.counts[a] - 1.0));  // level flight: the only layer
+  }
+  Vec3 way = position(c) - p;
+  way.z() = level_m_ ? 0 : way.z();
+  const bool centred = (way.cwiseAbs().array() <= kLengthTolerance / 2).all();
+  return {c, centred ? 0 : way.norm()};
+}
+
 std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
+  if (const Link own = nearest(p); own.length == 0) {
+    return {own};
+  }
   Cell low{};
   Cell high{};
-  bool centred = true;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = std::size_t(axis);
     if (axis == 2 && level_m_) {
@@ -155,17 +153,11 @@ std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
       continue;
     }
     const double at = (p[axis] - spec_.origin[axis]) / spec_.cell[axis] - 0.5;
-    // Within the judge's tolerance of a centre, the point is that centre.
-    const bool on_centre = std::abs(at - std::round(at)) * spec_.cell[axis] <= kLengthTolerance / 2;
+    // Level with a centre: the cells on both sides of it.
+    const bool level = std::abs(at - std::round(at)) * spec_.cell[axis] <= kLengthTolerance / 2;
     const double clamped = std::clamp(at, -2.0, spec_.counts[a] + 1.0);
-    low[a] = on_centre ? int(std::round(clamped)) - 1 : int(std::floor(clamped));
-    high[a] = on_centre ? low[a] + 2 : low[a] + 1;
-    centred = centred && on_centre;
-  }
-  if (centred) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = high[axis] = (low[axis] + high[axis]) / 2;
-    }
+    low[a] = level ? int(std::round(clamped)) - 1 : int(std::floor(clamped));
+    high[a] = low[a] + (level ? 2 : 1);
   }
   std::vector<Link> found;
   for (int k = low[2]; k <= high[2]; ++k) {
@@ -173,47 +165,11 @@ std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
       for (int i = low[0]; i <= high[0]; ++i) {
         const Cell c = {i, j, k};
         if (spec_.holds(c)) {
-          found.push_back({c, centred ? 0 : (position(c) - p).norm()});
+          found.push_back({c, (position(c) - p).norm()});
         }
       }
     }
   }
   return found;
-}
-
-DirectionMask blocked_around(const VoxelGrid& grid, const Cell& c) {
-  const auto bit = std::size_t(c[0]);  // of cell i - 1 in its row: rows begin with cell -1
-  const std::size_t word = bit / 64;
-  const unsigned shift = bit % 64;
-  DirectionMask mask = 0;
-  int at = 0;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy, at += 3) {
-      const std::uint64_t* row = grid.row_words(c[1] + dy, c[2] + dz);
-      std::uint64_t window = row[word] >> shift;
-      if (shift > 61) {  // the three cells straddle two words
-        window |= row[word + 1] << (64 - shift);
-      }
-      mask |= DirectionMask(window & 7) << at;
-    }
-  }
-  return mask;
-}
-
-DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
-  static const std::array<DirectionMask, kDirections> kBoxes = spanned_boxes();
-  if ((blocked >> kHere & 1) != 0) {
-    return 0;
-  }
-  DirectionMask open = ~blocked & ((DirectionMask{1} << kDirections) - 1);
-  open &= ~(DirectionMask{1} << kHere);
-  if (rule == CornerRule::free_box && blocked != 0) {
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      if ((blocked & kBoxes[d]) != 0) {
-        open &= ~(DirectionMask{1} << d);
-      }
-    }
-  }
-  return open;
 }
 }  // namespace altiplan::kit

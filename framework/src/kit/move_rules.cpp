@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/check.hpp"
+#include "altiplan/kit/line_of_sight.hpp"
 
 namespace altiplan::kit {
 
@@ -15,6 +16,41 @@ bool turn_kept(const Vec3& incoming, const Vec3& outgoing, const Limits& limits)
                                              limits.min_turn_radius - kLengthTolerance);
 }
 
+namespace {
+bool length_kept(double length, const Limits& limits) {
+  return length >= limits.min_leg - kLengthTolerance && length <= limits.max_leg + kLengthTolerance;
+}
+
+bool climb_kept(const Vec3& leg, const Limits& limits) {
+  return climb_angle(leg) <= limits.max_climb + kAngleTolerance;
+}
+
+bool has_ground_rules(const Request& request) {
+  const auto& bands = request.limits.altitude;
+  return request.world->has_ground() ||
+         std::any_of(bands.begin(), bands.end(), [](const AltitudeBand& band) {
+           return band.datum == AltitudeBand::Datum::ground;
+         });
+}
+}  // namespace
+
+bool MoveRules::cells_decide(const Request& request) {
+  return !has_ground_rules(request) && request.constraints.empty() && !request.limits.turns() &&
+         request.limits.max_route_length == kInfinity;
+}
+
+std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice& lattice) {
+  GridSpec spec = lattice.spec();
+  spec.inflation = std::max(request.limits.min_clearance, request.vehicle.radius_m);
+  const auto& layers = request.world->layers();
+  const bool own_cells = std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
+    return layer.environment->native_grid().has_value();
+  });
+  spec.rule = own_cells && !layers.empty() && spec.inflation == 0 ? GridSpec::Rule::native
+                                                                  : GridSpec::Rule::touched;
+  return request.world->voxels(spec);
+}
+
 MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck check,
                      CornerRule corner)
     : request_(request),
@@ -24,26 +60,18 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       spare_(needed_ + request.world->slack() + kLengthTolerance) {
   const Limits& limits = request.limits;
   if (check == MoveCheck::cells) {
-    GridSpec spec = lattice.spec();
-    spec.inflation = needed_;
-    const auto& layers = request.world->layers();
-    const bool own_cells = std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
-      return layer.environment->native_grid().has_value();
-    });
-    spec.rule = own_cells && !layers.empty() && needed_ == 0 ? GridSpec::Rule::native
-                                                             : GridSpec::Rule::touched;
-    grid_ = request.world->voxels(spec);
+    grid_ = occupancy(request, lattice);
   }
   wants_clearance_ = check == MoveCheck::exact && !request.world->layers().empty();
-  has_ground_rules_ =
-      request.world->has_ground() ||
-      std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
-        return band.datum == AltitudeBand::Datum::ground;
-      });
+  has_ground_rules_ = has_ground_rules(request);
   for (const NamedConstraint& named : request.constraints) {
     constraints_.push_back(named);
   }
   steps_ = directions_kept();
+  if (!limits.turns()) {
+    after_.fill(~DirectionMask{0});
+    return;
+  }
   for (int in = 0; in < kDirections; ++in) {
     for (int out = 0; out < kDirections; ++out) {
       if (in == kHere || turn_kept(lattice.step(in), lattice.step(out), limits)) {
@@ -62,13 +90,11 @@ DirectionMask MoveRules::directions_kept() {
     if ((lattice_.steps() >> d & 1) == 0) {
       continue;
     }
-    const double length = lattice_.step_length(d);
-    const bool climb_kept = climb_angle(lattice_.step(d)) <= limits.max_climb + kAngleTolerance;
-    const bool leg_kept =
-        length >= limits.min_leg - kLengthTolerance && length <= limits.max_leg + kLengthTolerance;
-    climb += !climb_kept;
-    leg += !leg_kept;
-    kept |= DirectionMask(climb_kept && leg_kept) << d;
+    const bool keeps_climb = climb_kept(lattice_.step(d), limits);
+    const bool keeps_length = length_kept(lattice_.step_length(d), limits);
+    climb += !keeps_climb;
+    leg += !keeps_length;
+    kept |= DirectionMask(keeps_climb && keeps_length) << d;
   }
   const auto sentence = [&](const char* rule, int count) {
     return std::string(steps_refused_by_.empty() ? "" : ", ") + rule + " rules out " +
@@ -123,6 +149,42 @@ bool MoveRules::admitted(const std::optional<Vec3>& before, const Vec3& a, const
 bool MoveRules::leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
                          double length, double clearance_a, double clearance_b) {
   ++moves_checked_;
+  return keeps_place(before, a, b, length, std::min(clearance_a, clearance_b));
+}
+
+bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b) {
+  ++moves_checked_;
+  if (grid_ != nullptr && !line_of_sight(*grid_, a, b)) {
+    ++refused_[by_cells];
+    return false;
+  }
+  const Vec3 from = lattice_.position(a);
+  const Vec3 to = lattice_.position(b);
+  const double length = (to - from).norm();
+  return keeps_limits(before, from, to, length) &&
+         keeps_place(before, from, to, length, -kInfinity);
+}
+
+bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
+                             double length) {
+  const Limits& limits = request_.limits;
+  if (!length_kept(length, limits)) {
+    ++refused_[by_leg_length];
+    return false;
+  }
+  if (limits.max_climb < kPi / 2 && !climb_kept(b - a, limits)) {
+    ++refused_[by_climb];
+    return false;
+  }
+  if (before && limits.turns() && !turn_kept(a - *before, b - a, limits)) {
+    ++refused_[by_turn];
+    return false;
+  }
+  return true;
+}
+
+bool MoveRules::keeps_place(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
+                            double length, double least_clearance) {
   if (has_ground_rules_ && !keeps_ground(a, b)) {
     return false;
   }
@@ -130,7 +192,7 @@ bool MoveRules::leg_free(const std::optional<Vec3>& before, const Vec3& a, const
     return false;
   }
   // Clearance is 1-Lipschitz: two balls of half the leg around its ends hold all of it.
-  if (!wants_clearance_ || std::min(clearance_a, clearance_b) > spare_ + length / 2) {
+  if (!wants_clearance_ || least_clearance > spare_ + length / 2) {
     return true;
   }
   if (const Layer* layer = request_.world->blocked_by(a, b, needed_)) {
@@ -159,6 +221,8 @@ bool MoveRules::any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, con
 std::string MoveRules::refusals() const {
   const std::string names[rule_count] = {
       "blocked cells",
+      "leg_length",
+      "climb_angle",
       request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
       "clearance to '" + refused_layer_ + "'",
       "no ground below",

@@ -2,45 +2,134 @@
 #include "altiplan/kit/obstacle_set.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
 #include <string>
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/solid.hpp"
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#include <fcl/broadphase/detail/hierarchy_tree.h>
-#include <fcl/math/bv/AABB.h>
-#pragma GCC diagnostic pop
+#include "../multiversion.hpp"
+#include "box_tree.hpp"
 
-// FCL's dynamic AABB tree finds the shapes near a point or a leg, closed forms decide: see
+// A tree of boxes finds the shapes near a point or a leg, closed forms decide: see
 // docs/decisions/0002-fcl.md for the measurement behind this.
 namespace altiplan::kit {
 namespace {
 
-using Tree = fcl::detail::HierarchyTree<fcl::AABB<double>>;
-
-// The tree takes middles of boxes, so infinite sides are cut here: far beyond any world.
-constexpr double kFar = 1e12;
 // Distances below this are rounding: the leg meets the solid.
 constexpr double kMeets = 1e-9;
 
-Box box_of(const Tree::NodeType& node) { return {node.bv.min_, node.bv.max_}; }
-
-// No shape within the box is deeper around p than the box itself.
-double signed_outside(const Box& box, const Vec3& p) {
-  const double deepest = (box.min - p).cwiseMax(p - box.max).maxCoeff();
-  return deepest <= 0 ? deepest : outside(box, p);
-}
-
 bool meets(const Shape& shape, const Vec3& a, const Vec3& b, double r) {
   const double limit = r - kLengthTolerance;
-  const double distance = leg_distance(shape, a, b);
+  if (limit > kMeets) {
+    return comes_within(shape, a, b, limit);
+  }
   // A point (r below the tolerance) is blocked where it gets inside, as touching is free.
-  return distance < limit ||
-         (limit <= kMeets && distance <= kMeets && -leg_depth(shape, a, b) < limit);
+  if (!comes_within(shape, a, b, 2 * kMeets)) {
+    return false;
+  }
+  const double distance = leg_distance(shape, a, b);
+  return distance < limit || (distance <= kMeets && -leg_depth(shape, a, b) < limit);
+}
+
+bool is_in_reach(const Vec3& p) { return p.cwiseAbs().maxCoeff() <= kTreeReach; }
+
+// A node on the way down, and the lanes that have not been looked at.
+struct Open {
+  Keys keys;
+  const BoxNode* node;
+  std::uint32_t lanes;
+};
+
+// Down to the nearest leaf first, so that on the way back little is still near enough.
+ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Shape* shapes, const Vec3& p) {
+  std::array<Open, kMostLevels> way;
+  std::size_t depth = 0;
+  const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
+  double least = kInfinity;
+  std::int32_t limit = key_of(least);
+  for (const BoxNode* node = nodes;;) {
+    Open& here = way[depth];
+    keys_of(*node, point, here.keys);
+    const std::int32_t nearest = least_of(here.keys);
+    if (nearest <= limit) {
+      int lane = nearest & 15;
+      here.lanes = ~(1U << lane);
+      if (!node->is_leaf()) {
+        here.node = node;
+        ++depth;
+        node = nodes + node->first + lane;
+        continue;
+      }
+      for (std::uint32_t lanes = here.lanes;;) {
+        least = std::min(least, signed_distance(shapes[node->box[lane]], p));
+        limit = key_of(least);
+        lanes &= lanes_within(here.keys, limit);
+        if (lanes == 0) {
+          break;
+        }
+        lane = std::countr_zero(lanes);
+        lanes &= lanes - 1;
+      }
+    }
+    for (;; --depth) {
+      if (depth == 0) {
+        return least;
+      }
+      Open& above = way[depth - 1];
+      above.lanes &= lanes_within(above.keys, limit);
+      if (above.lanes != 0) {
+        node = nodes + above.node->first + std::countr_zero(above.lanes);
+        above.lanes &= above.lanes - 1;
+        break;
+      }
+    }
+  }
+}
+
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, const Shape* shapes, const Vec3& a,
+                               const Vec3& b, double r) {
+  std::array<std::int32_t, kMostOpen> open{0};
+  std::size_t waiting = 1;
+  const TreeLeg leg(a, b, r);
+  while (waiting > 0) {
+    const BoxNode& node = nodes[open[--waiting]];
+    for (std::uint32_t lanes = lanes_reached(node, leg); lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (!node.is_leaf()) {
+        open[waiting++] = node.first + lane;
+      } else if (meets(shapes[node.box[lane]], a, b, r)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// The shapes that may be that near, in order.
+std::vector<int> shapes_within(const BoxNode* nodes, const Vec3& p, double reach) {
+  std::vector<int> found;
+  std::array<std::int32_t, kMostOpen> open{0};
+  std::size_t waiting = 1;
+  const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
+  const std::int32_t limit = key_of(reach);
+  while (waiting > 0) {
+    const BoxNode& node = nodes[open[--waiting]];
+    Keys keys;
+    keys_of(node, point, keys);
+    for (std::uint32_t lanes = lanes_within(keys, limit); lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (node.is_leaf()) {
+        found.push_back(node.box[lane]);
+      } else {
+        open[waiting++] = node.first + lane;
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());  // the tree's order is nobody's business
+  return found;
 }
 
 void check(const Shape& shape, std::size_t index) {
@@ -69,66 +158,19 @@ void check(const Shape& shape, std::size_t index) {
 }  // namespace
 
 struct ObstacleSet::Impl {
-  Tree tree;
-  std::vector<int> ids;  // a leaf's data points to the id of its shape
-
-  // Calls visit(id) for the leaves under nodes that enter() admits, until it returns false.
-  template <class Enter, class Visit>
-  static bool walk(const Tree::NodeType* node, const Enter& enter, const Visit& visit) {
-    if (!enter(box_of(*node))) {
-      return true;
-    }
-    if (node->isLeaf()) {
-      return visit(*static_cast<const int*>(node->data));
-    }
-    return walk(node->children[0], enter, visit) && walk(node->children[1], enter, visit);
-  }
-
-  void nearest(const Tree::NodeType* node, const std::vector<Shape>& shapes, const Vec3& p,
-               double& least) const {
-    if (node->isLeaf()) {
-      least = std::min(least, signed_distance(shapes[*static_cast<const int*>(node->data)], p));
-      return;
-    }
-    const Tree::NodeType* first = node->children[0];
-    const Tree::NodeType* second = node->children[1];
-    double to_first = signed_outside(box_of(*first), p);
-    double to_second = signed_outside(box_of(*second), p);
-    if (to_second < to_first) {
-      std::swap(first, second);
-      std::swap(to_first, to_second);
-    }
-    if (to_first < least) {
-      nearest(first, shapes, p, least);
-    }
-    if (to_second < least) {
-      nearest(second, shapes, p, least);
-    }
-  }
+  std::vector<BoxNode> nodes;
 };
 
 ObstacleSet::ObstacleSet(std::vector<Shape> shapes)
     : shapes_(std::move(shapes)), bounds_(Box::empty()), impl_(std::make_unique<Impl>()) {
-  std::vector<Tree::NodeType*> leaves;  // the tree will own them
-  impl_->ids.resize(shapes_.size());
+  std::vector<Box> boxes;
+  boxes.reserve(shapes_.size());
   for (std::size_t n = 0; n < shapes_.size(); ++n) {
     check(shapes_[n], n);
+    boxes.push_back(altiplan::bounds(shapes_[n]));
+    bounds_ = bounds_.united(boxes.back());
   }
-  for (std::size_t n = 0; n < shapes_.size(); ++n) {
-    const Box box = altiplan::bounds(shapes_[n]);
-    bounds_ = bounds_.united(box);
-    impl_->ids[n] = static_cast<int>(n);
-    auto* leaf = new Tree::NodeType;
-    leaf->bv.min_ = box.min.cwiseMax(-kFar);
-    leaf->bv.max_ = box.max.cwiseMin(kFar);
-    leaf->parent = nullptr;
-    leaf->children[1] = nullptr;
-    leaf->data = &impl_->ids[n];
-    leaves.push_back(leaf);
-  }
-  if (!leaves.empty()) {
-    impl_->tree.init(leaves);
-  }
+  impl_->nodes = box_tree(boxes);
 }
 
 ObstacleSet::~ObstacleSet() = default;
@@ -136,32 +178,31 @@ ObstacleSet::ObstacleSet(ObstacleSet&&) noexcept = default;
 ObstacleSet& ObstacleSet::operator=(ObstacleSet&&) noexcept = default;
 
 double ObstacleSet::clearance(const Vec3& p) const {
+  if (!shapes_.empty() && is_in_reach(p)) {
+    return least_distance(impl_->nodes.data(), shapes_.data(), p);
+  }
   double least = kInfinity;
-  if (!shapes_.empty()) {
-    impl_->nearest(impl_->tree.getRoot(), shapes_, p, least);
+  for (const Shape& shape : shapes_) {
+    least = std::min(least, signed_distance(shape, p));
   }
   return least;
 }
 
 bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
-  return !shapes_.empty() &&
-         !Impl::walk(
-             impl_->tree.getRoot(), [&](const Box& box) { return may_reach(box, a, b, r); },
-             [&](int id) { return !meets(shapes_[std::size_t(id)], a, b, r); });
+  if (!shapes_.empty() && is_in_reach(a) && is_in_reach(b) && std::abs(r) <= kTreeReach) {
+    return any_meets(impl_->nodes.data(), shapes_.data(), a, b, r);
+  }
+  return std::any_of(shapes_.begin(), shapes_.end(),
+                     [&](const Shape& shape) { return meets(shape, a, b, r); });
 }
 
 void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const {
-  if (shapes_.empty()) {
-    return;
+  std::vector<int> ids(shapes_.size());
+  if (!shapes_.empty() && is_in_reach(p) && std::abs(reach) <= kTreeReach) {
+    ids = shapes_within(impl_->nodes.data(), p, reach);
+  } else {
+    std::iota(ids.begin(), ids.end(), 0);
   }
-  std::vector<int> ids;
-  Impl::walk(
-      impl_->tree.getRoot(), [&](const Box& box) { return signed_outside(box, p) <= reach; },
-      [&](int id) {
-        ids.push_back(id);
-        return true;
-      });
-  std::sort(ids.begin(), ids.end());  // the tree's order is nobody's business
   for (const int id : ids) {
     const Shape& shape = shapes_[std::size_t(id)];
     const double distance = signed_distance(shape, p);

@@ -123,17 +123,22 @@ VoxelGrid read(const Params& params) {
       lines.refuse("expected a row of " + std::to_string(width) + " cells, found " +
                    std::to_string(line.size()));
     }
+    int first_blocked = 0;  // of the cells since the last free one
     for (int column = 0; column < width; ++column) {
       const char c = line[std::size_t(column)];
-      if (c == '@' || c == 'O' || c == 'T') {
-        cells.set({column, height - 1 - row, 0}, true);
-      } else if (c != '.' && c != 'G') {
+      if (c == '.' || c == 'G') {
+        if (column > first_blocked) {
+          cells.block_run(first_blocked, column - 1, height - 1 - row, 0);
+        }
+        first_blocked = column + 1;
+      } else if (c != '@' && c != 'O' && c != 'T') {
         lines.refuse("cell " + std::to_string(column + 1) +
                      ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " +
                      printable(c) + " (swamp and water have costs of their own, which no " +
                      "planner here knows)");
       }
     }
+    cells.block_run(first_blocked, width - 1, height - 1 - row, 0);
   }
   if (!lines.at_end()) {
     lines.refuse("there is more in the file than the " + std::to_string(height) +

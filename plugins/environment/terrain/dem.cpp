@@ -9,17 +9,9 @@
 #include "whole.hpp"
 
 namespace terrain {
-namespace {
 
-using altiplan::ParameterError;
-using gdal::api;
-
-// What the ground of the Earth can be, with room to spare; beyond it a number marks a void.
-constexpr double kLowest = -1000;
-constexpr double kHighest = 10000;
-
-[[noreturn]] void refuse(const Params& params, const std::string& why, const char* key = "file") {
-  throw ParameterError(key, params.file.text + ": " + why);
+void refuse(const Params& params, const std::string& why, const char* key) {
+  throw altiplan::ParameterError(key, params.file.text + ": " + why);
 }
 
 std::string number(double value) {
@@ -30,6 +22,10 @@ std::string number(double value) {
   }
   return text;
 }
+
+namespace {
+
+using gdal::api;
 
 gdal::Dataset open(const Params& params) {
   const std::string& file = params.file.text;
@@ -55,18 +51,15 @@ gdal::Dataset open(const Params& params) {
   return dataset;
 }
 
-void read_size(const Params& params, void* dataset, Dem& dem) {
+void read_size(const Params& params, void* dataset, bool may_read_a_part, Dem& dem) {
   dem.columns = api().GDALGetRasterXSize(dataset);
   dem.rows = api().GDALGetRasterYSize(dataset);
   const std::string size = std::to_string(dem.columns) + " x " + std::to_string(dem.rows);
   if (dem.columns < 2 || dem.rows < 2) {
     refuse(params, "expected at least 2 x 2 posts, found " + size);
   }
-  if (std::int64_t(dem.columns) * dem.rows > params.max_posts) {
-    refuse(params,
-           "declares " + size + " posts, more than max_posts (" + std::to_string(params.max_posts) +
-               ")",
-           "max_posts");
+  if (!may_read_a_part) {
+    expect_few(params, dem, dem.whole());
   }
 }
 
@@ -164,132 +157,58 @@ double metres_per_unit(const Params& params, void* band) {
   refuse(params, "expected heights in metres or feet, found the unit '" + unit + "'");
 }
 
-// Heights in metres, rows from the south; voids are NaN.
-void read_heights(const Params& params, void* band, bool from_north, Dem& dem) {
-  const int missing = api().GDALGetDataCoverageStatus(band, 0, 0, dem.columns, dem.rows,
-                                                      GDAL_DATA_COVERAGE_STATUS_EMPTY, nullptr);
-  if (missing & GDAL_DATA_COVERAGE_STATUS_EMPTY) {
-    refuse(params, "parts of the file hold no data");
-  }
-  dem.heights.resize(std::size_t(dem.columns) * std::size_t(dem.rows));
-  if (api().GDALRasterIO(band, GF_Read, 0, 0, dem.columns, dem.rows, dem.heights.data(),
-                         dem.columns, dem.rows, GDT_Float32, 0, 0) != CE_None) {
-    refuse(params, "damaged: " + gdal::last_error());
-  }
+void read_meaning(const Params& params, Dem& dem) {
   int has_nodata = 0;
-  const double own_nodata = api().GDALGetRasterNoDataValue(band, &has_nodata);
-  const float nodata = has_nodata ? float(own_nodata) : NAN;
-  const float asked_nodata = params.nodata ? float(*params.nodata) : NAN;
   int has_scale = 0;
   int has_offset = 0;
-  const double scale = api().GDALGetRasterScale(band, &has_scale);
-  const double offset = api().GDALGetRasterOffset(band, &has_offset);
-  const double unit = metres_per_unit(params, band);
-  for (std::size_t k = 0; k < dem.heights.size(); ++k) {
-    float& height = dem.heights[k];
-    if (!std::isfinite(height) || height == nodata || height == asked_nodata) {
-      height = NAN;
-      continue;
-    }
-    height = float(unit * ((has_scale ? scale : 1) * height + (has_offset ? offset : 0)));
-    if (!(height >= kLowest && height <= kHighest)) {
-      refuse(params, "expected heights within -1000 and 10000 m, found " + number(height) +
-                         " at column " + std::to_string(k % std::size_t(dem.columns)) + ", row " +
-                         std::to_string(k / std::size_t(dem.columns)) +
-                         "; where this marks a void, say so with nodata");
-    }
-  }
-  if (from_north) {
-    for (int j = 0; j < dem.rows / 2; ++j) {
-      const auto row = dem.heights.begin() + std::ptrdiff_t(j) * dem.columns;
-      std::swap_ranges(row, row + dem.columns,
-                       dem.heights.begin() + std::ptrdiff_t(dem.rows - 1 - j) * dem.columns);
-    }
-  }
-}
-
-// Ring by ring from the border inward: a void gets the mean of those of its eight neighbours that
-// had a height before this ring.
-void fill_from_neighbours(Dem& dem) {
-  const auto at = [&](int i, int j) { return std::size_t(j) * std::size_t(dem.columns) + i; };
-  std::vector<std::array<int, 2>> left;
-  for (int j = 0; j < dem.rows; ++j) {
-    for (int i = 0; i < dem.columns; ++i) {
-      if (std::isnan(dem.heights[at(i, j)])) {
-        left.push_back({i, j});
-      }
-    }
-  }
-  while (!left.empty()) {
-    std::vector<std::array<int, 2>> next;
-    std::vector<std::pair<std::size_t, float>> ring;
-    for (const auto& [i, j] : left) {
-      double sum = 0;
-      int count = 0;
-      for (int y = std::max(j - 1, 0); y <= std::min(j + 1, dem.rows - 1); ++y) {
-        for (int x = std::max(i - 1, 0); x <= std::min(i + 1, dem.columns - 1); ++x) {
-          if (const float height = dem.heights[at(x, y)]; !std::isnan(height)) {
-            sum += height;
-            ++count;
-          }
-        }
-      }
-      if (count > 0) {
-        ring.emplace_back(at(i, j), float(sum / count));
-      } else {
-        next.push_back({i, j});
-      }
-    }
-    for (const auto& [k, height] : ring) {
-      dem.heights[k] = height;
-    }
-    left = std::move(next);
-  }
-}
-
-void treat_voids(const Params& params, Dem& dem) {
-  dem.voids = std::size_t(
-      std::count_if(dem.heights.begin(), dem.heights.end(), [](float h) { return std::isnan(h); }));
-  if (dem.voids == 0) {
-    return;
-  }
-  const std::string count =
-      std::to_string(dem.voids) + " of " + std::to_string(dem.heights.size()) + " posts";
-  if (dem.voids == dem.heights.size()) {
-    refuse(params, "no post has a height");
-  }
-  switch (params.voids) {
-    case Voids::refuse:
-      refuse(params,
-             "has voids (" + count +
-                 " have no height); say what becomes of them with "
-                 "voids: neighbours, or voids: fill_m with a height fill_m",
-             "voids");
-    case Voids::fill_m:
-      for (float& height : dem.heights) {
-        height = std::isnan(height) ? float(*params.fill_m) : height;
-      }
-      break;
-    case Voids::neighbours:
-      fill_from_neighbours(dem);
-      break;
-  }
+  const double nodata = api().GDALGetRasterNoDataValue(dem.band, &has_nodata);
+  const double scale = api().GDALGetRasterScale(dem.band, &has_scale);
+  const double offset = api().GDALGetRasterOffset(dem.band, &has_offset);
+  dem.nodata = {has_nodata ? float(nodata) : NAN, params.nodata ? float(*params.nodata) : NAN};
+  dem.scale = has_scale ? scale : 1;
+  dem.offset = has_offset ? offset : 0;
+  dem.unit = metres_per_unit(params, dem.band);
 }
 }  // namespace
 
-Dem read_dem(const Params& params) {
+void expect_few(const Params& params, const Dem& dem, const Part& part) {
+  const auto size = [](std::int64_t columns, std::int64_t rows) {
+    return std::to_string(columns) + " x " + std::to_string(rows);
+  };
+  const std::string declared = "declares " + size(dem.columns, dem.rows) + " posts, ";
+  const std::string most = "more than max_posts (" + std::to_string(params.max_posts) + ")";
+  if (std::int64_t(part.columns) * part.rows > params.max_posts) {
+    const bool whole = part.columns == dem.columns && part.rows == dem.rows;
+    refuse(params,
+           declared + (whole ? "" : size(part.columns, part.rows) + " of them about the volume, ") +
+               most,
+           "max_posts");
+  }
+  if (dem.band != nullptr) {
+    int columns = 0;
+    int rows = 0;
+    api().GDALGetBlockSize(dem.band, &columns, &rows);
+    columns = std::min(columns, dem.columns);
+    rows = std::min(rows, dem.rows);
+    if (std::int64_t(columns) * rows > params.max_posts) {
+      refuse(params, declared + "in blocks of " + size(columns, rows) + ", " + most, "max_posts");
+    }
+  }
+}
+
+Dem read_dem(const Params& params, bool may_read_a_part) {
   const gdal::Quiet quiet;
-  const gdal::Dataset dataset = open(params);
   Dem dem;
-  read_size(params, dataset.get(), dem);
-  if (const std::string missing = missing_from(params.file.text, dataset.get()); !missing.empty()) {
+  dem.dataset = open(params);
+  void* dataset = dem.dataset.get();
+  read_size(params, dataset, may_read_a_part, dem);
+  if (const std::string missing = missing_from(params.file.text, dataset); !missing.empty()) {
     refuse(params, "damaged: " + missing);
   }
-  void* band = read_band(params, dataset.get());
-  read_crs(params, dataset.get(), dem);
-  const bool from_north = read_position(params, dataset.get(), dem);
-  read_heights(params, band, from_north, dem);
-  treat_voids(params, dem);
+  dem.band = read_band(params, dataset);
+  read_crs(params, dataset, dem);
+  dem.from_north = read_position(params, dataset, dem);
+  read_meaning(params, dem);
   return dem;
 }
 }  // namespace terrain

@@ -39,7 +39,9 @@ struct Api {
   X(GDALGetRasterScale)                 \
   X(GDALGetRasterOffset)                \
   X(GDALGetDataCoverageStatus)          \
-  X(GDALRasterIO)                       \
+  X(GDALRasterIOEx)                     \
+  X(GDALGetBlockSize)                   \
+  X(GDALSetCacheMax64)                  \
   X(CPLPushErrorHandler)                \
   X(CPLPopErrorHandler)                 \
   X(CPLQuietErrorHandler)               \

@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
-#include "altiplan/world.hpp"
 
 namespace terrain {
 namespace {
 
 using altiplan::Frame;
-using altiplan::HeightField;
 using altiplan::ParameterError;
 using XY = std::array<double, 2>;
-
-/// Share of a spacing within which two places are the same.
-constexpr double kSameShare = 1e-3;
 
 /// Between a coordinate system (x, y in its own units) and WGS 84. GDAL's transformations serve
 /// one thread at a time.
@@ -73,7 +68,7 @@ XY datum_shift(const Dem& dem) {
   return {there[0] - middle[0], there[1] - middle[1]};
 }
 
-Placed in_own_frame(Dem dem) {
+Layout in_own_frame(const Dem& dem) {
   Frame frame;
   XY spacing;
   if (dem.geographic) {
@@ -90,7 +85,7 @@ Placed in_own_frame(Dem dem) {
                              dem.crs_name);
     spacing = {dem.step[0] * dem.unit_m, dem.step[1] * dem.unit_m};
   }
-  return {HeightField({0, 0}, spacing, dem.columns, dem.rows, std::move(dem.heights)), frame};
+  return {frame, {0, 0}, spacing, dem.columns, dem.rows, false};
 }
 
 /// The model seen from a frame: posts are (column, row) from the south-west, as fractions.
@@ -108,13 +103,14 @@ class View {
     const XY p = map_.native(lonlat[0], lonlat[1]);
     return {(p[0] - dem_.south_west[0]) / dem_.step[0], (p[1] - dem_.south_west[1]) / dem_.step[1]};
   }
-  /// Bilinear; positions that rounding puts beyond the last post belong to it.
-  float height(const XY& post) const {
+  /// Bilinear; positions that rounding puts beyond the last post belong to it. `heights` are those
+  /// of the whole model.
+  float height(const std::vector<float>& heights, const XY& post) const {
     const double u = std::clamp(post[0], 0.0, double(dem_.columns - 1));
     const double v = std::clamp(post[1], 0.0, double(dem_.rows - 1));
     const int i = std::min(int(u), dem_.columns - 2);
     const int j = std::min(int(v), dem_.rows - 2);
-    const float* h = dem_.heights.data() + std::size_t(j) * std::size_t(dem_.columns) + i;
+    const float* h = heights.data() + std::size_t(j) * std::size_t(dem_.columns) + i;
     const double s = u - i;
     const double w = v - j;
     return float((1 - w) * ((1 - s) * h[0] + s * h[1]) +
@@ -164,45 +160,8 @@ Footprint footprint(const Dem& dem, const View& view) {
   return print;
 }
 
-/// Exact positions are asked for every kNet posts and interpolated between: a projection bends by
-/// less than 0.001 of a post's spacing over so few, and costs a microsecond a point.
-std::vector<float> resample(const View& view, const Footprint& print, int columns, int rows) {
-  constexpr int kNet = 16;
-  const int knots = (columns - 1) / kNet + 2;
-  const auto knot_row = [&](int j) {
-    std::vector<XY> row;
-    for (int k = 0; k < knots; ++k) {
-      row.push_back(view.post(print.low[0] + k * kNet * print.spacing[0],
-                              print.low[1] + j * print.spacing[1]));
-    }
-    return row;
-  };
-  const auto between = [](const XY& a, const XY& b, double share) {
-    return XY{a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
-  };
-  std::vector<float> heights;
-  heights.reserve(std::size_t(columns) * std::size_t(rows));
-  std::vector<XY> south;
-  std::vector<XY> north = knot_row(0);
-  for (int j = 0; j < rows; ++j) {
-    if (j % kNet == 0) {
-      south = std::move(north);
-      north = knot_row(j + kNet);
-    }
-    for (int i = 0; i < columns; ++i) {
-      const std::size_t k = std::size_t(i / kNet);
-      const double share = double(i % kNet) / kNet;
-      heights.push_back(
-          view.height(between(between(south[k], south[k + 1], share),
-                              between(north[k], north[k + 1], share), double(j % kNet) / kNet)));
-    }
-  }
-  return heights;
-}
-
-Placed in_frame(Dem dem, const Frame& frame, const Params& params) {
-  const View view(dem, frame);
-  const Footprint print = footprint(dem, view);
+Layout in_frame(const Dem& dem, const Frame& frame, const Params& params) {
+  const Footprint print = footprint(dem, View(dem, frame));
   const double width = print.high[0] - print.low[0];
   const double height = print.high[1] - print.low[1];
   if (!(width > 2 * print.spacing[0] && height > 2 * print.spacing[1])) {
@@ -213,7 +172,7 @@ Placed in_frame(Dem dem, const Frame& frame, const Params& params) {
   }
   if (print.is_grid) {
     const XY spacing{width / (dem.columns - 1), height / (dem.rows - 1)};
-    return {HeightField(print.low, spacing, dem.columns, dem.rows, std::move(dem.heights)), frame};
+    return {frame, print.low, spacing, dem.columns, dem.rows, false};
   }
   const double columns = std::floor(width / print.spacing[0]) + 1;
   const double rows = std::floor(height / print.spacing[1]) + 1;
@@ -222,9 +181,7 @@ Placed in_frame(Dem dem, const Frame& frame, const Params& params) {
                                           std::to_string(params.max_posts) +
                                           ") in the world's frame");
   }
-  return {HeightField(print.low, print.spacing, int(columns), int(rows),
-                      resample(view, print, int(columns), int(rows))),
-          frame, true};
+  return {frame, print.low, print.spacing, int(columns), int(rows), true};
 }
 
 /// The scenario's `frame: {crs: …}`, its origin where the model's south-west corner will be.
@@ -246,114 +203,54 @@ Frame asked_frame(const Dem& dem, const std::string& crs) {
 }
 }  // namespace
 
-namespace {
-
-Placed placed(Dem dem, const altiplan::Site& site, const Params& params) {
+Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params) {
   if (site.frame.has_position()) {
-    return in_frame(std::move(dem), site.frame, params);
+    return in_frame(dem, site.frame, params);
   }
   const gdal::Reference asked = gdal::reference(site.frame_crs);
   if (site.frame_crs.empty() ||
       (asked && gdal::api().OSRIsSame(asked.get(), dem.crs.get()) && !dem.geographic)) {
-    return in_own_frame(std::move(dem));
+    return in_own_frame(dem);
   }
-  const Frame frame = asked_frame(dem, site.frame_crs);
-  return in_frame(std::move(dem), frame, params);
+  return in_frame(dem, asked_frame(dem, site.frame_crs), params);
 }
 
-/// Highest ground of the layers, of those too that end at most `within` before the place; NaN where
-/// there is none.
-double ground_about(const altiplan::World& world, double x, double y, double within) {
-  double highest = NAN;
-  for (const altiplan::Layer& layer : world.layers()) {
-    const altiplan::Box box = layer.environment->bounds();
-    const altiplan::Vec3 at(x, y, 0);
-    const altiplan::Vec3 in = at.cwiseMax(box.min).cwiseMin(box.max);
-    if (layer.environment->has_ground() && (in - at).head<2>().norm() <= within) {
-      if (const auto height = layer.environment->ground(in.x(), in.y())) {
-        highest = std::fmax(highest, *height);
-      }
+/// Exact positions are asked for every kNet posts and interpolated between: a projection bends by
+/// less than 0.001 of a post's spacing over so few, and costs a microsecond a point.
+std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vector<float>& own) {
+  const View view(dem, layout.frame);
+  constexpr int kNet = 16;
+  const int columns = layout.columns;
+  const int rows = layout.rows;
+  const int knots = (columns - 1) / kNet + 2;
+  const auto knot_row = [&](int j) {
+    std::vector<XY> row;
+    for (int k = 0; k < knots; ++k) {
+      row.push_back(view.post(layout.origin[0] + k * kNet * layout.spacing[0],
+                              layout.origin[1] + j * layout.spacing[1]));
     }
-  }
-  return highest;
-}
-
-/// Whether some ground ends between one spacing beyond the side and the side itself; ground that
-/// goes on below the model needs no joining.
-bool ends_before(const altiplan::World& world, int axis, double side, double outer) {
-  return std::any_of(world.layers().begin(), world.layers().end(),
-                     [&](const altiplan::Layer& layer) {
-                       const altiplan::Box box = layer.environment->bounds();
-                       const double end = outer < side ? box.max[axis] : box.min[axis];
-                       const double slack = kSameShare * std::abs(outer - side);
-                       return layer.environment->has_ground() && end != side &&
-                              (outer < side ? end < side && end >= outer - slack
-                                            : end > side && end <= outer + slack);
-                     });
-}
-
-/// The field with a row or column more on one side, where neighbouring ground covers all of it.
-/// A corner that no layer has yet (its tile comes later) gets the height of the post beside it.
-std::optional<HeightField> joined(const HeightField& field, const altiplan::World& world, int axis,
-                                  bool at_end) {
-  const int columns = field.columns();
-  const int rows = field.rows();
-  const int last = (axis == 0 ? columns : rows) - 1;
-  const double step = field.spacing()[axis];
-  const double side = field.origin()[axis] + (at_end ? last * step : 0);
-  const double outer = side + (at_end ? step : -step);
-  if (!ends_before(world, axis, side, outer)) {
-    return std::nullopt;
-  }
-  const int along = axis == 0 ? rows : columns;
-  const double within = kSameShare * std::max(field.spacing()[0], field.spacing()[1]);
-  std::vector<float> more;
-  for (int n = 0; n < along; ++n) {
-    const double at = field.origin()[1 - axis] + n * field.spacing()[1 - axis];
-    const XY p = axis == 0 ? XY{outer, at} : XY{at, outer};
-    more.push_back(float(ground_about(world, p[0], p[1], within)));
-  }
-  for (const int n : {1, 0}) {  // as many as a side may have got by joining
-    if (along > 4 && std::isnan(more[std::size_t(n)])) {
-      more[std::size_t(n)] = more[std::size_t(n) + 1];
-    }
-    if (along > 4 && std::isnan(more[std::size_t(along - 1 - n)])) {
-      more[std::size_t(along - 1 - n)] = more[std::size_t(along - 2 - n)];
-    }
-  }
-  if (std::any_of(more.begin(), more.end(), [](float h) { return std::isnan(h); })) {
-    return std::nullopt;
-  }
-  const int shift_i = axis == 0 && !at_end ? 1 : 0;
-  const int shift_j = axis == 1 && !at_end ? 1 : 0;
+    return row;
+  };
+  const auto between = [](const XY& a, const XY& b, double share) {
+    return XY{a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+  };
   std::vector<float> heights;
-  for (int j = 0; j < rows + axis; ++j) {
-    for (int i = 0; i < columns + 1 - axis; ++i) {
-      const int from_i = i - shift_i;
-      const int from_j = j - shift_j;
-      const bool own = from_i >= 0 && from_j >= 0 && from_i < columns && from_j < rows;
-      heights.push_back(own ? field.post(from_i, from_j) : more[std::size_t(axis == 0 ? j : i)]);
+  heights.reserve(std::size_t(columns) * std::size_t(rows));
+  std::vector<XY> south;
+  std::vector<XY> north = knot_row(0);
+  for (int j = 0; j < rows; ++j) {
+    if (j % kNet == 0) {
+      south = std::move(north);
+      north = knot_row(j + kNet);
+    }
+    for (int i = 0; i < columns; ++i) {
+      const std::size_t k = std::size_t(i / kNet);
+      const double share = double(i % kNet) / kNet;
+      heights.push_back(view.height(
+          own, between(between(south[k], south[k + 1], share),
+                       between(north[k], north[k + 1], share), double(j % kNet) / kNet)));
     }
   }
-  XY origin = field.origin();
-  origin[axis] -= at_end ? 0 : step;
-  return HeightField(origin, field.spacing(), columns + 1 - axis, rows + axis, std::move(heights));
-}
-}  // namespace
-
-Placed place(Dem dem, const altiplan::Site& site, const Params& params) {
-  Placed result = placed(std::move(dem), site, params);
-  for (const int axis : {0, 1}) {
-    for (const bool at_end : {false, true}) {
-      // A second time where the first row stops short of the neighbour by what rounding leaves.
-      for (int n = 0; n < 2 && site.before != nullptr; ++n) {
-        if (auto field = joined(result.field, *site.before, axis, at_end)) {
-          result.field = std::move(*field);
-          result.joined = true;
-        }
-      }
-    }
-  }
-  return result;
+  return heights;
 }
 }  // namespace terrain

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/height_field.hpp"
 #include "dem.hpp"
 
 namespace terrain {
 
-/// An elevation model in the world's frame.
-struct Placed {
-  altiplan::HeightField field;
+/// Where an elevation model's posts stand in the world's frame.
+struct Layout {
   altiplan::Frame frame;
-  bool resampled = false;
-  bool joined = false;  ///< to neighbouring ground
+  std::array<double, 2> origin;
+  std::array<double, 2> spacing;
+  int columns = 0;
+  int rows = 0;
+  bool resampled = false;  ///< the posts are others than the model's
 };
 
 /// Where the world has a frame, or the scenario asks for one, the posts are brought into it;
 /// otherwise the model's own becomes the world's. Posts that stay a grid along the frame's axes
 /// are kept as they are; others are resampled (bilinear) on a grid of the same spacing, over the
 /// greatest rectangle that the model covers from edge to edge.
-///
-/// Tiles often leave a post's spacing between the last post of one and the first of the next. Where
-/// ground of the layers before ends within a spacing of a whole side, the model gets a row of posts
-/// more there, with that ground's heights.
-Placed place(Dem dem, const altiplan::Site& site, const Params& params);
+Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params);
+
+/// Heights at the layout's posts, from those of the whole model.
+std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vector<float>& own);
 }  // namespace terrain

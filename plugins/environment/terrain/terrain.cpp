@@ -13,7 +13,7 @@
 
 #include "altiplan/kit/ground.hpp"
 #include "altiplan/plugin.hpp"
-#include "place.hpp"
+#include "model.hpp"
 
 namespace {
 using namespace altiplan;
@@ -27,21 +27,12 @@ std::string text(const char* format, auto... values) {
 class Terrain final : public Environment {
  public:
   Terrain(const terrain::Params& params, const Site& site)
-      : Terrain(params, site, terrain::read_dem(params)) {}
+      : voids_rule_(params.voids),
+        model_(params, site),
+        vehicle_radius_(site.vehicle.radius_m),
+        bounds_(model_.bounds()) {}
 
  private:
-  Terrain(const terrain::Params& params, const Site& site, terrain::Dem dem)
-      : voids_(dem.voids),
-        voids_rule_(params.voids),
-        source_(std::to_string(dem.columns) + " x " + std::to_string(dem.rows) + " posts in " +
-                dem.crs_name),
-        placed_(terrain::place(std::move(dem), site, params)),
-        field_(placed_.field),
-        vehicle_radius_(site.vehicle.radius_m),
-        bounds_{{field_.origin()[0], field_.origin()[1], -kInfinity},
-                {field_.origin()[0] + (field_.columns() - 1) * field_.spacing()[0],
-                 field_.origin()[1] + (field_.rows() - 1) * field_.spacing()[1], kInfinity}} {}
-
   /// The nearest place over the posts, at the same height.
   Vec3 over_posts(const Vec3& p) const { return p.cwiseMax(bounds_.min).cwiseMin(bounds_.max); }
   /// Horizontal distance to the edge of the posts, for a place above them.
@@ -49,41 +40,47 @@ class Terrain final : public Environment {
     return (p - bounds_.min).cwiseMin(bounds_.max - p).head<2>().minCoeff();
   }
   /// Of the nearest place that has ground.
-  double ground_near(double x, double y) const {
-    return *field_.at(std::clamp(x, bounds_.min.x(), bounds_.max.x()),
-                      std::clamp(y, bounds_.min.y(), bounds_.max.y()));
+  double ground_near(const HeightField& field, double x, double y) const {
+    return *field.at(std::clamp(x, bounds_.min.x(), bounds_.max.x()),
+                     std::clamp(y, bounds_.min.y(), bounds_.max.y()));
   }
 
   Box do_bounds() const override { return bounds_; }
   bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override { return field_.at(x, y); }
+  std::optional<double> do_ground(double x, double y) const override {
+    return model_.over(Vec3(x, y, 0)).at(x, y);
+  }
   double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    return field_.gap(a, b, enough);
+    return model_.over(leg_box(a, b)).gap(a, b, enough);
   }
   double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
-    return field_.gap_max(a, b);
+    return model_.over(leg_box(a, b)).gap_max(a, b);
   }
-  const HeightField* do_height_field() const override { return &field_; }
+  const HeightField* do_height_field() const override { return &model_.field(); }
   double do_ground_slope(const Box& box) const override {
-    return field_.void_posts() > 0
-               ? kInfinity
-               : field_.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+    return model_.field().void_posts() > 0 ? kInfinity : slope_within(model_.over(box), box);
   }
-  std::optional<Frame> do_frame() const override { return placed_.frame; }
+  std::optional<Frame> do_frame() const override { return model_.layout().frame; }
 
   double do_clearance(const Vec3& p) const override {
     const Vec3 q = over_posts(p);
+    const HeightField& field = model_.over(q);
     const double above =
-        std::max((q.z() - ground_near(q.x(), q.y())) / std::hypot(1, field_.max_slope()),
-                 q.z() - field_.max_height());
+        std::max((q.z() - ground_near(field, q.x(), q.y())) / std::hypot(1, field.max_slope()),
+                 q.z() - field.max_height());
     const double beyond = (p - q).norm();
-    return beyond > 0   ? std::hypot(beyond, std::max(above, 0.0))
-           : above >= 0 ? above
-                        : std::max(above, -to_edge(p));
+    const double clearance = beyond > 0   ? std::hypot(beyond, std::max(above, 0.0))
+                             : above >= 0 ? above
+                                          : std::max(above, -to_edge(p));
+    // Slope and height are those of the part that was read, or of the whole: where they change
+    // over, neither is believed farther than to there.
+    const double known = model_.to_edge(p);
+    return std::clamp(clearance, -known, known);
   }
 
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    if (std::min(a.z(), b.z()) - field_.max_height() >= r - kLengthTolerance) {
+    const HeightField& field = model_.over(leg_box(a, b).grown(std::max(r, 0.0)));
+    if (std::min(a.z(), b.z()) - field.max_height() >= r - kLengthTolerance) {
       return false;
     }
     // The leg in parts that lie over the posts or beyond one side or corner of them.
@@ -105,7 +102,8 @@ class Terrain final : public Environment {
       const Vec3 to = n + 1 < count ? Vec3(a + t1 * (b - a)) : b;
       const Vec3 middle = (from + to) / 2;
       const bool over = bounds_.contains(middle) && to_edge(middle) > 0;
-      if (over ? too_low(over_posts(from), over_posts(to), r) : too_near(from, to, r)) {
+      if (over ? too_low(field, over_posts(from), over_posts(to), r)
+               : too_near(field, from, to, r)) {
         return true;
       }
     }
@@ -113,21 +111,27 @@ class Terrain final : public Environment {
   }
 
   /// Whether a leg over the posts is too near to the ground below it.
-  bool too_low(const Vec3& a, const Vec3& b, double r) const {
+  bool too_low(const HeightField& field, const Vec3& a, const Vec3& b, double r) const {
     const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
-      return field_.gap(from, to, enough);
+      return field.gap(from, to, enough);
     };
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
-      return slope_near(from, to, within);
+      return slope_near(field, from, to, within);
     };
-    const double enough = kit::height_for(r - kLengthTolerance, field_.max_slope());
-    return kit::too_near_ground(a, b, r, {field_.max_height(), enough},
-                                std::max(field_.spacing()[0], field_.spacing()[1]), gap, slope);
+    const double keep = r - kLengthTolerance;
+    const double enough = kit::height_for(keep, field.max_slope());
+    const auto low = kit::part_below(a, b, field.max_height() + keep);
+    if (!low || field.gap(low->first, low->second, enough) >= enough) {
+      return false;
+    }
+    // From here on only what is near the leg counts.
+    return kit::too_near_ground(a, b, r, {top_near(field, a, b, r), enough},
+                                std::max(field.spacing()[0], field.spacing()[1]), gap, slope);
   }
 
   /// Whether a leg beyond one side or corner of the posts is too near to their edge or the ground
   /// behind it: by the bound above, halving the leg where that is in doubt.
-  bool too_near(const Vec3& a, const Vec3& b, double r) const {
+  bool too_near(const HeightField& field, const Vec3& a, const Vec3& b, double r) const {
     const double keep = r - kLengthTolerance;
     const Vec3 from = over_posts(a);
     const Vec3 to = over_posts(b);
@@ -140,33 +144,43 @@ class Terrain final : public Environment {
     if (beyond >= keep) {
       return false;
     }
-    const double steepness = std::hypot(1, slope_near(from, to, r));
+    const double top = top_near(field, from, to, r);
+    const double steepness = std::hypot(1, slope_near(field, from, to, r));
     // How far below the ground is, at least, for a place so high above it and above sea level.
     const auto above = [&](double height, double z) {
-      return std::max({height / steepness, z - field_.max_height(), 0.0});
+      return std::max({height / steepness, z - top, 0.0});
     };
-    if (std::hypot(beyond, above(field_.gap(from, to), std::min(a.z(), b.z()))) >= keep) {
+    if (std::hypot(beyond, above(field.gap(from, to), std::min(a.z(), b.z()))) >= keep) {
       return false;
     }
     const auto is_hit = [&](const Vec3& p, const Vec3& q) {
-      return std::hypot((p - q).norm(), above(p.z() - ground_near(q.x(), q.y()), p.z())) < keep;
+      return std::hypot((p - q).norm(), above(p.z() - ground_near(field, q.x(), q.y()), p.z())) <
+             keep;
     };
     if (is_hit(a, from) || is_hit(b, to) || (b - a).norm() <= kInDoubt / 2) {
       return true;
     }
     const Vec3 middle = (a + b) / 2;
-    return too_near(a, middle, r) || too_near(middle, b, r);
+    return too_near(field, a, middle, r) || too_near(field, middle, b, r);
   }
 
-  double slope_near(const Vec3& a, const Vec3& b, double within) const {
-    const Box box = leg_box(a, b).grown(within);
-    return field_.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+  static double slope_within(const HeightField& field, const Box& box) {
+    return field.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+  }
+  static double slope_near(const HeightField& field, const Vec3& a, const Vec3& b, double within) {
+    return slope_within(field, leg_box(a, b).grown(within));
+  }
+
+  /// Highest ground within a horizontal distance of the leg, or a little farther.
+  double top_near(const HeightField& field, const Vec3& a, const Vec3& b, double within) const {
+    const Box box = leg_box(a, b).grown(std::max(within, 0.0)).intersected(bounds_);
+    return field.max_height(box.min.x(), box.min.y(), box.max.x(), box.max.y());
   }
 
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
     const Vec3 over = over_posts(p);
     const double beyond = (p - over).norm();
-    const double gap = p.z() - ground_near(over.x(), over.y());
+    const double gap = p.z() - ground_near(model_.over(over), over.x(), over.y());
     if (gap <= kLengthTolerance) {
       if (beyond > 0) {  // beside the edge
         if (beyond <= reach) {
@@ -178,15 +192,17 @@ class Terrain final : public Environment {
       sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
     }
-    if (std::hypot(beyond, std::max(p.z() - field_.max_height(), 0.0)) > reach) {
+    // Nothing is nearer than the ground below.
+    const HeightField& field = model_.over(Box{over, over}.grown(std::hypot(beyond, gap)));
+    if (std::hypot(beyond, std::max(p.z() - field.max_height(), 0.0)) > reach) {
       return;
     }
     const auto ground = [&](double x, double y) {
-      const double height = ground_near(x, y);
+      const double height = ground_near(field, x, y);
       return beyond > 0 ? std::min(height, p.z()) : height;  // higher ground is met at its edge
     };
     const auto highest = [&](double x0, double y0, double x1, double y1) {
-      return field_.max_height(x0, y0, x1, y1);
+      return field.max_height(x0, y0, x1, y1);
     };
     const kit::NearestGround nearest(p, bounds_, ground, highest);
     if (nearest.distance() <= reach) {
@@ -197,50 +213,55 @@ class Terrain final : public Environment {
   void do_rasterize(VoxelGrid& grid) const override {
     kit::rasterize_ground(grid, [this](double x0, double y0, double x1, double y1) {
       const Box part = Box{{x0, y0, 0}, {x1, y1, 0}}.intersected(bounds_);
-      return part.is_empty()
-                 ? -kInfinity
-                 : field_.max_height(part.min.x(), part.min.y(), part.max.x(), part.max.y());
+      return part.is_empty() ? -kInfinity
+                             : model_.over(part).max_height(part.min.x(), part.min.y(),
+                                                            part.max.x(), part.max.y());
     });
   }
 
   // A sphere of the vehicle's size may be kept off by the slope though the ground is a little
   // farther away than its radius.
   double do_slack() const override {
-    return vehicle_radius_ * (std::hypot(1, field_.max_slope()) - 1) + kInDoubt;
+    return vehicle_radius_ * (std::hypot(1, model_.field().max_slope()) - 1) + kInDoubt;
   }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   std::vector<std::string> do_notes() const override {
+    const HeightField& field = model_.field();
+    const terrain::Layout& layout = model_.layout();
     std::vector<std::string> notes;
     std::string voids = "no voids";
-    if (voids_ > 0) {
-      voids = std::to_string(voids_) + " voids " +
+    if (model_.voids() > 0) {
+      voids = std::to_string(model_.voids()) + " voids " +
               (voids_rule_ == terrain::Voids::fill_m ? "filled with fill_m"
                                                      : "filled from their neighbours");
     }
-    notes.push_back(text("%d x %d posts of %.1f x %.1f m, %.0f to %.0f m, ", field_.columns(),
-                         field_.rows(), field_.spacing()[0], field_.spacing()[1],
-                         field_.min_height(), field_.max_height()) +
-                    voids);
-    if (placed_.joined) {
+    const bool is_part = field.columns() < layout.columns || field.rows() < layout.rows;
+    notes.push_back(
+        text("%d x %d posts of %.1f x %.1f m, ", is_part ? layout.columns : field.columns(),
+             is_part ? layout.rows : field.rows(), field.spacing()[0], field.spacing()[1]) +
+        (is_part ? text("%d x %d of them read, about the volume, ", field.columns(), field.rows())
+                 : "") +
+        text("%.0f to %.0f m, ", field.min_height(), field.max_height()) + voids);
+    if (model_.joined()) {
       notes.push_back("joined to the ground of the layers before, a post's spacing away");
     }
-    if (placed_.resampled) {
-      notes.push_back("resampled (bilinear) from " + source_ + " to " + placed_.frame.crs());
+    if (layout.resampled) {
+      const terrain::Dem& dem = model_.dem();
+      notes.push_back("resampled (bilinear) from " + std::to_string(dem.columns) + " x " +
+                      std::to_string(dem.rows) + " posts in " + dem.crs_name + " to " +
+                      layout.frame.crs());
     }
     notes.push_back(
-        text("scale error at most %.2g %% in ", 100 * placed_.frame.scale_error(bounds_)) +
-        placed_.frame.crs());
+        text("scale error at most %.2g %% in ", 100 * layout.frame.scale_error(bounds_)) +
+        layout.frame.crs());
     return notes;
   }
 
   static constexpr double kInDoubt = 1e-4;  ///< metres of a leg that are not halved any more
 
-  std::size_t voids_;
   terrain::Voids voids_rule_;
-  std::string source_;
-  terrain::Placed placed_;
-  const HeightField& field_;
+  terrain::Model model_;
   double vehicle_radius_;
   Box bounds_;
 };

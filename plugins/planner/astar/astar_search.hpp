@@ -6,26 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/lattice.hpp"
-#include "altiplan/kit/move_rules.hpp"
 #include "altiplan/kit/open_list.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "altiplan/planner.hpp"
+#include "search_parts.hpp"
 
 namespace altiplan::astar {
-
-enum class Heuristic { octile, euclidean, manhattan, zero };
-
-struct Settings {
-  Vec3 cell_m{50, 50, 10};
-  kit::Neighbourhood neighbours = kit::Neighbourhood::all;
-  kit::CornerRule corner = kit::CornerRule::any;
-  kit::MoveCheck moves = kit::MoveCheck::exact;
-  Heuristic heuristic = Heuristic::octile;
-  double weight_g = 0.5;
-  double weight_h = 0.5;
-  std::size_t max_bytes = ~std::size_t{0};
-};
 
 /// What a search knows of a cell.
 struct Node {
@@ -80,7 +65,7 @@ class Search {
       if (node.closed) {
         continue;
       }
-      if (watch_.spent(expanded_) || memory_full()) {
+      if (watch_.spent(progress_.expanded) || memory_full()) {
         result.budget_hit = true;
         result.status = watch_.cancelled() ? Status::cancelled : Status::timed_out;
         break;
@@ -94,8 +79,12 @@ class Search {
       result.budget_hit = budget_hit;
       return result;
     }
-    explain(result);
-    result.counters = counters();
+    progress_.memory_full = memory_full();
+    result.message = explanation(result.status, progress_, request_, lattice_, rules_);
+    // Beyond this a cell may have been closed by a parent, or at a length, that was not the best.
+    result.proved = result.status == Status::no_route && !rules_.parent_mattered() &&
+                    (!progress_.too_long || settings_.consistent());
+    result.counters = counters(progress_, lattice_, rules_);
     return result;
   }
 
@@ -165,7 +154,7 @@ class Search {
   }
 
   void push(std::uint32_t index, const Cell& c, double g) {
-    ++generated_;
+    ++progress_.generated;
     open_.push(settings_.weight_g * g + settings_.weight_h * heuristic(c), g, index);
   }
 
@@ -182,8 +171,8 @@ class Search {
     const bool at_start = node.in == kit::kHere && node.g == 0;
     const Vec3 here = at_start ? start_ : lattice_.position(c);
     const std::optional<Vec3> from = before(node, here);
-    ++expanded_;
-    remember_nearest(c, here);
+    ++progress_.expanded;
+    remember_nearest(here);
     if (request_.trace != nullptr) {
       add_to_trace(index, node, c, here);
     }
@@ -203,7 +192,7 @@ class Search {
       const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
       const Vec3 there = lattice_.position(to);
       if (limited_length_ && g + (goal_ - there).norm() - request_.goal.tolerance_m > longest_) {
-        too_long_ = true;
+        progress_.too_long = true;
         continue;
       }
       if (!rules_.leg_free(from, here, there, length, clearance(node, here),
@@ -260,49 +249,20 @@ class Search {
   }
 
   PlanResult found(std::uint32_t last, bool at_goal) const {
-    PlanResult result;
-    result.status = Status::solved;
-    result.route = route_to(last);
+    Route route = route_to(
+        last, request_, lattice_, [&](std::uint32_t index, int) { return int(nodes_[index].in); },
+        [&](std::uint32_t index) { return nodes_[index].g == 0; });
     if (at_goal) {
-      if (nodes_[last].g == goal_g_ && result.route.size() > 1) {
-        result.route.back() = goal_;  // the cell's centre, but for rounding
-      } else {
-        result.route.push_back(goal_);
-      }
+      end_at_goal(route, goal_, nodes_[last].g == goal_g_);
     }
-    result.message = "a route of " + std::to_string(length(result.route)) + " m, " +
-                     std::to_string(expanded_) + " cells expanded";
-    result.counters = counters();
-    return result;
+    return solved(std::move(route), progress_, lattice_, rules_);
   }
 
-  Route route_to(std::uint32_t last) const {
-    Route route;
-    std::uint32_t index = last;
-    while (nodes_[index].in != kit::kHere) {
-      route.push_back(lattice_.position(lattice_.cell(index)));
-      index = std::uint32_t(std::int64_t(index) - lattice_.stride(nodes_[index].in));
-    }
-    if (nodes_[index].g > 0) {
-      route.push_back(lattice_.position(lattice_.cell(index)));
-    }
-    route.push_back(start_);
-    std::reverse(route.begin(), route.end());
-    return route;
-  }
-
-  Counters counters() const {
-    return {{"expanded", std::int64_t(expanded_)},
-            {"generated", generated_},
-            {"moves_checked", rules_.moves_checked()},
-            {"lattice_cells", std::int64_t(lattice_.size())}};
-  }
-
-  void remember_nearest(const Cell& c, const Vec3& here) {
+  void remember_nearest(const Vec3& here) {
     const double distance = (here - goal_).squaredNorm();
     if (distance < nearest_) {
       nearest_ = distance;
-      nearest_cell_ = c;
+      progress_.nearest = here;
     }
   }
 
@@ -311,37 +271,6 @@ class Search {
         node.in == kit::kHere ? -1 : std::int64_t(index) - lattice_.stride(node.in);
     request_.trace->add({TraceEvent::Kind::expanded, std::int64_t(index), parent, here,
                          settings_.weight_g * node.g + settings_.weight_h * heuristic(c)});
-  }
-
-  /// Says why there is no route: how far the search came, and what stopped it.
-  void explain(PlanResult& result) const {
-    std::string text = result.status == Status::no_route    ? "no route"
-                       : result.status == Status::cancelled ? "cancelled"
-                       : memory_full()                      ? "the memory allowed was used up"
-                                                            : "the budget was used up";
-    text += ": " + std::to_string(expanded_) + " of " + std::to_string(lattice_.size()) +
-            " cells expanded";
-    if (expanded_ > 0) {
-      const Vec3 at = lattice_.position(nearest_cell_);
-      const auto whole = [](double value) { return std::to_string(std::llround(value)); };
-      text += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) + ", " +
-              whole(at.z()) + "), " + whole((at - goal_).norm()) + " m from it";
-    } else if (result.status == Status::no_route) {
-      text += ", the start cannot join the lattice";
-    }
-    const std::string refusals = rules_.refusals();
-    if (!refusals.empty()) {
-      text += "; refused moves: " + refusals;
-    }
-    if (too_long_) {
-      text += "; parts of the search left out by route_length";
-    }
-    result.message = text;
-    // Beyond this a cell may have been closed by a parent, or at a length, that was not the best.
-    const bool bound_holds =
-        settings_.weight_h <= settings_.weight_g && settings_.heuristic != Heuristic::manhattan;
-    result.proved = result.status == Status::no_route && !rules_.parent_mattered() &&
-                    (!too_long_ || bound_holds);
   }
 
   const Request& request_;
@@ -362,10 +291,7 @@ class Search {
   std::uint32_t goal_parent_ = kNone;
   double fallback_g_ = kInfinity;
   std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
-  std::uint64_t expanded_ = 0;
-  std::int64_t generated_ = 0;
   double nearest_ = kInfinity;
-  Cell nearest_cell_{};
-  bool too_long_ = false;
+  Progress progress_;
 };
 }  // namespace altiplan::astar

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <queue>
 #include <thread>
 
@@ -335,6 +336,88 @@ TEST(AStar, BudgetCancellationSealedGoalAndCorridor) {
 
   sealed.request.goal = {sealed.request.start.position, 0};
   EXPECT_EQ(planner->plan(sealed.request).route.size(), 1u);
+}
+
+/// Rows of a corridor one cell wide that fills a square in turns.
+std::string serpentine(int edge) {
+  std::string text;
+  for (int row = 0; row < edge; ++row) {
+    std::string line(std::size_t(edge), row % 2 == 0 ? '.' : '#');
+    if (row % 2 == 1) {
+      (row % 4 == 1 ? line.back() : line.front()) = '.';
+    }
+    text += line + "\n";
+  }
+  text.front() = 'S';
+  text[text.size() - 2] = 'G';
+  return text;
+}
+
+TEST(AStar, WaysFarLongerThanTheMapIsWide) {
+  const int edge = 1001;
+  const int corridor = (edge + 1) / 2 * edge + edge / 2;  // cells: too many for the finest costs
+  Drawn drawn = draw({serpentine(edge)});
+  drawn.request.level_m = 0.5;
+  const PlanResult result = make_planner("astar", "{corner: free_box}")->plan(drawn.request);
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_NEAR(length(result.route), corridor - 1, 1e-6);
+  EXPECT_EQ(counter(result, "expanded"), corridor);
+}
+
+TEST(AStar, IntegerCostsAreWithinTheirError) {
+  SplitMix64 random(6);
+  const std::string exact = "{neighbours: 26}";
+  const std::string integer = "{neighbours: 26, costs: integer}";
+  double worst = 0;
+  for (int world = 0; world < 100; ++world) {
+    Drawn drawn = draw(random_levels(random, 20, 20, world % 2 == 0 ? 1 : 12, 0.3));
+    if (world % 2 == 0) {
+      drawn.request.level_m = 0.5;
+    }
+    const PlanResult best = make_planner("astar", exact)->plan(drawn.request);
+    const PlanResult near = make_planner("astar", integer)->plan(drawn.request);
+    ASSERT_EQ(near.status, best.status);
+    if (best.status == Status::solved) {
+      EXPECT_TRUE(check(near.route, drawn.request).ok());
+      const double error = length(near.route) / length(best.route) - 1;
+      EXPECT_LE(error, world % 2 == 0 ? 1.2e-4 : 1e-3);
+      worst = std::max(worst, error);
+      EXPECT_NE(near.message.find("% off"), std::string::npos) << near.message;
+    }
+  }
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_FALSE(make_planner("astar", integer)->traits().optimal);
+}
+
+TEST(AStar, TraceByCellsIsATreeOfSteps) {
+  struct Kept final : Trace {
+    std::vector<TraceEvent> events;
+    void add(const TraceEvent& event) override { events.push_back(event); }
+  } trace;
+  SplitMix64 random(7);
+  Drawn drawn = draw(random_levels(random, 15, 15, 8, 0.3), 10);
+  drawn.request.trace = &trace;
+  const PlanResult result = make_planner("astar")->plan(drawn.request);
+  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(std::int64_t(trace.events.size()), counter(result, "expanded"));
+  std::map<std::int64_t, Vec3> expanded;
+  for (const TraceEvent& event : trace.events) {
+    if (!expanded.empty()) {
+      ASSERT_TRUE(expanded.contains(event.parent)) << event.node;
+      EXPECT_LT((expanded[event.parent] - event.position).norm(), 17.4);
+    }
+    EXPECT_TRUE(expanded.emplace(event.node, event.position).second);
+  }
+}
+
+TEST(AStar, EndsWithinTheToleranceOfAGoalThatCannotBeReached) {
+  Drawn drawn = draw({"S.........\n..........\n..........\n.......###\n.......#G.\n.......###"});
+  drawn.request.level_m = 0.5;
+  drawn.request.goal.tolerance_m = 2.1;
+  const PlanResult result = make_planner("astar")->plan(drawn.request);
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.route.back(), Vec3(6.5, 1.5, 0.5));
+  EXPECT_TRUE(check(result.route, drawn.request).ok());
 }
 
 TEST(AStar, RefusalsNameTheRule) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "altiplan/request.hpp"
@@ -58,7 +60,12 @@ class ALTIPLAN_API Lattice {
                              std::size_t(spec_.counts[0]) +
                          std::size_t(c[0]));
   }
-  Cell cell(std::uint32_t index) const;
+  Cell cell(std::uint32_t index) const {
+    const std::uint32_t row = divided(index, per_row_);
+    const std::uint32_t level = divided(row, per_level_);
+    return {int(index - row * std::uint32_t(spec_.counts[0])),
+            int(row - level * std::uint32_t(spec_.counts[1])), int(level)};
+  }
 
   /// Directions of the neighbourhood.
   DirectionMask steps() const { return steps_; }
@@ -86,12 +93,24 @@ class ALTIPLAN_API Lattice {
     Cell cell;
     double length;
   };
+  /// The cell whose centre is nearest to the point, one at the edge for a point beyond. The length
+  /// is 0 where within the judge's tolerance the point is that centre.
+  Link nearest(const Vec3& p) const;
   /// How a point joins the lattice: by its own cell alone where it is that cell's centre, else by
   /// every cell at most one edge away from it on each axis.
   std::vector<Link> links(const Vec3& p) const;
 
  private:
+  /// floor((2^64 - 1) / d), and n / d by it: a division would be the dearest part of a step.
+  static std::uint64_t divisor(int d) { return ~std::uint64_t{0} / std::uint64_t(d); }
+  static std::uint32_t divided(std::uint32_t n, std::uint64_t divisor) {
+    __extension__ using Wide = unsigned __int128;
+    return std::uint32_t((Wide(divisor) * n + divisor) >> 64);
+  }
+
   GridSpec spec_;
+  std::uint64_t per_row_ = 0;
+  std::uint64_t per_level_ = 0;
   std::optional<double> level_m_;
   Neighbourhood neighbourhood_;
   DirectionMask steps_ = 0;
@@ -99,9 +118,43 @@ class ALTIPLAN_API Lattice {
   std::array<std::int64_t, kDirections> strides_{};
 };
 
+/// The bits at and around the cell whose bit is number `at`, of an array laid out like the grid's
+/// words; with kLevel only those of its own level.
+template <bool kLevel = false>
+DirectionMask bits_around(const VoxelGrid& grid, const std::uint64_t* words, std::size_t at) {
+  const auto row = [&](std::size_t bit) {
+    const std::uint64_t window = words[bit / 64] >> bit % 64;
+    return DirectionMask(
+        (bit % 64 > 61 ? window | words[bit / 64 + 1] << (64 - bit % 64) : window) & 7);
+  };
+  const auto level = [&](std::size_t bit) {
+    return row(bit - grid.row_bits()) | row(bit) << 3 | row(bit + grid.row_bits()) << 6;
+  };
+  const DirectionMask own = level(at - 1) << 9;
+  return kLevel ? own
+                : level(at - 1 - grid.level_bits()) | own | level(at - 1 + grid.level_bits()) << 18;
+}
+
 /// The blocked ones among the 27 cells at and around c.
-ALTIPLAN_API DirectionMask blocked_around(const VoxelGrid& grid, const Cell& c);
+inline DirectionMask blocked_around(const VoxelGrid& grid, const Cell& c) {
+  return bits_around(grid, grid.words().data(), grid.bit(c));
+}
 
 /// Directions in which a step is free under the rule, given the blocked cells around.
-ALTIPLAN_API DirectionMask free_steps(DirectionMask blocked, CornerRule rule);
+inline DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
+  // Cells level with the middle one on each axis, and how far apart neighbours on it are.
+  constexpr std::array<DirectionMask, 3> kLevelWith = {0x2492492, 0x0E07038, 0x003FE00};
+  constexpr std::array<int, 3> kApart = {1, 3, 9};
+  constexpr DirectionMask kMiddle = DirectionMask{1} << kHere;
+  if ((blocked & kMiddle) != 0) {
+    return 0;
+  }
+  if (rule == CornerRule::free_box) {  // a blocked cell closes every step whose box holds it
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const DirectionMask level = blocked & kLevelWith[axis];
+      blocked |= level << kApart[axis] | level >> kApart[axis];
+    }
+  }
+  return ~(blocked | kMiddle) & ((DirectionMask{1} << kDirections) - 1);
+}
 }  // namespace altiplan::kit

@@ -19,6 +19,12 @@ enum class MoveCheck {
 /// Whether the limits on turns hold where a leg in direction `outgoing` follows one of `incoming`.
 ALTIPLAN_API bool turn_kept(const Vec3& incoming, const Vec3& outgoing, const Limits& limits);
 
+/// What blocks moves by cells: the cells of the lattice that an obstacle, grown by the clearance
+/// needed, overlaps; the layers' own cells where nothing else is in the world and no clearance is
+/// needed.
+ALTIPLAN_API std::shared_ptr<const VoxelGrid> occupancy(const Request& request,
+                                                        const Lattice& lattice);
+
 /// The judge's rules for the steps of a lattice, sorted by what they depend on: what depends on the
 /// direction alone (climb, leg length) or on two directions (turns) is answered from masks, what
 /// depends on the place by few queries of the world. A step is accepted if and only if leg_ok
@@ -28,6 +34,10 @@ class ALTIPLAN_API MoveRules {
  public:
   /// All of it must outlive the rules. With `cells` the occupancy is asked for here.
   MoveRules(const Request& request, const Lattice& lattice, MoveCheck check, CornerRule corner);
+
+  /// Whether with moves by cells the cells and the direction of a step decide alone: no rule looks
+  /// at the ground, at two legs or at the whole route, and there are no constraints.
+  static bool cells_decide(const Request& request);
 
   /// Directions out of c, reached in direction `in` (kHere: not by a step), that keep the rules
   /// answered from masks; the others still have to pass `leg_free`.
@@ -47,6 +57,17 @@ class ALTIPLAN_API MoveRules {
   /// for.
   bool leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length,
                 double clearance_a, double clearance_b);
+
+  /// Whether the straight leg between the centres of two cells, for a vehicle that comes from
+  /// `before`, keeps the rules of a leg: as leg_ok says, and with moves by cells if line_of_sight
+  /// says so too. The world is then asked for ground and constraints alone, where there are any,
+  /// never for obstacles: none reaches into free cells.
+  bool sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b);
+
+  /// Directions that keep the rules which depend on the direction alone.
+  DirectionMask steps() const { return steps_; }
+  /// The occupancy, with moves by cells; else null.
+  const VoxelGrid* grid() const { return grid_.get(); }
 
   /// Whether clearances of the nodes are of use to leg_free.
   bool wants_clearance() const { return wants_clearance_; }
@@ -72,6 +93,8 @@ class ALTIPLAN_API MoveRules {
  private:
   enum Rule {
     by_cells,
+    by_leg_length,
+    by_climb,
     by_turn,
     by_clearance,
     by_no_ground,
@@ -82,6 +105,9 @@ class ALTIPLAN_API MoveRules {
     rule_count
   };
   DirectionMask directions_kept();
+  bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length);
+  bool keeps_place(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length,
+                   double least_clearance);
   bool keeps_ground(const Vec3& a, const Vec3& b);
   bool admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
 

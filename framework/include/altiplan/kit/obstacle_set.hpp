@@ -11,8 +11,8 @@
 
 namespace altiplan::kit {
 
-/// A set of solid shapes with exact queries, each O(log n) through FCL's broadphase. FCL stays
-/// inside (a pimpl); where its narrow phase cannot decide within 1e-6 m, closed forms do.
+/// A set of solid shapes with exact queries, each O(log n) through a tree of boxes: the answers
+/// are, bit by bit, those of the closed forms asked for every shape in turn.
 class ALTIPLAN_API ObstacleSet {
  public:
   explicit ObstacleSet(std::vector<Shape> shapes);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -92,5 +94,68 @@ class NodeStore {
   std::unique_ptr<Node, Free> nodes_;
   std::size_t count_ = 0;
   Stamp generation_ = 0;
+};
+
+/// An array of whole numbers that are 0 until written; emptying it costs what was written since, in
+/// blocks (small ones where few numbers lie near to each other), and pages that no search touches
+/// are never given by the system.
+template <class T, std::size_t kBlockBytes = 1024>
+class ScratchArray {
+  static_assert(std::is_unsigned_v<T>);
+
+ public:
+  /// Starts anew with `count` zeros.
+  void reset(std::size_t count) {
+    if (count > count_) {
+      values_.reset();
+      is_written_.reset();
+      count_ = 0;
+      const std::size_t blocks = count / kBlock + 1;
+      values_.reset(static_cast<T*>(std::calloc(blocks * kBlock, sizeof(T))));
+      is_written_.reset(static_cast<bool*>(std::calloc(blocks, sizeof(bool))));
+      if (!values_ || !is_written_) {
+        throw std::bad_alloc();
+      }
+      written_ = {};
+      written_.reserve(blocks);  // growing it would take twice the memory
+      count_ = count;
+    } else {
+      for (const std::uint32_t block : written_) {
+        // In pieces that compilers clear by plain stores: longer ones take several times as long.
+        T* const first = values_.get() + block * kBlock;
+        for (T* piece = first; piece != first + kBlock; piece += kPiece) {
+          std::fill_n(piece, kPiece, T{0});
+        }
+        is_written_.get()[block] = false;
+      }
+    }
+    written_.clear();
+  }
+  T operator[](std::size_t i) const { return values_.get()[i]; }
+  const T* data() const { return values_.get(); }
+  /// For writing.
+  T& at(std::size_t i) {
+    if (!is_written_.get()[i / kBlock]) {
+      note(i / kBlock);
+    }
+    return values_.get()[i];
+  }
+  std::size_t bytes() const { return count_ * sizeof(T) + count_ / kBlock; }
+
+ private:
+  [[gnu::noinline]] void note(std::size_t block) {
+    is_written_.get()[block] = true;
+    written_.push_back(std::uint32_t(block));
+  }
+
+  static constexpr std::size_t kPiece = 64 / sizeof(T);
+  static constexpr std::size_t kBlock = kBlockBytes / sizeof(T);
+  struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<T, Free> values_;
+  std::unique_ptr<bool, Free> is_written_;  // by block
+  std::vector<std::uint32_t> written_;      // blocks
+  std::size_t count_ = 0;
 };
 }  // namespace altiplan::kit

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/scratch.hpp"
+#include "search_parts.hpp"
+
+namespace altiplan::astar {
+
+struct CellMemory {
+  kit::ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 where the cell was not reached
+  kit::ScratchArray<std::uint64_t> closed;      ///< a bit a cell, laid out like the occupancy
+  kit::BucketQueue open;
+
+  /// Without the open list, rounded up.
+  static constexpr std::size_t kBytesPerCell = 5;
+};
+
+using DirectionMasks = std::array<kit::DirectionMask, kit::kDirections>;
+/// By the step to a cell, its successors where all around it is free: steps along some of the axes
+/// of that step. What they leave out costs as much, or less, by a way around the cell that goes
+/// along more axes first.
+constexpr DirectionMasks natural_neighbours() {
+  DirectionMasks natural{};
+  for (int in = 0; in < kit::kDirections; ++in) {
+    for (int out = 0; out < kit::kDirections; ++out) {
+      const Cell before = kit::offset(in);
+      const Cell after = kit::offset(out);
+      bool along = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        along = along && (after[axis] == 0 || after[axis] == before[axis]);
+      }
+      if (along || in == kit::kHere) {
+        natural[std::size_t(in)] |= kit::DirectionMask{1} << out;
+      }
+    }
+  }
+  return natural;
+}
+inline constexpr DirectionMasks kNatural = natural_neighbours();
+
+/// The same search where the cells that a step leads through, and its direction, decide alone
+/// whether it is free (MoveRules::cells_decide). A cell then does with 4 bytes and two bits: g is a
+/// whole number, parents are found again from it, and bits hold what is blocked and what is closed.
+///
+/// Where nothing around a cell is blocked, a successor that the parent reaches as cheaply on
+/// another way is left out (the natural neighbours of D. Harabor and A. Grastien, Online Graph
+/// Pruning for Pathfinding on Grid Maps, AAAI 2011, in three dimensions): most of a cell's
+/// successors otherwise are reached from many sides first, each time a little better.
+class CellSearch {
+ public:
+  /// `costs` are of the lattice. All of it must outlive the search.
+  CellSearch(const Request& request, const Settings& settings, const kit::Lattice& lattice,
+             const kit::StepCosts& costs, CellMemory& memory)
+      : request_(request),
+        settings_(settings),
+        lattice_(lattice),
+        costs_(costs),
+        rules_(request, lattice, kit::MoveCheck::cells, settings.corner),
+        grid_(*rules_.grid()),
+        complement_(memory.complement),
+        closed_(memory.closed),
+        open_(memory.open),
+        watch_(request.budget),
+        max_open_bytes_(settings.max_bytes - lattice.size() * CellMemory::kBytesPerCell),
+        tracing_(request.trace != nullptr),
+        consistent_(settings.consistent()),
+        prune_(consistent_ && settings.neighbours == kit::Neighbourhood::all),
+        level_(lattice.spec().counts[2] == 1),
+        steps_(rules_.steps() & (level_ ? kLevelSteps : ~kit::DirectionMask{0})),
+        weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
+        weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)),
+        goal_node_(std::uint32_t(lattice.size())),
+        goal_(request.goal.position) {
+    for (int d = 0; d < kit::kDirections; ++d) {
+      const Cell o = kit::offset(d);
+      moves_[std::size_t(d)] = {std::int32_t(lattice.stride(d)), costs[d], o[0], o[1], o[2]};
+    }
+  }
+
+  /// Nothing where a way is too long for costs as fine as these.
+  std::optional<PlanResult> run() { return level_ ? search<true>() : search<false>(); }
+
+ private:
+  static constexpr kit::DirectionMask kLevelSteps = 0x3FE00;
+  /// Directions along one axis, two, three.
+  static constexpr kit::DirectionMask kByAxes[] = {0x0415410, 0x2AA8AAA, 0x5140145};
+  struct Move {
+    std::int32_t stride;
+    std::uint32_t cost;
+    int x, y, z;
+  };
+  /// A cell from which the goal is one leg away.
+  struct GoalLink {
+    std::uint32_t index;
+    std::uint32_t cost;
+    Cell cell;
+  };
+
+  std::uint32_t g(std::uint32_t index) const { return ~complement_[index]; }
+  /// Of a cell's bit; on a plane the level of the border below it is left out.
+  std::size_t closed_bit(std::size_t bit) const { return level_ ? bit - grid_.level_bits() : bit; }
+  bool is_closed(std::size_t bit) const {
+    const std::size_t at = closed_bit(bit);
+    return (closed_[at / 64] >> at % 64 & 1) != 0;
+  }
+  std::uint32_t link_cost(const kit::Lattice::Link& link) const {
+    return link.length > 0 ? std::max(costs_.of(link.length), 1U) : 0;
+  }
+
+  void begin() {
+    complement_.reset(lattice_.size());
+    closed_.reset(level_ ? grid_.level_bits() / 64 + 1 : grid_.words().size());
+    open_.clear();
+    for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
+      goal_links_.push_back({lattice_.index(link.cell), link_cost(link), link.cell});
+    }
+    if (settings_.heuristic == Heuristic::octile && goal_links_.size() == 1) {
+      near_goal_ = &goal_links_.front();
+    }
+    const Vec3& start = request_.start.position;
+    for (const kit::Lattice::Link& link : lattice_.links(start)) {
+      if (!rules_.cell_blocked(link.cell) &&
+          (link.length == 0 ||
+           rules_.any_leg_ok(request_.before_start(), start, lattice_.position(link.cell)))) {
+        const auto [x, y, z] = link.cell;
+        reach(lattice_.index(link.cell), link_cost(link), heuristic<false>(x, y, z), kit::kHere);
+      }
+    }
+  }
+
+  /// Lower bound of the cost from the cell to the goal (but for `manhattan`).
+  template <bool kLevel>
+  std::uint32_t heuristic(int x, int y, int z) const {
+    if (near_goal_ != nullptr) {
+      return costs_.apart(std::uint32_t(std::abs(x - near_goal_->cell[0])),
+                          std::uint32_t(std::abs(y - near_goal_->cell[1])),
+                          kLevel ? 0 : std::uint32_t(std::abs(z - near_goal_->cell[2]))) +
+             near_goal_->cost;
+    }
+    return other_heuristic({x, y, z});
+  }
+
+  [[gnu::noinline]] std::uint32_t other_heuristic(const Cell& c) const {
+    if (settings_.heuristic == Heuristic::octile && !goal_links_.empty()) {
+      std::uint32_t least = ~std::uint32_t{0};
+      for (const GoalLink& link : goal_links_) {
+        least = std::min(least, costs_.between(c, link.cell) + link.cost);
+      }
+      return least;
+    }
+    const Vec3 way = lattice_.position(c) - goal_;
+    switch (settings_.heuristic) {
+      case Heuristic::octile:  // only the goal's tolerance is on the lattice
+        return costs_.at_most(std::max(0.0, way.norm() - request_.goal.tolerance_m));
+      case Heuristic::euclidean:
+        return costs_.at_most(way.norm());
+      case Heuristic::manhattan:
+        return costs_.of(way.lpNorm<1>());
+      case Heuristic::zero:
+        break;
+    }
+    return 0;
+  }
+
+  std::uint32_t evaluation(std::uint32_t g, std::uint32_t h) const {
+    return weight_g_ == weight_h_ ? g + h : std::uint32_t(weight_g_ * g + weight_h_ * h);
+  }
+
+  void reach(std::uint32_t index, std::uint32_t g, std::uint32_t h, int direction) {
+    complement_.at(index) = ~g;
+    ++progress_.generated;
+    open_.push(evaluation(g, h), index, std::uint32_t(direction));
+  }
+
+  template <bool kLevel>
+  std::optional<PlanResult> search() {
+    begin();
+    PlanResult result;
+    result.status = Status::no_route;
+    while (!open_.empty()) {
+      const kit::BucketQueue::Entry entry = open_.pop();
+      if (entry.node == goal_node_) {
+        return found(goal_parent_, true);
+      }
+      const auto [x, y, z] = lattice_.cell(entry.node);
+      const std::size_t bit = grid_.bit(x, y, kLevel ? 0 : z);
+      if (is_closed(bit)) {
+        continue;
+      }
+      if (watch_.spent(progress_.expanded) || memory_full()) {
+        result.budget_hit = true;
+        result.status = watch_.cancelled() ? Status::cancelled : Status::timed_out;
+        break;
+      }
+      closed_.at(closed_bit(bit) / 64) |= std::uint64_t{1} << bit % 64;
+      ++progress_.expanded;
+      const std::uint32_t g_here = g(entry.node);
+      if (g_here > kit::StepCosts::kMost) {
+        return std::nullopt;
+      }
+      if (tracing_) {
+        add_to_trace(entry.node);
+      }
+      for (const GoalLink& link : goal_links_) {
+        if (link.index == entry.node) {
+          try_goal(link);
+        }
+      }
+      const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
+      // Of equals the last one is taken first: the step along most axes, as kNatural has it.
+      for (const kit::DirectionMask group : kByAxes) {
+        for (kit::DirectionMask rest = open & group; rest != 0; rest &= rest - 1) {
+          const int d = std::countr_zero(rest);
+          const Move& move = moves_[std::size_t(d)];
+          const auto next = std::uint32_t(std::int64_t(entry.node) + move.stride);
+          const std::uint32_t g_next = g_here + move.cost;
+          if (~g_next > complement_[next]) {  // not reached, or at a greater cost
+            reach(next, g_next, heuristic<kLevel>(x + move.x, y + move.y, z + move.z), d);
+          }
+        }
+      }
+    }
+    return without_goal(std::move(result));
+  }
+
+  /// Directions in which to look from a cell, reached by the step `from`.
+  template <bool kLevel>
+  kit::DirectionMask successors(std::size_t bit, std::uint32_t from) const {
+    const kit::DirectionMask blocked = kit::bits_around<kLevel>(grid_, grid_.words().data(), bit);
+    if (blocked == 0 && prune_) {
+      return steps_ & kNatural[from];
+    }
+    const kit::DirectionMask free = steps_ & kit::free_steps(blocked, settings_.corner);
+    // On a plane it is as quick to find that a closed cell was reached at less cost.
+    return kLevel && consistent_
+               ? free
+               : free & ~kit::bits_around<kLevel>(grid_, closed_.data(), closed_bit(bit));
+  }
+
+  void try_goal(const GoalLink& link) {
+    const std::uint32_t at_goal = g(link.index) + link.cost;
+    if (at_goal < goal_g_ &&
+        (link.cost == 0 || rules_.any_leg_ok(std::nullopt, lattice_.position(link.cell), goal_))) {
+      goal_g_ = at_goal;
+      goal_parent_ = link.index;
+      open_.push(evaluation(at_goal, 0), goal_node_, kit::kHere);
+    }
+  }
+
+  bool memory_full() const { return open_.bytes() > max_open_bytes_; }
+
+  /// The direction of a step that led to the cell; kHere: it is linked to the start.
+  int step_to(std::uint32_t index, int likely) const {
+    const kit::DirectionMask free =
+        kit::free_steps(kit::blocked_around(grid_, lattice_.cell(index)), settings_.corner);
+    const auto led_here = [&](int d) {
+      const auto from = std::uint32_t(std::int64_t(index) - lattice_.stride(d));
+      return (steps_ >> d & 1) != 0 && (free >> kit::opposite(d) & 1) != 0 &&
+             g(from) + costs_[d] == g(index) && is_closed(grid_.bit(lattice_.cell(from)));
+    };
+    if (led_here(likely)) {
+      return likely;
+    }
+    for (int d = 0; d < kit::kDirections; ++d) {
+      if (led_here(d)) {
+        return d;
+      }
+    }
+    return kit::kHere;
+  }
+
+  PlanResult found(std::uint32_t last, bool at_goal) const {
+    Route route = route_to(
+        last, request_, lattice_,
+        [&](std::uint32_t index, int likely) { return step_to(index, likely); },
+        [&](std::uint32_t index) { return g(index) == 0; });
+    if (at_goal) {
+      end_at_goal(route, goal_, g(last) == goal_g_);
+    }
+    PlanResult result = solved(std::move(route), progress_, lattice_, rules_);
+    if (settings_.costs == kit::StepCosts::Scale::ratio) {
+      result.message += ", lengths by ratios of whole numbers, up to " +
+                        std::to_string(100 * costs_.error()) + " % off";
+    }
+    return result;
+  }
+
+  /// The goal was not reached: a cell within its tolerance, or the reason.
+  PlanResult without_goal(PlanResult result) {
+    std::optional<std::uint32_t> nearest_start;
+    double nearest = kInfinity;
+    for_each_closed([&](const Cell& c) {
+      const std::uint32_t index = lattice_.index(c);
+      const Vec3 here = lattice_.position(c);
+      if (request_.goal.reached_at(here) && (!nearest_start || g(index) < g(*nearest_start))) {
+        nearest_start = index;
+      }
+      if ((here - goal_).norm() < nearest) {
+        nearest = (here - goal_).norm();
+        progress_.nearest = here;
+      }
+    });
+    if (nearest_start) {
+      const bool budget_hit = result.budget_hit;
+      result = found(*nearest_start, false);
+      result.budget_hit = budget_hit;
+      return result;
+    }
+    for_each_closed([&](const Cell& c) { rules_.candidates(c, kit::kHere); });  // counts refusals
+    progress_.memory_full = memory_full();
+    result.message = explanation(result.status, progress_, request_, lattice_, rules_);
+    result.proved = result.status == Status::no_route;
+    result.counters = counters(progress_, lattice_, rules_);
+    return result;
+  }
+
+  template <class Visit>
+  void for_each_closed(const Visit& visit) const {
+    const Cell& counts = lattice_.spec().counts;
+    for (int k = 0; k < counts[2]; ++k) {
+      for (int j = 0; j < counts[1]; ++j) {
+        const std::size_t row = closed_bit(grid_.bit(-1, j, k)) / 64;
+        for (std::size_t word = 0; word < grid_.words_per_row(); ++word) {
+          for (std::uint64_t bits = closed_[row + word]; bits != 0; bits &= bits - 1) {
+            visit(Cell{int(64 * word) + std::countr_zero(bits) - 1, j, k});
+          }
+        }
+      }
+    }
+  }
+
+  void add_to_trace(std::uint32_t index) const {
+    const Cell c = lattice_.cell(index);
+    const int d = step_to(index, kit::kHere);
+    const std::int64_t parent = d == kit::kHere ? -1 : std::int64_t(index) - lattice_.stride(d);
+    request_.trace->add(
+        {TraceEvent::Kind::expanded, std::int64_t(index), parent, lattice_.position(c),
+         settings_.weight_g * costs_.metres(g(index)) +
+             settings_.weight_h * costs_.metres(heuristic<false>(c[0], c[1], c[2]))});
+  }
+
+  const Request& request_;
+  const Settings& settings_;
+  const kit::Lattice& lattice_;
+  const kit::StepCosts& costs_;
+  kit::MoveRules rules_;
+  const VoxelGrid& grid_;
+  kit::ScratchArray<std::uint32_t>& complement_;
+  kit::ScratchArray<std::uint64_t>& closed_;
+  kit::BucketQueue& open_;
+  BudgetWatch watch_;
+  std::size_t max_open_bytes_;
+  bool tracing_;
+  bool consistent_;
+  bool prune_;
+  bool level_;
+  kit::DirectionMask steps_;
+  double weight_g_;
+  double weight_h_;
+  std::uint32_t goal_node_;
+  Vec3 goal_;
+  std::array<Move, kit::kDirections> moves_{};
+  std::vector<GoalLink> goal_links_;
+  const GoalLink* near_goal_ = nullptr;  ///< where the octile distance to it is the heuristic
+  std::uint32_t goal_g_ = ~std::uint32_t{0};
+  std::uint32_t goal_parent_ = 0;
+  Progress progress_;
+};
+}  // namespace altiplan::astar

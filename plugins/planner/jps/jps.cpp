@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jump point search on the cells of a level.
+//
+// Citation: D. Harabor, A. Grastien: Online Graph Pruning for Pathfinding on Grid Maps. AAAI 2011,
+//   doi:10.1609/aaai.v25i1.7994. Scans of many cells at once, no queue entries for cells where a
+//   diagonal run turns: the same, Improving Jump Point Search. ICAPS 2014,
+//   doi:10.1609/icaps.v24i1.13633.
+// Guarantees: complete and optimal on its lattice.
+// Complexity: O(n log n) time, O(n) memory in the cells of the level; nothing is worked out ahead
+//   but a copy of the occupancy with rows and columns exchanged.
+// Deviations: costs are whole numbers (kit::StepCosts); cells where a diagonal run turned keep
+//   their g, by which runs over a worse way end, and the route is found again without parents;
+//   start and goal join the lattice by straight links, and every cell linked to the goal ends a
+//   run.
+// Symbols: g length so far, h octile distance to the goal, f = g + h.
+#include <memory>
+
+#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/plugin.hpp"
+#include "jps_search.hpp"
+
+namespace {
+
+using namespace altiplan;
+using kit::CornerRule;
+using kit::StepCosts;
+
+struct Params {
+  Vec3 cell_m{50, 50, 10};
+  CornerRule corner = CornerRule::any;
+  StepCosts::Scale costs = StepCosts::Scale::fine;
+  int max_memory_mb = 4096;
+
+  void describe(Fields& f) {
+    f("cell_m", cell_m)
+        .unit("m")
+        .at_least(0.001)
+        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+    f("corner", corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
+        .doc(
+            "a diagonal step needs its two cells free (any), or also the two beside it (free_box)");
+    f("costs", costs, {{"exact", StepCosts::Scale::fine}, {"integer", StepCosts::Scale::ratio}})
+        .doc(
+            "costs of straight and diagonal steps: as fine as 28 bits hold a way's, or, on square "
+            "cells, 70 to 99, by which a route may be 1e-4 longer than the shortest");
+    f("max_memory_mb", max_memory_mb)
+        .unit("MB")
+        .at_least(1)
+        .doc("a lattice that needs more is refused before anything is allocated");
+  }
+};
+
+/// The rule of the request that this search cannot hold steps to, or "".
+std::string beyond_cells(const Request& request) {
+  const Limits& limits = request.limits;
+  if (limits.turns()) {
+    return "limits on turns";
+  }
+  if (limits.min_leg > 0 || limits.max_leg < kInfinity) {
+    return "limits on the length of legs";
+  }
+  if (limits.max_route_length < kInfinity) {
+    return "a limit on the route's length";
+  }
+  const bool over_ground =
+      limits.min_ground_clearance ||
+      std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
+        return band.datum == AltitudeBand::Datum::ground;
+      });
+  if (over_ground || request.world->has_ground()) {
+    return "rules on the ground below";
+  }
+  return request.constraints.empty() ? ""
+                                     : "the constraint '" + request.constraints.front().name + "'";
+}
+
+PlanResult refused(const std::string& what) {
+  PlanResult result;
+  result.status = Status::invalid_problem;
+  result.message = "jps " + what + ": use astar";
+  return result;
+}
+
+class Jps final : public Planner {
+ public:
+  explicit Jps(const Params& params) : params_(params) {}
+
+ private:
+  PlanResult do_plan(const Request& request) const override {
+    if (const std::string rule = beyond_cells(request); !rule.empty()) {
+      return refused("cannot hold its steps to " + rule);
+    }
+    const std::size_t allowed =
+        std::min(std::size_t(params_.max_memory_mb) * 1024 * 1024, request.budget.max_memory_bytes);
+    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
+                               {allowed, sizeof(std::uint32_t) + 1});
+    if (const int levels = lattice.spec().counts[2]; levels > 1) {
+      return refused("searches one level of cells, this lattice has " + std::to_string(levels) +
+                     " (no level flight is asked for)");
+    }
+    return params_.corner == CornerRule::any
+               ? search<CornerRule::any>(request, lattice, allowed)
+               : search<CornerRule::free_box>(request, lattice, allowed);
+  }
+
+  template <CornerRule kRule>
+  PlanResult search(const Request& request, const kit::Lattice& lattice,
+                    std::size_t allowed) const {
+    const std::shared_ptr<const VoxelGrid> grid = kit::occupancy(request, lattice);
+    const auto memory = memory_.take();
+    const Vec3 size = lattice.spec().box().max - lattice.spec().box().min;
+    constexpr double kSpare = double(StepCosts::kMost) / jps::NodeWord::kMost;
+    const StepCosts::Scale scale =
+        StepCosts::between(params_.costs, lattice, request.start.position, request.goal.position);
+    for (double longest = 2 * (size.x() + size.y());; longest *= 16) {
+      const StepCosts costs(lattice, scale, kSpare * longest);
+      if (costs.error() > 0.01) {
+        return refused("cannot tell the lengths of ways over " + std::to_string(lattice.size()) +
+                       " cells of " + std::to_string(lattice.spec().cell.x()) + " x " +
+                       std::to_string(lattice.spec().cell.y()) + " m apart");
+      }
+      if (auto result = jps::Search<kRule>(request, lattice, costs, grid, allowed, *memory).run()) {
+        return *std::move(result);
+      }
+    }
+  }
+
+  Traits do_traits() const override {
+    Traits traits;
+    traits.complete = true;
+    traits.optimal = params_.costs == StepCosts::Scale::fine;
+    traits.space = false;
+    return traits;
+  }
+
+  Params params_;
+  mutable kit::ScratchPool<jps::Memory> memory_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Planner, "jps", Jps, Params,
+                "jump point search on one level of cells, by many cells at once")

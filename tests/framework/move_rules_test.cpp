@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/move_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/kit/line_of_sight.hpp"
+#include "reference/random_problem.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+/// How often a test saw each kind of answer: one that saw a kind never has shown nothing.
+struct Seen {
+  int kept = 0;
+  int refused = 0;  ///< by the judge, over free cells
+  int blocked = 0;
+};
+
+/// Holds `sees` to its definition on random pairs of cells, half of them near each other.
+void compare(const Request& request, const Lattice& lattice, MoveCheck check, int pairs,
+             oracle::Draw& draw, Seen& seen) {
+  MoveRules rules(request, lattice, check, CornerRule::free_box);
+  const Cell& counts = lattice.spec().counts;
+  const auto cell = [&] {
+    return Cell{draw.below(counts[0]), draw.below(counts[1]), draw.below(counts[2])};
+  };
+  for (int n = 0; n < pairs; ++n) {
+    const Cell a = cell();
+    Cell b = cell();
+    for (std::size_t axis = 0; axis < 3 && n % 2 == 0; ++axis) {
+      b[axis] = std::clamp(a[axis] + draw.below(5) - 2, 0, counts[axis] - 1);
+    }
+    const auto before = n % 3 == 0 ? std::nullopt : std::optional(lattice.position(cell()));
+    const bool free = check == MoveCheck::exact || line_of_sight(*rules.grid(), a, b);
+    const bool kept = leg_ok(before, lattice.position(a), lattice.position(b), request);
+    ASSERT_EQ(rules.sees(before, a, b), free && kept) << rules.refusals();
+    (!free ? seen.blocked : kept ? seen.kept : seen.refused) += 1;
+  }
+  EXPECT_EQ(rules.moves_checked(), pairs);
+}
+
+/// Admits legs to the east, and as a first leg also one that leads neither east nor west.
+class Eastward final : public Constraint {
+  bool do_admits(const Leg& leg) const override {
+    const double east = leg.to.x() - leg.from.x();
+    return east > 0 || (east == 0 && !leg.before);
+  }
+};
+
+void draw_turn_limits(oracle::Draw& draw, const Vec3& cell, Limits& limits) {
+  if (draw.below(3) == 0) {
+    limits.max_turn_horizontal = radians(draw(20, 170));
+  }
+  if (draw.below(3) == 0) {
+    limits.max_turn_space = radians(draw(20, 170));
+  }
+  if (draw.below(3) == 0) {
+    limits.min_turn_radius = cell.norm() * draw(0.2, 2);
+  }
+}
+
+TEST(Sees, IsTheJudgesAnswerOverFreeCells) {
+  Seen by_cells;
+  Seen exact;
+  int with_ground = 0;
+  int without_limits = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    const auto problem = reference::random_problem(seed, {.most_cells = 12});
+    Request& request = problem->request;
+    if (!point_problem(request.start.position, request).empty()) {
+      continue;  // no planner is asked, and the lattice may have no cell
+    }
+    oracle::Draw draw(seed + 1000);
+    draw_turn_limits(draw, problem->lattice.cell, request.limits);
+    if (draw.below(6) == 0) {
+      request.constraints.push_back({"eastward", std::make_shared<Eastward>()});
+    }
+    const Lattice lattice(request, problem->lattice.cell, Neighbourhood::all, {});
+    compare(request, lattice, MoveCheck::cells, 200, draw, by_cells);
+    compare(request, lattice, MoveCheck::exact, 50, draw, exact);
+    with_ground += problem->scene.ground.has_value();
+    without_limits += MoveRules::cells_decide(request);
+  }
+  for (const Seen& seen : {by_cells, exact}) {
+    EXPECT_GT(seen.kept, 1000);
+    EXPECT_GT(seen.refused, 1000);
+  }
+  EXPECT_GT(by_cells.blocked, 1000);
+  EXPECT_GT(with_ground, 50);
+  EXPECT_GT(without_limits, 20);
+}
+
+TEST(Sees, OverALayersOwnCells) {
+  oracle::Draw draw(4);
+  Seen seen;
+  for (int world = 0; world < 60; ++world) {
+    std::vector<std::string> levels(std::size_t(1 + draw.below(6)));
+    for (std::string& level : levels) {
+      for (int j = 0; j < 7; ++j) {
+        for (int i = 0; i < 9; ++i) {
+          level += draw.below(6) == 0 ? '#' : '.';
+        }
+        level += '\n';
+      }
+    }
+    levels[0][0] = 'S';
+    levels[0][1] = 'G';
+    Request request = testing::draw(levels, 3).request;
+    request.limits.max_climb = world % 3 == 0 ? radians(40) : request.limits.max_climb;
+    request.limits.max_leg = world % 4 == 0 ? 10 : kInfinity;
+    const Lattice lattice(request, {1, 1, 1}, Neighbourhood::all, {});
+    compare(request, lattice, MoveCheck::cells, 300, draw, seen);
+  }
+  EXPECT_GT(seen.kept, 1000);
+  EXPECT_GT(seen.refused, 500);
+  EXPECT_GT(seen.blocked, 1000);
+}
+
+/// Cells of 10 m: 10 × 10 × 2 of them.
+Request open_request() {
+  return testing::request_in(World(), {5, 5, 5}, {95, 95, 5}, {{0, 0, 0}, {100, 100, 20}});
+}
+
+TEST(Sees, CountsByRuleWhatItRefuses) {
+  Request request = open_request();
+  request.world =
+      std::make_shared<World>(testing::world_of({BoxShape{{{41, 41, 1}, {49, 49, 19}}}}));
+  request.limits.max_leg = 60;
+  request.limits.max_climb = radians(30);
+  request.limits.max_turn_horizontal = radians(45);
+  const Lattice lattice(request, {10, 10, 10}, Neighbourhood::all, {});
+  MoveRules rules(request, lattice, MoveCheck::cells, CornerRule::free_box);
+  const auto at = [&](const Cell& c) { return lattice.position(c); };
+  EXPECT_TRUE(rules.sees(std::nullopt, {0, 0, 0}, {6, 0, 0}));
+  EXPECT_EQ(rules.refusals(), "climb_angle rules out 18 of 26 directions");
+  EXPECT_FALSE(rules.sees(std::nullopt, {0, 0, 0}, {7, 0, 0}));
+  EXPECT_FALSE(rules.sees(std::nullopt, {3, 4, 0}, {5, 4, 0}));
+  EXPECT_FALSE(rules.sees(std::nullopt, {3, 4, 0}, {5, 4, 1}));
+  EXPECT_FALSE(rules.sees(std::nullopt, {0, 0, 0}, {0, 1, 1}));
+  EXPECT_FALSE(rules.parent_mattered());
+  EXPECT_EQ(rules.refusals(),
+            "blocked cells (2), leg_length (1), climb_angle (1); climb_angle rules out 18 of 26 "
+            "directions");
+  EXPECT_TRUE(rules.sees(at({0, 0, 0}), {1, 0, 0}, {2, 1, 0}));
+  EXPECT_FALSE(rules.sees(at({0, 0, 0}), {1, 0, 0}, {1, 1, 0}));
+  EXPECT_TRUE(rules.parent_mattered());
+  EXPECT_EQ(rules.moves_checked(), 7);
+}
+
+TEST(Sees, SaysWhetherAConstraintLookedAtTheLegBefore) {
+  Request request = open_request();
+  request.constraints.push_back({"eastward", std::make_shared<Eastward>()});
+  const Lattice lattice(request, {10, 10, 10}, Neighbourhood::all, {});
+  MoveRules rules(request, lattice, MoveCheck::cells, CornerRule::free_box);
+  const std::optional<Vec3> south = lattice.position({4, 3, 0});
+  EXPECT_TRUE(rules.sees(south, {4, 4, 0}, {5, 4, 0}));
+  EXPECT_TRUE(rules.sees(std::nullopt, {4, 4, 0}, {4, 5, 0}));
+  EXPECT_FALSE(rules.sees(std::nullopt, {4, 4, 0}, {3, 4, 0}));
+  EXPECT_FALSE(rules.parent_mattered());
+  EXPECT_FALSE(rules.sees(south, {4, 4, 0}, {4, 5, 0}));
+  EXPECT_TRUE(rules.parent_mattered());
+  EXPECT_EQ(rules.refusals(), "eastward (2)");
+}
+
+TEST(Sees, AsksTheWorldForNoObstacle) {
+  /// Blocks everything, but no cell.
+  class Untouchable final : public Environment {
+    Box do_bounds() const override { return {}; }
+    double do_clearance(const Vec3&) const override { return -kInfinity; }
+    bool do_blocked(const Vec3&, const Vec3&, double) const override { return true; }
+    void do_rasterize(VoxelGrid&) const override {}
+  };
+  Request request = open_request();
+  request.world = std::make_shared<World>(testing::world_of(std::make_shared<Untouchable>()));
+  const Lattice lattice(request, {10, 10, 10}, Neighbourhood::all, {});
+  MoveRules by_cells(request, lattice, MoveCheck::cells, CornerRule::free_box);
+  EXPECT_TRUE(by_cells.sees(std::nullopt, {0, 0, 0}, {9, 7, 1}));
+  MoveRules exact(request, lattice, MoveCheck::exact, CornerRule::free_box);
+  EXPECT_FALSE(exact.sees(std::nullopt, {0, 0, 0}, {9, 7, 1}));
+}
+}  // namespace
+}  // namespace altiplan::kit
