@@ -294,8 +294,12 @@ CheckResult check(const Route& route, const Request& request) {
 }
 
 std::string point_problem(const Vec3& p, const Request& request) {
+  // A point has no leg: what a leg of no length cannot keep is left out.
   const std::vector<Violation> found = [&] {
-    Request alone = request;  // a point has no leg: what a leg of no length cannot keep is left out
+    if (request.limits.min_leg <= 0 && request.constraints.empty()) {
+      return leg_violations(std::nullopt, p, p, request, 0);
+    }
+    Request alone = request;
     alone.limits.min_leg = 0;
     alone.constraints.clear();
     return leg_violations(std::nullopt, p, p, alone, 0);

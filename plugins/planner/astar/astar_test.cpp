@@ -146,6 +146,40 @@ TEST(AStar, EqualsDijkstraOnRandomCells) {
   EXPECT_GT(solved, 1000);
 }
 
+TEST(AStar, ByCellsEqualsDijkstraWhereStepsAreRuledOut) {
+  SplitMix64 random(8);
+  int solved = 0;
+  for (int world = 0; world < 60; ++world) {
+    Drawn drawn = draw(random_levels(random, 9, 8, 7, 0.2), 10);
+    if (world % 3 == 0) {
+      drawn.request.limits.min_leg = 12;  // along one axis
+    } else if (world % 3 == 1) {
+      drawn.request.limits.max_leg = 15;  // along all three
+    } else {
+      drawn.request.limits.max_climb = radians(40);
+    }
+    const GridSpec spec = *drawn.world->native_grid();
+    GridSpec native = spec;
+    native.rule = GridSpec::Rule::native;
+    const auto grid = drawn.world->voxels(native);
+    const double expected = shortest(
+        spec.counts, spec.cell, spec.cell_of(drawn.request.start.position),
+        spec.cell_of(drawn.request.goal.position), 26, [&](const Cell& a, const Cell& b) {
+          const double length = (spec.centre(b) - spec.centre(a)).norm();
+          return cells_free(*grid, a, b, false) && length >= drawn.request.limits.min_leg &&
+                 length <= drawn.request.limits.max_leg &&
+                 climb_angle(spec.centre(b) - spec.centre(a)) <= drawn.request.limits.max_climb;
+        });
+    const PlanResult result = make_planner("astar")->plan(drawn.request);
+    ASSERT_EQ(result.status == Status::solved, expected < kInfinity) << result.message;
+    if (expected < kInfinity) {
+      ++solved;
+      EXPECT_NEAR(length(result.route), expected, 1e-6 * expected);
+    }
+  }
+  EXPECT_GT(solved, 20);
+}
+
 /// Solid balls, in closed form.
 class Balls final : public Environment {
  public:

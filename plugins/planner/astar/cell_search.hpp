@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/pruning.hpp"
 #include "altiplan/kit/scratch.hpp"
 #include "search_parts.hpp"
 
@@ -71,9 +72,12 @@ class CellSearch {
         max_open_bytes_(settings.max_bytes - lattice.size() * CellMemory::kBytesPerCell),
         tracing_(request.trace != nullptr),
         consistent_(settings.consistent()),
-        prune_(consistent_ && settings.neighbours == kit::Neighbourhood::all),
         level_(lattice.spec().counts[2] == 1),
+        level_successors_(kit::LevelSuccessors::of(settings.corner)),
         steps_(rules_.steps() & (level_ ? kLevelSteps : ~kit::DirectionMask{0})),
+        prune_(consistent_ && settings.neighbours == kit::Neighbourhood::all &&
+               rules_.steps() == lattice.steps()),
+        is_sum_(settings.weight_g == settings.weight_h),
         weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
         weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)),
         goal_node_(std::uint32_t(lattice.size())),
@@ -90,7 +94,7 @@ class CellSearch {
  private:
   static constexpr kit::DirectionMask kLevelSteps = 0x3FE00;
   /// Directions along one axis, two, three.
-  static constexpr kit::DirectionMask kByAxes[] = {0x0415410, 0x2AA8AAA, 0x5140145};
+  static constexpr kit::DirectionMask kAlongAxes[] = {0x0415410, 0x2AA8AAA, 0x5140145};
   struct Move {
     std::int32_t stride;
     std::uint32_t cost;
@@ -120,6 +124,8 @@ class CellSearch {
     open_.clear();
     for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
       goal_links_.push_back({lattice_.index(link.cell), link_cost(link), link.cell});
+      first_link_ = std::min(first_link_, goal_links_.back().index);
+      last_link_ = std::max(last_link_, goal_links_.back().index);
     }
     if (settings_.heuristic == Heuristic::octile && goal_links_.size() == 1) {
       near_goal_ = &goal_links_.front();
@@ -170,7 +176,7 @@ class CellSearch {
   }
 
   std::uint32_t evaluation(std::uint32_t g, std::uint32_t h) const {
-    return weight_g_ == weight_h_ ? g + h : std::uint32_t(weight_g_ * g + weight_h_ * h);
+    return is_sum_ ? g + h : std::uint32_t(weight_g_ * g + weight_h_ * h);
   }
 
   void reach(std::uint32_t index, std::uint32_t g, std::uint32_t h, int direction) {
@@ -191,7 +197,9 @@ class CellSearch {
       }
       const auto [x, y, z] = lattice_.cell(entry.node);
       const std::size_t bit = grid_.bit(x, y, kLevel ? 0 : z);
-      if (is_closed(bit)) {
+      const std::size_t closed_at = kLevel ? bit - grid_.level_bits() : bit;
+      const std::uint64_t closed_mask = std::uint64_t{1} << closed_at % 64;
+      if ((closed_[closed_at / 64] & closed_mask) != 0) {
         continue;
       }
       if (watch_.spent(progress_.expanded) || memory_full()) {
@@ -199,7 +207,7 @@ class CellSearch {
         result.status = watch_.cancelled() ? Status::cancelled : Status::timed_out;
         break;
       }
-      closed_.at(closed_bit(bit) / 64) |= std::uint64_t{1} << bit % 64;
+      closed_.at(closed_at / 64) |= closed_mask;
       ++progress_.expanded;
       const std::uint32_t g_here = g(entry.node);
       if (g_here > kit::StepCosts::kMost) {
@@ -208,15 +216,13 @@ class CellSearch {
       if (tracing_) {
         add_to_trace(entry.node);
       }
-      for (const GoalLink& link : goal_links_) {
-        if (link.index == entry.node) {
-          try_goal(link);
-        }
+      if (entry.node - first_link_ <= last_link_ - first_link_) {
+        try_goal(entry.node);
       }
       const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
       // Of equals the last one is taken first: the step along most axes, as kNatural has it.
-      for (const kit::DirectionMask group : kByAxes) {
-        for (kit::DirectionMask rest = open & group; rest != 0; rest &= rest - 1) {
+      for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
+        for (kit::DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
           const int d = std::countr_zero(rest);
           const Move& move = moves_[std::size_t(d)];
           const auto next = std::uint32_t(std::int64_t(entry.node) + move.stride);
@@ -234,8 +240,11 @@ class CellSearch {
   template <bool kLevel>
   kit::DirectionMask successors(std::size_t bit, std::uint32_t from) const {
     const kit::DirectionMask blocked = kit::bits_around<kLevel>(grid_, grid_.words().data(), bit);
-    if (blocked == 0 && prune_) {
-      return steps_ & kNatural[from];
+    if (prune_ && kLevel) {
+      return level_successors_(blocked, int(from));
+    }
+    if (prune_ && blocked == 0) {
+      return kNatural[from];
     }
     const kit::DirectionMask free = steps_ & kit::free_steps(blocked, settings_.corner);
     // On a plane it is as quick to find that a closed cell was reached at less cost.
@@ -244,13 +253,16 @@ class CellSearch {
                : free & ~kit::bits_around<kLevel>(grid_, closed_.data(), closed_bit(bit));
   }
 
-  void try_goal(const GoalLink& link) {
-    const std::uint32_t at_goal = g(link.index) + link.cost;
-    if (at_goal < goal_g_ &&
-        (link.cost == 0 || rules_.any_leg_ok(std::nullopt, lattice_.position(link.cell), goal_))) {
-      goal_g_ = at_goal;
-      goal_parent_ = link.index;
-      open_.push(evaluation(at_goal, 0), goal_node_, kit::kHere);
+  void try_goal(std::uint32_t index) {
+    for (const GoalLink& link : goal_links_) {
+      const std::uint32_t at_goal = g(index) + link.cost;
+      if (link.index == index && at_goal < goal_g_ &&
+          (link.cost == 0 ||
+           rules_.any_leg_ok(std::nullopt, lattice_.position(link.cell), goal_))) {
+        goal_g_ = at_goal;
+        goal_parent_ = index;
+        open_.push(evaluation(at_goal, 0), goal_node_, kit::kHere);
+      }
     }
   }
 
@@ -359,15 +371,19 @@ class CellSearch {
   std::size_t max_open_bytes_;
   bool tracing_;
   bool consistent_;
-  bool prune_;
   bool level_;
+  const kit::LevelSuccessors& level_successors_;
   kit::DirectionMask steps_;
+  bool prune_;   ///< the ways around a cell that pruning counts on are those of all steps
+  bool is_sum_;  ///< f is g + h
   double weight_g_;
   double weight_h_;
   std::uint32_t goal_node_;
   Vec3 goal_;
   std::array<Move, kit::kDirections> moves_{};
   std::vector<GoalLink> goal_links_;
+  std::uint32_t first_link_ = ~std::uint32_t{0};  ///< least and greatest index of them
+  std::uint32_t last_link_ = 0;
   const GoalLink* near_goal_ = nullptr;  ///< where the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;

@@ -9,10 +9,10 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice.hpp"
+#include "altiplan/kit/pruning.hpp"
 #include "altiplan/kit/step_costs.hpp"
 #include "altiplan/planner.hpp"
 #include "bit_lines.hpp"
-#include "pruning.hpp"
 #include "search_parts.hpp"
 
 namespace altiplan::jps {
@@ -138,7 +138,7 @@ class Search {
     }
     const kit::DirectionMask blocked =
         kit::bits_around<true>(grid_, grid_.words().data(), grid_.bit(c));
-    const kit::DirectionMask steps = successors<kRule>(blocked, in);
+    const kit::DirectionMask steps = kit::level_successors<kRule>(blocked, in);
     const auto [x, y, z] = c;
     const auto has = [&](int dx, int dy) { return (steps >> kit::direction(dx, dy, 0) & 1) != 0; };
     if (has(1, 0)) {
