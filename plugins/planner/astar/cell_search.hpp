@@ -23,29 +23,6 @@ struct CellMemory {
   static constexpr std::size_t kBytesPerCell = 5;
 };
 
-using DirectionMasks = std::array<kit::DirectionMask, kit::kDirections>;
-/// By the step to a cell, its successors where all around it is free: steps along some of the axes
-/// of that step. What they leave out costs as much, or less, by a way around the cell that goes
-/// along more axes first.
-constexpr DirectionMasks natural_neighbours() {
-  DirectionMasks natural{};
-  for (int in = 0; in < kit::kDirections; ++in) {
-    for (int out = 0; out < kit::kDirections; ++out) {
-      const Cell before = kit::offset(in);
-      const Cell after = kit::offset(out);
-      bool along = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        along = along && (after[axis] == 0 || after[axis] == before[axis]);
-      }
-      if (along || in == kit::kHere) {
-        natural[std::size_t(in)] |= kit::DirectionMask{1} << out;
-      }
-    }
-  }
-  return natural;
-}
-inline constexpr DirectionMasks kNatural = natural_neighbours();
-
 /// The same search where the cells that a step leads through, and its direction, decide alone
 /// whether it is free (MoveRules::cells_decide). A cell then does with 4 bytes and two bits: g is a
 /// whole number, parents are found again from it, and bits hold what is blocked and what is closed.
@@ -220,7 +197,7 @@ class CellSearch {
         try_goal(entry.node);
       }
       const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
-      // Of equals the last one is taken first: the step along most axes, as kNatural has it.
+      // Of equals the last one is taken first: the step along most axes, as kit::kNatural has it.
       for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
         for (kit::DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
           const int d = std::countr_zero(rest);
@@ -244,7 +221,7 @@ class CellSearch {
       return level_successors_(blocked, int(from));
     }
     if (prune_ && blocked == 0) {
-      return kNatural[from];
+      return kit::kNatural[from];
     }
     const kit::DirectionMask free = steps_ & kit::free_steps(blocked, settings_.corner);
     // On a plane it is as quick to find that a closed cell was reached at less cost.

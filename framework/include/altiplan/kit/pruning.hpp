@@ -113,4 +113,27 @@ class LevelSuccessors {
   }
   std::array<std::array<std::uint16_t, 512>, 9> table_{};  ///< by direction and blocked cells
 };
+
+using DirectionMasks = std::array<DirectionMask, kDirections>;
+/// In space: by the step to a cell, its successors where all around it is free, steps along some of
+/// the axes of that step. What they leave out costs as much, or less, by a way around the cell that
+/// goes along more axes first.
+constexpr DirectionMasks natural_neighbours() {
+  DirectionMasks natural{};
+  for (int in = 0; in < kDirections; ++in) {
+    for (int out = 0; out < kDirections; ++out) {
+      const Cell before = offset(in);
+      const Cell after = offset(out);
+      bool along = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        along = along && (after[axis] == 0 || after[axis] == before[axis]);
+      }
+      if (along || in == kHere) {
+        natural[std::size_t(in)] |= DirectionMask{1} << out;
+      }
+    }
+  }
+  return natural;
+}
+inline constexpr DirectionMasks kNatural = natural_neighbours();
 }  // namespace altiplan::kit
