@@ -90,9 +90,9 @@ DirectionMask level_successors(DirectionMask blocked, int in) {
 class LevelSuccessors {
  public:
   static const LevelSuccessors& of(CornerRule rule) {
-    static const LevelSuccessors any = make<CornerRule::any>();
-    static const LevelSuccessors free_box = make<CornerRule::free_box>();
-    return rule == CornerRule::any ? any : free_box;
+    static const LevelSuccessors kAny = make<CornerRule::any>();
+    static const LevelSuccessors kFreeBox = make<CornerRule::free_box>();
+    return rule == CornerRule::any ? kAny : kFreeBox;
   }
   DirectionMask operator()(DirectionMask blocked, int in) const {
     return DirectionMask{table_[std::size_t(in - kFirst)][blocked >> kFirst & 511]} << kFirst;
