@@ -47,6 +47,16 @@ TEST(StepCosts, AreAsNearToTheLengthsAsTheySay) {
   }
 }
 
+TEST(StepCosts, SayThatTheyAreUselessForWaysBeyondAllMeasure) {
+  for (const Case& c : kCases) {
+    const Lattice lattice = lattice_of(c.cell, {40, 30, 20}, Neighbourhood::all, c.level);
+    for (const auto scale :
+         {StepCosts::Scale::fine, StepCosts::Scale::finest, StepCosts::Scale::ratio}) {
+      EXPECT_EQ(StepCosts(lattice, scale, 1e13).error(), kInfinity);
+    }
+  }
+}
+
 TEST(StepCosts, ApartIsTheCheapestWayAndFallsByNoMoreThanAStepCosts) {
   SplitMix64 random(1);
   for (const Case& c : kCases) {

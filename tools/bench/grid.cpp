@@ -78,6 +78,7 @@ struct Tally {
   std::size_t matched = 0;
   std::size_t unsolved = 0;
   std::size_t unsound = 0;
+  std::string first_unsolved;  ///< what the planner said
   double worst_error = 0;
   std::vector<double> times_us;
   double expanded = 0;
@@ -132,7 +133,9 @@ void run_scenario(const Planner& planner, Request& request, const GridScenario& 
   tally.times_us.push_back(time_us);
   tally.expanded += expanded;
   if (!solved) {
-    ++tally.unsolved;
+    if (++tally.unsolved == 1) {
+      tally.first_unsolved = "line " + std::to_string(scenario.line) + ": " + result.message;
+    }
     return;
   }
   const double error = std::abs(length(result.route) - scenario.length);
@@ -166,6 +169,9 @@ nlohmann::ordered_json run_grid(const GridArguments& arguments) {
   json["scenarios"] = scenarios.list.size();
   json["matched"] = tally.matched;
   json["unsolved"] = tally.unsolved;
+  if (tally.unsolved > 0) {
+    json["first_unsolved"] = tally.first_unsolved;
+  }
   json["unsound"] = tally.unsound;
   json["worst_error"] = tally.worst_error;
   json["median_us"] = tally.quantile_us(0.5);

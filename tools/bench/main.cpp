@@ -49,7 +49,7 @@ int run(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   command->add_option("--plugin-path", grid.plugin_path, "folder of plugin libraries")
       ->type_name("DIR");
-  command->add_flag("--json", as_json, "print one JSON object");
+  command->add_flag("--json", as_json, "print one JSON object, after the lines of --each");
   command->footer("Example:\n  altiplan-bench grid arena.map arena.map.scen --limit 100");
   try {
     app.parse(argc, argv);

@@ -172,4 +172,21 @@ std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
   }
   return found;
 }
+
+std::optional<PlanResult> beyond_budget(const Lattice& lattice, std::size_t bytes_per_cell,
+                                        const Budget& budget) {
+  const std::size_t bytes = lattice.size() * bytes_per_cell;
+  if (bytes <= budget.max_memory_bytes) {
+    return std::nullopt;
+  }
+  const auto mb = [](std::size_t count) { return std::to_string(count >> 20); };
+  PlanResult result;
+  result.status = Status::timed_out;
+  result.budget_hit = true;
+  result.message = "the lattice has " + std::to_string(lattice.size()) + " cells, which need " +
+                   mb(bytes + (1 << 20) - 1) + " MiB; the budget is " +
+                   mb(budget.max_memory_bytes) + " MiB";
+  result.counters = {{"expanded", 0}};
+  return result;
+}
 }  // namespace altiplan::kit

@@ -46,7 +46,8 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
     const double length = lattice.step_length(d);
     costs_[std::size_t(d)] = of(length);
     if ((lattice.steps() >> d & 1) != 0) {
-      error_ = std::max(error_, std::abs(costs_[std::size_t(d)] / (length * per_metre_) - 1));
+      const double error = std::abs(costs_[std::size_t(d)] / (length * per_metre_) - 1);
+      error_ = costs_[std::size_t(d)] > 0 ? std::max(error_, error) : kInfinity;
     }
   }
   // Rounding takes at most half a unit of a step's cost and one of the bound's fall along it.

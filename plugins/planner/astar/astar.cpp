@@ -98,27 +98,33 @@ class AStar final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    const std::size_t allowed =
-        std::min(std::size_t(params_.max_memory_mb) * 1024 * 1024, request.budget.max_memory_bytes);
     astar::Settings settings = params_.search;
     settings.moves = move_check(request);
-    settings.max_bytes = allowed;
+    const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
+    settings.max_bytes = std::min(most, request.budget.max_memory_bytes);
     if (settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request)) {
-      if (auto result = plan_by_cells(request, settings)) {
+      if (auto result = plan_by_cells(request, settings, most)) {
         return *std::move(result);
       }
     }
     const kit::Lattice lattice(request, params_.search.cell_m, params_.search.neighbours,
-                               {allowed, sizeof(astar::Node) + 1});
+                               {most, sizeof(astar::Node) + 1});
+    if (auto refused = kit::beyond_budget(lattice, sizeof(astar::Node) + 1, request.budget)) {
+      return *std::move(refused);
+    }
     const auto memory = memory_.take();
     return astar::Search(request, settings, lattice, *memory).run();
   }
 
   /// Nothing where the costs would become too coarse.
-  std::optional<PlanResult> plan_by_cells(const Request& request,
-                                          const astar::Settings& settings) const {
+  std::optional<PlanResult> plan_by_cells(const Request& request, const astar::Settings& settings,
+                                          std::size_t most_bytes) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
-                               {settings.max_bytes, astar::CellMemory::kBytesPerCell});
+                               {most_bytes, astar::CellMemory::kBytesPerCell});
+    if (auto refused =
+            kit::beyond_budget(lattice, astar::CellMemory::kBytesPerCell, request.budget)) {
+      return refused;
+    }
     const auto memory = cell_memory_.take();
     const Box box = lattice.spec().box();
     // Few ways are longer than four times this, but in a maze they are.

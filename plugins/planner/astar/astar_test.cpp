@@ -486,6 +486,17 @@ TEST(AStar, MemoryIsCheckedBeforeItIsTaken) {
   }
 }
 
+TEST(AStar, CellsBeyondTheMemoryOfABudgetAreAResult) {
+  Drawn drawn = draw({"S...", "....", "...G"});
+  drawn.request.budget.max_memory_bytes = 20;
+  for (const char* moves : {"{moves: cells}", "{moves: exact}"}) {
+    const PlanResult result = make_planner("astar", moves)->plan(drawn.request);
+    EXPECT_EQ(result.status, Status::timed_out);
+    EXPECT_TRUE(result.budget_hit);
+    EXPECT_NE(result.message.find("the budget is 0 MiB"), std::string::npos) << result.message;
+  }
+}
+
 TEST(AStar, HundredthCallEqualsTheFirstOnAnyThread) {
   SplitMix64 random(5);
   const auto planner = make_planner("astar", "{cell_m: [10, 10, 5]}");

@@ -61,7 +61,7 @@ class CellSearch {
         goal_(request.goal.position) {
     for (int d = 0; d < kit::kDirections; ++d) {
       const Cell o = kit::offset(d);
-      moves_[std::size_t(d)] = {std::int32_t(lattice.stride(d)), costs[d], o[0], o[1], o[2]};
+      moves_[std::size_t(d)] = {std::uint32_t(lattice.stride(d)), costs[d], o[0], o[1], o[2]};
     }
   }
 
@@ -73,7 +73,7 @@ class CellSearch {
   /// Directions along one axis, two, three.
   static constexpr kit::DirectionMask kAlongAxes[] = {0x0415410, 0x2AA8AAA, 0x5140145};
   struct Move {
-    std::int32_t stride;
+    std::uint32_t stride;  ///< difference of index, modulo 2^32
     std::uint32_t cost;
     int x, y, z;
   };
@@ -202,7 +202,7 @@ class CellSearch {
         for (kit::DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
           const int d = std::countr_zero(rest);
           const Move& move = moves_[std::size_t(d)];
-          const auto next = std::uint32_t(std::int64_t(entry.node) + move.stride);
+          const std::uint32_t next = entry.node + move.stride;
           const std::uint32_t g_next = g_here + move.cost;
           if (~g_next > complement_[next]) {  // not reached, or at a greater cost
             reach(next, g_next, heuristic<kLevel>(x + move.x, y + move.y, z + move.z), d);

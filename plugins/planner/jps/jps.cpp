@@ -62,12 +62,15 @@ std::string beyond_cells(const Request& request) {
   if (limits.max_route_length < kInfinity) {
     return "a limit on the route's length";
   }
+  if (request.world->has_ground()) {
+    return "the ground of a layer";
+  }
   const bool over_ground =
       limits.min_ground_clearance ||
       std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
         return band.datum == AltitudeBand::Datum::ground;
       });
-  if (over_ground || request.world->has_ground()) {
+  if (over_ground) {
     return "rules on the ground below";
   }
   return request.constraints.empty() ? ""
@@ -90,10 +93,14 @@ class Jps final : public Planner {
     if (const std::string rule = beyond_cells(request); !rule.empty()) {
       return refused("cannot hold its steps to " + rule);
     }
-    const std::size_t allowed =
-        std::min(std::size_t(params_.max_memory_mb) * 1024 * 1024, request.budget.max_memory_bytes);
+    const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
+    const std::size_t bytes_per_cell = sizeof(std::uint32_t) + 1;
     const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
-                               {allowed, sizeof(std::uint32_t) + 1});
+                               {most, bytes_per_cell});
+    if (auto over = kit::beyond_budget(lattice, bytes_per_cell, request.budget)) {
+      return *std::move(over);
+    }
+    const std::size_t allowed = std::min(most, request.budget.max_memory_bytes);
     if (const int levels = lattice.spec().counts[2]; levels > 1) {
       return refused("searches one level of cells, this lattice has " + std::to_string(levels) +
                      " (no level flight is asked for)");
@@ -112,9 +119,9 @@ class Jps final : public Planner {
     constexpr double kSpare = double(StepCosts::kMost) / jps::NodeWord::kMost;
     const StepCosts::Scale scale =
         StepCosts::between(params_.costs, lattice, request.start.position, request.goal.position);
-    for (double longest = 2 * (size.x() + size.y());; longest *= 16) {
+    for (double longest = 2 * (size.x() + size.y());; longest *= 4) {
       const StepCosts costs(lattice, scale, kSpare * longest);
-      if (costs.error() > 0.01) {
+      if (costs.error() > (scale == StepCosts::Scale::ratio ? 0.02 : 1e-4)) {
         return refused("cannot tell the lengths of ways over " + std::to_string(lattice.size()) +
                        " cells of " + std::to_string(lattice.spec().cell.x()) + " x " +
                        std::to_string(lattice.spec().cell.y()) + " m apart");

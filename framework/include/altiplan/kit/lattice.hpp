@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "altiplan/plan_result.hpp"
 #include "altiplan/request.hpp"
 
 namespace altiplan::kit {
@@ -117,6 +118,12 @@ class ALTIPLAN_API Lattice {
   std::array<double, kDirections> lengths_{};
   std::array<std::int64_t, kDirections> strides_{};
 };
+
+/// The result of a search whose cells alone need more than the budget's memory; nothing where they
+/// do not.
+ALTIPLAN_API std::optional<PlanResult> beyond_budget(const Lattice& lattice,
+                                                     std::size_t bytes_per_cell,
+                                                     const Budget& budget);
 
 /// The bits at and around the cell whose bit is number `at`, of an array laid out like the grid's
 /// words; with kLevel only those of its own level.

@@ -1,0 +1,2 @@
+import json,re
+# summarise x5 diffs ignoring the depth of clearance
