@@ -16,12 +16,15 @@ using Json = nlohmann::json;
 
 constexpr int kMaxDepth = 64;
 
-Json parse(const std::string& file) {
+std::string read(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
     throw Error(file + ": cannot be read");
   }
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+Json parse(const std::string& file, const std::string& text) {
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
     if (depth > kMaxDepth) {
       throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
@@ -238,13 +241,17 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 }  // namespace
 
 bool is_city_json(const std::string& file) {
-  const Json json = parse(file);
+  const std::string text = read(file);
+  if (text.find("CityJSON") == text.npos) {
+    return false;  // other files are parsed by their reader alone
+  }
+  const Json json = parse(file, text);
   return json.is_object() && json.contains("type") && json["type"] == "CityJSON";
 }
 
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m) {
-  const Json json = parse(file);
+  const Json json = parse(file, read(file));
   Buildings buildings;
   std::size_t others = 0;
   std::string at = "it";
