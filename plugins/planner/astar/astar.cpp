@@ -10,7 +10,8 @@
 // Complexity: O(n log n) time, O(n) memory in the cells of the lattice.
 // Deviations: moves are judged, not only cells; start and goal join the lattice by straight links;
 //   limits on turns are held against the single parent of a cell, which is incomplete; a closed
-//   cell is never opened again.
+//   cell is never opened again; where cells decide alone (cell_search.hpp) lengths are whole
+//   numbers (kit::StepCosts), and successors that another way reaches as cheaply are left out.
 // Symbols: g travelled length, h heuristic, f = w_g g + w_h h.
 #include <memory>
 

@@ -27,10 +27,9 @@ struct CellMemory {
 /// whether it is free (MoveRules::cells_decide). A cell then does with 4 bytes and two bits: g is a
 /// whole number, parents are found again from it, and bits hold what is blocked and what is closed.
 ///
-/// Where nothing around a cell is blocked, a successor that the parent reaches as cheaply on
-/// another way is left out (the natural neighbours of D. Harabor and A. Grastien, Online Graph
-/// Pruning for Pathfinding on Grid Maps, AAAI 2011, in three dimensions): most of a cell's
-/// successors otherwise are reached from many sides first, each time a little better.
+/// A successor that the cell before reaches as cheaply on another way is left out: on a plane
+/// everywhere, in space where nothing around the cell is blocked (kit/pruning.hpp). Most successors
+/// otherwise are reached from many sides first, each time a little better.
 class CellSearch {
  public:
   /// `costs` are of the lattice. All of it must outlive the search.
