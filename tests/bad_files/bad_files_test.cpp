@@ -13,13 +13,15 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
+#include "host/study/plan/study_plan.hpp"
 
 namespace altiplan::host {
 namespace {
 namespace fs = std::filesystem;
 
 const fs::path kValid = fs::path(ALTIPLAN_SOURCE_DIR) / "tests/bad_files";
-constexpr std::array kFiles = {"pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson"};
+constexpr std::array kFiles = {"pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson",
+                               "study.yaml"};
 
 struct Case {
   std::string file;
@@ -94,9 +96,13 @@ class BadFiles : public testing::Test {
       std::ofstream(folder_ / file, std::ios::binary) << text;
     }
   }
-  std::vector<Problem> problems() const {
+  std::vector<Problem> problems(const std::string& file) const {
     try {
-      load_config(folder_ / "pipeline.yaml", overrides_);
+      if (file == "study.yaml") {
+        load_study(folder_ / file, {}, overrides_.plugin_path);
+      } else {
+        load_config(folder_ / "pipeline.yaml", overrides_);
+      }
     } catch (const ConfigError& error) {
       return error.problems();
     }
@@ -116,7 +122,8 @@ class BadFiles : public testing::Test {
 
 TEST_F(BadFiles, TheFilesAreValidBeforeTheyAreDamaged) {
   lay_out({});
-  EXPECT_TRUE(problems().empty());
+  EXPECT_TRUE(problems("pipeline.yaml").empty());
+  EXPECT_TRUE(problems("study.yaml").empty());
 }
 
 TEST_F(BadFiles, EveryMistakeIsReportedOnceAndInItsPlace) {
@@ -124,7 +131,7 @@ TEST_F(BadFiles, EveryMistakeIsReportedOnceAndInItsPlace) {
   EXPECT_GE(all.size(), 300U);
   for (const Case& one : all) {
     lay_out(one);
-    const std::vector<Problem> found = problems();
+    const std::vector<Problem> found = problems(one.file);
     std::string shown;
     for (const Problem& problem : found) {
       shown += "\n  " + without_folder(problem.where.file) + " " +

@@ -255,7 +255,8 @@ class Cli(unittest.TestCase):
         self.assertGreaterEqual(len(sample), 40)
         self.write("result.json", "before")
         for row, file, before, after, problems in sample:
-            for name in ("pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson"):
+            for name in ("pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson",
+                         "study.yaml"):
                 with open(os.path.join(BAD_FILES, name), "rb") as stream:
                     text = stream.read()
                 if name == file:
@@ -264,9 +265,11 @@ class Cli(unittest.TestCase):
                 with open(self.path(name), "wb") as stream:
                     stream.write(text)
             files = sorted(os.listdir(self.folder))
-            for command in (["validate"], ["run", "--out", "result.json"]):
+            for command in (["validate"], ["study", "--out", "result.json"] if file == "study.yaml" else
+                            ["run", "--out", "result.json"]):
                 with self.subTest(row=row, command=command[0]):
-                    out, err = self.call(*command, "pipeline.yaml", code=3)
+                    read = file if file == "study.yaml" else "pipeline.yaml"
+                    out, err = self.call(*command, read, code=3)
                     self.assertEqual(out, "")
                     for problem in problems:
                         self.assertIn(problem, err.replace(self.folder + "/", ""))

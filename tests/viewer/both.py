@@ -169,6 +169,7 @@ class Both:
         rows = self.run_js("return [...document.querySelectorAll('.metrics tr')].map((row) =>"
                            "[...row.children].map((cell) => cell.textContent))")
         self.assertIn(["Min clearance, m", "62.25", "62.25", "–"], rows)
+        self.assertIn(["Min radius, m", "straight", "straight", "–"], rows)
         self.assertIn(["Collisions", "1", "–", "–"], rows)
 
     def test_still(self):

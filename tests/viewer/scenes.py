@@ -78,6 +78,7 @@ def metrics(route):
     length = sum(math.dist(a, b) for a, b in zip(route, route[1:])) if route else None
     return {"length_m": length, "waypoints": len(route) if route else None,
             "max_turn_deg": 41.5 if route else None, "min_clearance_m": 62.25 if route else None,
+            "min_radius_m": 2.2753e15 if route else None,
             "duration_s": length / 20 if route else None, "plan_time_s": 0.0125, "expanded": 4321}
 
 

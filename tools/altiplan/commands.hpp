@@ -22,6 +22,12 @@ void add_check(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_plugins(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
+void add_merge(CLI::App& app, Action& action);
+void add_replay(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
+void add_slurm(CLI::App& app, Action& action);
+void add_study(CLI::App& app, Action& action, const std::string& command_line);
+void add_report(CLI::App& app, Action& action);
 
 /// --plugin-path, --seed, --set and --scenario as they are wanted.
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);

@@ -79,6 +79,22 @@ std::string fixed(const std::optional<double>& value, int digits) {
 
 namespace {
 
+/// What the user typed, as far as a shell would take it again.
+std::string command_line(int argc, char** argv) {
+  std::string line = "altiplan";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_plain =
+        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#!~") == word.npos;
+    line += is_plain ? " " : " '";
+    for (const char letter : word) {
+      line += letter == '\'' ? "'\\''" : std::string(1, letter);
+    }
+    line += is_plain ? "" : "'";
+  }
+  return line;
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app("Plans and judges routes of unmanned aircraft with plugins composed in YAML.",
                "altiplan");
@@ -108,6 +124,12 @@ int main_checked(int argc, char** argv) {
   add_view(app, action);
   add_export(app, action);
   add_plugins(app, action);
+  add_merge(app, action);
+  add_replay(app, action);
+  add_compare(app, action);
+  add_slurm(app, action);
+  add_study(app, action, command_line(argc, argv));
+  add_report(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

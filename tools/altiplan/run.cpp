@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pthread.h>
-#include <signal.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <thread>
 
 #include "commands.hpp"
 #include "host/output/result_json.hpp"
 #include "host/run/pipeline.hpp"
+#include "interrupt.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -25,47 +21,6 @@ struct RunArguments {
   std::optional<std::string> out;
   bool json = false;
   double patience_s = host::kDefaultStepSeconds;
-};
-
-/// Turns SIGINT and SIGTERM into a stop token: the step under way ends, the result is written.
-/// A second signal ends the process at once; not within half a second, as timeout(1) sends two.
-class Interrupt {
- public:
-  Interrupt() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    sigaddset(&signals_, SIGUSR1);  // ends the thread
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    thread_ = std::thread([this] {
-      using Clock = std::chrono::steady_clock;
-      Clock::time_point first;
-      int signal = 0;
-      while (sigwait(&signals_, &signal) == 0 && signal != SIGUSR1) {
-        if (!happened_.exchange(true)) {
-          first = Clock::now();
-          stop_.request_stop();
-        } else if (Clock::now() - first > std::chrono::milliseconds(500)) {
-          _exit(kInterrupted);
-        }
-      }
-    });
-  }
-  ~Interrupt() {
-    pthread_kill(thread_.native_handle(), SIGUSR1);
-    thread_.join();
-  }
-  Interrupt(const Interrupt&) = delete;
-  Interrupt& operator=(const Interrupt&) = delete;
-
-  std::stop_token token() const { return stop_.get_token(); }
-  bool happened() const { return happened_; }
-
- private:
-  sigset_t signals_;
-  std::stop_source stop_;
-  std::atomic<bool> happened_ = false;
-  std::thread thread_;
 };
 
 void print_row(std::FILE* to, const std::string& id, const std::string& plugin,

@@ -7,6 +7,7 @@
 #include "host/config/yaml.hpp"
 #include "host/output/result_json.hpp"
 #include "host/run/mission.hpp"
+#include "host/study/plan/study_plan.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -26,8 +27,8 @@ void validate_one(const std::string& file, const host::Overrides& overrides) {
       host::load_scenario(file, overrides);
       break;
     case host::FileKind::study:
-      throw ConfigError(Location{file, 0, 0, ""}, "",
-                        "a study: this version checks pipelines and scenarios");
+      host::load_study(file, {}, overrides.plugin_path);
+      break;
   }
 }
 
@@ -92,9 +93,9 @@ int explain(const Arguments& arguments) {
 void add_validate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("validate", "check files without running them");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("files", arguments->files, "pipelines and scenarios")->required();
+  command->add_option("files", arguments->files, "pipelines, scenarios and studies")->required();
   add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan validate configs/pipelines/*.yaml configs/scenarios/*.yaml");
+  set_example(*command, "altiplan validate configs/*/*.yaml");
   command->callback(
       [&action, arguments] { action = [arguments] { return validate(*arguments); }; });
 }

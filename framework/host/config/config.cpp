@@ -24,14 +24,16 @@ fs::path absolute_file(const fs::path& path) {
   return absolute.lexically_normal();
 }
 
-std::shared_ptr<Registry> make_registry(const Config& config) {
+std::shared_ptr<Registry> make_registry(const Config& config,
+                                        const std::shared_ptr<Registry>& shared = nullptr) {
   std::vector<fs::path> folders = config.overrides.plugin_path;
   for (const auto* list : {&config.pipeline.plugins, &config.scenario.plugins}) {
     for (const Path& path : *list) {
       folders.emplace_back(path.text);
     }
   }
-  return std::make_shared<Registry>(Registry::search_path(folders));
+  const std::vector<fs::path> path = Registry::search_path(folders);
+  return shared && shared->folders() == path ? shared : std::make_shared<Registry>(path);
 }
 
 /// A file of the other kind, or of none, would give one problem a key.
@@ -135,7 +137,8 @@ Config load_scenario(const fs::path& scenario, const Overrides& overrides) {
   return config;
 }
 
-Config load_config(const fs::path& pipeline, const Overrides& overrides) {
+Config load_config(const fs::path& pipeline, const Overrides& overrides,
+                   const std::shared_ptr<Registry>& shared) {
   Config config;
   config.overrides = overrides;
   config.pipeline_path = absolute_file(pipeline);
@@ -147,7 +150,7 @@ Config load_config(const fs::path& pipeline, const Overrides& overrides) {
   config.files.push_back(config.pipeline_path);
   config.seed = overrides.seed.value_or(config.pipeline.seed);
   const bool read = find_scenario(config, checker) && read_scenario(config, checker);
-  config.registry = make_registry(config);
+  config.registry = make_registry(config, shared);
   if (read) {
     check_scenario(checker, config.scenario, config.scenario_tree);
   }

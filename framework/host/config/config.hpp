@@ -37,7 +37,9 @@ struct Config {
 };
 
 /// Reads and checks both files; throws ConfigError with every problem of both.
-Config load_config(const std::filesystem::path& pipeline, const Overrides& overrides);
+/// A registry of the same folders, where given, is used again.
+Config load_config(const std::filesystem::path& pipeline, const Overrides& overrides,
+                   const std::shared_ptr<Registry>& shared = nullptr);
 
 /// A scenario without a pipeline (`check --route`, `validate`).
 Config load_scenario(const std::filesystem::path& scenario, const Overrides& overrides);

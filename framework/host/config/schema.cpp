@@ -8,6 +8,7 @@
 #include "host/config/config.hpp"
 #include "host/config/shapes.hpp"
 #include "host/output/describe.hpp"
+#include "host/study/plan/study_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -15,72 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
-
-// A study as written (architecture of the files); run by the study runner.
-struct ScenarioChoice {
-  Path file;
-  Value set;
-  void describe(Fields& f) {
-    f("file", file).required().doc("a scenario");
-    f("set", set).doc("keys of the scenario over their values: one, a list, or FROM..TO");
-  }
-};
-
-struct PipelineChoice {
-  std::string id;
-  Path file;
-  Value set;
-  void describe(Fields& f) {
-    f("id", id).required().doc("name in claims and reports");
-    f("file", file).required().doc("a pipeline");
-    f("set", set).doc("keys of the pipeline over their values: one, a list, or FROM..TO");
-  }
-};
-
-struct StudyBudget {
-  std::optional<double> time_s;
-  std::optional<std::int64_t> iterations;
-  std::optional<double> memory_mb;
-  void describe(Fields& f) {
-    f("time_s", time_s).unit("s").greater_than(0).doc("time of a plan step");
-    f("iterations", iterations).at_least(0).doc("budget of a plan step in units of `expanded`");
-    f("memory_mb", memory_mb).unit("MB").greater_than(0).doc("memory of a run");
-  }
-};
-
-struct Claim {
-  std::string id;
-  std::string that;
-  std::string is;
-  double confidence = 0.95;
-  void describe(Fields& f) {
-    f("id", id).required().doc("name in reports");
-    f("that", that).required().doc("a statistic: median(fusion.flight.length_m / astar.length_m)");
-    f("is", is).required().doc("a comparison: <= 0.95");
-    f("confidence", confidence).range(0.5, 0.9999).doc("of the interval that must satisfy it");
-  }
-};
-
-struct StudyFile {
-  int altiplan = 0;
-  std::string name;
-  std::vector<ScenarioChoice> scenarios;
-  std::vector<PipelineChoice> pipelines;
-  int repetitions = 1;
-  std::int64_t seed = 0;
-  StudyBudget budget;
-  std::vector<Claim> claims;
-  void describe(Fields& f) {
-    f("altiplan", altiplan).range(kFileFormat, kFileFormat).required().doc("file format");
-    f("name", name).doc("title in reports");
-    f("scenarios", scenarios).min_items(1).required().doc("what is flown through");
-    f("pipelines", pipelines).min_items(1).required().doc("what is compared");
-    f("repetitions", repetitions).at_least(1).doc("runs of each pair, each with a seed of its own");
-    f("seed", seed).at_least(0).doc("of the study");
-    f("budget", budget).doc("of each run");
-    f("claims", claims).doc("what is to be shown");
-  }
-};
 
 /// Writes schemas; what plugins take is written once, into `definitions`.
 class Writer {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "altiplan/error.hpp"
+#include "host/output/deflate.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -19,18 +20,6 @@ std::string chunk(const std::string& type, const std::string& data) {
   const std::string body = type + data;
   const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(body.data()), uInt(body.size()));
   return big_endian(std::uint32_t(data.size())) + body + big_endian(std::uint32_t(sum));
-}
-
-std::string compressed(const std::string& bytes) {
-  uLongf size = ::compressBound(uLong(bytes.size()));
-  std::string out(size, '\0');
-  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size,
-                  reinterpret_cast<const Bytef*>(bytes.data()), uLong(bytes.size()),
-                  Z_BEST_COMPRESSION) != Z_OK) {
-    throw Error("a picture could not be compressed");
-  }
-  out.resize(size);
-  return out;
 }
 }  // namespace
 
@@ -51,7 +40,7 @@ std::string png(int width, int height, const std::vector<std::uint8_t>& rgba) {
   }
   const std::string header = big_endian(std::uint32_t(width)) + big_endian(std::uint32_t(height)) +
                              std::string("\x08\x06\x00\x00\x00", 5);  // 8 bits, RGBA
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", compressed(rows)) +
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", compressed(rows, 9)) +
          chunk("IEND", "");
 }
 }  // namespace altiplan::host

@@ -121,6 +121,26 @@ Json lonlat_json(const Route& route, const Frame& frame) {
   return json;
 }
 
+Json overrides_json(const Config& config) {
+  Json json = Json::object();
+  if (config.overrides.scenario) {
+    json["scenario"] = config.scenario_path.string();
+  }
+  if (config.overrides.seed) {
+    json["seed"] = *config.overrides.seed;
+  }
+  if (!config.overrides.set.empty()) {
+    Json set = Json::object();
+    for (const std::string& assignment : config.overrides.set) {
+      const std::size_t equals = assignment.find('=');
+      set[assignment.substr(0, equals)] = assignment.substr(equals + 1);
+    }
+    json["set"] = std::move(set);
+  }
+  return json;
+}
+}  // namespace
+
 Json plugins_json(const Config& config) {
   std::set<std::pair<std::string, std::string>> used;
   const auto use = [&](const char* kind, const std::string& plugin_name) {
@@ -161,26 +181,6 @@ Json plugins_json(const Config& config) {
   }
   return json;
 }
-
-Json overrides_json(const Config& config) {
-  Json json = Json::object();
-  if (config.overrides.scenario) {
-    json["scenario"] = config.scenario_path.string();
-  }
-  if (config.overrides.seed) {
-    json["seed"] = *config.overrides.seed;
-  }
-  if (!config.overrides.set.empty()) {
-    Json set = Json::object();
-    for (const std::string& assignment : config.overrides.set) {
-      const std::size_t equals = assignment.find('=');
-      set[assignment.substr(0, equals)] = assignment.substr(equals + 1);
-    }
-    json["set"] = std::move(set);
-  }
-  return json;
-}
-}  // namespace
 
 Json to_json(const Route& route) {
   Json json = Json::array();

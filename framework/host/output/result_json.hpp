@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 /// result.json, format 1 (docs/result.md). Wall times stand only in keys that end in time_s.
 Json result_json(const Config& config, const RunResult& result);
 
+/// [{"kind", "name", "build"}] of the plugins that the files name.
+Json plugins_json(const Config& config);
+
 Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
@@ -29,4 +32,5 @@ void write_file(const std::filesystem::path& file, const std::string& text);
 
 /// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.
 std::string sha256(const std::filesystem::path& file);
+std::string sha256_of(std::string_view bytes);
 }  // namespace altiplan::host

@@ -31,4 +31,10 @@ std::string sha256(const std::filesystem::path& file) {
   }
   return sum;
 }
+
+std::string sha256_of(std::string_view bytes) {
+  char text[SHA256_DIGEST_STRING_LENGTH];
+  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), text);
+  return text;
+}
 }  // namespace altiplan::host

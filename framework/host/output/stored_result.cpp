@@ -100,7 +100,11 @@ Route route_of(const Json& json, const std::string& file) {
 }
 
 StoredResult read_result(const std::string& file, const Overrides& overrides) {
-  StoredResult stored{file, read_json(file, "a result of altiplan run"), {}, {}, {}, {}, {}};
+  return stored_result(file, read_json(file, "a result of altiplan run"), overrides);
+}
+
+StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides) {
+  StoredResult stored{file, std::move(content), {}, {}, {}, {}, {}};
   const Json& json = stored.json;
   try {
     if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {

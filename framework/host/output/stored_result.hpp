@@ -26,6 +26,8 @@ struct StoredResult {
 
 /// Throws Error naming what is wrong; `overrides` may add plugin paths.
 StoredResult read_result(const std::string& file, const Overrides& overrides);
+/// The same of a result that a study keeps; `file` is its name in messages.
+StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides);
 
 /// Throws Error with the line where the file is not JSON; `expected` says what it should hold.
 Json read_json(const std::string& file, const std::string& expected);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/output/viewer_page.hpp"
 
-#include <string_view>
-
 // The page is part of the program, so that it need not be looked for: the assembler copies the file
 // that ALTIPLAN_VIEWER_PAGE names in between two symbols.
 asm(".pushsection .rodata\n"
@@ -20,19 +18,15 @@ extern const char altiplan_viewer_page_end[];  // NOLINT(readability-identifier-
 }
 
 namespace altiplan::host {
-namespace {
 
-constexpr std::string_view kPlace = "/*SCENE*/";
-
-std::string_view page_template() {
+std::string_view viewer_template() {
   return {altiplan_viewer_page, std::size_t(altiplan_viewer_page_end - altiplan_viewer_page)};
 }
-}  // namespace
 
 std::string viewer_page(const Json& scene) {
   const std::string text = scene.dump(-1, ' ', false, Json::error_handler_t::replace);
-  const std::string_view around = page_template();
-  const std::size_t place = around.find(kPlace);
+  const std::string_view around = viewer_template();
+  const std::size_t place = around.find(kScenePlace);
   std::string page;
   page.reserve(around.size() + text.size());
   page += around.substr(0, place);
@@ -40,7 +34,7 @@ std::string viewer_page(const Json& scene) {
     // Nothing in a scene can end the script that holds it.
     letter == '<' ? page += "\\u003c" : page += letter;
   }
-  page += around.substr(place + kPlace.size());
+  page += around.substr(place + kScenePlace.size());
   return page;
 }
 }  // namespace altiplan::host

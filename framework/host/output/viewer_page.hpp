@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "host/output/result_json.hpp"
 
@@ -9,4 +10,7 @@ namespace altiplan::host {
 
 /// tools/viewer/dist/viewer.html with the scene in it: one file that needs nothing else.
 std::string viewer_page(const Json& scene);
+/// That file, with kScenePlace once where a scene goes.
+std::string_view viewer_template();
+inline constexpr std::string_view kScenePlace = "/*SCENE*/";
 }  // namespace altiplan::host

@@ -31,7 +31,7 @@ function asked_cut(text) {
 function first_state(scene, lines) {
   const shown = new Set(lines.filter(({kind}) => kind !== 'attempt').map(({key}) => key));
   const with_route = scene.results.findIndex(({route, flight}) => route?.length || flight);
-  const selected = Math.max(0, with_route);
+  const selected = scene.selected ?? Math.max(0, with_route);
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
   return {shown, hidden: new Set(), selected, source: 'route', time: 0, playing: false, speed: 1,

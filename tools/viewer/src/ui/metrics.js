@@ -4,6 +4,7 @@ import {element, swatch} from '../dom.js';
 import {number} from '../units.js';
 import {pill} from './side.js';
 
+const kStraight = 1e8;  // metres
 const kUnits = {m: 'm', deg: '°', rad: 'rad', s: 's'};
 
 /** `min_clearance_m` → Min clearance, m. */
@@ -52,7 +53,12 @@ function row(name, values) {
 
 function number_rows(columns) {
   const keys = new Set(columns.flatMap((column) => Object.keys(column ?? {})));
-  return [...keys].map((key) => row(label(key), columns.map((column) => number(column?.[key]))));
+  return [...keys].map((key) => row(label(key), columns.map((column) => reading(key, column?.[key]))));
+}
+
+/** A radius beyond all that flies is noise of the arithmetic: nothing turns. */
+function reading(key, value) {
+  return key.endsWith('radius_m') && value >= kStraight ? 'straight' : number(value);
 }
 
 function verdict(check) {

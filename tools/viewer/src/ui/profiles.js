@@ -55,8 +55,9 @@ export function build_profiles(world, store) {
 function sources(world, store, profile) {
   const result = world.scene.results[store.state.selected];
   if (!profile) {
-    return [element('span', {className: 'empty'},
-      `${result?.name ?? 'This result'} has no route: ${result?.message ?? ''}`)];
+    const fate = result?.status === 'solved' ? 'is not drawn' : 'has no route';
+    return [element('span', {className: 'empty'}, `${result?.name ?? 'This result'} ${fate}` +
+      (result?.message ? `: ${result.message}` : '.'))];
   }
   const button = (kind, text) => element('button', {textContent: text,
     ariaPressed: String(profile.kind === kind),

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/study/plan/study_plan.hpp"
+
+#include <dlfcn.h>
+
+#include <map>
+
+#include "host/output/result_json.hpp"
+#include "host/registry/registry.hpp"
+#include "host/study/plan/study_grid.hpp"
+#include "host/study/plan/study_reading.hpp"
+#include "host/study/plan/study_selection.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+/// Builds of the program and of the library that it shares with its plugins.
+std::string host_build() {
+  static const std::string kBuild = [] {
+    Dl_info info{};
+    const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
+    return examine_library("/proc/self/exe").build +
+           (is_found ? " " + examine_library(info.dli_fname).build : std::string());
+  }();
+  return kBuild;
+}
+
+/// What the result of a pair depends on, but for the seed.
+std::string pair_text(const Config& config, const StudyBudget& budget) {
+  std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
+  text += flow_text(config.pipeline_tree) + "\n" + flow_text(config.scenario_tree) + "\n";
+  for (const fs::path& file : config.files) {
+    // Comments of the two files change nothing, and their trees stand above.
+    if (file != config.pipeline_path && file != config.scenario_path) {
+      text += sha256(file) + "\n";
+    }
+  }
+  text += plugins_json(config).dump() + "\n";
+  text += Json({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}).dump() + "\n";
+  return text;
+}
+
+std::string key_of(const std::string& pair, const std::string& name, std::int64_t seed) {
+  return sha256_of(pair + name + "\n" + std::to_string(seed));
+}
+}  // namespace
+
+std::string name_of_run(const StudyPlan& plan, const PlannedRun& run) {
+  return plan.pipelines[run.pipeline].name + " " + plan.scenarios[run.scenario].name + " #" +
+         std::to_string(run.repetition);
+}
+
+Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
+                       const std::vector<fs::path>& plugin_path) {
+  Overrides overrides;
+  overrides.scenario = plan.scenarios[run.scenario].file;
+  overrides.seed = run.seed;
+  overrides.set = plan.pipelines[run.pipeline].set;
+  const auto& of_scenario = plan.scenarios[run.scenario].set;
+  overrides.set.insert(overrides.set.end(), of_scenario.begin(), of_scenario.end());
+  overrides.plugin_path = plugin_path;
+  return overrides;
+}
+
+StudyPlan load_study(const fs::path& study, const StudySelection& selection,
+                     const std::vector<fs::path>& plugin_path) {
+  StudyProblems problems;
+  StudyVariants variants(problems);
+  StudyPlan plan = read_study(study, problems, variants);
+  plan.planned = plan.scenarios.size() * plan.pipelines.size() * std::size_t(plan.file.repetitions);
+  plan.runs = selected_runs(plan, selection);
+  std::map<std::pair<std::size_t, std::size_t>, std::string> pairs;
+  for (PlannedRun& run : plan.runs) {
+    std::string& text = pairs[{run.scenario, run.pipeline}];
+    if (text.empty()) {
+      try {
+        const Config config = load_config(plan.pipelines[run.pipeline].file,
+                                          overrides_of(plan, run, plugin_path), plan.registry);
+        plan.registry = config.registry;
+        text = pair_text(config, plan.file.budget);
+      } catch (const PluginError& error) {
+        text = error.what();  // its runs are refused, one by one; the others need not wait for it
+      } catch (const ConfigError& error) {
+        for (const Problem& problem : error.problems()) {
+          problems.add(variants.placed(problem));
+        }
+        text = "wrong";
+      }
+    }
+    run.key = key_of(text, name_of_run(plan, run), run.seed);
+  }
+  problems.finish();
+  return plan;
+}
+
+std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
+                   std::int64_t seed) {
+  return key_of(pair_text(config, budget), name, seed);
+}
+
+Config load_run(const StudyPlan& plan, const PlannedRun& run,
+                const std::vector<fs::path>& plugin_path) {
+  return load_config(plan.pipelines[run.pipeline].file, overrides_of(plan, run, plugin_path),
+                     plan.registry);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace altiplan::host::report {
+
+/// assets/report.css and assets/report.js, parts of the program.
+std::string_view page_style();
+std::string_view page_script();
+}  // namespace altiplan::host::report

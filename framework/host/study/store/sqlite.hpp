@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace altiplan::host {
+
+/// A prepared statement. Bind, then step; `reset` before it is used again.
+class Statement {
+ public:
+  Statement(sqlite3* database, const std::filesystem::path& file, const char* sql);
+
+  Statement& bind(int index, std::string_view text);
+  Statement& bind(int index, std::int64_t value);
+  Statement& bind(int index, double value);  ///< NaN becomes NULL
+  Statement& bind_blob(int index, std::string_view bytes);
+  Statement& bind_null(int index);
+
+  /// Whether there is a row. Throws Error naming the file.
+  bool step();
+  /// Runs a statement without rows, and makes it ready for the next time.
+  void run();
+  void reset() { sqlite3_reset(statement_.get()); }
+
+  std::string text(int column) const;
+  std::string_view blob(int column) const;  ///< until the next step
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+  double number(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  void expect(int code) const;
+
+  sqlite3* database_;
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+/// A database file. Throws Error naming the file.
+class Sqlite {
+ public:
+  /// `flags` as for sqlite3_open_v2.
+  Sqlite(const std::filesystem::path& file, int flags);
+
+  Statement prepare(const char* sql) const { return {database_.get(), file_, sql}; }
+  /// One or several statements without rows.
+  void run(const char* sql) const;
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close(database); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+/// All or nothing: rolled back where it is left before `commit`.
+class Transaction {
+ public:
+  explicit Transaction(const Sqlite& database);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  const Sqlite& database_;
+  bool open_ = true;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/study/store/study_data.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "altiplan/error.hpp"
+#include "host/config/yaml.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// The study's file as it was when the store was made.
+StudyFile study_file(const std::string& store, std::map<std::string, std::string>& study) {
+  StudyFile file;
+  const Value tree = parse_yaml(study["text"], study["path"]);
+  if (const ParamReport report = bind(file, &tree); !report.problems.empty()) {
+    throw Error("the study in '" + store + "': " + report.problems.front().text());
+  }
+  return file;
+}
+
+/// Index of each name in `all`, which grows by those that it lacks.
+std::map<std::string, std::size_t> gather(std::vector<StoredVariant>& all,
+                                          const std::vector<StoredVariant>& more) {
+  for (const StoredVariant& variant : more) {
+    const bool is_known = std::any_of(all.begin(), all.end(), [&](const StoredVariant& known) {
+      return known.name == variant.name;
+    });
+    if (!is_known) {
+      all.push_back(variant);
+    }
+  }
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    index[all[i].name] = i;
+  }
+  return index;
+}
+
+/// To 12 significant digits: two routes along the same points, their legs added in another order,
+/// are equally long.
+double rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  std::from_chars(text, text + std::strlen(text), value);
+  return value;
+}
+
+RunRow row_of(const StoredRun& run, std::size_t store, const std::vector<std::string>& columns) {
+  RunRow row;
+  row.store = store;
+  row.id = run.id;
+  row.key = run.key;
+  row.repetition = run.repetition;
+  row.seed = run.seed;
+  row.outcome = run.outcome;
+  row.message = run.message;
+  row.place = run.place;
+  row.values.assign(columns.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [name, value] : run.values) {  // both are sorted
+    row.values[std::size_t(std::lower_bound(columns.begin(), columns.end(), name) -
+                           columns.begin())] = rounded(value);
+  }
+  return row;
+}
+}  // namespace
+
+std::size_t StudyData::column(std::string_view name) const {
+  const auto found = std::lower_bound(columns.begin(), columns.end(), name);
+  return found != columns.end() && *found == name ? std::size_t(found - columns.begin())
+                                                  : columns.size();
+}
+
+StudyData load_study_data(const std::vector<std::string>& stores) {
+  StudyData data;
+  data.stores = stores;
+  std::vector<std::vector<StoredRun>> runs;
+  std::set<std::string> columns;
+  std::string text;
+  for (const std::string& name : stores) {
+    const Store store(name, StoreMode::read);
+    std::map<std::string, std::string> study = store.study();
+    if (runs.empty()) {
+      text = study["text"];
+      data.file = study_file(name, study);
+      const std::string& planned = study["planned"];
+      std::from_chars(planned.data(), planned.data() + planned.size(), data.planned);
+    } else if (study["text"] != text) {
+      throw Error("'" + name + "' is of another study than '" + stores.front() +
+                  "': their study files differ");
+    }
+    gather(data.scenarios, store.scenarios());
+    gather(data.pipelines, store.pipelines());
+    for (const StoredSession& session : store.sessions()) {
+      data.sessions.push_back(session);
+    }
+    runs.push_back(store.runs());
+    for (const StoredRun& run : runs.back()) {
+      for (const auto& [column, value] : run.values) {
+        columns.insert(column);
+      }
+    }
+  }
+  data.columns.assign(columns.begin(), columns.end());
+  const auto scenario = gather(data.scenarios, {});
+  const auto pipeline = gather(data.pipelines, {});
+  std::set<std::string> keys;
+  for (std::size_t s = 0; s < runs.size(); ++s) {
+    for (const StoredRun& run : runs[s]) {
+      if (keys.insert(run.key).second) {
+        data.rows.push_back(row_of(run, s, data.columns));
+        data.rows.back().scenario = scenario.at(run.scenario);
+        data.rows.back().pipeline = pipeline.at(run.pipeline);
+      }
+    }
+  }
+  std::sort(data.rows.begin(), data.rows.end(), [](const RunRow& a, const RunRow& b) {
+    return std::tie(a.scenario, a.pipeline, a.repetition, a.key) <
+           std::tie(b.scenario, b.pipeline, b.repetition, b.key);
+  });
+  return data;
+}
+
+Better better(const StudyData& data, std::string_view metric) {
+  for (const MetricChoice& choice : data.file.metrics) {
+    if (choice.name == metric && choice.better) {
+      return *choice.better == "higher" ? Better::higher : Better::lower;
+    }
+  }
+  const std::string_view last = metric.substr(metric.rfind('.') + 1);
+  const bool is_higher = last.starts_with("min_") || last == "reached" || last == "solved";
+  return is_higher ? Better::higher : Better::lower;
+}
+
+std::vector<std::string> compared_metrics(const StudyData& data) {
+  if (data.file.metrics.empty()) {
+    return {"length_m", "plan_time_s", "expanded"};
+  }
+  std::vector<std::string> names;
+  for (const MetricChoice& choice : data.file.metrics) {
+    names.push_back(choice.name);
+  }
+  return names;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""merge_test.py PROGRAM: parts of a study, put together."""
+import os
+import sys
+import unittest
+
+from case import RUNS, STUDY, StudyCase
+
+
+class Merge(StudyCase):
+    def test_parts_are_the_study(self):
+        whole = self.store("whole.db")
+        parts = [self.store(f"part-{n}.db", "--shard", f"{n}/3") for n in (1, 2, 3)]
+        self.assertTrue(all(self.runs(part) for part in parts))
+        out, err = self.call("merge", *parts, "-o", self.path("all.db"))
+        self.assertEqual(out, f"{self.path('all.db')}: {RUNS} runs of 3 stores\n")
+        self.assertEqual(err, "")
+        self.assertEqual(self.runs(self.path("all.db")), self.runs(whole))
+        self.assertEqual(len(self.rows(self.path("all.db"), "SELECT * FROM sessions")), 3)
+        self.assertEqual(self.rows(self.path("all.db"), "PRAGMA integrity_check"), [("ok",)])
+        # Nothing is left to do in it.
+        before = self.rows(self.path("all.db"), "SELECT * FROM runs")
+        self.call("study", self.study, "--out", self.path("all.db"))
+        self.assertEqual(self.rows(self.path("all.db"), "SELECT * FROM runs"), before)
+
+    def test_runs_of_two_parts_are_taken_once(self):
+        whole = self.store("whole.db")
+        part = self.store("part.db", "--shard", "1/2")
+        out, err = self.call("merge", whole, part, "-o", self.path("all.db"))
+        self.assertIn(f"{RUNS} runs of 2 stores; {len(self.runs(part))} had the same result", out)
+        self.assertEqual(err, "")
+        self.change(part, "UPDATE runs SET outcome = 'failed' WHERE id = 1")
+        out, err = self.call("merge", whole, part, "-o", self.path("again.db"))
+        self.assertEqual(err.count("came out differently"), 1, err)
+        self.assertIn("outcome is solved and failed; the first is kept", err)
+        self.assertEqual(self.runs(self.path("again.db")), self.runs(whole))
+
+    def test_a_store_may_be_merged_into(self):
+        all_of_them = self.store("all.db", "--shard", "1/2")
+        part = self.store("part.db", "--shard", "2/2")
+        why = self.refused("merge", part, "-o", all_of_them)
+        self.assertIn("is there already", why)
+        self.call("merge", all_of_them, part, "-o", all_of_them)
+        self.assertEqual(len(self.runs(all_of_them)), RUNS)
+
+    def test_what_a_killed_call_left_is_in_nobodys_way(self):
+        part = self.store("part.db", "--shard", "1/2")
+        self.write("all.db.partial", "half a database")
+        self.write("all.db.partial-journal", "half a journal")
+        self.call("merge", part, "-o", self.path("all.db"))
+        self.assertEqual(self.runs(self.path("all.db")), self.runs(part))
+        self.assertEqual(sorted(name for name in os.listdir(self.folder) if "all.db" in name),
+                         ["all.db"])
+
+    def test_other_studies_are_refused(self):
+        first = self.store("first.db", "--sample", "0.2")
+        self.write("study.yaml", STUDY.replace("repetitions: 2", "repetitions: 3"))
+        second = self.store("second.db", "--sample", "0.2")
+        why = self.refused("merge", first, second, "-o", self.path("all.db"))
+        self.assertTrue(why.endswith("are of different studies: their files say '\"repetitions\": 2' "
+                                     "against '\"repetitions\": 3'\n"), why)
+        # Comments and blanks say nothing.
+        self.write("study.yaml", "# A study\n" + STUDY.replace("seed: 5", "seed:   5"))
+        same = self.store("same.db", "--sample", "0.4")
+        self.call("merge", first, same, "-o", self.path("all.db"))
+
+    def test_other_builds_are_refused(self):
+        first = self.store("first.db", "--sample", "0.2")
+        second = self.store("second.db", "--sample", "0.2")
+        self.change(second, "UPDATE runs SET key = 'f' || substr(key, 2) || '0' WHERE id = 1")
+        self.assertIn("made from different files, plugins or builds",
+                      self.refused("merge", first, second, "-o", self.path("all.db")))
+        self.assertFalse(os.path.exists(self.path("all.db")))
+
+    def test_files_that_are_no_stores(self):
+        good = self.store("good.db", "--sample", "0.1")
+        for name, words in self.spoilt().items():
+            why = self.refused("merge", good, self.path(name), "-o", self.path("all.db"))
+            self.assertIn(name, why)
+            if name != "nowhere.db":
+                self.assertIn(words, why)
+            self.assertEqual([file for file in os.listdir(self.folder) if "all.db" in file], [])
+        self.refused("merge", good, "-o", self.path("no/folder/all.db"))
+        self.call("merge", good, code=2)
+
+
+if __name__ == "__main__":
+    StudyCase.program = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

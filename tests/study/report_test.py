@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""report_test.py PROGRAM: what `altiplan report` writes of studies that were really run; its page is
+looked at by tests/viewer/report_test.py."""
+import csv
+import html
+import os
+import sys
+import unittest
+
+from case import RUNS, StudyCase
+
+
+class Report(StudyCase):
+    def report(self, folder, *stores_and_options):
+        self.call("report", *stores_and_options, "-o", self.path(folder))
+        return self.files(folder)
+
+    def files(self, folder):
+        files = {}
+        for parent, _, names in os.walk(self.path(folder)):
+            for name in names:
+                path = os.path.join(parent, name)
+                with open(path, "rb") as stream:
+                    files[os.path.relpath(path, self.path(folder))] = stream.read()
+        return files
+
+    def page(self, folder):
+        return self.files(folder)["index.html"].decode()
+
+    def assert_same(self, first, second):
+        self.assertEqual(sorted(first), sorted(second))
+        for name, content in first.items():
+            self.assertTrue(content == second[name], name)
+
+    def test_without_times_history_does_not_matter(self):
+        whole = self.report("whole", self.store("whole.db"), "--no-times")
+        self.assertGreater(len(whole), 25)
+        # One after the other, in two calls, several in a process.
+        again = self.store("again.db", "--jobs", "1", "--sample", "0.5")
+        self.store("again.db", "--reuse", "4")
+        self.assert_same(whole, self.report("again", again, "--no-times"))
+        # In parts, given in any order, and merged.
+        parts = [self.store(f"part-{n}.db", "--shard", f"{n}/3") for n in (1, 2, 3)]
+        self.assert_same(whole, self.report("parts", *reversed(parts), "--no-times"))
+        self.call("merge", *parts, "-o", self.path("all.db"))
+        self.assert_same(whole, self.report("all", self.path("all.db"), "--no-times"))
+        for content in whole.values():
+            self.assertNotIn(b"whole.db", content)
+
+    def test_rows_are_the_stores(self):
+        store = self.store("study.db")
+        self.report("report", store)
+        with open(self.path("report/runs.csv"), newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+        runs = self.runs(store)
+        self.assertEqual(len(rows), RUNS)
+        for row in rows:
+            (key, seed, outcome, message), values = runs[
+                f"{row['pipeline']} {row['scenario']} #{row['repetition']}"]
+            self.assertEqual((row["key"], int(row["seed"]), row["outcome"], row["message"]),
+                             (key, seed, outcome, message))
+            for name, value in values:
+                self.assertAlmostEqual(float(row[name]), value, delta=1e-11 * abs(value))
+        self.assertGreater(len([name for name in rows[0] if name.endswith("time_s")]), 3)
+
+    def test_claims_are_those_of_the_study(self):
+        text = self.read("study.yaml").replace("1..3", "[9, 12, 10, 2, 30, 1]").replace(
+            "repetitions: 2", "repetitions: 1")
+        study = self.write("claims.yaml", text + "claims:\n  - {id: longer, that: "
+                           "median(greedy.length_m / octile.length_m), is: '> 1'}\n")
+        out, _ = self.call("study", study, "--out", self.path("claims.db"))
+        words = out.split("claim longer: ")[1].strip().split(" is ", 1)[1]  # after the expression
+        self.report("report", self.path("claims.db"))
+        self.assertIn(html.escape(words), self.page("report"))
+
+    def test_scenes_that_cannot_be_built_are_told(self):
+        store = self.store("study.db")
+        os.remove(self.path("city.yaml"))
+        out, err = self.call("report", store, "-o", self.path("report"))
+        self.assertIn(" 0 scenes", out)
+        self.assertIn("6 scenes could not be made", err)
+        self.assertIn("city.yaml", self.page("report"))
+        self.assertIn("Scenes that could not be made (6)", self.page("report"))
+
+    def test_a_plugin_that_is_missing_is_told(self):
+        store = self.store("study.db")
+        self.write("astar.yaml", self.read("astar.yaml").replace("prune", "no_such"))
+        out, err = self.call("report", store, "-o", self.path("report"))
+        self.assertIn(" 0 scenes", out)
+        self.assertIn("no_such", err + self.page("report"))
+
+    def test_an_earlier_report_stays_where_the_new_one_fails(self):
+        store = self.store("study.db")
+        before = self.report("report", store)
+        for name in self.spoilt():
+            self.assertIn(name, self.refused("report", self.path(name), "-o",
+                                             self.path("report")))
+        self.assert_same(before, self.files("report"))
+
+    def test_wrong_use(self):
+        store = self.store("study.db", "--sample", "0.2")
+        self.call("report", store, code=2)
+        self.call("report", "-o", self.path("report"), code=2)
+        self.assertIn("holds other files", self.refused("report", store, "-o", self.folder))
+        self.assertIn("is a file", self.refused("report", store, "-o", store))
+        other = self.write("other.yaml", self.read("study.yaml").replace("seed: 5", "seed: 6"))
+        self.call("study", other, "--out", self.path("other.db"), "--sample", "0.2")
+        self.assertIn("another study", self.refused("report", store, self.path("other.db"), "-o",
+                                                    self.path("report")))
+        self.assertFalse(os.path.exists(self.path("report")))
+
+
+if __name__ == "__main__":
+    StudyCase.program = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands.hpp"
+#include "host/study/compare/compare.hpp"
+#include "host/study/compare/origin.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::string first;
+  std::string second;
+  std::vector<std::string> metrics;
+  double tolerance_percent = 5;
+  bool gate = false;
+};
+
+constexpr std::size_t kShown = 20;
+
+std::string number(double value) {
+  if (!std::isfinite(value)) {
+    return "-";
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// With all digits: two numbers that differ must not look the same.
+std::string exact(double value) { return host::Json(value).dump(); }
+
+const char* name(host::MetricChange::Verdict verdict) {
+  using Verdict = host::MetricChange::Verdict;
+  switch (verdict) {
+    case Verdict::same:
+      return "same";
+    case Verdict::within:
+      return "within tolerance";
+    case Verdict::better:
+      return "better";
+    case Verdict::worse:
+      return "WORSE";
+    case Verdict::unclear:
+      return "unclear";
+    case Verdict::none:
+      return "no data";
+  }
+  return "";
+}
+
+void print_more(std::size_t all) {
+  if (all > kShown) {
+    std::printf("  … and %zu more\n", all - kShown);
+  }
+}
+
+void print_outcomes(const char* title, const std::vector<host::OutcomeChange>& changes) {
+  if (changes.empty()) {
+    return;
+  }
+  std::printf("%s: %zu\n", title, changes.size());
+  for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
+    const host::OutcomeChange& change = changes[n];
+    const bool is_said = change.after != "solved" && !change.message.empty();
+    std::printf("  %s: %s, then %s%s%s\n", change.run.c_str(), change.before.c_str(),
+                change.after.c_str(), is_said ? ": " : "", is_said ? change.message.c_str() : "");
+  }
+  print_more(changes.size());
+}
+
+void print_values(const std::vector<host::ValueChange>& changes) {
+  if (changes.empty()) {
+    return;
+  }
+  std::printf("values of the metrics below that no clock decides, and that differ: %zu\n",
+              changes.size());
+  for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
+    const host::ValueChange& change = changes[n];
+    std::printf("  %s: %s was %s and is %s\n", change.run.c_str(), change.metric.c_str(),
+                exact(change.before).c_str(), exact(change.after).c_str());
+  }
+  print_more(changes.size());
+}
+
+std::string change_text(const host::MetricChange& change) {
+  if (change.pairs == 0) {
+    return "-";
+  }
+  std::string text = (change.is_ratio            ? "x "
+                      : change.effect.median < 0 ? ""
+                                                 : "+") +
+                     number(change.effect.median);
+  if (change.effect.interval) {
+    text += " [" + number(change.effect.interval->low) + ", " +
+            number(change.effect.interval->high) + "]";
+  }
+  return text;
+}
+
+std::string verdict_text(const host::MetricChange& change) {
+  const bool is_said =
+      change.verdict == host::MetricChange::Verdict::unclear && !change.why_no_interval.empty();
+  return name(change.verdict) + (is_said ? ", " + change.why_no_interval : std::string());
+}
+
+void print_metrics(const std::vector<host::MetricChange>& changes) {
+  int pipeline = 8;
+  int metric = 6;
+  for (const host::MetricChange& change : changes) {
+    pipeline = std::max(pipeline, int(change.pipeline.size()));
+    metric = std::max(metric, int(change.metric.size()));
+  }
+  std::printf("%-*s  %-*s  %6s  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline, "pipeline", metric,
+              "metric", "pairs", "first", "second", "second against first [95 %]", "n", "p (Holm)",
+              "verdict");
+  for (const host::MetricChange& change : changes) {
+    std::printf("%-*s  %-*s  %6zu  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline,
+                change.pipeline.c_str(), metric, change.metric.c_str(), change.pairs,
+                number(change.before).c_str(), number(change.after).c_str(),
+                change_text(change).c_str(),
+                change.pairs > 0 ? change.effect.units.words().c_str() : "-",
+                number(change.p).c_str(), verdict_text(change).c_str());
+  }
+}
+
+/// Reads results out of a store.
+host::ResultOf results_of(const std::string& file) {
+  auto store = std::make_shared<host::Store>(file, host::StoreMode::read);
+  return [store](const host::RunRow& row) {
+    const auto run = store->run(row.id);
+    return run ? run->result : std::string();
+  };
+}
+
+void print_origins(const host::Comparison& comparison, const host::StudyData& first,
+                   const host::StudyData& second, const Arguments& arguments) {
+  if (comparison.other_origins.empty()) {
+    return;
+  }
+  std::vector<std::string> changed = host::changed_origins(
+      comparison, first, second, results_of(arguments.first), results_of(arguments.second));
+  if (changed.empty()) {
+    changed.emplace_back(
+        "no file, setting or plugin that the results name: another build of the program");
+  }
+  std::printf("not made from the same: %zu pairs\n", comparison.other_origins.size());
+  for (std::size_t n = 0; n < std::min(changed.size(), kShown); ++n) {
+    std::printf("  %s\n", changed[n].c_str());
+  }
+  print_more(changed.size());
+}
+
+/// The last line, and whether the gate lets it pass.
+bool print_verdict(const host::Comparison& comparison) {
+  const std::size_t missing = comparison.only_first + comparison.other_seeds;
+  std::string words = comparison.is_worse()
+                          ? "the second is worse: a success is lost, or a metric is beyond the "
+                            "tolerance"
+                          : "nothing is worse";
+  if (missing > 0) {
+    words += "; " + std::to_string(missing) + (missing == 1 ? " run" : " runs") +
+             " of the first cannot be compared: the second has none with that name and seed";
+  }
+  std::printf("%s\n", words.c_str());
+  return !comparison.is_worse() && comparison.is_whole();
+}
+
+int compare(const Arguments& arguments) {
+  const host::StudyData first = host::load_study_data({arguments.first});
+  const host::StudyData second = host::load_study_data({arguments.second});
+  const host::Comparison comparison =
+      host::compare_studies(first, second, {arguments.metrics, arguments.tolerance_percent / 100});
+  std::printf("%zu pairs of runs; %zu runs in the first alone, %zu in the second alone\n",
+              comparison.pairs, comparison.only_first, comparison.only_second);
+  if (comparison.other_seeds > 0) {
+    std::printf("%zu runs have other seeds and are left out\n", comparison.other_seeds);
+  }
+  print_origins(comparison, first, second, arguments);
+  print_outcomes("newly failing", comparison.lost);
+  print_outcomes("newly solved", comparison.won);
+  print_outcomes("unsolved for another reason", comparison.others);
+  print_values(comparison.differing);
+  print_metrics(comparison.metrics);
+  const bool passes = print_verdict(comparison);
+  return arguments.gate && !passes ? kNoRoute : kDone;
+}
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("compare", "what has changed between two runs of a study");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("first", arguments->first, "the database to compare with")
+      ->required()
+      ->type_name("DB");
+  command->add_option("second", arguments->second, "the database of what is new")
+      ->required()
+      ->type_name("DB");
+  command
+      ->add_option("--metric", arguments->metrics,
+                   "value of the runs to compare, may be given again; left out: the study's")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("--tolerance", arguments->tolerance_percent,
+                   "per cent by which a metric may be worse")
+      ->type_name("P")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  command->add_flag("--gate", arguments->gate,
+                    "exit with 1 where a success is lost, a metric is worse, or a run of the "
+                    "first cannot be compared");
+  set_example(*command, "altiplan compare before.db after.db --gate");
+  command->callback([&action, arguments] { action = [arguments] { return compare(*arguments); }; });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "host/study/store/merge.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> stores;
+  std::string out;
+};
+
+/// A store that is there already is replaced only where its runs are among those merged.
+void expect_no_loss(const Arguments& arguments) {
+  std::error_code error;
+  const bool merged =
+      std::any_of(arguments.stores.begin(), arguments.stores.end(), [&](const std::string& store) {
+        return std::filesystem::equivalent(store, arguments.out, error);
+      });
+  if (std::filesystem::exists(arguments.out, error) && !merged) {
+    throw Error("-o: '" + arguments.out +
+                "' is there already: name it among the stores to keep its runs, or give another "
+                "name");
+  }
+}
+
+int merge(const Arguments& arguments) {
+  expect_writable(arguments.out, "-o");
+  expect_no_loss(arguments);
+  const host::Merged merged = host::merge_stores(arguments.stores, arguments.out);
+  for (const std::string& sentence : merged.differing) {
+    warn(sentence);
+  }
+  std::printf("%s: %zu run%s of %zu store%s", arguments.out.c_str(), merged.runs,
+              merged.runs == 1 ? "" : "s", arguments.stores.size(),
+              arguments.stores.size() == 1 ? "" : "s");
+  if (merged.again > 0) {
+    std::printf("; %zu had the same result in more than one", merged.again);
+  }
+  std::printf("\n");
+  return kDone;
+}
+}  // namespace
+
+void add_merge(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("merge", "put the parts of a study into one database");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("stores", arguments->stores, "databases of altiplan study, all of one study")
+      ->required()
+      ->type_name("DB");
+  command->add_option("-o,--out", arguments->out, "the database of all their runs")
+      ->required()
+      ->type_name("DB");
+  set_example(*command, "altiplan merge part-1.db part-2.db -o all.db");
+  command->callback([&action, arguments] { action = [arguments] { return merge(*arguments); }; });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "host/output/result_json.hpp"
+#include "host/run/pipeline.hpp"
+#include "host/study/compare/find_run.hpp"
+#include "host/study/compare/replay.hpp"
+#include "host/study/plan/study_plan.hpp"
+#include "interrupt.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::string store;
+  std::string run;
+  bool stored = false;
+  std::optional<std::string> out;
+  std::optional<std::string> trace;
+  host::Overrides overrides;
+};
+
+/// Says how the run compares with the stored one, in the exit code too.
+int report(std::FILE* to, const host::StoredRun& stored, const host::Json& result,
+           const std::string& key) {
+  const host::Replayed replayed = host::compare_replay(stored, result, key);
+  for (const std::string& change : replayed.changed) {
+    warn(change);
+  }
+  const std::string name = host::run_name(stored);
+  if (!replayed.difference) {
+    std::fprintf(to, "%s: identical to the stored run: %s\n", name.c_str(), stored.outcome.c_str());
+    return kDone;
+  }
+  const host::Difference& difference = *replayed.difference;
+  std::fprintf(to, "%s: differs from the stored run at %s: it was %s and is %s\n", name.c_str(),
+               difference.path.c_str(), difference.first.c_str(), difference.second.c_str());
+  if (!replayed.changed.empty()) {
+    std::fprintf(to, "  which may be for what has changed\n");
+  } else if (result.at("budget_hit") == true) {
+    std::fprintf(to, "  which may be for a budget of seconds that ran out\n");
+  }
+  return kNoRoute;
+}
+
+int hand_out(std::FILE* to, const Arguments& arguments, const host::StoredRun& stored,
+             const host::Config& config, const std::string& key, const host::RunResult& result) {
+  const host::Json json = host::result_json(config, result);
+  const int code = report(to, stored, json, key);
+  if (arguments.out) {
+    host::write_file(*arguments.out, host::file_text(json));
+  }
+  return code;
+}
+
+/// What is said where a plugin ends the process.
+host::ProcessGuard::LastWords last_words(const Arguments& arguments, const host::Config& config,
+                                         const host::StoredRun& stored,
+                                         const host::RunResult& result) {
+  host::ProcessGuard::LastWords words;
+  const bool as_then = stored.outcome == "crashed";
+  words.for_user = "altiplan: " + result.message + "\n" + host::run_name(stored) + ": " +
+                   (as_then ? "crashed, as the stored run did: " + stored.message
+                            : "crashed, and the stored run did not: " + stored.outcome) +
+                   "\n";
+  if (arguments.out) {
+    words.result = host::file_text(host::result_json(config, result));
+    words.file = std::filesystem::absolute(*arguments.out);
+  }
+  words.exit_code = as_then ? kDone : kNoRoute;
+  return words;
+}
+
+int run_again(const Arguments& arguments, const host::Store& store, const host::StoredRun& stored) {
+  const Interrupt interrupt;
+  const host::Config config = host::config_of(store, stored, arguments.overrides.plugin_path);
+  const host::StudyBudget budget = host::budget_of(store);
+  const std::string key = host::key_of(config, budget, host::run_name(stored), stored.seed);
+  host::RunOptions options;
+  options.patience_s = budget.wall_s;
+  options.trace = arguments.trace;
+  options.stop = interrupt.token();
+  std::optional<host::ProcessGuard> process(std::in_place);
+  options.process = &*process;
+  options.on_call = [&](const host::RunResult& result) {
+    process->set_last_words(last_words(arguments, config, stored, result));
+  };
+  options.on_stuck = [&](const host::RunResult& result) {
+    // The plugin still runs, and may print: what it has for stdout is not given back.
+    int code = kInternal;
+    if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
+      code = hand_out(out, arguments, stored, config, key, result);
+      std::fclose(out);
+    }
+    _exit(code);
+  };
+  const host::RunResult result = host::run(config, options);
+  process.reset();
+  if (interrupt.happened()) {
+    return kInterrupted;  // half a run has nothing to compare
+  }
+  const int code = hand_out(stdout, arguments, stored, config, key, result);
+  if (!result.trace_error.empty()) {
+    throw Error(result.trace_error);
+  }
+  return code;
+}
+
+int write_stored(const Arguments& arguments, const host::StoredRun& stored) {
+  if (stored.result.empty()) {
+    throw Error("the run '" + host::run_name(stored) + "' left no result: " + stored.outcome +
+                (stored.message.empty() ? "" : " (" + stored.message + ")"));
+  }
+  if (arguments.out) {
+    host::write_file(*arguments.out, stored.result);
+  } else {
+    std::fputs(stored.result.c_str(), stdout);
+  }
+  if (arguments.trace) {
+    if (stored.trace.empty()) {
+      throw Error("the run '" + host::run_name(stored) + "' was stored without a trace");
+    }
+    host::write_file(*arguments.trace, stored.trace);
+  }
+  return kDone;
+}
+
+int replay(const Arguments& arguments) {
+  expect_writable(arguments.out, "--out");
+  expect_writable(arguments.trace, "--trace");
+  expect_apart(arguments.out, "--out", {arguments.store});
+  expect_apart(arguments.trace, "--trace", {arguments.store, arguments.out.value_or("")});
+  const host::Store store(arguments.store, host::StoreMode::read);
+  const host::StoredRun stored = host::find_run(store, arguments.run);
+  return arguments.stored ? write_stored(arguments, stored) : run_again(arguments, store, stored);
+}
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("replay", "run one run of a study again and compare it to the last bit");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("store", arguments->store, "a database of altiplan study")
+      ->required()
+      ->type_name("DB");
+  command
+      ->add_option("run", arguments->run,
+                   "the run: its id, its key or the beginning of it, or its name 'PIPELINE "
+                   "SCENARIO #REPETITION'")
+      ->required();
+  command->add_option("--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command->add_option("--trace", arguments->trace, "write what the searches did")
+      ->type_name("FILE");
+  command->add_flag("--stored", arguments->stored,
+                    "run nothing: write what is stored (view, check and export take it)");
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command, "altiplan replay study.db 'astar city #0'");
+  command->callback([&action, arguments] { action = [arguments] { return replay(*arguments); }; });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/study/report/report.hpp"
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "host/study/report/text.hpp"
+#include "host/study/store/arena.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> stores;
+  std::string folder;  ///< "" where no page is wanted
+  std::optional<std::string> arena;
+  std::string title;
+  bool no_times = false;
+  host::Overrides overrides;
+};
+
+/// As it was called; without the names of files where times are left out, so that the page depends
+/// on the runs alone.
+std::string command_of(const Arguments& arguments) {
+  std::string command = "altiplan report";
+  if (arguments.no_times) {
+    command += " DB -o DIR --no-times";
+  } else {
+    for (const std::string& store : arguments.stores) {
+      command += " " + host::report::shell(store);
+    }
+    command += " -o " + host::report::shell(arguments.folder);
+  }
+  if (!arguments.title.empty()) {
+    command += " --title " + host::report::shell(arguments.title);
+  }
+  return command;
+}
+
+int write_page(const Arguments& arguments) {
+  host::report::expect_report_folder(arguments.folder);
+  const host::report::Source source = host::report::load_source(arguments.stores);
+  host::report::Options options;
+  options.title = arguments.title;
+  options.command = command_of(arguments);
+  options.times = !arguments.no_times;
+  options.scenes.plugin_path = arguments.overrides.plugin_path;
+  const host::report::Written written =
+      host::report::write_report(source, options, arguments.folder);
+  constexpr std::size_t kMostChanges = 5;
+  for (std::size_t n = 0; n < written.changed.size() && n < kMostChanges; ++n) {
+    warn(host::report::printable(written.changed[n]));
+  }
+  if (written.changed.size() > kMostChanges) {
+    warn(std::to_string(written.changed.size() - kMostChanges) +
+         " more have changed, which the page tells");
+  }
+  if (!written.notes.empty()) {
+    warn(std::to_string(written.notes.size()) +
+         " scenes could not be made, which the page tells; the first: " +
+         host::report::printable(written.notes.front()));
+  }
+  std::printf("%s\n%s: %s MB, %zu figures, %zu scenes\n", written.summary.c_str(),
+              (std::filesystem::path(arguments.folder) / "index.html").c_str(),
+              fixed(double(written.page_bytes) / 1e6, 2).c_str(), written.figures, written.scenes);
+  return kDone;
+}
+
+int report(const Arguments& arguments) {
+  expect_writable(arguments.arena, "--arena");
+  expect_apart(arguments.arena, "--arena", arguments.stores);
+  if (arguments.arena) {
+    host::write_arena(host::load_study_data(arguments.stores), *arguments.arena);
+    std::printf("%s: for Planner Arena\n", arguments.arena->c_str());
+  }
+  return arguments.folder.empty() ? kDone : write_page(arguments);
+}
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("report", "what a study found: a page, figures and tables");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("stores", arguments->stores, "what altiplan study wrote; shards together")
+      ->required()
+      ->type_name("DB");
+  command
+      ->add_option("-o,--out", arguments->folder, "folder of the report, new or of an earlier one")
+      ->type_name("DIR");
+  command->add_option("--arena", arguments->arena, "a database that Planner Arena reads")
+      ->type_name("FILE");
+  command->add_option("--title", arguments->title, "in place of the study's name")
+      ->type_name("TEXT");
+  command->add_flag("--no-times", arguments->no_times,
+                    "leave out all that differs from run to run, so that equal results make equal "
+                    "files");
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command, "altiplan report study.db -o report");
+  command->callback([&action, arguments] {
+    if (arguments->folder.empty() && !arguments->arena) {
+      throw CLI::RequiredError("-o or --arena");
+    }
+    action = [arguments] { return report(*arguments); };
+  });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "commands.hpp"
+#include "host/study/slurm/command.hpp"
+#include "host/study/slurm/slurm.hpp"
+#include "host/study/store/merge.hpp"
+#include "host/study/store/store.hpp"
+
+namespace altiplan::cli {
+namespace fs = std::filesystem;
+namespace {
+
+struct Arguments {
+  std::string study;
+  std::string out;
+  double chunk_minutes = 20;
+  std::optional<std::string> partition;
+  bool dry_run = false;
+  bool submit = false;
+  int jobs = 1;
+  int reuse = 1;
+  bool traces = false;
+  std::optional<double> sample;
+  std::string filter;
+  host::Overrides overrides;
+  std::vector<std::string> sbatch;
+};
+
+/// Slurm's MaxArraySize is 1001 unless the cluster says otherwise.
+constexpr double kMostShards = 1000;
+/// As many pairs of scenario and repetition are run for an estimate, where there are as many.
+constexpr double kSamplePairs = 5;
+/// Of a task, beside what its runs may take.
+constexpr double kOwnMemoryMb = 1024;
+
+std::string decimal(double value) {
+  char text[64];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
+
+host::SlurmJob job_of(const Arguments& arguments, const host::StudyPlan& plan) {
+  host::SlurmJob job;
+  job.program = fs::canonical("/proc/self/exe");
+  job.study = plan.path;
+  job.out = fs::absolute(arguments.out).lexically_normal();
+  job.working_folder = fs::current_path();
+  job.jobs = arguments.jobs;
+  job.memory_mb = arguments.jobs * plan.file.budget.memory_mb + kOwnMemoryMb;
+  auto& more = job.study_arguments;
+  if (arguments.reuse > 1) {
+    more.insert(more.end(), {"--reuse", std::to_string(arguments.reuse)});
+  }
+  if (arguments.traces) {
+    more.push_back("--traces");
+  }
+  if (arguments.sample) {
+    more.insert(more.end(), {"--sample", decimal(*arguments.sample)});
+  }
+  if (!arguments.filter.empty()) {
+    more.insert(more.end(), {"--filter", arguments.filter});
+  }
+  for (const fs::path& folder : arguments.overrides.plugin_path) {
+    more.insert(more.end(), {"--plugin-path", fs::absolute(folder).string()});
+  }
+  if (arguments.partition) {
+    job.sbatch_arguments.push_back("--partition=" + *arguments.partition);
+  }
+  job.sbatch_arguments.insert(job.sbatch_arguments.end(), arguments.sbatch.begin(),
+                              arguments.sbatch.end());
+  return job;
+}
+
+/// What was said in a small file of an earlier call, a word per line.
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+/// Two tasks on one shard would only wait for each other.
+void expect_none_queued(const host::SlurmJob& job) {
+  const std::string queued = host::still_queued(lines_of(job.folder() / "jobs"));
+  if (!queued.empty()) {
+    throw Error("jobs of this study are in the queue already: " + queued +
+                "; wait for them, or end them with scancel");
+  }
+}
+
+/// The databases that an estimate can be made from. Throws Error where one is of another study.
+std::vector<fs::path> stores_of(const host::SlurmJob& job, const host::StudyPlan& plan) {
+  std::vector<fs::path> stores;
+  std::error_code error;
+  if (fs::exists(job.out, error)) {
+    stores.push_back(job.out);
+  }
+  for (const auto& entry : fs::directory_iterator(job.folder(), error)) {
+    if (entry.path().extension() == ".db") {
+      stores.push_back(entry.path());
+    }
+  }
+  std::sort(stores.begin(), stores.end());
+  for (const fs::path& file : stores) {
+    auto study = host::Store(file, host::StoreMode::read).study();
+    if (!study.empty() && study["text"] != plan.text) {
+      auto now = study;
+      now["text"] = plan.text;
+      throw Error("'" + file.string() + "' is of another study: " +
+                  host::studies_differ(study, now) + "; remove it, or give --out another name");
+    }
+  }
+  return stores;
+}
+
+/// Runs a few of the study's runs here.
+fs::path take_sample(const host::SlurmJob& job, const host::StudyPlan& plan) {
+  const double pairs = double(plan.scenarios.size()) * plan.file.repetitions;
+  const double share = std::min(1.0, kSamplePairs / pairs);
+  const fs::path file = job.folder() / "sample.db";
+  std::vector<std::string> command{job.program.string(), "study",  job.study.string(),      "--out",
+                                   file.string(),        "--jobs", std::to_string(job.jobs)};
+  command.insert(command.end(), job.study_arguments.begin(), job.study_arguments.end());
+  if (std::find(command.begin(), command.end(), "--sample") == command.end()) {
+    command.insert(command.end(), {"--sample", decimal(share)});
+  }
+  info("no runs to estimate from: " + host::shell_text(command));
+  const host::CommandResult result = host::run_command(command);
+  if (result.code != 0) {
+    throw Error("the sample that the time is estimated from ended with exit code " +
+                std::to_string(result.code) + ": " + result.err);
+  }
+  return file;
+}
+
+/// An earlier call's number of shards, so that its databases are gone on with, or else by the time
+/// that the runs will take.
+int shards_of(const Arguments& arguments, const host::SlurmJob& job, const host::StudyPlan& plan,
+              double seconds) {
+  const std::vector<std::string> before = lines_of(job.folder() / "shards");
+  if (!before.empty()) {
+    const int shards = std::atoi(before.front().c_str());
+    if (shards < 1) {
+      throw Error("'" + (job.folder() / "shards").string() + "': expected a number, found " +
+                  excerpt(before.front()));
+    }
+    return shards;
+  }
+  const double wanted = std::ceil(seconds / job.jobs / (arguments.chunk_minutes * 60));
+  const double most = std::min(kMostShards, double(plan.runs.size()));
+  return int(std::clamp(wanted, 1.0, std::max(1.0, most)));
+}
+
+void print_plan(const host::SlurmJob& job, const host::StudyPlan& plan, double seconds) {
+  std::printf(
+      "%zu runs, about %s minutes of computing: %d task%s of %d process%s, about %s minutes "
+      "each\n",
+      plan.runs.size(), fixed(seconds / 60, 1).c_str(), job.shards, job.shards == 1 ? "" : "s",
+      job.jobs, job.jobs == 1 ? "" : "es", fixed(seconds / 60 / job.shards / job.jobs, 1).c_str());
+  std::printf("%s\n%s\n", job.array_file().c_str(), job.merge_file().c_str());
+}
+
+void submit_jobs(const host::SlurmJob& job, const host::StudyPlan& plan, double seconds) {
+  const host::Submitted submitted = host::submit(job);
+  host::write_file(job.folder() / "jobs", submitted.array + "\n" + submitted.merge + "\n");
+  print_plan(job, plan, seconds);
+  std::printf("submitted: array %s, then merge %s; the results will be in %s\n",
+              submitted.array.c_str(), submitted.merge.c_str(), job.out.c_str());
+}
+
+int slurm(const Arguments& arguments) {
+  if (!arguments.dry_run && !host::has_command("sbatch")) {
+    throw Error(
+        "there is no sbatch on PATH: this machine cannot submit to Slurm (--dry-run writes "
+        "the scripts all the same)");
+  }
+  expect_writable(arguments.out, "--out");
+  const host::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
+  const host::StudyPlan plan =
+      host::load_study(arguments.study, selection, arguments.overrides.plugin_path);
+  if (plan.runs.empty()) {
+    throw Error("no run of the study is chosen: does --filter match any?");
+  }
+  host::SlurmJob job = job_of(arguments, plan);
+  fs::create_directories(job.folder());
+  if (!arguments.dry_run) {
+    expect_none_queued(job);
+  }
+  std::vector<fs::path> stores = stores_of(job, plan);
+  double seconds = host::estimated_seconds(plan, stores);
+  if (std::isnan(seconds)) {
+    stores.push_back(take_sample(job, plan));
+    seconds = host::estimated_seconds(plan, stores);
+  }
+  job.shards = shards_of(arguments, job, plan, seconds);
+  // Twice the estimate, and whatever the last run may take.
+  const double chunk = std::max(arguments.chunk_minutes, seconds / 60 / job.shards / job.jobs);
+  job.minutes = int(std::ceil(2 * chunk + plan.file.budget.wall_s / 60 + 2));
+  host::write_file(job.folder() / "shards", std::to_string(job.shards) + "\n");
+  host::write_file(job.array_file(), host::array_script(job));
+  host::write_file(job.merge_file(), host::merge_script(job));
+  if (arguments.dry_run) {
+    print_plan(job, plan, seconds);
+    std::printf("%s\n%s\n", host::shell_text(host::array_command(job)).c_str(),
+                host::shell_text(host::merge_command(job, "ARRAY")).c_str());
+    return kDone;
+  }
+  submit_jobs(job, plan, seconds);
+  return kDone;
+}
+
+void add_selection(CLI::App& command, Arguments& arguments) {
+  command.add_option("--jobs", arguments.jobs, "processes, and processors, of a task")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--reuse", arguments.reuse, "runs that a process does, as of altiplan study")
+      ->check(CLI::Range(1, 1000000));
+  command.add_flag("--traces", arguments.traces, "store what the searches do");
+  command.add_option("--sample", arguments.sample, "share of the runs, as of altiplan study")
+      ->type_name("P")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--filter", arguments.filter, "runs whose name matches, as of altiplan study")
+      ->type_name("E");
+  add_plugin_path(command, arguments.overrides);
+}
+}  // namespace
+
+void add_slurm(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("slurm", "run a study as a job array of a Slurm cluster");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("study", arguments->study, "study file")->required();
+  command->add_option("--out", arguments->out, "the database of all results")
+      ->required()
+      ->type_name("DB");
+  command->add_option("--chunk-minutes", arguments->chunk_minutes, "how long a task should take")
+      ->type_name("M")
+      ->check(CLI::Range(0.01, 100000.0))
+      ->capture_default_str();
+  command->add_option("--partition", arguments->partition, "where the tasks run")->type_name("P");
+  auto* dry = command->add_flag("--dry-run", arguments->dry_run,
+                                "write the scripts and print the calls of sbatch; submit nothing");
+  command->add_flag("--submit", arguments->submit, "submit the jobs (the default)")->excludes(dry);
+  add_selection(*command, *arguments);
+  command->add_option("sbatch", arguments->sbatch, "after --, more options of sbatch");
+  set_example(*command,
+              "altiplan slurm study.yaml --out study.db --chunk-minutes 20 -- "
+              "--account=uav");
+  command->callback([&action, arguments] {
+    if (!arguments->sbatch.empty() && !arguments->sbatch.front().starts_with("-")) {
+      throw CLI::ValidationError("sbatch", "expected options of sbatch after --, found '" +
+                                               arguments->sbatch.front() + "'");
+    }
+    action = [arguments] { return slurm(*arguments); };
+  });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "host/study/report/analysis.hpp"
+#include "host/study/run/study_run.hpp"
+#include "host/study/statistics/claims.hpp"
+#include "host/study/store/study_data.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+struct Arguments {
+  std::string study;
+  std::string store;
+  host::StudySelection selection;
+  host::StudyOptions options;
+
+  host::Overrides overrides;  ///< of which only the plugin path is asked for
+  bool dry_run = false;
+  bool gate = false;
+  bool resume = false;  ///< what happens anyway
+};
+
+/// "45 s", "12 min", "3.5 h"
+std::string duration(double seconds) {
+  if (seconds < 1) {
+    return fixed(seconds, 1) + " s";
+  }
+  return seconds < 100    ? fixed(seconds, 0) + " s"
+         : seconds < 6000 ? fixed(seconds / 60, 0) + " min"
+                          : fixed(seconds / 3600, 1) + " h";
+}
+
+/// One line that is written over, on a terminal alone.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::size_t pipelines) : is_shown_(isatty(2) == 1 && pipelines > 0) {}
+  ~ProgressLine() { clear(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const host::StudyProgress& progress) {
+    if (!is_shown_) {
+      return;
+    }
+    const std::size_t ended = progress.before + progress.done;
+    std::string line = std::to_string(ended) + " of " + std::to_string(progress.runs) + " runs";
+    if (progress.done > 0 && ended < progress.runs) {
+      line += ", " +
+              duration(progress.elapsed_s / double(progress.done) * double(progress.runs - ended)) +
+              " to go";
+    }
+    for (const auto& [outcome, number] : progress.outcomes) {
+      line += outcome == "solved" ? "" : ", " + std::to_string(number) + " " + outcome;
+    }
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    is_drawn_ = true;
+  }
+  void clear() {
+    if (is_drawn_) {
+      std::fputs("\r\033[K", stderr);
+      is_drawn_ = false;
+    }
+  }
+
+ private:
+  bool is_shown_;
+  bool is_drawn_ = false;
+};
+
+void print_outcomes(const host::StudyData& data) {
+  std::size_t width = 8;
+  for (const host::StoredVariant& pipeline : data.pipelines) {
+    width = std::max(width, pipeline.name.size());
+  }
+  const std::size_t time = data.column("plan_time_s");
+  std::printf("  %-*s %8s %8s %12s  %s\n", int(width), "pipeline", "runs", "solved", "plan_ms",
+              "not solved");
+  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+    std::size_t runs = 0;
+    std::size_t solved = 0;
+    std::map<std::string, std::size_t> others;
+    std::vector<double> times;
+    for (const host::RunRow& row : data.rows) {
+      if (row.pipeline == p) {
+        ++runs;
+        solved += row.solved();
+        others[row.outcome] += !row.solved();
+        if (row.solved() && time < data.columns.size() && !std::isnan(row.values[time])) {
+          times.push_back(1000 * row.values[time]);
+        }
+      }
+    }
+    std::string text;
+    for (const auto& [outcome, number] : others) {
+      text +=
+          number == 0 ? "" : (text.empty() ? "" : ", ") + std::to_string(number) + " " + outcome;
+    }
+    const std::optional<double> median =
+        times.empty() ? std::nullopt : std::optional(host::median(times));
+    std::printf("  %-*s %8zu %8zu %12s  %s\n", int(width), data.pipelines[p].name.c_str(), runs,
+                solved, fixed(median, 1).c_str(), text.c_str());
+  }
+}
+
+/// Whether every claim holds.
+bool print_claims(const host::StudyData& data) {
+  bool all_hold = true;
+  for (const host::ClaimEntry& claim : data.file.claims) {
+    const host::JudgedClaim judged = host::judge_claim(data, claim);
+    all_hold = all_hold && judged.verdict == host::Verdict::holds;
+    std::printf("  claim %s: %s\n", claim.id.c_str(), judged.words.c_str());
+  }
+  return all_hold;
+}
+
+int dry_run(const Arguments& arguments, const host::StudyPlan& plan) {
+  const host::StudyEstimate estimate = host::estimate_study(plan, arguments.options);
+  std::printf("%zu pipeline%s x %zu scenario%s x %d repetition%s = %zu runs\n",
+              plan.pipelines.size(), plan.pipelines.size() == 1 ? "" : "s", plan.scenarios.size(),
+              plan.scenarios.size() == 1 ? "" : "s", plan.file.repetitions,
+              plan.file.repetitions == 1 ? "" : "s", plan.planned);
+  std::printf("  selected %zu, stored %zu, to do %zu\n", plan.runs.size(), estimate.stored,
+              estimate.left);
+  if (estimate.left > 0) {
+    std::printf("  about %s with %d at a time (%s a run, from %s)\n",
+                duration(estimate.total_s).c_str(), arguments.options.jobs,
+                duration(estimate.run_s).c_str(),
+                estimate.is_probed ? "one run of each pipeline, done just now"
+                                   : (std::to_string(estimate.measured) + " stored runs").c_str());
+  }
+  return kDone;
+}
+
+int study(Arguments arguments) {
+  arguments.options.store = arguments.store;
+  expect_writable(arguments.store, "--out");
+  const host::StudyPlan plan =
+      host::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
+  if (plan.runs.empty()) {
+    throw Error("no run is left: --filter, --sample and --shard select none of the " +
+                std::to_string(plan.planned) + " runs");
+  }
+  if (arguments.dry_run) {
+    return dry_run(arguments, plan);
+  }
+  ProgressLine line(plan.pipelines.size());
+  arguments.options.progress = [&](const host::StudyProgress& progress) { line.show(progress); };
+  arguments.options.say = [&](const std::string& text) {
+    line.clear();
+    warn(text);
+  };
+  const host::StudyEnd end = host::run_study(plan, arguments.options);
+  line.clear();
+  const host::StudyProgress& progress = end.progress;
+  std::printf("%s: %zu runs stored, %zu of them now, in %s\n", arguments.store.c_str(),
+              progress.before + progress.done, progress.done, duration(progress.elapsed_s).c_str());
+  if (end.is_interrupted) {
+    std::printf("  interrupted with %zu runs to go: the same call goes on\n",
+                progress.runs - progress.before - progress.done);
+    return kInterrupted;
+  }
+  const host::StudyData data = host::load_study_data({arguments.store});
+  print_outcomes(data);
+  // In the report's order: resamples follow it, and both must say the same.
+  const bool all_hold = print_claims(host::report::in_order(data, true));
+  return arguments.gate && !all_hold ? kNoRoute : kDone;
+}
+
+/// "0.05" or "5%"
+std::string read_share(const std::string& text, std::optional<double>& share) {
+  try {
+    std::size_t end = 0;
+    double value = std::stod(text, &end);
+    if (text.substr(end) == "%") {
+      value /= 100;
+    } else if (end != text.size()) {
+      value = -1;
+    }
+    if (value > 0 && value <= 1) {
+      share = value;
+      return "";
+    }
+  } catch (const std::exception&) {
+    // said below
+  }
+  return "expected a share more than 0 and at most 1, or a percentage, found '" + text + "'";
+}
+
+/// "2/5"
+std::string read_shard(const std::string& text, host::StudySelection& selection) {
+  int shard = 0;
+  int shards = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, shard);
+  const auto second = first.ec == std::errc() && first.ptr != end && *first.ptr == '/'
+                          ? std::from_chars(first.ptr + 1, end, shards)
+                          : std::from_chars_result{first.ptr, std::errc::invalid_argument};
+  if (second.ec != std::errc() || second.ptr != end || shard < 1 || shard > shards ||
+      shards > 100000) {
+    return "expected I/N with 1 <= I <= N <= 100000, found '" + text + "'";
+  }
+  selection.shard = shard;
+  selection.shards = shards;
+  return "";
+}
+}  // namespace
+
+void add_study(CLI::App& app, Action& action, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand(
+      "study", "many runs, each in a process of its own; what has been run is not run again");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->options.command = command_line;
+  command->add_option("study", arguments->study, "study file")->required();
+  command->add_option("-o,--out", arguments->store, "the store of the results (SQLite)")
+      ->required()
+      ->type_name("DB");
+  command->add_option("--jobs", arguments->options.jobs, "runs at a time (default 1)")
+      ->check(CLI::Range(1, 1024));
+  command
+      ->add_option("--reuse", arguments->options.reuse,
+                   "runs that a process does before it ends; marked in the results (default 1)")
+      ->check(CLI::Range(1, 1000000));
+  command
+      ->add_option_function<std::string>(
+          "--shard",
+          [arguments](const std::string& text) {
+            if (const std::string why = read_shard(text, arguments->selection); !why.empty()) {
+              throw CLI::ValidationError("--shard", why);
+            }
+          },
+          "only the I-th of N parts, for N machines")
+      ->type_name("I/N");
+  command
+      ->add_option_function<std::string>(
+          "--sample",
+          [arguments](const std::string& text) {
+            if (const std::string why = read_share(text, arguments->selection.sample);
+                !why.empty()) {
+              throw CLI::ValidationError("--sample", why);
+            }
+          },
+          "only this share of the scenarios and repetitions, with every pipeline")
+      ->type_name("P");
+  command
+      ->add_option("--filter", arguments->selection.filter,
+                   "only runs whose 'PIPELINE SCENARIO #REPETITION' this regular expression finds")
+      ->type_name("E");
+  command->add_flag("--traces", arguments->options.traces, "store what the searches did");
+  auto* fresh = command->add_flag("--fresh", arguments->options.fresh, "throw away what is stored");
+  command->add_flag("--resume", arguments->resume, "do what is not stored yet: what happens anyway")
+      ->excludes(fresh);
+  command->add_flag("--dry-run", arguments->dry_run, "only say how many runs, and how long");
+  command->add_flag("--gate", arguments->gate, "exit with 1 unless every claim holds");
+  host::Overrides* plugins = &arguments->overrides;
+  add_plugin_path(*command, *plugins);
+  set_example(*command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");
+  command->callback([&action, arguments] {
+    arguments->options.plugin_path = arguments->overrides.plugin_path;
+    action = [arguments] { return study(*arguments); };
+  });
+}
+}  // namespace altiplan::cli

@@ -1,2 +1,0 @@
-import json,re
-# summarise x5 diffs ignoring the depth of clearance
