@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/study/store/merge.hpp"
 
+#include "host/study/pool/work_folder.hpp"
+#include "host/study/store/place.hpp"
 #include "stored_study.hpp"
 
 namespace altiplan::host {
@@ -112,6 +114,37 @@ TEST_F(Merge, leaves_what_was_there_when_a_part_cannot_be_read) {
   EXPECT_EQ(std::filesystem::file_size(path("all.db")), size);
   EXPECT_EQ(Store(path("all.db"), StoreMode::read).runs().size(), 1);
   EXPECT_FALSE(std::filesystem::exists(path("all.db.partial")));
+}
+
+TEST_F(Merge, does_not_mind_where_the_files_lie) {
+  const auto made_in = [&](const std::string& folder, double length_m) {
+    StoredRun made = run("astar", "city[seed=1]", 0);
+    made.result = R"({"pipeline": "/)" + folder + R"(/a.yaml", "scenario": "/)" + folder +
+                  R"(/s.yaml", "files": [{"path": "/)" + folder +
+                  R"(/a.yaml", "sha256": "12"}], "overrides": {"scenario": "/)" + folder +
+                  R"(/s.yaml"}, "metrics": {"length_m": )" + std::to_string(length_m) + "}}";
+    return store(folder + ".db", {made});
+  };
+  const std::string one = made_in("one", 100);
+  const Merged merged = merge_stores({one, made_in("other", 100)}, path("all.db"));
+  EXPECT_EQ(merged.again, 1);
+  EXPECT_TRUE(merged.differing.empty());
+  const Merged differing = merge_stores({one, made_in("third", 101)}, path("all.db"));
+  ASSERT_EQ(differing.differing.size(), 1);
+  EXPECT_NE(differing.differing[0].find("metrics.length_m"), std::string::npos);
+}
+
+TEST_F(Merge, is_refused_while_another_process_is_at_work_on_the_store) {
+  const std::string one = store("one.db", {run("astar", "city[seed=1]", 0)});
+  {
+    const WorkFolder of_a_study(work_folder_of(one));
+    EXPECT_NE(refusal([&] {
+                merge_stores({one}, one);
+              }).find("another process runs this study: " + std::to_string(::getpid())),
+              std::string::npos);
+  }
+  EXPECT_EQ(merge_stores({one}, one).runs, 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
 TEST_F(Merge, of_many_runs_keeps_every_one) {

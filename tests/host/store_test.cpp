@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "files.hpp"
+#include "host/output/deflate.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/sqlite.hpp"
 #include "host/study/store/study_data.hpp"
 
@@ -33,6 +35,17 @@ StoredRun made_run(const std::string& key, const std::string& pipeline, int repe
 
 class StoreTest : public testing::Files {
  protected:
+  /// What is said by what throws; "" where nothing is.
+  template <typename Call>
+  static std::string refusal(const Call& call) {
+    try {
+      call();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
   void fill(Store& store) const {
     store.set_study(
         {{"text", "{altiplan: 1, scenarios: [{file: s}], pipelines: [{id: a, file: p}]}"},
@@ -86,14 +99,7 @@ TEST_F(StoreTest, ABatchIsAllThereOrNot) {
 }
 
 TEST_F(StoreTest, RefusesWhatIsNoStore) {
-  const auto error_of = [&](StoreMode mode) -> std::string {
-    try {
-      Store(file_, mode);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto error_of = [&](StoreMode mode) { return refusal([&] { Store(file_, mode); }); };
   EXPECT_NE(error_of(StoreMode::read).find("cannot be opened"), std::string::npos);
   for (const StoreMode mode : {StoreMode::read, StoreMode::write}) {
     write("out.db", "altiplan: 1\nthis is no database at all, but long enough to be one\n");
@@ -103,6 +109,106 @@ TEST_F(StoreTest, RefusesWhatIsNoStore) {
   fs::remove(file_);
   Sqlite(file_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE).run("CREATE TABLE t(x)");
   EXPECT_HAS(error_of(StoreMode::write), "not of altiplan study");
+}
+
+TEST_F(StoreTest, TakesAnEmptyFileAloneForANewOne) {
+  write("out.db", "x");
+  for (const StoreMode mode : {StoreMode::read, StoreMode::write}) {
+    EXPECT_HAS(refusal([&] { Store(file_, mode); }), "no database");
+  }
+  EXPECT_EQ(fs::file_size(file_), 1U);
+  write("out.db", "");
+  EXPECT_HAS(refusal([&] { Store(file_, StoreMode::read); }), "is empty");
+  Store(file_, StoreMode::write);
+  EXPECT_TRUE(Store(file_, StoreMode::read).keys().empty());
+  EXPECT_HAS(refusal([&] { Store(folder_, StoreMode::read); }), "is a folder");
+}
+
+TEST_F(StoreTest, RemovesNothingButAStore) {
+  write("notes.txt", "years of work");
+  Sqlite(folder_ / "other.db", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE).run("CREATE TABLE t(x)");
+  fs::create_symlink("notes.txt", folder_ / "link.db");
+  EXPECT_HAS(refusal([&] { remove_store(folder_ / "notes.txt"); }), "no database");
+  EXPECT_HAS(refusal([&] { remove_store(folder_ / "link.db"); }), "no database");
+  EXPECT_HAS(refusal([&] { remove_store(folder_ / "other.db"); }), "not of altiplan study");
+  EXPECT_HAS(refusal([&] { remove_store(folder_); }), "is a folder");
+  EXPECT_HAS(refusal([&] { expect_replaceable(folder_ / "notes.txt"); }), "no database");
+  expect_replaceable(folder_ / "other.db");
+  EXPECT_TRUE(fs::exists(folder_ / "notes.txt") && fs::exists(folder_ / "other.db"));
+
+  Store(file_, StoreMode::write);
+  EXPECT_HAS(refusal([&] { expect_replaceable(file_); }), "a database of altiplan study");
+  fs::create_symlink("out.db", folder_ / "to_store.db");
+  remove_store(folder_ / "to_store.db");
+  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "to_store.db"));
+  remove_store(file_);  // absent is well
+}
+
+TEST_F(StoreTest, AJournalLeftBehindGoesAndAnotherFileOfThatNameStays) {
+  write("out.db-journal", "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7 and pages");
+  Store(file_, StoreMode::write);
+  EXPECT_FALSE(fs::exists(folder_ / "out.db-journal"));
+  remove_store(file_);
+  write("out.db-journal", "what I did today");
+  EXPECT_HAS(refusal([&] { Store(file_, StoreMode::write); }), "is in the way");
+  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_TRUE(fs::exists(folder_ / "out.db-journal"));
+}
+
+TEST_F(StoreTest, IsOnePlaceByEveryName) {
+  fs::create_symlink("out.db", folder_ / "link.db");  // before there is anything
+  fs::create_directory_symlink(".", folder_ / "here");
+  const fs::path place = fs::canonical(folder_) / "out.db";
+  EXPECT_EQ(place_of(folder_ / "link.db"), place);
+  EXPECT_EQ(place_of(folder_ / "here" / "link.db"), place);
+  EXPECT_EQ(work_folder_of(folder_ / "here/./out.db"), place.string() + ".work");
+}
+
+TEST_F(StoreTest, TellsDamage) {
+  const auto damaged = [&](const char* sql) {
+    fs::remove(file_);
+    {
+      Store store(file_, StoreMode::write);
+      fill(store);
+      store.add({made_run("k1", "a", 0)});
+    }
+    Sqlite(file_, SQLITE_OPEN_READWRITE).run(sql);
+    const std::string why = refusal([&] {
+      const Store store(file_, StoreMode::read);
+      store.runs();
+      store.run(std::string_view("k1"));
+    });
+    EXPECT_HAS(why, file_.string());
+    return why;
+  };
+  EXPECT_HAS(damaged("UPDATE run_values SET value = 'abc'"), "'value' is 'abc', expected a number");
+  EXPECT_HAS(damaged("UPDATE runs SET repetition = 'abc'"), "expected a whole number");
+  EXPECT_HAS(damaged("UPDATE runs SET repetition = 4294967296"), "from 0 to 2147483647");
+  EXPECT_HAS(damaged("UPDATE runs SET scenario = 99"), "the run k1 is of no scenario");
+  EXPECT_HAS(damaged("CREATE TRIGGER t AFTER INSERT ON runs BEGIN DELETE FROM runs; END"),
+             "it has a trigger 't'");
+  EXPECT_HAS(damaged("DELETE FROM quantities"), "a value of the run k1 has no name");
+  EXPECT_HAS(damaged("UPDATE results SET result = x'0011'"),
+             "the result of 'a hills[seed=1] #0' cannot be unpacked");
+}
+
+TEST_F(StoreTest, TellsWhatIsNestedTooDeep) {
+  Store store(file_, StoreMode::write);
+  fill(store);
+  StoredRun deep = made_run("deep", "a", 0);
+  deep.result = std::string(1000000, '[') + std::string(1000000, ']');
+  StoredRun text = made_run("text", "a", 1);
+  text.result = "[\"\\\"" + std::string(1000, '[') + "\"]";
+  store.add({deep, text});
+  EXPECT_HAS(refusal([&] { store.run(std::string_view("deep")); }), "nested deeper than 500");
+  EXPECT_EQ(store.run(std::string_view("text"))->result, text.result) << "brackets in a text";
+}
+
+TEST(Decompressed, stops_at_the_most_that_is_wanted) {
+  const std::string bytes = compressed(std::string(1000000, 'x'), 9);
+  EXPECT_EQ(decompressed(bytes, 1000000)->size(), 1000000U);
+  EXPECT_FALSE(decompressed(bytes, 999999));
 }
 
 TEST_F(StoreTest, DataOfSeveralShards) {

@@ -94,6 +94,20 @@ class StudyCase(unittest.TestCase):
         database.commit()
         database.close()
 
+    def killed_while_it_writes(self, store, copy):
+        """A copy of the store with its journal, as kill -9 leaves them in the middle of a write."""
+        database = sqlite3.connect(self.path(store), isolation_level=None)
+        database.execute("PRAGMA cache_size = 1")
+        database.execute("BEGIN")
+        database.execute("UPDATE runs SET message = 'half written'")
+        for number in range(500):
+            database.execute("INSERT INTO quantities(name) VALUES(?)", (str(number) + 500 * "y",))
+        for suffix in "", "-journal":
+            shutil.copy(self.path(store + suffix), self.path(copy + suffix))
+        database.execute("ROLLBACK")
+        database.close()
+        return self.path(copy)
+
     def runs(self, store):
         """All that no clock decides, by the runs' names."""
         runs = {}

@@ -43,14 +43,32 @@ class Merge(StudyCase):
         self.call("merge", all_of_them, part, "-o", all_of_them)
         self.assertEqual(len(self.runs(all_of_them)), RUNS)
 
-    def test_what_a_killed_call_left_is_in_nobodys_way(self):
-        part = self.store("part.db", "--shard", "1/2")
-        self.write("all.db.partial", "half a database")
-        self.write("all.db.partial-journal", "half a journal")
+    def test_nothing_of_the_users_is_removed(self):
+        part = self.store("all.db.partial", "--shard", "1/2")
+        self.write("all.db.partial-notes", "mine")
+        self.write("all.db-journal", "what I did today")
+        self.assertIn("is in the way", self.refused("merge", part, "-o", self.path("all.db")))
+        os.remove(self.path("all.db-journal"))
         self.call("merge", part, "-o", self.path("all.db"))
         self.assertEqual(self.runs(self.path("all.db")), self.runs(part))
-        self.assertEqual(sorted(name for name in os.listdir(self.folder) if "all.db" in name),
-                         ["all.db"])
+        self.assertEqual(sorted(name for name in os.listdir(self.folder) if "all" in name),
+                         ["all.db", "all.db.partial", "all.db.partial-notes"])
+
+    def test_the_journal_of_a_removed_store_is_not_written_into_the_new_one(self):
+        part = self.store("part.db")
+        self.killed_while_it_writes("part.db", "all.db")
+        os.remove(self.path("all.db"))
+        self.call("merge", part, "-o", self.path("all.db"))
+        self.assertEqual(self.runs(self.path("all.db")), self.runs(part))
+        self.assertEqual(self.rows(self.path("all.db"), "PRAGMA integrity_check"), [("ok",)])
+
+    def test_a_link_stays_a_link(self):
+        part = self.store("part.db", "--shard", "1/2")
+        os.symlink("real.db", self.path("all.db"))
+        for stores in [part], [part, self.path("all.db")]:
+            self.call("merge", *stores, "-o", self.path("all.db"))
+            self.assertEqual(os.readlink(self.path("all.db")), "real.db")
+            self.assertEqual(self.runs(self.path("real.db")), self.runs(part))
 
     def test_other_studies_are_refused(self):
         first = self.store("first.db", "--sample", "0.2")

@@ -33,6 +33,9 @@ void add_report(CLI::App& app, Action& action);
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);
 void add_overrides(CLI::App& command, host::Overrides& overrides);
 
+/// A number in the range; CLI::Range lets NaN pass.
+CLI::Validator number_from(double low, double high);
+
 /// "usage: …\nexample: …" for --help.
 void set_example(CLI::App& command, const std::string& example);
 

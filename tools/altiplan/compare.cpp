@@ -208,7 +208,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->add_option("--tolerance", arguments->tolerance_percent,
                    "per cent by which a metric may be worse")
       ->type_name("P")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_from(0, 1000))
       ->capture_default_str();
   command->add_flag("--gate", arguments->gate,
                     "exit with 1 where a success is lost, a metric is worse, or a run of the "

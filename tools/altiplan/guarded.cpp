@@ -2,6 +2,7 @@
 #include "guarded.hpp"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #include "altiplan/error.hpp"
@@ -22,6 +23,10 @@ int code_of(const char* program, const std::function<int()>& action) {
     return kBadPlugin;
   } catch (const Error& error) {
     std::cerr << program << ": " << error.what() << '\n';
+    return kBadFile;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << program << ": " << error.path1().string() << ": " << error.code().message()
+              << '\n';
     return kBadFile;
   } catch (const std::exception& error) {
     std::cerr << program << ": internal error: " << error.what() << '\n';

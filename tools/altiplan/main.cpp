@@ -35,6 +35,7 @@ void add_plugin_path(CLI::App& command, host::Overrides& overrides) {
       .add_option("--plugin-path", overrides.plugin_path,
                   "folder of plugin libraries, searched first; may be given again")
       ->expected(1)
+      ->allow_extra_args(false)  // or a -- that follows is taken for the end of the list
       ->type_name("DIR")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
@@ -66,6 +67,20 @@ void add_overrides(CLI::App& command, host::Overrides& overrides) {
                    ? "expected KEY=VALUE, found '" + text + "'"
                    : std::string();
       });
+}
+
+CLI::Validator number_from(double low, double high) {
+  const std::string range = "from " + host::Json(low).dump() + " to " + host::Json(high).dump();
+  return {[low, high, range](std::string& text) {
+            double value = 0;
+            const auto [stop, error] =
+                std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool whole = error == std::errc() && stop == text.data() + text.size();
+            return whole && value >= low && value <= high
+                       ? std::string()
+                       : "expected a number " + range + ", found '" + text + "'";
+          },
+          range};
 }
 
 std::string fixed(const std::optional<double>& value, int digits) {
@@ -150,5 +165,6 @@ int main_checked(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of the stream, not of ours
+  std::signal(SIGXFSZ, SIG_IGN);  // neither is a file that may not grow (ulimit -f) the end of all
   return altiplan::cli::main_checked(argc, argv);
 }

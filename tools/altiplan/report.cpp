@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "host/study/report/text.hpp"
 #include "host/study/store/arena.hpp"
+#include "host/study/store/place.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -70,6 +71,7 @@ int report(const Arguments& arguments) {
   expect_writable(arguments.arena, "--arena");
   expect_apart(arguments.arena, "--arena", arguments.stores);
   if (arguments.arena) {
+    host::expect_replaceable(*arguments.arena);
     host::write_arena(host::load_study_data(arguments.stores), *arguments.arena);
     std::printf("%s: for Planner Arena\n", arguments.arena->c_str());
   }

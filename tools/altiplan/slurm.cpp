@@ -224,7 +224,7 @@ void add_selection(CLI::App& command, Arguments& arguments) {
   command.add_flag("--traces", arguments.traces, "store what the searches do");
   command.add_option("--sample", arguments.sample, "share of the runs, as of altiplan study")
       ->type_name("P")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_from(0, 1));
   command.add_option("--filter", arguments.filter, "runs whose name matches, as of altiplan study")
       ->type_name("E");
   add_plugin_path(command, arguments.overrides);
@@ -240,7 +240,7 @@ void add_slurm(CLI::App& app, Action& action) {
       ->type_name("DB");
   command->add_option("--chunk-minutes", arguments->chunk_minutes, "how long a task should take")
       ->type_name("M")
-      ->check(CLI::Range(0.01, 100000.0))
+      ->check(number_from(0.01, 100000))
       ->capture_default_str();
   command->add_option("--partition", arguments->partition, "where the tasks run")->type_name("P");
   auto* dry = command->add_flag("--dry-run", arguments->dry_run,

@@ -18,7 +18,7 @@ std::string compressed(std::string_view bytes, int level) {
   return out;
 }
 
-std::string decompressed(std::string_view bytes) {
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t most) {
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) {
     throw Error("memory is too short to decompress");
@@ -28,13 +28,16 @@ std::string decompressed(std::string_view bytes) {
   std::string out;
   std::string part(1 << 16, '\0');
   int code = Z_OK;
-  while (code == Z_OK) {
+  while (code == Z_OK && out.size() <= most) {
     stream.next_out = reinterpret_cast<Bytef*>(part.data());
     stream.avail_out = uInt(part.size());
     code = inflate(&stream, Z_NO_FLUSH);
     out.append(part, 0, part.size() - stream.avail_out);
   }
   inflateEnd(&stream);
+  if (out.size() > most) {
+    return std::nullopt;
+  }
   if (code != Z_STREAM_END) {
     throw Error("what was compressed is damaged");
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,6 +10,6 @@ namespace altiplan::host {
 
 /// In zlib's format (RFC 1950); level 1 is the fastest, 9 the smallest.
 std::string compressed(std::string_view bytes, int level);
-/// Throws Error where it is damaged.
-std::string decompressed(std::string_view bytes);
+/// Nothing where it would be more than `most` bytes. Throws Error where it is damaged.
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t most);
 }  // namespace altiplan::host

@@ -5,9 +5,10 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "host/config/yaml.hpp"
+#include "host/config/config.hpp"
 #include "host/study/compare/find_run.hpp"
 #include "host/study/compare/origin.hpp"
+#include "host/study/store/study_data.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -56,15 +57,7 @@ Config config_of(const Store& store, const StoredRun& run,
   return load_config(pipeline.file, overrides);
 }
 
-StudyBudget budget_of(const Store& store) {
-  std::map<std::string, std::string> study = store.study();
-  StudyFile file;
-  const Value tree = parse_yaml(study["text"], study["path"]);
-  if (const ParamReport report = bind(file, &tree); !report.problems.empty()) {
-    throw Error("the study in '" + store.file().string() + "': " + report.problems.front().text());
-  }
-  return file.budget;
-}
+StudyBudget budget_of(const Store& store) { return study_file(store).budget; }
 
 Replayed compare_replay(const StoredRun& stored, const Json& result, const std::string& key) {
   if (stored.result.empty()) {

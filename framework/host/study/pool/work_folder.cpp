@@ -130,7 +130,8 @@ WorkFolder::WorkFolder(const fs::path& folder)
   do {
     std::error_code error;
     fs::create_directories(path_, error);
-    if (error && !fs::is_directory(path_)) {
+    std::error_code ignored;
+    if (error && !fs::is_directory(path_, ignored)) {
       refuse(path_, "cannot make the study's work folder", error.value());
     }
     lock_ = try_lock(path_);

@@ -55,7 +55,7 @@ void stand_alone(const WorkerTask& task) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, rlim_t(task.limits.file_mb * double(1 << 20)));
   write_system_file("/proc/self/oom_score_adj", "1000");  // the kernel shall not choose the parent
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE, SIGXFSZ}) {
     ::signal(signal, SIG_DFL);
   }
   sigset_t none;

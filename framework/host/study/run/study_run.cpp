@@ -10,6 +10,7 @@
 #include "host/study/run/machine.hpp"
 #include "host/study/run/run_values.hpp"
 #include "host/study/run/study_worker.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/store.hpp"
 
 namespace altiplan::host {
@@ -21,8 +22,6 @@ using Clock = std::chrono::steady_clock;
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-fs::path work_folder(const fs::path& store) { return store.string() + ".work"; }
 
 std::string count(std::size_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
@@ -240,11 +239,10 @@ bool is_unexplained(const std::string& outcome) {
 StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   const Clock::time_point start = Clock::now();
   const Study study(plan, options);
-  WorkFolder folder(work_folder(options.store));  // locked before the store is touched
+  WorkFolder folder(work_folder_of(options.store));  // locked before the store is touched
   if (options.fresh) {
+    remove_store(options.store);
     folder.clear();
-    fs::remove(options.store);
-    fs::remove(options.store.string() + "-journal");
   }
   Store store(options.store, StoreMode::write);
   study.prepare(store);
@@ -295,7 +293,8 @@ StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options)
   StudyEstimate estimate;
   std::vector<std::string> keys;
   double seconds = 0;
-  if (!options.fresh && fs::exists(options.store)) {
+  std::error_code absent;
+  if (!options.fresh && fs::exists(options.store, absent)) {
     const Store store(options.store, StoreMode::read);
     study.expect_same_study(store);
     for (const StoredRun& run : store.outlines()) {

@@ -7,6 +7,7 @@
 #include "altiplan/error.hpp"
 #include "host/output/result_json.hpp"
 #include "host/study/store/arena_columns.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/sqlite.hpp"
 
 namespace altiplan::host {
@@ -213,18 +214,9 @@ class ArenaWriter {
 }  // namespace
 
 void write_arena(const StudyData& data, const std::filesystem::path& file) {
-  const fs::path beside = file.string() + ".partial";
-  std::error_code error;
-  fs::remove(beside, error);
-  try {
-    ArenaWriter(data, beside).write();
-  } catch (const Error&) {
-    fs::remove(beside, error);
-    throw;
-  }
-  fs::rename(beside, file, error);
-  if (error) {
-    throw Error("cannot write '" + file.string() + "': " + error.message());
-  }
+  expect_replaceable(file);
+  NewDatabase unfinished(file);
+  ArenaWriter(data, unfinished.file()).write();
+  unfinished.put_in_place();
 }
 }  // namespace altiplan::host

@@ -8,6 +8,8 @@
 #include "altiplan/error.hpp"
 #include "host/study/compare/difference.hpp"
 #include "host/study/compare/find_run.hpp"
+#include "host/study/pool/work_folder.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/store.hpp"
 
 namespace altiplan::host {
@@ -44,24 +46,36 @@ bool is_same(const StoredSession& a, const StoredSession& b) {
          a.host == b.host && a.jobs == b.jobs && a.reuse == b.reuse && a.limits == b.limits;
 }
 
-/// Removes the unfinished store, and SQLite's journal beside it.
-class Unfinished {
- public:
-  explicit Unfinished(fs::path file) : file_(std::move(file)) { remove(); }
-  ~Unfinished() { remove(); }
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-  const fs::path& file() const { return file_; }
-
- private:
-  void remove() const {
-    for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
-      std::error_code ignored;
-      fs::remove(file_.string() + suffix, ignored);
+/// A result without the places of its files, which are others where the study lies elsewhere.
+Json without_places(const std::string& result) {
+  Json json = result.empty() ? Json() : Json::parse(result, nullptr, false);
+  if (json.is_object()) {
+    json.erase("pipeline");
+    json.erase("scenario");
+    if (json.contains("overrides") && json["overrides"].is_object()) {
+      json["overrides"].erase("scenario");
+    }
+    if (json.contains("files") && json["files"].is_array()) {
+      for (Json& file : json["files"]) {
+        if (file.is_object()) {
+          file.erase("path");
+        }
+      }
     }
   }
-  fs::path file_;
-};
+  return json;
+}
+
+std::optional<Difference> results_differ(const std::string& first, const std::string& second) {
+  if (first == second) {
+    return std::nullopt;
+  }
+  const Json one = without_places(first);
+  const Json other = without_places(second);
+  // What is no JSON is compared as it is.
+  return one.is_discarded() || other.is_discarded() ? first_difference(first, second)
+                                                    : first_difference(one, other);
+}
 
 class Merger {
  public:
@@ -146,7 +160,7 @@ class Merger {
     if (kept.outcome != run.outcome) {
       difference = Difference{"outcome", kept.outcome, run.outcome};
     } else {
-      difference = first_difference(kept.result, run.result);
+      difference = results_differ(kept.result, run.result);
     }
     if (!difference) {
       ++merged_.again;
@@ -217,7 +231,8 @@ std::string studies_differ(const std::map<std::string, std::string>& first,
 }
 
 Merged merge_stores(const std::vector<std::string>& stores, const std::filesystem::path& out) {
-  const Unfinished unfinished(out.string() + ".partial");
+  const WorkFolder locked(work_folder_of(out));  // no study writes what is replaced
+  NewDatabase unfinished(out);
   Merged merged;
   {
     Merger merger(unfinished.file());
@@ -226,11 +241,7 @@ Merged merge_stores(const std::vector<std::string>& stores, const std::filesyste
     }
     merged = merger.finish();
   }
-  std::error_code error;
-  fs::rename(unfinished.file(), out, error);
-  if (error) {
-    throw Error("cannot write '" + out.string() + "': " + error.message());
-  }
+  unfinished.put_in_place();
   return merged;
 }
 }  // namespace altiplan::host

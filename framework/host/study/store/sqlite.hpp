@@ -31,14 +31,18 @@ class Statement {
 
   std::string text(int column) const;
   std::string_view blob(int column) const;  ///< until the next step
-  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
-  double number(int column) const { return sqlite3_column_double(statement_.get(), column); }
+  // SQLite takes a value of any type in any column, and reads a text as 0: these throw Error.
+  std::int64_t integer(int column) const;
+  int count(int column) const;      ///< 0 to 2147483647
+  double number(int column) const;  ///< 0 for NULL
+  bool is_null(int column) const;
 
  private:
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
   };
   void expect(int code) const;
+  [[noreturn]] void fail_type(int column, const char* expected) const;
 
   sqlite3* database_;
   std::filesystem::path file_;
@@ -48,7 +52,7 @@ class Statement {
 /// A database file. Throws Error naming the file.
 class Sqlite {
  public:
-  /// `flags` as for sqlite3_open_v2.
+  /// `flags` as for sqlite3_open_v2. The name is a file's, also where it looks like `:memory:`.
   Sqlite(const std::filesystem::path& file, int flags);
 
   Statement prepare(const char* sql) const { return {database_.get(), file_, sql}; }

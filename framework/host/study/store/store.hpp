@@ -60,6 +60,8 @@ struct StoredSession {
 
 enum class StoreMode { read, write };
 
+class StoreDatabase;
+
 /// The results of a study in one SQLite file. One writer, in batches; a batch is all there or not.
 /// Every function throws Error naming the file: not a store, of a later version, damaged, disk
 /// full.
@@ -99,7 +101,6 @@ class Store {
   const std::filesystem::path& file() const;
 
  private:
-  struct Database;
-  std::unique_ptr<Database> database_;
+  std::unique_ptr<StoreDatabase> database_;
 };
 }  // namespace altiplan::host

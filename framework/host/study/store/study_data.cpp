@@ -16,16 +16,6 @@
 namespace altiplan::host {
 namespace {
 
-/// The study's file as it was when the store was made.
-StudyFile study_file(const std::string& store, std::map<std::string, std::string>& study) {
-  StudyFile file;
-  const Value tree = parse_yaml(study["text"], study["path"]);
-  if (const ParamReport report = bind(file, &tree); !report.problems.empty()) {
-    throw Error("the study in '" + store + "': " + report.problems.front().text());
-  }
-  return file;
-}
-
 /// Index of each name in `all`, which grows by those that it lacks.
 std::map<std::string, std::size_t> gather(std::vector<StoredVariant>& all,
                                           const std::vector<StoredVariant>& more) {
@@ -78,6 +68,27 @@ std::size_t StudyData::column(std::string_view name) const {
                                                   : columns.size();
 }
 
+StudyFile study_file(const Store& store) {
+  std::map<std::string, std::string> study = store.study();
+  const std::string name = "'" + store.file().string() + "'";
+  if (study.empty()) {
+    throw Error(name + " holds no study yet");
+  }
+  if (study["text"].empty()) {
+    throw Error(name + " is damaged: the text of its study is missing");
+  }
+  StudyFile file;
+  try {
+    const Value tree = parse_yaml(study["text"], study["path"]);
+    if (const ParamReport report = bind(file, &tree); !report.problems.empty()) {
+      throw ConfigError(report.problems);
+    }
+  } catch (const ConfigError& error) {
+    throw Error("the study in " + name + ": " + error.problems().front().text());
+  }
+  return file;
+}
+
 StudyData load_study_data(const std::vector<std::string>& stores) {
   StudyData data;
   data.stores = stores;
@@ -89,7 +100,7 @@ StudyData load_study_data(const std::vector<std::string>& stores) {
     std::map<std::string, std::string> study = store.study();
     if (runs.empty()) {
       text = study["text"];
-      data.file = study_file(name, study);
+      data.file = study_file(store);
       const std::string& planned = study["planned"];
       std::from_chars(planned.data(), planned.data() + planned.size(), data.planned);
     } else if (study["text"] != text) {

@@ -43,6 +43,9 @@ struct StudyData {
   std::size_t column(std::string_view name) const;
 };
 
+/// The study's file as it was when the store was made. Throws Error naming the store.
+StudyFile study_file(const Store& store);
+
 /// Throws Error where the stores are not of one study.
 StudyData load_study_data(const std::vector<std::string>& stores);
 
