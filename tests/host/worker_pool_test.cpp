@@ -21,19 +21,12 @@
 #include "altiplan/error.hpp"
 #include "host/study/pool/job_record.hpp"
 #include "host/study/pool/process_tree.hpp"
+#include "support/instrumented.hpp"
 
 namespace altiplan::host {
 namespace {
 
 namespace fs = std::filesystem;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kInstrumented = true;
-#elif defined(__has_feature)
-constexpr bool kInstrumented = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool kInstrumented = false;
-#endif
 
 void sleep_s(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -290,7 +283,7 @@ TEST_P(Faults, MemoryOfChildrenCounts) {
 }
 
 TEST_P(Faults, MemoryThatIsSharedCountsOnce) {
-  if (kInstrumented) {
+  if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
   options_.limits.memory_mb = 150;
@@ -310,7 +303,7 @@ TEST_P(Faults, MemoryThatIsSharedCountsOnce) {
 }
 
 TEST_P(Faults, ParentsMemoryDoesNotCount) {
-  if (kInstrumented) {
+  if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
   const std::vector<char> much(300 << 20, 'x');
@@ -328,7 +321,7 @@ TEST_P(Faults, ParentsMemoryDoesNotCount) {
 }
 
 TEST_P(Faults, PeakOfAShortJob) {
-  if (kInstrumented) {
+  if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
   const auto all = run(10, [](const Job& job) {
@@ -737,7 +730,7 @@ TEST_F(WorkerPoolTest, AWardenThatWasKilledIsReplaced) {
 }
 
 TEST_F(WorkerPoolTest, MemoryStaysFlat) {
-  if (kInstrumented) {
+  if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
   options_.reuse = 8;

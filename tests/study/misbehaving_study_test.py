@@ -2,7 +2,8 @@
 """misbehaving_study_test.py PROGRAM DOC PLUGINS: one study of all rows of the
 document's table, each a pipeline, and of pipelines that behave, with a process each and with
 processes that are used again. Every row has its outcome; what behaves has the results of a study
-without the rows.
+without the rows. Rows that damage the files of other runs have studies of their own: one could
+remove what another has forged.
 
 A row is a fault, a step, an outcome and words that the message must hold."""
 import os
@@ -71,7 +72,7 @@ def check(rows, reuse, folder):
 
 def comparable(run):
     files = ("pipeline", "scenario", "files", "overrides")
-    result = {key: value for key, value in run[8].items() if key not in files}
+    result = {key: value for key, value in (run[8] or {}).items() if key not in files}
     return run[:4] + run[5:8] + (result,)  # without the key
 
 
@@ -80,12 +81,16 @@ def main():
     if len(rows) < 40:
         sys.exit("only %d rows in %s" % (len(rows), DOC))
     wrong = []
+    among_themselves = [row for row in rows if "WORK" not in row[1]]
+    alone = [[row] for row in rows if "WORK" in row[1]]
     for reuse in (1, 8):
-        with tempfile.TemporaryDirectory(prefix="altiplan_study_") as folder:
-            began = time.time()
-            wrong += check(rows, reuse, folder)
-            print("--reuse %d: %d kinds of fault, %.1f s" % (reuse, len(rows), time.time() - began))
+        began = time.time()
+        for part in [among_themselves] + alone:
+            with tempfile.TemporaryDirectory(prefix="altiplan_study_") as folder:
+                wrong += check(part, reuse, folder)
+        print("--reuse %d: %d kinds of fault, %.1f s" % (reuse, len(rows), time.time() - began))
     sys.exit("\n".join(wrong) or 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

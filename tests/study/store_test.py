@@ -103,7 +103,8 @@ class Stores(StudyCase):
 
         for arguments in ["study", self.study, "--out", "new.db"], ["merge", store, "-o", "all.db"]:
             self.assertIn("File too large", limited(resource.RLIMIT_FSIZE, 10240, *arguments))
-            self.assertIn("Too many open files", limited(resource.RLIMIT_NOFILE, 5, *arguments))
+            if not os.environ.get("ALTIPLAN_SANITIZED"):  # it opens files of its own
+                self.assertIn("Too many open files", limited(resource.RLIMIT_NOFILE, 5, *arguments))
         self.assertFalse(os.path.exists(self.path("all.db")))
         self.assertFalse([name for name in os.listdir(self.folder) if name.startswith(".altiplan")])
         self.assertIn("File name too long",
