@@ -119,7 +119,7 @@ TEST_F(StoreTest, TakesAnEmptyFileAloneForANewOne) {
   EXPECT_EQ(fs::file_size(file_), 1U);
   write("out.db", "");
   EXPECT_HAS(refusal([&] { Store(file_, StoreMode::read); }), "is empty");
-  Store(file_, StoreMode::write);
+  const Store opened(file_, StoreMode::write);
   EXPECT_TRUE(Store(file_, StoreMode::read).keys().empty());
   EXPECT_HAS(refusal([&] { Store(folder_, StoreMode::read); }), "is a folder");
 }
@@ -136,7 +136,7 @@ TEST_F(StoreTest, RemovesNothingButAStore) {
   expect_replaceable(folder_ / "other.db");
   EXPECT_TRUE(fs::exists(folder_ / "notes.txt") && fs::exists(folder_ / "other.db"));
 
-  Store(file_, StoreMode::write);
+  const Store opened(file_, StoreMode::write);
   EXPECT_HAS(refusal([&] { expect_replaceable(file_); }), "a database of altiplan study");
   fs::create_symlink("out.db", folder_ / "to_store.db");
   remove_store(folder_ / "to_store.db");
@@ -147,7 +147,7 @@ TEST_F(StoreTest, RemovesNothingButAStore) {
 
 TEST_F(StoreTest, AJournalLeftBehindGoesAndAnotherFileOfThatNameStays) {
   write("out.db-journal", "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7 and pages");
-  Store(file_, StoreMode::write);
+  const Store opened(file_, StoreMode::write);
   EXPECT_FALSE(fs::exists(folder_ / "out.db-journal"));
   remove_store(file_);
   write("out.db-journal", "what I did today");

@@ -381,6 +381,6 @@ Json any_file_schema(const Choices& choices) {
   const Json other = {
       {"if", is_scenario}, {"then", scenario_body(writer)}, {"else", pipeline_body(writer)}};
   Json body = {{"if", is_study}, {"then", study_body(writer)}, {"else", other}};
-  return file_schema("altiplan file: pipeline, scenario or study", std::move(body), writer);
+  return file_schema("altiplan file: pipeline, scenario or study", body, writer);
 }
 }  // namespace altiplan::host
