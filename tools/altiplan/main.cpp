@@ -6,6 +6,7 @@
 #include <map>
 
 #include "commands.hpp"
+#include "host/study/report/text.hpp"
 
 namespace altiplan::cli {
 
@@ -98,14 +99,7 @@ namespace {
 std::string command_line(int argc, char** argv) {
   std::string line = "altiplan";
   for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool is_plain =
-        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#!~") == word.npos;
-    line += is_plain ? " " : " '";
-    for (const char letter : word) {
-      line += letter == '\'' ? "'\\''" : std::string(1, letter);
-    }
-    line += is_plain ? "" : "'";
+    line += " " + host::report::shell(argv[i]);
   }
   return line;
 }

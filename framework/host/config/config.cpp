@@ -42,6 +42,11 @@ void expect_kind(const Value& tree, FileKind expected) {
     throw ConfigError(tree.where, "",
                       "expected keys with values ('altiplan: 1', …), found " + tree.what());
   }
+  if (kind_of(tree) == FileKind::study) {
+    throw ConfigError(tree.where, "",
+                      std::string("this is a study (altiplan study runs it), expected a ") +
+                          (expected == FileKind::scenario ? "scenario" : "pipeline"));
+  }
   const bool has_steps = tree.find("steps") != nullptr;
   if (expected == FileKind::scenario && has_steps && kind_of(tree) == FileKind::pipeline) {
     throw ConfigError(place_of(tree, "steps"), "steps", "this is a pipeline, expected a scenario");

@@ -39,8 +39,8 @@ std::map<Cell, const RunRow*> cells_of(const StudyData& data) {
 }
 
 std::string name_of(const StudyData& data, const Pair& pair) {
-  return data.pipelines[pair.pipeline].name + " " + data.scenarios[pair.scenario].name + " #" +
-         std::to_string(pair.first->repetition);
+  return run_name(data.pipelines[pair.pipeline].name, data.scenarios[pair.scenario].name,
+                  pair.first->repetition);
 }
 
 double value_of(const StudyData& data, const RunRow& row, const std::string& metric) {

@@ -44,10 +44,6 @@ std::optional<std::int64_t> id_of(const std::string& text) {
 }
 }  // namespace
 
-std::string run_name(const StoredRun& run) {
-  return run.pipeline + " " + run.scenario + " #" + std::to_string(run.repetition);
-}
-
 StoredRun find_run(const Store& store, const std::string& named) {
   if (const auto id = id_of(named)) {
     if (auto run = store.run(*id)) {

@@ -7,9 +7,6 @@
 
 namespace altiplan::host {
 
-/// "PIPELINE SCENARIO #REPETITION", by which users name a run.
-std::string run_name(const StoredRun& run);
-
 /// The run with this id, name, or key that begins so, with its result and trace. Throws Error where
 /// there is none, or more than one.
 StoredRun find_run(const Store& store, const std::string& named);

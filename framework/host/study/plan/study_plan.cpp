@@ -10,6 +10,7 @@
 #include "host/study/plan/study_grid.hpp"
 #include "host/study/plan/study_reading.hpp"
 #include "host/study/plan/study_selection.hpp"
+#include "host/study/store/store.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -47,8 +48,8 @@ std::string key_of(const std::string& pair, const std::string& name, std::int64_
 }  // namespace
 
 std::string name_of_run(const StudyPlan& plan, const PlannedRun& run) {
-  return plan.pipelines[run.pipeline].name + " " + plan.scenarios[run.scenario].name + " #" +
-         std::to_string(run.repetition);
+  return run_name(plan.pipelines[run.pipeline].name, plan.scenarios[run.scenario].name,
+                  run.repetition);
 }
 
 Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,

@@ -129,8 +129,8 @@ std::string outcome_text(std::string_view outcome) {
 }
 
 std::string run_name(const StudyData& data, const RunRow& row) {
-  return data.pipelines[row.pipeline].name + " " + data.scenarios[row.scenario].name + " #" +
-         std::to_string(row.repetition);
+  return host::run_name(data.pipelines[row.pipeline].name, data.scenarios[row.scenario].name,
+                        row.repetition);
 }
 
 std::vector<Pair> pairs_of(const StudyData& data) {

@@ -10,6 +10,7 @@
 #include "host/study/run/machine.hpp"
 #include "host/study/run/run_values.hpp"
 #include "host/study/run/study_worker.hpp"
+#include "host/study/statistics/claim_words.hpp"
 #include "host/study/store/place.hpp"
 #include "host/study/store/store.hpp"
 
@@ -21,10 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string count(std::size_t n, const std::string& what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
 /// The runs of a plan, and a store that they are put into.
@@ -113,13 +110,11 @@ class Study {
     for (const StoredRun& run : store.outlines()) {
       if (!scenarios.contains(run.scenario) || !pipelines.contains(run.pipeline) ||
           run.repetition >= plan_.file.repetitions) {
-        first = others++ == 0
-                    ? run.pipeline + " " + run.scenario + " #" + std::to_string(run.repetition)
-                    : first;
+        first = others++ == 0 ? run_name(run) : first;
       }
     }
     if (others > 0) {
-      throw Error("'" + store.file().string() + "' holds " + count(others, "run") +
+      throw Error("'" + store.file().string() + "' holds " + counted(others, "run") +
                   " that this study does not have, such as " + first +
                   ": give another --out, or --fresh to begin anew");
     }
@@ -168,14 +163,13 @@ class Study {
     }
     std::vector<std::string> outdated;
     for (const StoredRun& run : store.outlines()) {
-      const auto found =
-          wanted.find(run.pipeline + " " + run.scenario + " #" + std::to_string(run.repetition));
+      const auto found = wanted.find(run_name(run));
       if (found != wanted.end() && found->second != run.key) {
         outdated.push_back(run.key);
       }
     }
     if (!outdated.empty()) {
-      options_.say(count(outdated.size(), "stored run") +
+      options_.say(counted(outdated.size(), "stored run") +
                    " came of other files, budgets, plugins or another program: done again" +
                    (plan_.runs.size() < plan_.planned
                         ? "; so may others be, which this call does not look at"
@@ -203,7 +197,7 @@ std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder&
   }
   std::set<std::string> there;
   for (const StoredRun& run : store.outlines()) {
-    there.insert(run.pipeline + " " + run.scenario + " #" + std::to_string(run.repetition));
+    there.insert(run_name(run));
   }
   std::vector<StoredRun> found;
   for (const Ended& ended : records) {
@@ -221,20 +215,6 @@ std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder&
   return found.size();
 }
 }  // namespace
-
-std::size_t StudyProgress::unexplained() const {
-  std::size_t sum = 0;
-  for (const auto& [outcome, number] : outcomes) {
-    sum += is_unexplained(outcome) ? number : 0;
-  }
-  return sum;
-}
-
-bool is_unexplained(const std::string& outcome) {
-  static const std::set<std::string> kUnexplained{"failed", "crashed", "out_of_memory",
-                                                  "bad_output", "refused"};
-  return kUnexplained.contains(outcome);
-}
 
 StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   const Clock::time_point start = Clock::now();
@@ -254,7 +234,7 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   session.limits = pool.limits_kept();
   const std::int64_t session_id = store.add_session(session);
   if (const std::size_t found = harvest(study, plan, folder, store, session_id)) {
-    options.say(count(found, "run") + " of the call before had ended unstored: stored now");
+    options.say(counted(found, "run") + " of the call before had ended unstored: stored now");
   }
   folder.clear();
   const std::vector<std::size_t> left = study.without(store.keys());

@@ -17,9 +17,6 @@ struct StudyProgress {
   std::size_t done = 0;    ///< by this call
   std::map<std::string, std::size_t> outcomes;  ///< of this call
   double elapsed_s = 0;
-
-  /// Those that say something about a plugin or the machine and nothing about the problem.
-  std::size_t unexplained() const;
 };
 
 struct StudyOptions {
@@ -38,9 +35,6 @@ struct StudyEnd {
   StudyProgress progress;
   bool is_interrupted = false;
 };
-
-/// failed, crashed, out_of_memory, bad_output, refused.
-bool is_unexplained(const std::string& outcome);
 
 /// Does the runs that the store does not hold yet. Throws Error where the store or its work folder
 /// cannot be used, or holds another study.

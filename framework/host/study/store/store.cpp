@@ -14,6 +14,14 @@ constexpr int kLevel = 1;
 Store::Store(const std::filesystem::path& file, StoreMode mode)
     : database_(std::make_unique<StoreDatabase>(file, mode)) {}
 
+std::string run_name(const std::string& pipeline, const std::string& scenario, int repetition) {
+  return pipeline + " " + scenario + " #" + std::to_string(repetition);
+}
+
+std::string run_name(const StoredRun& run) {
+  return run_name(run.pipeline, run.scenario, run.repetition);
+}
+
 Store::~Store() = default;
 
 std::map<std::string, std::string> Store::study() const {

@@ -34,6 +34,10 @@ struct StoredRun {
   std::vector<std::pair<std::string, double>> values;
 };
 
+/// How people name a run, on the command line too: "PIPELINE SCENARIO #REPETITION".
+std::string run_name(const std::string& pipeline, const std::string& scenario, int repetition);
+std::string run_name(const StoredRun& run);
+
 /// A variant as stored, with all that it takes to run it again.
 struct StoredVariant {
   std::string name;

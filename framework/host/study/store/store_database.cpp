@@ -234,8 +234,7 @@ std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
   if (bytes.empty()) {
     return "";
   }
-  const std::string name = std::string("the ") + what + " of '" + run.pipeline + " " +
-                           run.scenario + " #" + std::to_string(run.repetition) + "' ";
+  const std::string name = std::string("the ") + what + " of '" + run_name(run) + "' ";
   std::optional<std::string> text;
   try {
     text = decompressed(bytes, kMostBytes);
