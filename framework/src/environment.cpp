@@ -156,4 +156,5 @@ std::optional<Vec3> Environment::do_cell_centre(const std::array<double, 3>&) co
 std::optional<Frame> Environment::do_frame() const { return std::nullopt; }
 std::optional<Drawing> Environment::do_drawing() const { return std::nullopt; }
 std::vector<std::string> Environment::do_notes() const { return {}; }
+bool Environment::do_ground_alone() const { return false; }
 }  // namespace altiplan

@@ -11,7 +11,6 @@
 #include "altiplan/error.hpp"
 #include "altiplan/local_planner.hpp"
 #include "altiplan/smoother.hpp"
-#include "altiplan/tuner.hpp"
 
 namespace altiplan {
 
@@ -23,8 +22,6 @@ Planner::~Planner() = default;
 Pilot::~Pilot() = default;
 LocalPlanner::~LocalPlanner() = default;
 Smoother::~Smoother() = default;
-Search::~Search() = default;
-Tuner::~Tuner() = default;
 
 AppliesTo Constraint::do_applies_to() const { return AppliesTo::both; }
 void Constraint::do_tighten(Limits&, const Request&) const {}
@@ -248,9 +245,5 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
         "the smoother broke a law of its interface: first and last points must stay, all finite";
   }
   return result;
-}
-
-std::unique_ptr<Search> Tuner::begin(std::vector<Dimension> space, RandomStream random) const {
-  return do_begin(std::move(space), random);
 }
 }  // namespace altiplan

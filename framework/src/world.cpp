@@ -135,11 +135,12 @@ const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
   return nullptr;
 }
 
-void World::near(const Vec3& p, double reach,
+void World::near(const Vec3& p, double reach, double ground_reach,
                  const std::function<void(const Layer&, const Nearby&)>& sink) const {
   for (const Layer& layer : layers_) {
     answer_of(layer, [&](const Environment& asked) {
-      asked.near(p, reach, [&](const Nearby& nearby) { sink(layer, nearby); });
+      const double within = asked.has_ground() ? ground_reach : reach;
+      asked.near(p, within, [&](const Nearby& nearby) { sink(layer, nearby); });
     });
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host/study/statistics/claim_pairs.hpp"
 #include "host/study/statistics/claims.hpp"
 
 namespace altiplan::host {
@@ -163,6 +164,19 @@ TEST(ClaimText, Ranges) {
   EXPECT_TRUE(read_range("<= 1").meets(1, 2));
   EXPECT_FALSE(read_range("> 1").meets(0, 1));
   EXPECT_TRUE(read_range(">= 1").meets(0, 1));
+}
+
+TEST(ClaimText, ObjectivesNameValuesAlone) {
+  const ClaimQuantity read = read_objective("2 * length_m - steps.route.counters.expanded / 4");
+  ASSERT_EQ(read.values.size(), 2U);
+  EXPECT_EQ(read.values[0].name, "length_m");
+  EXPECT_EQ(read.values[1].name, "steps.route.counters.expanded");
+  EXPECT_EQ(evaluate(read.expression, {10, 8}), 18);
+  EXPECT_EQ(read_objective("(length_m)").values.size(), 1U);
+  for (const char* text : {"", "3", "length_m <= 4", "length_m +", "length_m.", ".x", "length_m x",
+                           "median(length_m)"}) {
+    EXPECT_THROW(read_objective(text), Error) << text;
+  }
 }
 
 TEST(ClaimText, RangesThatCannotBeRead) {

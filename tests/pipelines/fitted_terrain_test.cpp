@@ -38,9 +38,10 @@ Request fitted_terrain() {
   return request;
 }
 
-double planned_km(const Request& request, const std::string& parameters) {
+double planned_km(const Request& request, const std::string& parameters,
+                  const char* planner = "astar") {
   const PlanResult result =
-      testing::make_planner("astar", "{cell_m: [1000, 1000, 200], " + parameters + "}")
+      testing::make_planner(planner, "{cell_m: [1000, 1000, 200], " + parameters + "}")
           ->plan(request);
   EXPECT_EQ(result.status, Status::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
@@ -57,6 +58,16 @@ TEST(FittedTerrain, AStarHasItsKnownLengths) {
   EXPECT_NEAR(planned_km(request, "heuristic: manhattan"), 76.68, 0.01);
   EXPECT_NEAR(planned_km(request, "heuristic: manhattan, weight_g: 0.3, weight_h: 0.7"), 82.53,
               0.3);
+}
+
+TEST(FittedTerrain, EverySearchFindsTheOptimum) {
+  const Request request = fitted_terrain();
+  for (const char* planner : {"astar", "bidirectional_astar"}) {
+    for (const char* state : {"parent", "cell_and_heading", "auto"}) {
+      EXPECT_NEAR(planned_km(request, std::string("state: ") + state, planner), 74.995, 0.001);
+    }
+    EXPECT_NEAR(planned_km(request, "anytime: true", planner), 74.995, 0.001);
+  }
 }
 
 TEST(FittedTerrain, SmoothersShortenAndStaySound) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// astar against Dijkstra's algorithm on the lattice that its README describes.
+// astar and bidirectional_astar against Dijkstra's algorithm on the lattice that their READMEs
+// describe.
 #include <gtest/gtest.h>
 
 #include "reference/random_problem.hpp"
@@ -22,11 +23,14 @@ std::string number(double value) {
   return text;
 }
 
+constexpr const char* kPlanners[] = {"astar", "bidirectional_astar"};
+
 /// The parameters of one search, as YAML.
 struct Setting {
   std::string heuristic = "octile";
   double weight_g = 0.5;
   double weight_h = 0.5;
+  std::string state = "auto";
 
   std::string yaml(const LatticeOptions& lattice) const {
     const Vec3& c = lattice.cell;
@@ -34,7 +38,8 @@ struct Setting {
            "], neighbours: " + std::to_string(lattice.neighbours) +
            ", corner: " + (lattice.free_box ? "free_box" : "any") +
            ", moves: " + (lattice.cells ? "cells" : "exact") + ", heuristic: " + heuristic +
-           ", weight_g: " + number(weight_g) + ", weight_h: " + number(weight_h) + "}";
+           ", weight_g: " + number(weight_g) + ", weight_h: " + number(weight_h) +
+           ", state: " + state + "}";
   }
   /// A route is at most this often the shortest (Pohl); 1: the shortest.
   double bound(int neighbours) const {
@@ -57,11 +62,13 @@ struct Tally {
   int near_goal = 0;  ///< routes that end within the tolerance only
 };
 
-/// Holds one plan to the oracle. `best`: lengths by Dijkstra's algorithm.
+/// Holds one plan to the oracle. `best`: lengths by Dijkstra's algorithm. From both ends an
+/// inflated heuristic has no bound.
 void hold(const PlanResult& result, const LatticeOracle& oracle, const std::vector<double>& best,
-          const Setting& setting, const Request& request, Tally& tally) {
+          const Setting& setting, bool one_way, const Request& request, Tally& tally) {
   const double expected = oracle.shortest(best);
-  const double bound = setting.bound(oracle.options.neighbours);
+  const double of_setting = setting.bound(oracle.options.neighbours);
+  const double bound = of_setting > 1 && !one_way ? kInfinity : of_setting;
   const bool limited = request.limits.max_route_length < kInfinity;
   if (expected == kInfinity) {
     ++tally.unreachable;
@@ -87,7 +94,7 @@ void hold(const PlanResult& result, const LatticeOracle& oracle, const std::vect
     return;
   }
   EXPECT_LE(found, bound * expected * (1 + 1e-9) + 1e-6) << expected;
-  if (bound == 1) {
+  if (bound == 1 && one_way) {
     std::int64_t within = 0;  // ties with the goal's cost included
     for (std::size_t c = 0; c < oracle.cells; ++c) {
       within += best[c] <= expected * (1 + 1e-9) + 1e-9;
@@ -106,19 +113,21 @@ void compare(const Problem& problem, std::uint64_t seed, Tally& tally) {
     return;
   }
   const auto best = dijkstra(oracle.graph, oracle.start);
-  for (const Setting& setting : kSettings) {
-    const std::string yaml = setting.yaml(problem.lattice);
-    SCOPED_TRACE("seed " + std::to_string(seed) + " " + yaml);
-    const PlanResult result = testing::make_planner("astar", yaml)->plan(request);
-    ASSERT_EQ(result.status == Status::invalid_problem, !start_free || !goal_free)
-        << result.message;
-    if (result.status == Status::invalid_problem) {
-      ++tally.invalid;
-      return;
-    }
-    hold(result, oracle, best, setting, request, tally);
-    if (::testing::Test::HasFailure()) {
-      return;
+  for (const std::string planner : kPlanners) {
+    for (const Setting& setting : kSettings) {
+      const std::string yaml = setting.yaml(problem.lattice);
+      SCOPED_TRACE("seed " + std::to_string(seed) + " " + planner + " " + yaml);
+      const PlanResult result = testing::make_planner(planner, yaml)->plan(request);
+      ASSERT_EQ(result.status == Status::invalid_problem, !start_free || !goal_free)
+          << result.message;
+      if (result.status == Status::invalid_problem) {
+        ++tally.invalid;
+        return;
+      }
+      hold(result, oracle, best, setting, planner == "astar", request, tally);
+      if (::testing::Test::HasFailure()) {
+        return;
+      }
     }
   }
 }
@@ -204,8 +213,8 @@ TEST(AStarOracle, CellsOfALayerEqualDijkstra) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     compare_own_cells(seed, tally);
   }
-  EXPECT_GT(tally.solved, 300);
-  EXPECT_GT(tally.unreachable, 20);
+  EXPECT_GT(tally.solved, 600);
+  EXPECT_GT(tally.unreachable, 40);
 }
 TEST(NightlyAStarOracle, CellsOfALayerEqualDijkstra) {
   Tally tally;
@@ -216,8 +225,40 @@ TEST(NightlyAStarOracle, CellsOfALayerEqualDijkstra) {
 TEST(NightlyAStarOracle, ExactMovesEqualDijkstra) { compare_many(1000, 9000, false); }
 TEST(NightlyAStarOracle, MovesByCellsEqualDijkstra) { compare_many(1000, 9000, true); }
 
-/// With limits on turns astar may lose a route, but never invents one or a proof.
-void compare_turns(std::uint64_t seed, int& solved, int& lost) {
+struct TurnTally {
+  int solved = 0;  ///< by cell and heading
+  int lost = 0;    ///< of these, by parent
+  int unreachable = 0;
+};
+
+/// `to_goal`: the shortest way to the goal itself, `expected` to where a route may end.
+void hold_turns(const PlanResult& result, const Setting& setting, double to_goal, double expected,
+                const Request& request, TurnTally& tally) {
+  const bool by_heading = setting.state == "cell_and_heading";
+  if (result.status != Status::solved) {
+    ASSERT_EQ(result.status, Status::no_route);
+    EXPECT_TRUE(setting.state == "parent" || expected == kInfinity) << result.message;
+    EXPECT_FALSE(result.proved && expected < kInfinity) << result.message;
+    EXPECT_TRUE(result.proved || setting.state == "parent") << result.message;
+    tally.lost += expected < kInfinity;
+    tally.unreachable += by_heading;
+    return;
+  }
+  EXPECT_TRUE(check(result.route, request).ok());
+  const double found = length(result.route);
+  // The goal itself may be out of reach for the one parent of a cell: then the tolerance counts.
+  const bool at_goal = result.route.back() == request.goal.position;
+  EXPECT_GE(found, (at_goal ? to_goal : 0) * (1 - 1e-9) - 1e-6);
+  ASSERT_LT(expected, kInfinity);
+  if (by_heading) {
+    ++tally.solved;
+    EXPECT_NEAR(found, expected, expected * 1e-9 + 1e-6);
+  }
+}
+
+/// With limits on turns one parent a cell may lose a route, but never invents one or a proof; by
+/// cell and heading the route is the shortest.
+void compare_turns(std::uint64_t seed, TurnTally& tally) {
   Mix mix;
   mix.most_cells = 4.5;
   mix.ground = false;
@@ -257,34 +298,32 @@ void compare_turns(std::uint64_t seed, int& solved, int& lost) {
   };
   const auto best = dijkstra_with_turns(oracle.graph, oracle.start, turn_ok);
   const double expected = oracle.shortest(best);
-  const PlanResult result =
-      testing::make_planner("astar", Setting{}.yaml(problem->lattice))->plan(request);
-  if (oracle.rules.in_doubt() || result.status == Status::invalid_problem ||
-      request.goal.reached_at(request.start.position)) {
+  if (oracle.rules.in_doubt() || request.goal.reached_at(request.start.position)) {
     return;
   }
-  SCOPED_TRACE(seed);
-  if (result.status == Status::solved) {
-    ++solved;
-    EXPECT_TRUE(check(result.route, request).ok());
-    // The goal itself may be out of reach for the one parent of a cell: then the tolerance counts.
-    const bool at_goal = result.route.back() == request.goal.position;
-    EXPECT_GE(length(result.route), (at_goal ? best[oracle.goal] : 0) * (1 - 1e-9) - 1e-6);
-    EXPECT_LT(expected, kInfinity);
-  } else {
-    ASSERT_EQ(result.status, Status::no_route);
-    lost += expected < kInfinity;
-    EXPECT_FALSE(result.proved && expected < kInfinity) << result.message;
+  for (const std::string planner : kPlanners) {
+    for (const char* state : {"parent", "cell_and_heading", "auto"}) {
+      Setting setting;
+      setting.state = state;
+      const std::string yaml = setting.yaml(problem->lattice);
+      SCOPED_TRACE("seed " + std::to_string(seed) + " " + planner + " " + yaml);
+      const PlanResult result = testing::make_planner(planner, yaml)->plan(request);
+      if (result.status == Status::invalid_problem) {
+        return;
+      }
+      hold_turns(result, setting, best[oracle.goal], expected, request, tally);
+    }
   }
 }
 
-TEST(AStarOracle, WithTurnsNeverBelowTheOptimumAndNoFalseProof) {
-  int solved = 0;
-  int lost = 0;
+TEST(AStarOracle, ByCellAndHeadingEqualsDijkstraUnderTurnLimits) {
+  TurnTally tally;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    compare_turns(seed, solved, lost);
+    compare_turns(seed, tally);
   }
-  EXPECT_GT(solved, 60);
+  EXPECT_GT(tally.solved, 120);
+  EXPECT_GT(tally.lost, 0);
+  EXPECT_GT(tally.unreachable, 20);
 }
 
 TEST(AStarOracle, HoldsWhereItOnceDidNot) {
@@ -292,20 +331,18 @@ TEST(AStarOracle, HoldsWhereItOnceDidNot) {
   compare(24, false, tally);    // a route within the goal's tolerance, and a limit on its length
   compare(1433, false, tally);  // manhattan over faces, the goal between centres
   EXPECT_GT(tally.solved, 8);
-  int solved = 0;
-  int lost = 0;
-  compare_turns(3976, solved, lost);  // a vertical leg after one to the south-west
-  compare_turns(4532, solved, lost);  // a vertical leg but for rounding
-  EXPECT_EQ(solved, 2);
+  TurnTally turns;
+  compare_turns(3976, turns);  // a vertical leg after one to the south-west
+  compare_turns(4532, turns);  // a vertical leg but for rounding
+  EXPECT_EQ(turns.solved, 4);
 }
 
-TEST(NightlyAStarOracle, WithTurnsNeverBelowTheOptimumAndNoFalseProof) {
-  int solved = 0;
-  int lost = 0;
+TEST(NightlyAStarOracle, ByCellAndHeadingEqualsDijkstraUnderTurnLimits) {
+  TurnTally tally;
   for (std::uint64_t seed = 1000; seed < 6000; ++seed) {
-    compare_turns(seed, solved, lost);
+    compare_turns(seed, tally);
   }
-  EXPECT_GT(solved, 1000);
+  EXPECT_GT(tally.solved, 2000);
 }
 }  // namespace
 }  // namespace altiplan::reference

@@ -28,6 +28,7 @@ void add_compare(CLI::App& app, Action& action);
 void add_slurm(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action, const std::string& command_line);
 void add_report(CLI::App& app, Action& action);
+void add_tune(CLI::App& app, Action& action);
 
 /// --plugin-path, --seed, --set and --scenario as they are wanted.
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);
@@ -56,4 +57,6 @@ std::vector<std::string> files_of(const host::StoredResult& stored);
 
 /// A fixed-point number for tables, "-" where there is none.
 std::string fixed(const std::optional<double>& value, int digits);
+/// "45 s", "12 min", "3.5 h"
+std::string duration(double seconds);
 }  // namespace altiplan::cli

@@ -93,6 +93,15 @@ std::string fixed(const std::optional<double>& value, int digits) {
   return text;
 }
 
+std::string duration(double seconds) {
+  if (seconds < 1) {
+    return fixed(seconds, 1) + " s";
+  }
+  return seconds < 100    ? fixed(seconds, 0) + " s"
+         : seconds < 6000 ? fixed(seconds / 60, 0) + " min"
+                          : fixed(seconds / 3600, 1) + " h";
+}
+
 namespace {
 
 /// What the user typed, as far as a shell would take it again.
@@ -139,6 +148,7 @@ int main_checked(int argc, char** argv) {
   add_slurm(app, action);
   add_study(app, action, command_line(argc, argv));
   add_report(app, action);
+  add_tune(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

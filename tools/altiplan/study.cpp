@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +10,7 @@
 #include "host/study/run/study_run.hpp"
 #include "host/study/statistics/claims.hpp"
 #include "host/study/store/study_data.hpp"
+#include "progress_line.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -28,52 +27,19 @@ struct Arguments {
   bool resume = false;  ///< what happens anyway
 };
 
-/// "45 s", "12 min", "3.5 h"
-std::string duration(double seconds) {
-  if (seconds < 1) {
-    return fixed(seconds, 1) + " s";
+std::string line_of(const host::StudyProgress& progress) {
+  const std::size_t ended = progress.before + progress.done;
+  std::string line = std::to_string(ended) + " of " + std::to_string(progress.runs) + " runs";
+  if (progress.done > 0 && ended < progress.runs) {
+    line += ", " +
+            duration(progress.elapsed_s / double(progress.done) * double(progress.runs - ended)) +
+            " to go";
   }
-  return seconds < 100    ? fixed(seconds, 0) + " s"
-         : seconds < 6000 ? fixed(seconds / 60, 0) + " min"
-                          : fixed(seconds / 3600, 1) + " h";
+  for (const auto& [outcome, number] : progress.outcomes) {
+    line += outcome == "solved" ? "" : ", " + std::to_string(number) + " " + outcome;
+  }
+  return line;
 }
-
-/// One line that is written over, on a terminal alone.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::size_t pipelines) : is_shown_(isatty(2) == 1 && pipelines > 0) {}
-  ~ProgressLine() { clear(); }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(const host::StudyProgress& progress) {
-    if (!is_shown_) {
-      return;
-    }
-    const std::size_t ended = progress.before + progress.done;
-    std::string line = std::to_string(ended) + " of " + std::to_string(progress.runs) + " runs";
-    if (progress.done > 0 && ended < progress.runs) {
-      line += ", " +
-              duration(progress.elapsed_s / double(progress.done) * double(progress.runs - ended)) +
-              " to go";
-    }
-    for (const auto& [outcome, number] : progress.outcomes) {
-      line += outcome == "solved" ? "" : ", " + std::to_string(number) + " " + outcome;
-    }
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    is_drawn_ = true;
-  }
-  void clear() {
-    if (is_drawn_) {
-      std::fputs("\r\033[K", stderr);
-      is_drawn_ = false;
-    }
-  }
-
- private:
-  bool is_shown_;
-  bool is_drawn_ = false;
-};
 
 void print_outcomes(const host::StudyData& data) {
   std::size_t width = 8;
@@ -151,8 +117,10 @@ int study(Arguments arguments) {
   if (arguments.dry_run) {
     return dry_run(arguments, plan);
   }
-  ProgressLine line(plan.pipelines.size());
-  arguments.options.progress = [&](const host::StudyProgress& progress) { line.show(progress); };
+  ProgressLine line;
+  arguments.options.progress = [&](const host::StudyProgress& progress) {
+    line.show(line_of(progress));
+  };
   arguments.options.say = [&](const std::string& text) {
     line.clear();
     warn(text);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kMargin = 0.05;         ///< of the pilot's reach: nearer than this the pilot flies
 constexpr double kClearMargin = 0.075;   ///< and beyond this the route is clear again
 constexpr double kLeastWay = 1e-3;       ///< metres: the rest of a leg is flown with the step
+constexpr double kLeastShare = 1e-9;     ///< of a step: what rounding leaves of it is not flown
 const double kGentleTurn = radians(30);  ///< of a hand-back, at both ends of its leg
 constexpr int kMostStuck = 3;
 }  // namespace
@@ -30,7 +31,7 @@ void Flight::fly_route() {
     }
   }
   double left = setup_.step_s;
-  while (!ended_ && left > 0) {
+  while (!ended_ && left > kLeastShare * setup_.step_s) {
     const Vec3 next = path_.next_waypoint(progress_);
     const Vec3 way = next - state_.position;
     const double to_next = way.norm();

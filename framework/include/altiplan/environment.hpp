@@ -89,6 +89,9 @@ class ALTIPLAN_API Environment {
   /// Steepest slope (rise over run) of this layer's ground within the horizontal box, an upper
   /// bound; infinite where it is not known or the ground has holes there.
   double ground_slope(const Box& box) const { return do_ground_slope(box); }
+  /// Whether its ground is all that the layer blocks: a leg whose ground_gap is at least
+  /// r sqrt(1 + s²), s the steepest slope within r of it (0 for r <= 0), is then not blocked.
+  bool ground_alone() const { return do_ground_alone(); }
   /// This layer's ground as posts, where it is one (an elevation model): concrete data for inner
   /// loops; null otherwise. Lives as long as the layer.
   const HeightField* height_field() const { return do_height_field(); }
@@ -130,5 +133,7 @@ class ALTIPLAN_API Environment {
   virtual std::optional<Frame> do_frame() const;
   virtual std::optional<Drawing> do_drawing() const;
   virtual std::vector<std::string> do_notes() const;
+  /// Default: false, which claims nothing.
+  virtual bool do_ground_alone() const;
 };
 }  // namespace altiplan

@@ -24,17 +24,25 @@ struct Dimension {
 class ALTIPLAN_API Search {
  public:
   virtual ~Search();
-  std::vector<std::vector<double>> ask() { return do_ask(); }
-  void tell(std::span<const double> scores) { do_tell(scores); }
+  /// Throws PluginError where the batch breaks law 1.
+  std::vector<std::vector<double>> ask();
+  /// Throws Error where there is not a score a point, or one that is not a number.
+  void tell(std::span<const double> scores);
 
  private:
+  friend class Tuner;
   virtual std::vector<std::vector<double>> do_ask() = 0;
   virtual void do_tell(std::span<const double> scores) = 0;
+
+  std::vector<Dimension> space_;
+  std::size_t asked_ = 0;  ///< points that have no score yet
 };
 
 class ALTIPLAN_API Tuner {
  public:
   virtual ~Tuner();
+  /// Throws Error where a range is empty or not finite, or no weights of a group within their
+  /// bounds sum to 1.
   std::unique_ptr<Search> begin(std::vector<Dimension> space, RandomStream random) const;
 
  private:

@@ -75,6 +75,12 @@ class ALTIPLAN_API World {
   }
   /// Obstacles of all layers within reach of p; the sink learns the layer too.
   void near(const Vec3& p, double reach,
+            const std::function<void(const Layer&, const Nearby&)>& sink) const {
+    near(p, reach, reach, sink);
+  }
+  /// The same, but of layers with ground within `ground_reach`: a search of ground takes the longer
+  /// the wider it is.
+  void near(const Vec3& p, double reach, double ground_reach,
             const std::function<void(const Layer&, const Nearby&)>& sink) const;
   bool has_ground() const;
   /// Highest ground of the layers that have one there.

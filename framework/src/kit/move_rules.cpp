@@ -57,28 +57,79 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       lattice_(lattice),
       corner_(corner),
       needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-      spare_(needed_ + request.world->slack() + kLengthTolerance) {
+      spare_(needed_ + request.world->slack() + kLengthTolerance),
+      asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
   if (check == MoveCheck::cells) {
     grid_ = occupancy(request, lattice);
   }
-  wants_clearance_ = check == MoveCheck::exact && !request.world->layers().empty();
   has_ground_rules_ = has_ground_rules(request);
+  if (asks_world_) {
+    sort_layers();
+    wants_clearance_ = !obstacles_.layers().empty();
+  }
+  if (has_ground_rules_) {
+    find_gaps();
+    ground_.emplace(lattice, *request.world);
+  }
   for (const NamedConstraint& named : request.constraints) {
     constraints_.push_back(named);
   }
   steps_ = directions_kept();
-  if (!limits.turns()) {
-    after_.fill(~DirectionMask{0});
-    return;
-  }
   for (int in = 0; in < kDirections; ++in) {
     for (int out = 0; out < kDirections; ++out) {
-      if (in == kHere || turn_kept(lattice.step(in), lattice.step(out), limits)) {
+      if (in == kHere || out == kHere || !limits.turns() ||
+          turn_kept(lattice.step(in), lattice.step(out), limits)) {
         after_[std::size_t(in)] |= DirectionMask{1} << out;
+        before_[std::size_t(out)] |= DirectionMask{1} << in;
       }
     }
   }
+}
+
+void MoveRules::sort_layers() {
+  obstacles_ = *request_.world;
+  for (const Layer& layer : request_.world->layers()) {
+    if (layer.environment->has_ground() && layer.environment->ground_alone()) {
+      obstacles_ = obstacles_.without(layer.id);
+      bare_ground_ = bare_ground_.with(layer);
+    }
+  }
+}
+
+void MoveRules::find_gaps() {
+  constexpr double kRounding = 1e-5;  // of what StepGround has learned, in metres
+  double slope = 0;
+  for (const Layer& layer : bare_ground_.layers()) {
+    // What is below this blocks the leg itself.
+    needed_gap_ = 0;
+    too_low_ = by_clearance;
+    refused_layer_ = layer.id;
+    if (needed_ > 0) {
+      slope = std::max(slope, layer.environment->ground_slope(request_.volume.grown(needed_)));
+    }
+  }
+  const bool other_ground =
+      std::any_of(obstacles_.layers().begin(), obstacles_.layers().end(),
+                  [](const Layer& layer) { return layer.environment->has_ground(); });
+  needed_gap_ = other_ground ? -kInfinity : needed_gap_;
+  certain_gap_ = needed_ > 0 ? needed_ * std::hypot(1, slope) : 0;
+  const auto held_to = [&](double gap, Rule rule) {
+    too_low_ = gap >= needed_gap_ ? rule : too_low_;
+    needed_gap_ = std::max(needed_gap_, gap);
+    certain_gap_ = std::max(certain_gap_, gap);
+  };
+  for (const AltitudeBand& band : request_.limits.altitude) {
+    if (band.datum == AltitudeBand::Datum::ground) {
+      held_to(band.min, by_altitude);
+      has_ceiling_over_ground_ = has_ceiling_over_ground_ || band.max < kInfinity;
+    }
+  }
+  if (request_.limits.min_ground_clearance) {
+    held_to(*request_.limits.min_ground_clearance, by_ground);
+  }
+  needed_gap_ -= kLengthTolerance + kRounding;
+  certain_gap_ += kRounding;
 }
 
 DirectionMask MoveRules::directions_kept() {
@@ -146,10 +197,79 @@ bool MoveRules::admitted(const std::optional<Vec3>& before, const Vec3& a, const
   return true;
 }
 
-bool MoveRules::leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
-                         double length, double clearance_a, double clearance_b) {
+bool MoveRules::keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b) {
+  const Cell o = offset(d);
+  const Cell to = {c[0] + o[0], c[1] + o[1], c[2]};
+  const auto ends_too_low = [&] {
+    return a.z() - ground_->height(c) < needed_gap_ || b.z() - ground_->height(to) < needed_gap_;
+  };
+  const double low = std::min(a.z(), b.z());
+  const double high = std::max(a.z(), b.z());
+  StepGround::Top& top = ground_->below(c, d);
+  if (low - top.most >= certain_gap_ && !has_ceiling_over_ground_) {
+    return true;
+  }
+  if (top.least < StepGround::kNone && !ends_too_low() && high - top.least >= needed_gap_ &&
+      low - top.most < certain_gap_) {
+    const double gap = request_.world->ground_gap(a, b, certain_gap_);
+    // Where it is enough, the gap that is told may be more than there is.
+    StepGround::learn(top, low, high, std::min(gap, certain_gap_), gap < certain_gap_);
+    if (gap >= certain_gap_ && !has_ceiling_over_ground_) {
+      return true;
+    }
+  }
+  if (top.least == StepGround::kNone) {
+    ++refused_[by_no_ground];
+    return false;
+  }
+  if (high - top.least < needed_gap_ || ends_too_low()) {
+    ++refused_[too_low_];
+    return false;
+  }
+  return keeps_ground(a, b) && (!asks_world_ || keeps_off(bare_ground_, a, b));
+}
+
+bool MoveRules::keeps_off(const World& layers, const Vec3& a, const Vec3& b) {
+  const Layer* layer = layers.blocked_by(a, b, needed_);
+  if (layer != nullptr) {
+    ++refused_[by_clearance];
+    refused_layer_ = layer->id;
+  }
+  return layer == nullptr;
+}
+
+void MoveRules::ask(KnownClearance& known, const Vec3& at) const {
+  if (!known.asked) {
+    known.asked = true;
+    // Rounded toward the obstacle.
+    known.least =
+        std::nextafterf(float(obstacles_.clearance(at)), -std::numeric_limits<float>::infinity());
+  }
+}
+
+bool MoveRules::keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                          KnownClearance& near_b) {
+  const double length = lattice_.step_length(d);
+  // Clearance is 1-Lipschitz: what is known of a tells of b, and two balls of half the leg around
+  // its ends hold all of it.
+  near_b.learn(near_a.least - length);
+  const double half = spare_ + length / 2;
+  if (near_a.least <= half) {
+    ask(near_a, a);
+    near_b.learn(near_a.least - length);
+  }
+  if (near_b.least <= spare_) {
+    ask(near_b, b);
+  }
+  return near_a.least > spare_ + length || std::min(near_a.least, near_b.least) > half ||
+         keeps_off(obstacles_, a, b);
+}
+
+bool MoveRules::place_free(const Cell& c, int d, const Vec3& a, const Vec3& b,
+                           KnownClearance& near_a, KnownClearance& near_b) {
   ++moves_checked_;
-  return keeps_place(before, a, b, length, std::min(clearance_a, clearance_b));
+  return (!has_ground_rules_ || keeps_ground(c, d, a, b)) &&
+         (!wants_clearance_ || keeps_off(d, a, b, near_a, near_b));
 }
 
 bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b) {
@@ -161,8 +281,9 @@ bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cel
   const Vec3 from = lattice_.position(a);
   const Vec3 to = lattice_.position(b);
   const double length = (to - from).norm();
-  return keeps_limits(before, from, to, length) &&
-         keeps_place(before, from, to, length, -kInfinity);
+  return keeps_limits(before, from, to, length) && (!has_ground_rules_ || keeps_ground(from, to)) &&
+         (constraints_.empty() || admitted(before, from, to)) &&
+         (!asks_world_ || keeps_off(*request_.world, from, to));
 }
 
 bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
@@ -178,26 +299,6 @@ bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, c
   }
   if (before && limits.turns() && !turn_kept(a - *before, b - a, limits)) {
     ++refused_[by_turn];
-    return false;
-  }
-  return true;
-}
-
-bool MoveRules::keeps_place(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
-                            double length, double least_clearance) {
-  if (has_ground_rules_ && !keeps_ground(a, b)) {
-    return false;
-  }
-  if (!constraints_.empty() && !admitted(before, a, b)) {
-    return false;
-  }
-  // Clearance is 1-Lipschitz: two balls of half the leg around its ends hold all of it.
-  if (!wants_clearance_ || least_clearance > spare_ + length / 2) {
-    return true;
-  }
-  if (const Layer* layer = request_.world->blocked_by(a, b, needed_)) {
-    ++refused_[by_clearance];
-    refused_layer_ = layer->id;
     return false;
   }
   return true;

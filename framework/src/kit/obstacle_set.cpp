@@ -231,6 +231,22 @@ Drawing drawing_of(const std::vector<Shape>& shapes, Drawn::Role role) {
   return drawing;
 }
 
+std::vector<Threat> threats_of(const std::vector<Shape>& shapes) {
+  std::vector<Threat> threats;
+  for (const Shape& shape : shapes) {
+    const Box box = altiplan::bounds(shape);
+    const auto size = (box.max - box.min).head<2>();
+    Vec3 centre = (box.min + box.max) / 2;
+    centre.z() = std::isfinite(centre.z()) ? centre.z() : 0;
+    const bool round =
+        std::holds_alternative<Sphere>(shape) || std::holds_alternative<Cylinder>(shape);
+    if (is_finite(centre)) {
+      threats.push_back({centre, round ? size.x() / 2 : size.norm() / 2, "obstacle", ""});
+    }
+  }
+  return threats;
+}
+
 void ObstacleSet::rasterize(VoxelGrid& grid) const {
   for (const Shape& shape : shapes_) {
     kit::rasterize(

@@ -108,13 +108,21 @@ class Hills final : public Environment {
     return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, ground_.top()}};
   }
   bool do_has_ground() const override { return true; }
+  bool do_ground_alone() const override { return true; }
   std::optional<double> do_ground(double x, double y) const override {
     return ground_.height(x, y);
   }
   double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
     return ground_.gap(a, b, enough);
   }
-  double do_ground_slope(const Box&) const override { return ground_.max_slope(); }
+  double do_ground_slope(const Box& box) const override {
+    const Vec3 half = (box.max - box.min) / 2;
+    if (box.is_empty() || !(half.head<2>().norm() < kInfinity)) {
+      return ground_.max_slope();
+    }
+    const Vec3 middle = box.min + half;
+    return ground_.max_slope(middle.x(), middle.y(), half.head<2>().norm());
+  }
   double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
     return ground_.gap_max(a, b);
   }
@@ -130,7 +138,7 @@ class Hills final : public Environment {
       return false;
     }
     const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
-      return ground_.gap(from, to, enough);
+      return ground_.gap(from, to, enough, r - kLengthTolerance);
     };
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
       const Vec3 middle = (from + to) / 2;
@@ -150,6 +158,9 @@ class Hills final : public Environment {
       // The way out is up; the depth is a lower bound, as clearance has it.
       sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
+    }
+    if (gap > kit::height_for(reach, ground_.max_slope(p.x(), p.y(), reach))) {
+      return;  // no slope within reach rises so far
     }
     const auto ground = [&](double x, double y) { return ground_.height(x, y); };
     const auto highest = [&](double x0, double y0, double x1, double y1) {

@@ -25,6 +25,7 @@ class Profile {
   Profile(const Vec3& a, const Vec3& b, double base, const std::vector<Peak>& peaks) : base_(base) {
     // So low on the leg that all of them together stay far below the tolerance.
     const double negligible = 1e-9 / double(peaks.size() + 1);
+    bells_.reserve(peaks.size());
     for (const Peak& peak : peaks) {
       const double u = (a.x() - peak.x) / peak.sx;
       const double v = (a.y() - peak.y) / peak.sy;
@@ -86,6 +87,7 @@ struct Least {
   double z0, z1;        // the leg's heights
   double line0, line1;  // of the straight lower bound
   double enough;
+  double too_low = -kInfinity;
   double best = kInfinity;
 
   static constexpr double kTolerance = 1e-7;
@@ -104,6 +106,9 @@ struct Least {
   }
 
   void search(double from, double to, double at_from, double at_to) {
+    if (best < too_low) {
+      return;
+    }
     const double sag = profile.bend(-sign, from, to) * square(to - from) / 8;
     const double bound = std::max(std::min(line(from), line(to)), std::min(at_from, at_to) - sag);
     if (bound >= std::min(best - kTolerance, enough) || to - from < 1e-13) {
@@ -200,8 +205,9 @@ double Surface::bend(double x, double y, double r) const {
   double bound = 0;
   for (const Peak& peak : peaks_) {
     const double narrow = std::min(peak.sx, peak.sy);
-    const double w =
-        std::max(std::hypot((x - peak.x) / peak.sx, (y - peak.y) / peak.sy) - r / narrow, 0.0);
+    const double w = std::max(
+        std::sqrt(square((x - peak.x) / peak.sx) + square((y - peak.y) / peak.sy)) - r / narrow,
+        0.0);
     const double most = w > kMostBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMostBend);
     bound += peak.height / square(narrow) * most;
   }
@@ -328,7 +334,7 @@ double Surface::steepest() const {
   return greatest({middle.x(), middle.y(), half.x(), half.y(), 0}, 0.01, 1e-6, look);
 }
 
-double Surface::gap(const Vec3& a, const Vec3& b, double enough) const {
+double Surface::gap(const Vec3& a, const Vec3& b, double enough, double too_low) const {
   const double low = std::min(a.z(), b.z());
   if (is_vertical(a, b)) {
     return low - height(a.x(), a.y());
@@ -337,7 +343,7 @@ double Surface::gap(const Vec3& a, const Vec3& b, double enough) const {
     return low - top_;
   }
   const Profile profile(a, b, base_, peaks_);
-  return Least{profile, 1, a.z(), b.z(), a.z() - cap_, b.z() - cap_, enough}.find();
+  return Least{profile, 1, a.z(), b.z(), a.z() - cap_, b.z() - cap_, enough, too_low}.find();
 }
 
 double Surface::gap_max(const Vec3& a, const Vec3& b) const {

@@ -42,8 +42,9 @@ class Surface {
   std::vector<double> highest(const Intervals& east, const Intervals& north, double within) const;
 
   /// Least height of the leg above the ground, within 1e-7 m; any value of at least `enough` once
-  /// it is known to be that high.
-  double gap(const altiplan::Vec3& a, const altiplan::Vec3& b, double enough) const;
+  /// it is known to be that high, and any below `too_low` once it is known to be so low.
+  double gap(const altiplan::Vec3& a, const altiplan::Vec3& b, double enough,
+             double too_low = -altiplan::kInfinity) const;
   /// Greatest height of the leg above the ground, likewise.
   double gap_max(const altiplan::Vec3& a, const altiplan::Vec3& b) const;
 

@@ -47,6 +47,7 @@ class Terrain final : public Environment {
 
   Box do_bounds() const override { return bounds_; }
   bool do_has_ground() const override { return true; }
+  bool do_ground_alone() const override { return true; }
   std::optional<double> do_ground(double x, double y) const override {
     return model_.over(Vec3(x, y, 0)).at(x, y);
   }

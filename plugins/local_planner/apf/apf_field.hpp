@@ -66,15 +66,14 @@ inline Vec3 within_climb(Vec3 direction, double max_climb, const Vec3& heading) 
           up * std::sin(climb)};
 }
 
-/// Alternatives to a direction: headings every 5 degrees to both sides, several climbs, nearest
-/// first. Fixed in size: filling it allocates nothing.
+/// Alternatives to a direction: headings every 5 degrees to both sides, several climbs. They come
+/// one by one, nearest first, since most often one of the first will do. Fixed in size: it
+/// allocates nothing.
 class Fan {
  public:
-  struct Blade {
-    double deviation = 0;
-    int turn = 0;  ///< in fives of degrees, to the left
-    double climb = 0;
-  };
+  static constexpr int kHalf = 36;
+  static constexpr int kClimbs = 5;
+  static constexpr int kMost = kClimbs * 2 * kHalf;
 
   Fan() {
     for (int k = 0; k <= kHalf; ++k) {
@@ -84,52 +83,87 @@ class Fan {
   }
 
   /// `side`: +1 or -1, which of two equally near headings comes first.
-  void fill(const Vec3& wish, double max_climb, bool level, int side) {
+  void begin(const Vec3& wish, double max_climb, bool level, int side) {
     wish_ = wish;
-    size_ = 0;
+    side_ = side;
     const double level_part = std::hypot(wish.x(), wish.y());
+    heading_ = level_part > 0 ? Vec3(wish.x() / level_part, wish.y() / level_part, 0) : wish;
     const double own = std::atan2(wish.z(), level_part);
+    cosine_own_ = std::cos(own);
+    sine_own_ = std::sin(own);
     const double steep = std::min(max_climb * (1 - 1e-9), radians(45));
-    const std::array<double, 5> climbs{own, 0, steep, -steep, steep / 2};
-    for (std::size_t c = 0; c < (level ? 1 : climbs.size()); ++c) {
-      for (int k = 0; k <= kHalf; ++k) {
-        const double cosine =
-            std::cos(climbs[c]) * std::cos(own) * cosine_[k] + std::sin(climbs[c]) * std::sin(own);
-        const double deviation = std::acos(std::clamp(cosine, -1.0, 1.0));
-        blades_[size_++] = {deviation, side * k, climbs[c]};
-        if (k > 0 && k < kHalf) {
-          blades_[size_++] = {deviation, -side * k, climbs[c]};
-        }
-      }
+    const std::array<double, kClimbs> climbs{own, 0, steep, -steep, steep / 2};
+    rows_ = level ? 1 : kClimbs;
+    for (int c = 0; c < rows_; ++c) {
+      row_[c] = {climbs[c], std::cos(climbs[c]), std::sin(climbs[c])};
+      row_[c].deviation = deviation(row_[c]);
     }
-    // A stable order by hand: std::stable_sort may allocate.
-    std::sort(blades_.begin(), blades_.begin() + size_, [side](const Blade& a, const Blade& b) {
-      if (a.deviation != b.deviation) {
-        return a.deviation < b.deviation;
-      }
-      return a.turn != b.turn ? side * a.turn > side * b.turn : a.climb > b.climb;
-    });
   }
 
-  int size() const { return size_; }
-  Vec3 direction(int index) const {
-    const Blade& blade = blades_[index];
-    const double level_part = std::hypot(wish_.x(), wish_.y());
-    if (level_part == 0) {
-      return wish_;
+  /// The next direction; none where all have come. Along each climb they come in order, so that the
+  /// nearest of all is the first of one of them.
+  std::optional<Vec3> next() {
+    Row* first = nullptr;
+    for (int c = 0; c < rows_; ++c) {
+      if (row_[c].count < 2 * kHalf && (first == nullptr || comes_before(row_[c], *first))) {
+        first = &row_[c];
+      }
     }
-    const int k = std::abs(blade.turn);
-    const Vec3 heading(wish_.x() / level_part, wish_.y() / level_part, 0);
-    const Vec3 turned = turned_left(heading, cosine_[k], blade.turn < 0 ? -sine_[k] : sine_[k]);
-    return turned * std::cos(blade.climb) + Vec3(0, 0, std::sin(blade.climb));
+    if (first == nullptr) {
+      return std::nullopt;
+    }
+    const Vec3 result = direction(*first);
+    if (++first->count < 2 * kHalf) {
+      first->deviation = deviation(*first);
+    }
+    return result;
+  }
+
+  /// The vector turned by so many fives of degrees to the left, as seen from above.
+  Vec3 turned(const Vec3& v, int fives) const {
+    const double sine = sine_[std::abs(fives)];
+    return turned_left(v, cosine_[std::abs(fives)], fives < 0 ? -sine : sine);
   }
 
  private:
-  static constexpr int kHalf = 36;
+  /// Headings of one climb: straight on, then by k fives of degrees to the one and the other side.
+  struct Row {
+    double climb = 0;
+    double cosine = 1;
+    double sine = 0;
+    int count = 0;         ///< that have come
+    double deviation = 0;  ///< of the next from the wish
+
+    int fives() const { return (count + 1) / 2; }
+    int turn() const { return count % 2 == 1 ? fives() : -fives(); }  ///< positive: `side` first
+  };
+
+  double deviation(const Row& row) const {
+    const double cosine = row.cosine * cosine_own_ * cosine_[row.fives()] + row.sine * sine_own_;
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
+  }
+
+  static bool comes_before(const Row& a, const Row& b) {
+    if (a.deviation != b.deviation) {
+      return a.deviation < b.deviation;
+    }
+    return a.turn() != b.turn() ? a.turn() > b.turn() : a.climb > b.climb;
+  }
+
+  Vec3 direction(const Row& row) const {
+    return wish_.x() == 0 && wish_.y() == 0
+               ? wish_
+               : Vec3(turned(heading_, side_ * row.turn()) * row.cosine + Vec3(0, 0, row.sine));
+  }
+
   Vec3 wish_{1, 0, 0};
-  int size_ = 0;
+  Vec3 heading_{1, 0, 0};
+  int side_ = 1;
+  double cosine_own_ = 1;
+  double sine_own_ = 0;
+  int rows_ = 0;
+  std::array<Row, kClimbs> row_{};
   std::array<double, kHalf + 1> cosine_{};
   std::array<double, kHalf + 1> sine_{};
-  std::array<Blade, 5 * 2 * (kHalf + 1)> blades_{};
 };
 }  // namespace apf

@@ -7,6 +7,7 @@ namespace apf {
 using namespace altiplan;
 
 enum class Variant { plain, modified, improved };
+enum class Side { field, predicted };
 
 struct Params {
   Variant variant = Variant::improved;
@@ -28,6 +29,7 @@ struct Params {
   double reaction_s = 10;
   bool turn_limit = true;
   double max_turn_deg = 30;
+  Side side = Side::predicted;
 
   void describe(Fields& f) {
     f("variant", variant,
@@ -35,21 +37,21 @@ struct Params {
         .doc("the bare field, the repulsion that fades toward the goal, or the four repairs");
     f("influence_m", influence_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("d_0: obstacles farther away do not act; the host hands over within it");
     f("ground_influence_m", ground_influence_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("the same of ground, over the ground clearance; auto: a tenth of influence_m");
     f("target_m", target_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("a target farther away is drawn in to this distance; auto: 2/3 of influence_m");
-    f("attraction", attraction).at_least(0).doc("k_a, for distances in length_unit_m");
-    f("repulsion", repulsion).at_least(0).doc("k_r, for distances in length_unit_m");
+    f("attraction", attraction).range(0, 1e9).doc("k_a, for distances in length_unit_m");
+    f("repulsion", repulsion).range(0, 1e9).doc("k_r, for distances in length_unit_m");
     f("length_unit_m", length_unit_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("unit of length of the gains; auto: a third of influence_m (1 km for 3 km)");
     f("goal_exponent", goal_exponent)
         .range(1, 8)
@@ -61,24 +63,28 @@ struct Params {
         .range(0, 90)
         .doc("bearings of obstacle and target closer than this are turned");
     f("stronger_goal", stronger_goal).doc("repair 2: stronger attraction near the goal");
-    f("goal_factor", goal_factor).at_least(1).doc("by which the attraction grows there");
+    f("goal_factor", goal_factor).range(1, 1e6).doc("by which the attraction grows there");
     f("goal_zone_m", goal_zone_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("within this distance of the goal; auto: influence_m");
     f("two_steps", two_steps)
         .doc("repair 3: step_far_m while the nearest edge is over reaction_s away");
     f("step_far_m", step_far_m)
         .unit("m")
-        .greater_than(0)
+        .range(0.001, 1e9)
         .doc("L1; auto: influence_m / 6; never more than is flown in the host's time step");
-    f("step_near_m", step_near_m).unit("m").greater_than(0).doc("L2; auto: influence_m / 30");
+    f("step_near_m", step_near_m).unit("m").range(0.001, 1e9).doc("L2; auto: influence_m / 30");
     f("reaction_s", reaction_s)
         .unit("s")
         .at_least(0)
         .doc("reaction time; so far ahead paths and moving obstacles are looked at");
     f("turn_limit", turn_limit).doc("repair 4: no turn above max_turn_deg, but for safety");
     f("max_turn_deg", max_turn_deg).unit("deg").range(1, 180).doc("alpha_2, in space, a step");
+    f("side", side, {{"field", Side::field}, {"predicted", Side::predicted}})
+        .doc(
+            "of what lies before the target: the field's push alone, or the one that leads there "
+            "sooner as both fly, kept until passed");
   }
 };
 }  // namespace apf

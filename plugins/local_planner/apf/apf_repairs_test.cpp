@@ -8,7 +8,8 @@ namespace altiplan::testing {
 namespace {
 
 constexpr const char* kNone =
-    "turned_repulsion: false, stronger_goal: false, two_steps: false, turn_limit: false";
+    "side: field, turned_repulsion: false, stronger_goal: false, two_steps: false, "
+    "turn_limit: false";
 
 /// The default field with the one repair, or none, and further parameters.
 std::string with_only(const std::string& repair, const std::string& more = "") {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdlib>
 #include <new>
 
@@ -312,6 +313,66 @@ TEST(Apf, AllocatesNothingInAStep) {
     ASSERT_EQ(step.outcome, PilotStep::Outcome::flying) << step.why;
     seen.state = step.next;
   }
+  EXPECT_EQ(allocations, 0);
+}
+
+TEST(Apf, LeavesAClosingRingThroughItsGapWithoutAllocating) {
+  // Ten of twelve places on a circle around the vehicle, the gap behind it and to the side.
+  std::array<SensedObstacle, 10> ring;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double angle = radians(30 * double(i) - 120);
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    ring[i] = {"m", Vec3(5000, 15000, 500) + 1200 * out, 300, Vec3(-20 * out)};
+  }
+  for (const bool observed : {true, false}) {
+    Request request = problem(World(), {5000, 15000, 500}, {28000, 15000, 500});
+    request.level_m = 500;
+    const auto pilot = make_local_planner("apf", "{influence_m: 1000}")->begin(request);
+    std::array<SensedObstacle, 10> now = ring;
+    const std::array<std::string, 10> ids{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9"};
+    Observation seen;
+    seen.state = {0, {5000, 15000, 500}, {30, 0, 0}};
+    seen.goal = request.goal;
+    seen.local_target = request.goal.position;
+    seen.world = request.world.get();
+    seen.moving = now;
+    allocations = 0;
+    for (int step = 0; step < 90; ++step) {
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        now[i].id = ids[i];
+        now[i].position = ring[i].position + *ring[i].velocity * seen.state.time_s;
+        now[i].velocity = observed ? ring[i].velocity : std::nullopt;
+        ASSERT_GT((now[i].position - seen.state.position).norm(), 300 + 2) << step << observed;
+      }
+      counting = true;
+      seen.state = pilot->step(seen).next;
+      counting = false;
+    }
+    EXPECT_EQ(allocations, 0);
+  }
+}
+
+TEST(Apf, AllocatesNothingWhereNothingEscapes) {
+  std::array<SensedObstacle, 12> ring;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double angle = radians(30 * double(i));
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    ring[i] = {"m", Vec3(5000, 15000, 500) + 1150 * out, 300, Vec3(-20 * out)};
+  }
+  Request request = problem(World(), {5000, 15000, 500}, {28000, 15000, 500});
+  request.level_m = 500;
+  const auto pilot = make_local_planner("apf", "{influence_m: 1000}")->begin(request);
+  Observation seen;
+  seen.state = {0, {5000, 15000, 500}, {30, 0, 0}};
+  seen.goal = request.goal;
+  seen.local_target = request.goal.position;
+  seen.world = request.world.get();
+  seen.moving = ring;
+  allocations = 0;
+  counting = true;
+  const PilotStep step = pilot->step(seen);
+  counting = false;
+  EXPECT_EQ(step.outcome, PilotStep::Outcome::flying) << "it flies on while it can";
   EXPECT_EQ(allocations, 0);
 }
 }  // namespace

@@ -11,18 +11,10 @@ Vec3 FieldPilot::wished_direction(const Observation& seen) {
   if (to_target_.norm() == 0) {
     to_target_ = to_goal_;
   }
-  const double pull_m = std::min(to_target_.norm(), target_);
-  const double k_a =
-      p_.attraction * (p_.stronger_goal && to_goal_.norm() <= goal_zone_ ? p_.goal_factor : 1);
-  force_ = to_target_.normalized() * (k_a * pull_m / unit_);
-  seen.world->near(here_, std::max(p_.influence_m, ground_influence_) + room_of_ground(),
-                   [this](const Layer& layer, const Nearby& nearby) { add(layer, nearby); });
-  for (const SensedObstacle& moving : seen.moving) {
-    add(moving);
+  if (p_.side == Side::predicted) {
+    to_target_ = way_around(seen);
   }
-  if (request_.level_m) {
-    force_.z() = 0;
-  }
+  sum_up(seen);
   if (steep_goal_) {  // on and up, or down, until the way back is no steeper than the limit
     force_ = heading_ * step_ + Vec3(0, 0, to_goal_.z());
   }
@@ -30,6 +22,22 @@ Vec3 FieldPilot::wished_direction(const Observation& seen) {
     force_ = to_target_;  // all cancels: the loss of way will tell
   }
   return within_climb(force_, max_climb(), heading_);
+}
+
+void FieldPilot::sum_up(const Observation& seen) {
+  const double pull_m = std::min(to_target_.norm(), target_);
+  const double k_a =
+      p_.attraction * (p_.stronger_goal && to_goal_.norm() <= goal_zone_ ? p_.goal_factor : 1);
+  force_ = to_target_.normalized() * (k_a * pull_m / unit_);
+  seen.world->near(here_, p_.influence_m + required_,
+                   ground_influence_ + std::max(room_of_ground(), required_),
+                   [this](const Layer& layer, const Nearby& nearby) { add(layer, nearby); });
+  for (const Mover& mover : outlook_.movers()) {
+    add(mover);
+  }
+  if (request_.level_m) {
+    force_.z() = 0;
+  }
 }
 
 void FieldPilot::add(const Layer& layer, const Nearby& nearby) {
@@ -42,20 +50,20 @@ void FieldPilot::add(const Layer& layer, const Nearby& nearby) {
   }
 }
 
-void FieldPilot::add(const SensedObstacle& moving) {
-  const Vec3 r = here_ - moving.position;
-  const double now = r.norm() - moving.radius - required_;
+void FieldPilot::add(const Mover& mover) {
+  const Vec3 r = here_ - mover.position;
+  const double now = r.norm() - mover.radius;
   if (now > p_.influence_m) {
     return;
   }
-  const Vec3 w = heading_ * speed_ - moving.velocity.value_or(Vec3::Zero());
+  const Vec3 w = heading_ * speed_ - mover.velocity;
   const double horizon = std::max(p_.reaction_s, 1e-9);
   const double closing = w.squaredNorm();
   const double t = closing > 0 ? std::clamp(-r.dot(w) / closing, 0.0, horizon) : 0;
   const Vec3 closest = r + w * t;
-  const double then = closest.norm() - moving.radius - required_;
+  const double then = closest.norm() - mover.radius;
   Vec3 away = closest.norm() > 1e-6 ? closest : r;
-  if (const Vec3 v = moving.velocity.value_or(Vec3::Zero()); v.squaredNorm() > 0) {
+  if (const Vec3& v = mover.velocity; v.squaredNorm() > 0) {
     // Out of its way, never along it: as fast as the vehicle it would take it along for ever.
     const Vec3 aside = away - v * (std::max(0.0, away.dot(v)) / v.squaredNorm());
     away = aside.norm() > 0.01 * away.norm() ? aside : away;

@@ -15,9 +15,12 @@ FieldPilot::FieldPilot(const Params& params, const Request& request)
       step_far_(params.step_far_m.value.value_or(params.influence_m / 6)),
       step_near_(params.step_near_m.value.value_or(params.influence_m / 30)),
       required_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-      start_to_goal_(std::max((request.goal.position - request.start.position).norm(), 1e-6)) {
+      start_to_goal_(std::max((request.goal.position - request.start.position).norm(), 1e-6)),
+      outlook_(request_, required_, 0.01 * params.influence_m, params.reaction_s),
+      escape_(request_) {
   if (params.variant != Variant::improved) {
     p_.turned_repulsion = p_.stronger_goal = p_.two_steps = p_.turn_limit = false;
+    p_.side = Side::field;
   }
 }
 
@@ -30,8 +33,13 @@ PilotStep FieldPilot::do_step(const Observation& seen) {
   }
   if (no_progress()) {
     ++local_minima_;
-    return {seen.state, PilotStep::Outcome::stuck,
-            "a local minimum of the field: many steps, hardly any way"};
+    const bool again = p_.side == Side::field || insists();
+    trap_ = here_;
+    if (again) {
+      passing_ = Passing::nothing;
+      return {seen.state, PilotStep::Outcome::stuck,
+              "a local minimum of the field: many steps, hardly any way"};
+    }
   }
   if (const auto last = last_leg(seen)) {
     return *last;
@@ -48,13 +56,15 @@ Counters FieldPilot::do_counters() const {
   return {{"local_minima", local_minima_},
           {"oscillations", oscillations_},
           {"clamp_yielded", clamp_yielded_},
-          {"limits_yielded", limits_yielded_}};
+          {"limits_yielded", limits_yielded_},
+          {"escapes", escapes_}};
 }
 
 void FieldPilot::observe(const Observation& seen) {
   // Shares without owning, and so without allocating: the world outlives the step.
   request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), seen.world);
   request_.goal = seen.goal;
+  seen_s_ = seen.state.time_s;
   here_ = seen.state.position;
   const double flown = seen.state.velocity.norm();
   moves_ = flown > 0;
@@ -65,11 +75,14 @@ void FieldPilot::observe(const Observation& seen) {
   if (moves_) {
     before_ = here_ - seen.state.velocity;
   }
+  moving_ = seen.moving;
   double clearance = seen.world->clearance(here_);
+  room_ = std::clamp(clearance - required_ - kLengthTolerance, 0.0, outlook_.margin());
   for (const SensedObstacle& moving : seen.moving) {
     clearance = std::min(clearance, (here_ - moving.position).norm() - moving.radius);
   }
   speed_ = request_.vehicle.speed_at(clearance);
+  outlook_.see(seen, speed_);
   const double wanted = p_.two_steps && clearance > speed_ * p_.reaction_s ? step_far_ : step_near_;
   step_ = std::min({wanted, seen.max_dt_s * speed_, request_.limits.max_leg});
   to_goal_ = seen.goal.position - here_;
@@ -84,16 +97,15 @@ double FieldPilot::turn_to(const Vec3& direction) const {
   return moves_ ? turn_angle_in_space(heading_, direction) : 0;
 }
 
-PilotStep FieldPilot::fly(const Observation& seen, const Vec3& to) {
-  const Vec3 way = to - here_;
+PilotStep FieldPilot::fly(const Observation& seen, const Leg& leg) {
+  const Vec3 way = leg.to - here_;
   const double length = way.norm();
   oscillations_ += turn_to(way) > kPi / 2;
   remember();
   flown_ += length;
-  const double dt = std::min(length / speed_, seen.max_dt_s);
-  return {{seen.state.time_s + dt, to, way / length * speed_},
-          PilotStep::Outcome::flying,
-          "follows the field"};
+  const double dt = std::min(leg.seconds, seen.max_dt_s);
+  return {
+      {seen.state.time_s + dt, leg.to, way / dt}, PilotStep::Outcome::flying, "follows the field"};
 }
 
 void FieldPilot::remember() {

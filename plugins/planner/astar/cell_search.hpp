@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/lattice_search.hpp"
 #include "altiplan/kit/pruning.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "search_parts.hpp"
 
 namespace altiplan::astar {
+
+using kit::Heuristic;
+using Settings = kit::SearchSettings;
 
 struct CellMemory {
   kit::ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 where the cell was not reached
@@ -265,14 +268,14 @@ class CellSearch {
   }
 
   PlanResult found(std::uint32_t last, bool at_goal) const {
-    Route route = route_to(
+    Route route = kit::route_to(
         last, request_, lattice_,
         [&](std::uint32_t index, int likely) { return step_to(index, likely); },
         [&](std::uint32_t index) { return g(index) == 0; });
     if (at_goal) {
-      end_at_goal(route, goal_, g(last) == goal_g_);
+      kit::end_at_goal(route, goal_, g(last) == goal_g_);
     }
-    PlanResult result = solved(std::move(route), progress_, lattice_, rules_);
+    PlanResult result = kit::solved(std::move(route), progress_, lattice_, rules_);
     if (settings_.costs == kit::StepCosts::Scale::ratio) {
       result.message += ", lengths by ratios of whole numbers, up to " +
                         std::to_string(100 * costs_.error()) + " % off";
@@ -303,9 +306,9 @@ class CellSearch {
     }
     for_each_closed([&](const Cell& c) { rules_.candidates(c, kit::kHere); });  // counts refusals
     progress_.memory_full = memory_full();
-    result.message = explanation(result.status, progress_, request_, lattice_, rules_);
+    result.message = kit::explanation(result.status, progress_, request_, lattice_, rules_);
     result.proved = result.status == Status::no_route;
-    result.counters = counters(progress_, lattice_, rules_);
+    result.counters = kit::counters(progress_, lattice_, rules_);
     return result;
   }
 
@@ -363,6 +366,6 @@ class CellSearch {
   const GoalLink* near_goal_ = nullptr;  ///< where the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;
-  Progress progress_;
+  kit::Progress progress_;
 };
 }  // namespace altiplan::astar

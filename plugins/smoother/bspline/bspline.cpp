@@ -3,15 +3,18 @@
 //
 // Citation: C. de Boor: A Practical Guide to Splines, Springer, 1978; its use on thinned grid
 //   routes: paper 002 (fusion of constrained A*, smoothing and potential field).
-// Guarantees: every rule that the route kept is kept; the route never gets longer.
+// Guarantees: for no rule does the worst excess grow; the route never gets longer. A corner for
+//   which one of the reaches tried keeps every rule is rounded.
 // Complexity: O(corners · tries · samples) leg checks.
 // Deviations: the control polygon is the route with four more points around each corner, so that
-//   the curve lies on the legs but for a stretch of known length at each corner. There the curve
-//   is judged leg by leg; a corner that does not pass is tried nearer and nearer, and then left.
+//   the curve lies on the legs but for a stretch of known length at each corner, its reach. There
+//   the curve is judged leg by leg; a corner that does not pass is tried nearer and nearer, and
+//   then left. The circles of a curve grow with its reach and so do its cuts: under a limit of the
+//   turn radius the least reach that keeps it is tried last, and nothing below.
 // Symbols: C a corner, u and v the directions into and out of it, d the spacing of control points.
 #include <algorithm>
 
-#include "altiplan/check.hpp"
+#include "altiplan/kit/corners.hpp"
 #include "altiplan/kit/spline.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
@@ -35,36 +38,29 @@ struct Params {
   }
 };
 
-/// Appends the spline of the control points C - 2du, C - du, C, C + dv, C + 2dv: it begins and ends
-/// on the legs, in their directions.
-void append_curve(Route& out, const Vec3& c, const Vec3& u, const Vec3& v, double d, int samples) {
-  const kit::CubicSpline curve({c - 2 * d * u, c - d * u, c, c + d * v, c + 2 * d * v});
-  for (std::size_t piece = 0; piece < curve.pieces(); ++piece) {
-    for (int n = piece == 0 ? 0 : 1; n <= samples; ++n) {
-      const Vec3 p = curve.at(piece, double(n) / samples);
-      if ((p - out.back()).norm() > kLengthTolerance) {  // the curve before may end here
-        out.push_back(p);
-      }
+/// The spline of the control points C - 2du, C - du, C, C + dv, C + 2dv: it begins and ends on the
+/// legs, in their directions.
+Route curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int samples) {
+  const kit::CubicSpline spline({c - 2 * d * u, c - d * u, c, c + d * v, c + 2 * d * v});
+  Route curve = {spline.at(0, 0)};
+  for (std::size_t piece = 0; piece < spline.pieces(); ++piece) {
+    for (int n = 1; n <= samples; ++n) {
+      curve.push_back(spline.at(piece, double(n) / samples));
     }
   }
+  return curve;
 }
 
-/// Whether the points of `out` from `first` on, and the two legs of the route beyond (its waypoints
-/// from `next` on), keep the rules of legs.
-bool sound(const Route& out, std::size_t first, const Route& route, std::size_t next,
-           const Request& request) {
-  Route part(out.begin() + std::ptrdiff_t(first) - 1, out.end());
-  for (std::size_t i = next; i < std::min(next + 2, route.size()); ++i) {
-    part.push_back(route[i]);
+/// The least reach at which every circle through three points of the curve has the radius. (The
+/// curve leaves its legs in their direction, so that nothing bends where it begins and ends.)
+double reach_for(double radius, const kit::Corner& corner, int samples) {
+  const Route curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
+  double least = kInfinity;
+  for (std::size_t i = 0; i + 2 < curve.size(); ++i) {
+    least = std::min(least, radius_through(curve[i], curve[i + 1], curve[i + 2]));
   }
-  std::optional<Vec3> before = first >= 2 ? std::optional(out[first - 2]) : request.before_start();
-  for (std::size_t i = 0; i + 1 < part.size(); ++i) {
-    if (!leg_ok(before, part[i], part[i + 1], request)) {
-      return false;
-    }
-    before = part[i];
-  }
-  return true;
+  constexpr double kAboveRounding = 1 + 1e-9;
+  return radius / least * kAboveRounding;
 }
 
 class BSpline final : public Smoother {
@@ -73,53 +69,48 @@ class BSpline final : public Smoother {
 
  private:
   PlanResult do_smooth(const Route& route, const Request& request) const override {
-    const Route clean = without_repeats(route);
+    const double radius = request.limits.min_turn_radius;
+    kit::RoundedRoute rounded = kit::round_corners(
+        route, request,
+        [&](const kit::Corner& corner, int attempt) { return curve_of(corner, attempt, radius); });
     PlanResult result;
     result.status = Status::solved;
-    BudgetWatch watch(request.budget);
-    std::uint64_t attempts = 0;
-    std::int64_t rounded = 0;
-    // The points of `out`, then the waypoints still to come, are sound after every corner.
-    Route out = {clean.front()};
-    for (std::size_t i = 1; i + 1 < clean.size(); ++i) {
-      const Vec3 into = clean[i] - clean[i - 1];
-      const Vec3 from = clean[i + 1] - clean[i];
-      double reach =
-          std::min({into.norm() / 2, from.norm() / 2, params_.reach_m.value.value_or(kInfinity)});
-      const bool corner = turn_angle_in_space(into, from) > kAngleTolerance;
-      Route curved;
-      for (int attempt = 0; corner && attempt < params_.tries && curved.empty(); ++attempt) {
-        if (watch.spent(attempts)) {
-          result.budget_hit = true;
-          break;
-        }
-        ++attempts;
-        curved = out;
-        append_curve(curved, clean[i], into.normalized(), from.normalized(), reach / 2,
-                     params_.samples);
-        if (!sound(curved, out.size(), clean, i + 1, request)) {
-          curved.clear();
-        }
-        reach /= 2;
-      }
-      rounded += !curved.empty();
-      if (curved.empty()) {
-        out.push_back(clean[i]);
-      } else {
-        out = std::move(curved);
-      }
-    }
-    out.push_back(clean.back());
-    // Rules of whole routes have the last word.
-    if (check(out, request).violations.size() > check(route, request).violations.size()) {
-      out = route;
-      rounded = 0;
-    }
-    result.route = std::move(out);
-    result.message =
-        std::to_string(rounded) + " of " + std::to_string(route.size() - 2) + " waypoints rounded";
-    result.counters = {{"expanded", std::int64_t(attempts)}, {"rounded", rounded}};
+    result.route = std::move(rounded.route);
+    result.budget_hit = rounded.budget_hit;
+    result.message = std::to_string(rounded.replaced) + " of " + std::to_string(route.size() - 2) +
+                     " waypoints rounded";
+    result.counters = {{"expanded", rounded.attempts}, {"rounded", rounded.replaced}};
     return result;
+  }
+
+  std::optional<Route> curve_of(const kit::Corner& corner, int attempt, double radius) const {
+    if (corner.turn == 0) {
+      return std::nullopt;
+    }
+    const double needed = radius > 0 ? reach_for(radius, corner, params_.samples) : 0;
+    const std::optional<double> reach = reach_of(corner, attempt, needed);
+    if (!reach) {
+      return std::nullopt;
+    }
+    return curve_at(corner.at, corner.into, corner.out_of, *reach / 2, params_.samples);
+  }
+
+  /// The widest reach halved once an attempt, while that is more than the turn radius needs; then
+  /// what it needs. Where halves of the legs are too short for that: all that is free of them.
+  std::optional<double> reach_of(const kit::Corner& corner, int attempt, double needed) const {
+    const double most = params_.reach_m.value.value_or(kInfinity);
+    const double widest = std::min(corner.fair_reach(), most);
+    if (needed > widest) {
+      const double free = std::min(
+          {corner.room_into, corner.last ? corner.leg_out_of : corner.leg_out_of / 2, most});
+      return attempt == 0 ? std::optional(needed <= free ? needed : widest) : std::nullopt;
+    }
+    const auto halved = [&](int times) { return std::ldexp(widest, -times); };
+    if (attempt < params_.tries && halved(attempt) > needed) {
+      return halved(attempt);
+    }
+    const bool before = attempt == 0 || (attempt <= params_.tries && halved(attempt - 1) > needed);
+    return needed > 0 && before ? std::optional(needed) : std::nullopt;
   }
 
   Params params_;

@@ -3,6 +3,7 @@
 
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
+#include "support/walks.hpp"
 
 namespace altiplan {
 namespace {
@@ -42,46 +43,111 @@ TEST(BSpline, ComesNearerWhereTheCurveWouldHitAndElseLeaves) {
   EXPECT_EQ(left.route, route);
 }
 
-TEST(BSpline, KeepsEveryRuleOfRandomRoutes) {
-  SplitMix64 random(21);
+void some_limits(Limits& limits, std::uint64_t seed) {
+  limits.min_clearance = seed % 3 == 0 ? 2 : 0;
+  limits.min_turn_radius = seed % 2 == 0 ? double(seed % 40) : 0;
+  limits.max_turn_space = seed % 5 == 0 ? radians(120) : kPi;
+  limits.max_climb = seed % 7 == 0 ? radians(50) : kPi / 2;
+  limits.min_leg = seed % 11 == 0 ? 4 : 0;
+}
+
+TEST(BSpline, NoRuleOfRandomRoutesGetsWorse) {
   int rounded = 0;
-  for (int world = 0; world < 200; ++world) {
-    std::vector<Shape> shapes;
-    const auto anywhere = [&] {
-      return Vec3(random.uniform() * 100, random.uniform() * 100, random.uniform() * 100);
-    };
-    for (int i = 0; i < 10; ++i) {
-      shapes.push_back(Sphere{anywhere(), 10});
-    }
-    Request request =
-        testing::request_in(testing::world_of(std::move(shapes)), {0, 0, 0}, {0, 0, 0}, kSpace);
-    request.limits.min_clearance = 2;
-    request.limits.max_turn_space = radians(120);
-    request.limits.max_climb = world % 2 == 0 ? radians(50) : kPi / 2;
-    request.limits.min_leg = world % 5 == 0 ? 4 : 0;
-    Route route;
-    for (int attempt = 0; attempt < 400 && route.size() < 8; ++attempt) {
-      const Vec3 p = anywhere();
-      const auto before = route.size() > 1 ? std::optional(route[route.size() - 2]) : std::nullopt;
-      if (route.empty() ? point_problem(p, request).empty()
-                        : leg_ok(before, route.back(), p, request)) {
-        route.push_back(p);
-      }
-    }
+  int rounded_unsound = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    const bool sound = seed % 4 != 0;
+    const auto [request, route] = testing::random_walk(
+        RandomStream(seed), 8, sound, [&](Limits& limits) { some_limits(limits, seed); });
     if (route.size() < 3) {
       continue;
     }
-    request.start.position = route.front();
-    request.goal.position = route.back();
-    ASSERT_TRUE(check(route, request).ok());
     const PlanResult result = make_smoother("bspline", "{samples: 3}")->smooth(route, request);
     ASSERT_EQ(result.status, Status::solved) << result.message;
-    const CheckResult judged = check(result.route, request);
-    ASSERT_TRUE(judged.ok()) << judged.violations.front().message;
+    ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
+    ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
     EXPECT_LE(length(result.route), length(route) + 1e-9);
-    rounded += result.route.size() > route.size();
+    (sound ? rounded : rounded_unsound) += result.route != route;
   }
-  EXPECT_GT(rounded, 100);
+  EXPECT_GT(rounded, 300);
+  EXPECT_GT(rounded_unsound, 30);
+}
+
+/// A route of one corner in empty space with this reach.
+Route rounded_at(const Route& route, double reach, int samples) {
+  Request request = testing::open_request(route);
+  const std::string yaml = "{tries: 1, reach_m: " + std::to_string(reach) +
+                           ", samples: " + std::to_string(samples) + "}";
+  return make_smoother("bspline", yaml)->smooth(route, request).route;
+}
+
+TEST(BSpline, ACornerThatCanBeRoundedIs) {
+  int possible = 0;
+  int impossible = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto [request, route] =
+        testing::random_walk(RandomStream(seed).sub("corner"), 3, true, [&](Limits& limits) {
+          limits.min_turn_radius = 0.5 + double(seed % 8);
+          limits.min_clearance = 1;
+        });
+    if (route.size() < 3) {
+      continue;
+    }
+    const double most = std::min((route[1] - route[0]).norm(), (route[2] - route[1]).norm()) / 2;
+    bool any = false;
+    for (int n = 1; n <= 60; ++n) {
+      any = any || check(rounded_at(route, most * n / 60, 4), request).ok();
+    }
+    const PlanResult result = make_smoother("bspline", "{tries: 12}")->smooth(route, request);
+    EXPECT_TRUE(!any || result.route != route) << seed;
+    EXPECT_TRUE(check(result.route, request).ok());
+    ++(any ? possible : impossible);
+  }
+  EXPECT_GT(possible, 50);
+  EXPECT_GT(impossible, 10);
+}
+
+TEST(BSpline, FindsTheReachBetweenTheBallAndTheRadius) {
+  // 50 m and 25 m of reach hit a ball inside the corner; 12.5 m would bend on 2.5 m.
+  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
+  Request request = testing::open_request(route);
+  request.limits.min_turn_radius = 4;
+  const auto smoothed_beside_ball = [&](double radius) {
+    const Shape ball{Sphere{Vec3(100, 0, 0) + std::sqrt(0.5) * 4.5 * Vec3(-1, 1, 0), radius}};
+    request.world = std::make_shared<const World>(testing::world_of({ball}));
+    const Route smoothed = make_smoother("bspline")->smooth(route, request).route;
+    EXPECT_TRUE(check(smoothed, request).ok());
+    return smoothed;
+  };
+  EXPECT_NEAR(*measure(smoothed_beside_ball(2), request).min_radius_m, 4, 1e-6);
+  EXPECT_EQ(smoothed_beside_ball(2.6), route);
+}
+
+TEST(BSpline, TakesMoreThanHalfALegForTheRadius) {
+  const Route route = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}};
+  Request request = testing::open_request(route);
+  request.limits.min_turn_radius = 5;  // of curves with a reach of 24.6 m
+  const PlanResult result = make_smoother("bspline")->smooth(route, request);
+  EXPECT_GT(result.route.size(), 3u);
+  EXPECT_TRUE(check(result.route, request).ok());
+  EXPECT_EQ(make_smoother("bspline", "{reach_m: 20}")->smooth(route, request).route, route);
+}
+
+TEST(BSpline, OddRoutes) {
+  const auto smoothed = [](const Route& route) {
+    Request request = testing::open_request(route);
+    request.limits.min_turn_radius = 1;
+    const PlanResult result = make_smoother("bspline")->smooth(route, request);
+    EXPECT_EQ(result.status, Status::solved);
+    EXPECT_EQ(testing::grown_excess(route, result.route, request), "");
+    return result.route;
+  };
+  const Vec3 p(3, 4, 5);
+  EXPECT_EQ(smoothed({p, p, p}), Route(3, p));
+  EXPECT_EQ(smoothed({p, {9, 9, 9}}).size(), 2u);
+  const Route back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
+  EXPECT_EQ(smoothed(back), back);
+  // A repeated point hides no corner.
+  EXPECT_GT(smoothed({{0, 0, 0}, {50, 0, 0}, {50, 0, 0}, {50, 50, 0}}).size(), 10u);
 }
 
 TEST(BSpline, StraightRoutesAndBudgets) {

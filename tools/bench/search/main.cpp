@@ -7,12 +7,14 @@
 #include <cmath>
 #include <iostream>
 #include <string>
+#include <string_view>
 
 #include "altiplan/kit/cell_layer.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/route.hpp"
 #include "host/config/config.hpp"
+#include "paper_worlds.hpp"
 #include "plain_astar.hpp"
 
 namespace altiplan::bench {
@@ -183,12 +185,19 @@ void add_rows() {
 }  // namespace altiplan::bench
 
 int main(int argc, char** argv) {
+  // The cities take a minute to build and compare.
+  const bool paper_alone = argc > 1 && std::string_view(argv[1]) == "--paper-worlds";
+  argc -= paper_alone;
+  argv += paper_alone;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
     return 2;
   }
   try {
-    altiplan::bench::add_rows();
+    altiplan::bench::add_paper_rows();
+    if (!paper_alone) {
+      altiplan::bench::add_rows();
+    }
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::cerr << "altiplan-search: " << error.what() << '\n';

@@ -16,17 +16,6 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-/// Builds of the program and of the library that it shares with its plugins.
-std::string host_build() {
-  static const std::string kBuild = [] {
-    Dl_info info{};
-    const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
-    return examine_library("/proc/self/exe").build +
-           (is_found ? " " + examine_library(info.dli_fname).build : std::string());
-  }();
-  return kBuild;
-}
-
 /// What the result of a pair depends on, but for the seed.
 std::string pair_text(const Config& config, const StudyBudget& budget) {
   std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
@@ -46,6 +35,16 @@ std::string key_of(const std::string& pair, const std::string& name, std::int64_
   return sha256_of(pair + name + "\n" + std::to_string(seed));
 }
 }  // namespace
+
+const std::string& host_build() {
+  static const std::string kBuild = [] {
+    Dl_info info{};
+    const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
+    return examine_library("/proc/self/exe").build +
+           (is_found ? " " + examine_library(info.dli_fname).build : std::string());
+  }();
+  return kBuild;
+}
 
 std::string name_of_run(const StudyPlan& plan, const PlannedRun& run) {
   return run_name(plan.pipelines[run.pipeline].name, plan.scenarios[run.scenario].name,

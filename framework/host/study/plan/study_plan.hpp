@@ -62,6 +62,9 @@ StudyPlan load_study(const std::filesystem::path& study, const StudySelection& s
 Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
                        const std::vector<std::filesystem::path>& plugin_path);
 
+/// Builds of the program and of the library that it shares with its plugins.
+const std::string& host_build();
+
 /// PlannedRun::key of the run of that name with this configuration.
 std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
                    std::int64_t seed);

@@ -162,6 +162,9 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     for (const Problem& problem : error.problems()) {
       all += (all.empty() ? "" : "; ") + problem.text();
     }
+    if (planned.is_on_trial) {
+      return {kBadParameters, all, "", ""};
+    }
     // All was read and checked when the study began.
     return {kNotDone, "its files have changed since the study began: " + all, "", ""};
   } catch (const std::bad_alloc&) {

@@ -28,7 +28,12 @@ inline constexpr const char* kNotDone = "not done";
 struct PlannedConfig {
   std::function<Config()> load;
   std::function<bool(const Config&)> is_current = [](const Config&) { return true; };
+  /// The configuration is on trial: what is wrong with it is the run's outcome, kBadParameters, and
+  /// says nothing of changed files.
+  bool is_on_trial = false;
 };
+
+inline constexpr const char* kBadParameters = "bad_parameters";
 
 /// The work of one run, in a worker: gets the configuration, runs it, and returns the payload that
 /// outcome_of reads.

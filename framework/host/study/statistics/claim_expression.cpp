@@ -114,15 +114,19 @@ class Expression {
     return found;
   }
 
-  /// PIPELINE.value: its index in the quantity's.
+  /// PIPELINE.value, or value where there are no pipelines: its index in the quantity's.
   std::size_t value() {
     ClaimValue named;
-    named.pipeline = pipeline();
-    if (!reader_.rest().starts_with('.')) {
-      reader_.expected("'.' and a value's name after the pipeline (as in " +
-                       pipelines_[named.pipeline] + ".length_m)");
+    if (pipelines_.empty()) {
+      named.name = bare_word();
+    } else {
+      named.pipeline = pipeline();
+      if (!reader_.rest().starts_with('.')) {
+        reader_.expected("'.' and a value's name after the pipeline (as in " +
+                         pipelines_[named.pipeline] + ".length_m)");
+      }
     }
-    do {
+    while (reader_.rest().starts_with('.')) {
       reader_.skip(1);
       const std::string_view word = reader_.peek_word();
       if (word.empty()) {
@@ -130,7 +134,7 @@ class Expression {
       }
       named.name += (named.name.empty() ? "" : ".") + std::string(word);
       reader_.skip(word.size());
-    } while (reader_.rest().starts_with('.'));
+    }
     std::vector<ClaimValue>& values = quantity_.values;
     const auto known = std::find(values.begin(), values.end(), named);
     const auto index = std::size_t(known - values.begin());
@@ -138,6 +142,15 @@ class Expression {
       values.push_back(std::move(named));
     }
     return index;
+  }
+
+  std::string bare_word() {
+    const std::string word(reader_.peek_word());
+    if (word.empty() || (word[0] >= '0' && word[0] <= '9')) {
+      reader_.expected("a number, '(' or a value's name");
+    }
+    reader_.skip(word.size());
+    return word;
   }
 
   std::size_t pipeline() {

@@ -59,6 +59,8 @@ double of_operands(Kind kind, double a, double b) {
   }
 }
 
+}  // namespace
+
 double evaluate(const ClaimExpression& expression, const std::vector<double>& values) {
   switch (expression.kind) {
     case Kind::number:
@@ -73,6 +75,7 @@ double evaluate(const ClaimExpression& expression, const std::vector<double>& va
   }
 }
 
+namespace {
 /// Pipelines of which `solved` stands alone in the outermost chain of `and`.
 void find_guards(const ClaimExpression& expression, const ClaimQuantity& quantity,
                  std::set<std::size_t>& guards) {

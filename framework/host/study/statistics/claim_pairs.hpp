@@ -17,6 +17,10 @@ struct ClaimPairs {
   std::size_t undefined = 0;           ///< pairs that have all values, and give 0 / 0 or the like
 };
 
+/// The expression's value; `values` has one entry per value of the quantity. What compares NaN, or
+/// comes of it, is NaN.
+double evaluate(const ClaimExpression& expression, const std::vector<double>& values);
+
 /// A pair counts where every value named has a number. `p.solved and …` is false where p did not
 /// solve: other values of p are then not asked for.
 ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity);

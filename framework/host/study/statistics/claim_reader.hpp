@@ -38,7 +38,8 @@ class ClaimReader {
   std::size_t at_ = 0;
 };
 
-/// Reads an expression, and adds the values that it names to the quantity.
+/// Reads an expression, and adds the values that it names to the quantity; without pipelines,
+/// values are named by themselves.
 ClaimExpression read_expression(ClaimReader& reader, const std::vector<std::string>& pipelines,
                                 ClaimQuantity& quantity);
 /// Throws unless it is a comparison, several of them, or a value that is always 0 or 1.

@@ -56,13 +56,17 @@ void expect_end(ClaimReader& reader, const std::string& after) {
     reader.expected("nothing after " + after);
   }
 }
-}  // namespace
 
-ClaimQuantity read_quantity(const std::string& text, const std::vector<std::string>& pipelines) {
+void expect_short(const std::string& text) {
   constexpr std::size_t kLongest = 4000;
   if (text.size() > kLongest) {
     ClaimReader::fail(kLongest, "longer than " + std::to_string(kLongest) + " characters");
   }
+}
+}  // namespace
+
+ClaimQuantity read_quantity(const std::string& text, const std::vector<std::string>& pipelines) {
+  expect_short(text);
   ClaimQuantity quantity;
   ClaimReader reader(text);
   read_function(reader, quantity);
@@ -78,6 +82,22 @@ ClaimQuantity read_quantity(const std::string& text, const std::vector<std::stri
   }
   if (quantity.values.empty()) {
     ClaimReader::fail(read.at, "expected a PIPELINE.value somewhere, found numbers only");
+  }
+  return quantity;
+}
+
+ClaimQuantity read_objective(const std::string& text) {
+  expect_short(text);
+  ClaimQuantity quantity;
+  quantity.function = ClaimQuantity::Function::mean;
+  ClaimReader reader(text);
+  quantity.expression = read_expression(reader, {}, quantity);
+  expect_end(reader, "the expression");
+  if (quantity.expression.is_logical()) {
+    ClaimReader::fail(quantity.expression.at, "expected a number, found a comparison");
+  }
+  if (quantity.values.empty()) {
+    ClaimReader::fail(0, "expected a value of a run somewhere, found numbers only");
   }
   return quantity;
 }

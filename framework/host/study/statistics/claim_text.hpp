@@ -71,6 +71,9 @@ struct ClaimRange {
 /// Reads FUNCTION(expression), which names pipelines out of `pipelines` (all variants of the
 /// study). Throws Error with what was expected where: "at character 8: expected …".
 ClaimQuantity read_quantity(const std::string& text, const std::vector<std::string>& pipelines);
+/// Reads an expression whose values are named by themselves: "length_m + 0.1 * flight.duration_s".
+/// Throws likewise.
+ClaimQuantity read_objective(const std::string& text);
 /// Reads "<= 0.95", "0.9..1.1" and the like; throws likewise.
 ClaimRange read_range(const std::string& text);
 }  // namespace altiplan::host

@@ -38,6 +38,10 @@ double studentized_range_quantile(double p, int k);
 
 // ---- Summaries
 
+/// To 12 significant digits: two routes along the same points, their legs added in another order,
+/// are equally long.
+double in_12_digits(double value);
+
 double mean(std::span<const double> sample);    ///< NaN of nothing
 double median(std::span<const double> sample);  ///< NaN of nothing
 /// Linear between order statistics (type 7 of Hyndman and Fan); NaN of nothing, or q not in [0, 1].

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <numeric>
 
 #include "host/study/statistics/statistics.hpp"
@@ -48,6 +51,13 @@ double ratio(double cost, double least) {
   return cost == least ? 1 : cost / least;  // infinite over zero
 }
 }  // namespace
+
+double in_12_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  std::from_chars(text, text + std::strlen(text), value);
+  return value;
+}
 
 double mean(std::span<const double> sample) {
   if (sample.empty()) {

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -12,6 +10,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/yaml.hpp"
+#include "host/study/statistics/statistics.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -34,15 +33,6 @@ std::map<std::string, std::size_t> gather(std::vector<StoredVariant>& all,
   return index;
 }
 
-/// To 12 significant digits: two routes along the same points, their legs added in another order,
-/// are equally long.
-double rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  std::from_chars(text, text + std::strlen(text), value);
-  return value;
-}
-
 RunRow row_of(const StoredRun& run, std::size_t store, const std::vector<std::string>& columns) {
   RunRow row;
   row.store = store;
@@ -56,7 +46,7 @@ RunRow row_of(const StoredRun& run, std::size_t store, const std::vector<std::st
   row.values.assign(columns.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [name, value] : run.values) {  // both are sorted
     row.values[std::size_t(std::lower_bound(columns.begin(), columns.end(), name) -
-                           columns.begin())] = rounded(value);
+                           columns.begin())] = in_12_digits(value);
   }
   return row;
 }

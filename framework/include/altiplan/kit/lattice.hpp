@@ -30,6 +30,13 @@ inline constexpr int kHere = 13;
 constexpr int direction(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }
 constexpr Cell offset(int d) { return {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1}; }
 constexpr int opposite(int d) { return kDirections - 1 - d; }
+/// The opposites of the directions.
+constexpr DirectionMask reversed(DirectionMask mask) {
+  mask = (mask & 0x55555555) << 1 | (mask >> 1 & 0x55555555);
+  mask = (mask & 0x33333333) << 2 | (mask >> 2 & 0x33333333);
+  mask = (mask & 0x0F0F0F0F) << 4 | (mask >> 4 & 0x0F0F0F0F);
+  return __builtin_bswap32(mask) >> (32 - kDirections);
+}
 
 /// How many bytes a search may keep, and how many it keeps for each cell.
 struct LatticeMemory {

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "altiplan/kit/lattice.hpp"
+#include "altiplan/kit/step_ground.hpp"
 
 namespace altiplan::kit {
 
@@ -42,21 +46,54 @@ class ALTIPLAN_API MoveRules {
   /// Directions out of c, reached in direction `in` (kHere: not by a step), that keep the rules
   /// answered from masks; the others still have to pass `leg_free`.
   DirectionMask candidates(const Cell& c, int in) {
+    const DirectionMask open = out_of(c);
+    refused_[by_turn] += __builtin_popcount(open & ~after(in));
+    return open & after(in);
+  }
+  /// Those that keep the rules whatever led to c.
+  DirectionMask out_of(const Cell& c) {
     DirectionMask open = steps_ & lattice_.inside(c);
     if (grid_ != nullptr) {
       const DirectionMask free = free_steps(blocked_around(*grid_, c), corner_);
       refused_[by_cells] += __builtin_popcount(open & ~free);
       open &= free;
     }
-    refused_[by_turn] += __builtin_popcount(open & ~after_[std::size_t(in)]);
-    return open & after_[std::size_t(in)];
+    return open;
   }
+  /// Directions of steps to c that keep them: a step back keeps what the step keeps.
+  DirectionMask into(const Cell& c) { return reversed(out_of(c)); }
+  /// Directions that may follow one of `in` by the limits on turns, and those that one may follow.
+  DirectionMask after(int in) const { return after_[std::size_t(in)]; }
+  DirectionMask before(int out) const { return before_[std::size_t(out)]; }
+  /// Whether a step may be refused for what led to its first cell, beside the turn.
+  bool looks_beyond_turns() const { return !constraints_.empty(); }
+  /// Counts directions that a turn has ruled out.
+  void count_turns(DirectionMask refused) { refused_[by_turn] += __builtin_popcount(refused); }
 
-  /// Whether the step a–b keeps the rules that depend on the place. The clearances are lower bounds
-  /// of the world's at a and b (-infinity: not known): where they suffice, no obstacle is asked
-  /// for.
-  bool leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length,
-                double clearance_a, double clearance_b);
+  /// What is known of a cell's distance to obstacles: a lower bound, sharpened while a search asks
+  /// for steps around the cell. (Of the ground StepGround knows more.)
+  struct KnownClearance {
+    float least = -std::numeric_limits<float>::infinity();
+    bool asked = false;
+
+    void learn(double bound) {
+      if (bound > least) {
+        least = std::nextafterf(float(bound), -std::numeric_limits<float>::infinity());
+      }
+    }
+  };
+
+  /// Whether the step a–b, from c in direction d, keeps the rules that depend on the place alone.
+  bool place_free(const Cell& c, int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                  KnownClearance& near_b);
+  /// Whether the constraints admit the leg after what led to it.
+  bool admits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+    return constraints_.empty() || admitted(before, a, b);
+  }
+  bool leg_free(const std::optional<Vec3>& before, const Cell& c, int d, const Vec3& a,
+                const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
+    return place_free(c, d, a, b, near_a, near_b) && admits(before, a, b);
+  }
 
   /// Whether the straight leg between the centres of two cells, for a vehicle that comes from
   /// `before`, keeps the rules of a leg: as leg_ok says, and with moves by cells if line_of_sight
@@ -68,9 +105,6 @@ class ALTIPLAN_API MoveRules {
   DirectionMask steps() const { return steps_; }
   /// The occupancy, with moves by cells; else null.
   const VoxelGrid* grid() const { return grid_.get(); }
-
-  /// Whether clearances of the nodes are of use to leg_free.
-  bool wants_clearance() const { return wants_clearance_; }
 
   /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
   /// that has a heading), counted by rule.
@@ -106,9 +140,14 @@ class ALTIPLAN_API MoveRules {
   };
   DirectionMask directions_kept();
   bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length);
-  bool keeps_place(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length,
-                   double least_clearance);
   bool keeps_ground(const Vec3& a, const Vec3& b);
+  bool keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b);
+  bool keeps_off(const World& layers, const Vec3& a, const Vec3& b);
+  bool keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                 KnownClearance& near_b);
+  void ask(KnownClearance& known, const Vec3& at) const;
+  void sort_layers();
+  void find_gaps();
   bool admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
 
   const Request& request_;
@@ -116,12 +155,21 @@ class ALTIPLAN_API MoveRules {
   CornerRule corner_;
   double needed_;
   double spare_;  ///< clearance beyond half a leg that makes it free for certain
+  bool asks_world_;
   bool wants_clearance_ = false;
   bool has_ground_rules_ = false;
   std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;
+  World obstacles_;    ///< the layers that are more than their ground
+  World bare_ground_;  ///< the others
+  std::optional<StepGround> ground_;
+  double certain_gap_ = 0;  ///< above ground by this, a leg keeps off it and keeps its rules
+  double needed_gap_ = -kInfinity;  ///< below this it does not
+  Rule too_low_ = by_ground;        ///< the rule that then refuses
+  bool has_ceiling_over_ground_ = false;
   DirectionMask steps_ = 0;
-  std::array<DirectionMask, kDirections> after_{};  ///< by incoming direction
+  std::array<DirectionMask, kDirections> after_{};   ///< by incoming direction
+  std::array<DirectionMask, kDirections> before_{};  ///< by outgoing direction
   std::array<std::int64_t, rule_count> refused_{};
   std::string refused_constraint_;
   std::string refused_layer_;

@@ -41,6 +41,9 @@ class ALTIPLAN_API ObstacleSet {
 ALTIPLAN_API Drawing drawing_of(const std::vector<Shape>& shapes,
                                 Drawn::Role role = Drawn::Role::obstacle);
 
+/// The discs around the shapes, seen from above.
+ALTIPLAN_API std::vector<Threat> threats_of(const std::vector<Shape>& shapes);
+
 /// An environment that is a set of shapes.
 class ALTIPLAN_API ShapeLayer : public Environment {
  public:
@@ -58,6 +61,7 @@ class ALTIPLAN_API ShapeLayer : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override { set_.rasterize(grid); }
   double do_slack() const override { return 0; }
+  std::vector<Threat> do_threats() const override { return threats_of(set_.shapes()); }
   std::optional<Drawing> do_drawing() const override { return drawing_of(set_.shapes()); }
 
   ObstacleSet set_;

@@ -32,8 +32,43 @@ class OpenList {
 
   void push(double f, double g, std::uint32_t node) {
     const Entry entry{std::floor(f * per_quantum_ + 0.5), g, node};
-    std::size_t at = entries_.size();
     entries_.push_back(entry);
+    lift(entries_.size() - 1, entry);
+  }
+
+  Entry pop() {
+    const Entry first = entries_.front();
+    const Entry last = entries_.back();
+    entries_.pop_back();
+    const std::size_t count = entries_.size();
+    if (count == 0) {
+      return first;
+    }
+    // The hole goes down to a leaf, where the last entry nearly always belongs, and up from there.
+    std::size_t at = 0;
+    std::size_t child = 1;
+    for (; child + 4 <= count; child = 4 * at + 1) {
+      const std::size_t left = child + before(entries_[child + 1], entries_[child]);
+      const std::size_t right = child + 2 + before(entries_[child + 3], entries_[child + 2]);
+      const std::size_t best = before(entries_[right], entries_[left]) ? right : left;
+      entries_[at] = entries_[best];
+      at = best;
+    }
+    if (child < count) {
+      std::size_t best = child;
+      while (++child < count) {
+        best = before(entries_[child], entries_[best]) ? child : best;
+      }
+      entries_[at] = entries_[best];
+      at = best;
+    }
+    lift(at, last);
+    return first;
+  }
+
+ private:
+  /// Puts the entry where it belongs on the way from there to the top.
+  void lift(std::size_t at, const Entry& entry) {
     while (at > 0) {
       const std::size_t parent = (at - 1) / 4;
       if (!before(entry, entries_[parent])) {
@@ -45,43 +80,11 @@ class OpenList {
     entries_[at] = entry;
   }
 
-  Entry pop() {
-    const Entry first = entries_.front();
-    const Entry last = entries_.back();
-    entries_.pop_back();
-    const std::size_t count = entries_.size();
-    if (count == 0) {
-      return first;
-    }
-    std::size_t at = 0;
-    while (true) {
-      const std::size_t begin = 4 * at + 1;
-      if (begin >= count) {
-        break;
-      }
-      const std::size_t end = begin + 4 < count ? begin + 4 : count;
-      std::size_t best = begin;
-      for (std::size_t child = begin + 1; child < end; ++child) {
-        if (before(entries_[child], entries_[best])) {
-          best = child;
-        }
-      }
-      if (!before(entries_[best], last)) {
-        break;
-      }
-      entries_[at] = entries_[best];
-      at = best;
-    }
-    entries_[at] = last;
-    return first;
-  }
-
- private:
+  /// Without branches: which of two children comes first no processor can guess.
   static bool before(const Entry& a, const Entry& b) {
-    if (a.f != b.f) {
-      return a.f < b.f;
-    }
-    return a.g != b.g ? a.g > b.g : a.node < b.node;
+    const int by_node = a.node < b.node;
+    const int by_g = int(a.g > b.g) | (int(a.g == b.g) & by_node);
+    return (int(a.f < b.f) | (int(a.f == b.f) & by_g)) != 0;
   }
   std::vector<Entry> entries_;
   double per_quantum_ = 1;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "host/study/report/text.hpp"
+#include "host/tune/tune_report.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using report::Anchor;
+using report::Axis;
+using report::Canvas;
+using report::pixels;
+
+constexpr double kLeft = 66;
+constexpr double kRight = report::kFigureWidth - 14;
+constexpr double kTop = 12;
+constexpr double kBottom = 220;
+
+/// By iteration, from the first.
+struct Curves {
+  std::vector<double> best;  ///< so far; infinite while all has failed
+  std::vector<double> mean;  ///< of the iteration's evaluations that have not failed; NaN of none
+};
+
+Curves curves_of(const Tuning& tuning) {
+  Curves curves;
+  std::vector<std::size_t> counts;
+  for (const Evaluation& evaluation : tuning.evaluations) {
+    if (evaluation.iteration == 0) {
+      continue;
+    }
+    if (evaluation.iteration > curves.best.size()) {
+      curves.best.push_back(curves.best.empty() ? kInfinity : curves.best.back());
+      curves.mean.push_back(0);
+      counts.push_back(0);
+    }
+    curves.best.back() = std::min(curves.best.back(), evaluation.score);
+    if (std::isfinite(evaluation.score)) {
+      curves.mean.back() += evaluation.score;
+      ++counts.back();
+    }
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    curves.mean[i] = counts[i] > 0 ? curves.mean[i] / double(counts[i]) : std::nan("");
+  }
+  return curves;
+}
+
+void draw(Canvas& canvas, const std::vector<double>& curve, const Axis& along, const Axis& up,
+          std::size_t series) {
+  std::string d;
+  bool is_drawn = false;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (std::isfinite(curve[i])) {
+      d += (is_drawn ? "L" : "M") + pixels(along(double(i + 1))) + " " + pixels(up(curve[i]));
+    }
+    is_drawn = std::isfinite(curve[i]);
+  }
+  if (!d.empty()) {
+    canvas.path(d, report::series_line(series));
+  }
+}
+
+void draw_left(Canvas& canvas, const Axis& up) {
+  for (const Axis::Tick& tick : up.ticks()) {
+    canvas.line(kLeft, up(tick.value), kRight, up(tick.value), "hair");
+    canvas.text(kLeft - 6, up(tick.value) + 4, tick.label, "quiet", Anchor::end);
+  }
+}
+}  // namespace
+
+report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning) {
+  const Curves curves = curves_of(tuning);
+  std::vector<double> all = curves.mean;
+  all.insert(all.end(), curves.best.begin(), curves.best.end());
+  all.push_back(tuning.as_it_is().score);
+  const Axis up = Axis::around(all, kBottom, kTop);
+  const Axis along(1, std::max(2.0, double(curves.best.size())), false, kLeft, kRight);
+  Canvas canvas;
+  draw_left(canvas, up);
+  report::draw_bottom(canvas, along, kTop, kBottom, "iteration");
+  if (std::isfinite(tuning.as_it_is().score)) {
+    const double y = up(tuning.as_it_is().score);
+    canvas.line(kLeft, y, kRight, y, "reference");
+  }
+  draw(canvas, curves.mean, along, up, 1);
+  draw(canvas, curves.best, along, up, 0);
+  double y = kBottom + report::kAxisHeight + 20;
+  for (const auto& [series, words] :
+       {std::pair(0, "best so far"), std::pair(1, "mean of the iteration, failures left out")}) {
+    canvas.path("M" + pixels(kLeft) + " " + pixels(y - 4) + "h26",
+                report::series_line(std::size_t(series)));
+    canvas.text(kLeft + 34, y, words);
+    y += 18;
+  }
+  canvas.line(kLeft, y - 4, kLeft + 26, y - 4, "reference");
+  canvas.text(kLeft + 34, y, "the pipeline as it is");
+  const std::string metric = report::printable(plan.request.metric);
+  report::Grid numbers{{"iteration", "best", "mean"}, {}};
+  for (std::size_t i = 0; i < curves.best.size(); ++i) {
+    numbers.rows.push_back(
+        {std::to_string(i + 1), report::exact(curves.best[i]), report::exact(curves.mean[i])});
+  }
+  return {"convergence",
+          "Convergence of " + metric,
+          metric + " over " + report::counted(plan.tuned_on, "scenario") + ", by " +
+              plan.request.tuner + report::axis_label("", up),
+          report::kFigureWidth,
+          y + 12,
+          canvas.take(),
+          std::move(numbers)};
+}
+}  // namespace altiplan::host

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "field_outlook.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "altiplan/world.hpp"
+
+namespace apf {
+
+void Outlook::see(const Observation& seen, double speed) {
+  world_ = seen.world;
+  speed_ = speed;
+  if (seen.state.time_s > time_s_) {
+    before_s_ = time_s_;
+    count_before_ = count_;
+    std::copy_n(movers_.begin(), count_, before_.begin());
+  }
+  time_s_ = seen.state.time_s;
+  const auto gap = [&](const Mover& mover) {
+    return (mover.position - seen.state.position).norm() - mover.radius;
+  };
+  count_ = 0;
+  for (const SensedObstacle& moving : seen.moving) {
+    const std::size_t id = std::hash<std::string_view>()(moving.id);
+    const Mover mover{moving.position, velocity_of(moving, id), moving.radius + required_, id};
+    if (count_ < kMost) {
+      movers_[count_++] = mover;
+    } else if (const auto farthest = std::max_element(
+                   movers_.begin(), movers_.end(),
+                   [&](const Mover& a, const Mover& b) { return gap(a) < gap(b); });
+               gap(mover) < gap(*farthest)) {
+      *farthest = mover;
+    }
+  }
+}
+
+Vec3 Outlook::velocity_of(const SensedObstacle& moving, std::size_t id) const {
+  if (moving.velocity) {
+    return *moving.velocity;
+  }
+  const auto end = before_.begin() + std::ptrdiff_t(count_before_);
+  const auto was =
+      std::find_if(before_.begin(), end, [&](const Mover& mover) { return mover.id == id; });
+  const double passed = time_s_ - before_s_;
+  return was == end || !(passed > 0) ? Vec3(0, 0, 0)
+                                     : Vec3((moving.position - was->position) / passed);
+}
+
+double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, double room) const {
+  double first = kInfinity;
+  for (const Mover& mover : movers()) {
+    const Vec3 r = from - mover.position - mover.velocity * after;
+    const Vec3 w = velocity - mover.velocity;
+    const double closing = -r.dot(w);
+    if (closing <= 0) {
+      continue;  // they part
+    }
+    const double core = mover.radius + room;
+    const double apart = r.squaredNorm() - core * core;
+    if (apart <= 0) {
+      return 0;
+    }
+    const double root = closing * closing - w.squaredNorm() * apart;
+    if (root > 0) {
+      first = std::min(first, apart / (closing + std::sqrt(root)));
+    }
+  }
+  return first;
+}
+
+bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
+  const auto& least = request_.limits.min_ground_clearance;
+  return request_.volume.contains(b, kLengthTolerance) && world_->ground_below(a, b) &&
+         !world_->blocked(a, b, room) && (!least || world_->ground_gap(a, b, *least) >= *least);
+}
+
+std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Vec3& velocity,
+                                        double room, double least_s) const {
+  double until = least_s;
+  for (std::size_t i = 0; i < count_ && until < kInfinity;) {
+    const Span span = in_the_way(movers_[i], from, after, velocity, room);
+    const bool inside = span.begins <= until && until < span.ends;
+    until = inside ? span.ends : until;
+    i = inside ? 0 : i + 1;  // now it may be in the way of one looked at before
+  }
+  return until < kInfinity && contact(from, after, velocity, room) > until &&
+                 is_open(from, from + velocity * until)
+             ? std::optional(until)
+             : std::nullopt;
+}
+
+Outlook::Span Outlook::in_the_way(const Mover& mover, const Vec3& from, double after,
+                                  const Vec3& velocity, double room) const {
+  const double pace = mover.velocity.norm();
+  if (pace == 0) {
+    return {};
+  }
+  const Vec3 onward = mover.velocity / pace;
+  const Vec3 r = from - mover.position - mover.velocity * after;
+  const double ahead = r.dot(onward);
+  const double gains = velocity.dot(onward) - pace;
+  if (ahead <= 0 && gains <= 0) {
+    return {};  // behind it for good
+  }
+  const Vec3 off = r - onward * ahead;
+  const Vec3 aside = velocity - onward * velocity.dot(onward);
+  const double core = mover.radius + room;
+  const double a = aside.squaredNorm();
+  const double b = off.dot(aside);
+  const double outside = off.squaredNorm() - core * core;
+  Span span{-kInfinity, kInfinity};
+  if (a < 1e-12 * speed_ * speed_) {
+    if (outside >= 0) {
+      return {};
+    }
+  } else {
+    const double root = b * b - a * outside;
+    if (root <= 0) {
+      return {};
+    }
+    span = {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a};
+  }
+  if (gains > 0) {
+    span.begins = std::max(span.begins, -ahead / gains);
+  } else if (gains < 0) {
+    span.ends = std::min(span.ends, -ahead / gains);
+  }
+  return span;
+}
+}  // namespace apf

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "altiplan/local_planner.hpp"
+
+namespace apf {
+using namespace altiplan;
+
+/// A moving obstacle: a sphere that is taken to fly on as it does.
+struct Mover {
+  Vec3 position{0, 0, 0};
+  Vec3 velocity{0, 0, 0};
+  double radius = 0;  ///< with what the vehicle keeps off anything
+  std::size_t id = 0;
+};
+
+/// What is seen in one step, and what it means for a straight flight.
+class Outlook {
+ public:
+  /// `margin`: metres kept off what moves, beyond the clearance required.
+  Outlook(const Request& request, double required, double margin, double reaction_s)
+      : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
+
+  void see(const Observation& seen, double speed);
+
+  std::span<const Mover> movers() const { return {movers_.data(), count_}; }
+  double margin() const { return margin_; }
+  double reaction_s() const { return reaction_s_; }
+
+  /// Seconds until a flight begun `after` seconds from now comes within `room` of a mover that it
+  /// does not part from; infinite where it never does.
+  double contact(const Vec3& from, double after, const Vec3& velocity, double room) const;
+  /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
+  /// the ground.
+  bool is_open(const Vec3& a, const Vec3& b, double room) const;
+  bool is_open(const Vec3& a, const Vec3& b) const { return is_open(a, b, required_); }
+  /// Seconds, no fewer than `least_s`, that such a flight takes to a place where no mover comes any
+  /// more, as long as all fly on as they do; none where it leads to none, or meets something
+  /// before.
+  std::optional<double> escape_s(const Vec3& from, double after, const Vec3& velocity, double room,
+                                 double least_s) const;
+
+ private:
+  /// Where it is not observed: from where it was seen last.
+  Vec3 velocity_of(const SensedObstacle& moving, std::size_t id) const;
+  struct Span {
+    double begins = kInfinity;
+    double ends = kInfinity;
+  };
+  /// When, in seconds of the flight, it is where the mover will come later.
+  Span in_the_way(const Mover& mover, const Vec3& from, double after, const Vec3& velocity,
+                  double room) const;
+
+  static constexpr std::size_t kMost = 256;  ///< the nearest of more
+
+  const Request& request_;
+  double required_;
+  double margin_;
+  double reaction_s_;
+  const World* world_ = nullptr;
+  double speed_ = 0;
+  double time_s_ = 0;
+  double before_s_ = 0;
+  std::size_t count_ = 0;
+  std::size_t count_before_ = 0;
+  std::array<Mover, kMost> movers_{};
+  std::array<Mover, kMost> before_{};
+};
+}  // namespace apf

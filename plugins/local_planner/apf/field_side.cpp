@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/world.hpp"
+#include "field_pilot.hpp"
+
+namespace apf {
+namespace {
+/// Another side than the one chosen is taken where the way past it is no longer than this share: a
+/// choice for good may be wrong, one that follows every change goes to and fro.
+constexpr double kMuchShorter = 0.8;
+constexpr int kMostParts = 32;
+constexpr int kParts = 8;  ///< of the way aside, after each of which the rest may be straight
+
+Passing opposite(Passing passing) {
+  switch (passing) {
+    case Passing::left:
+      return Passing::right;
+    case Passing::right:
+      return Passing::left;
+    case Passing::above:
+      return Passing::below;
+    case Passing::below:
+      return Passing::above;
+    case Passing::nothing:
+      break;
+  }
+  return passing;
+}
+
+double climb_of(const Vec3& way) { return std::atan2(way.z(), std::hypot(way.x(), way.y())); }
+}  // namespace
+
+Vec3 FieldPilot::way_around(const Observation& seen) {
+  const double reach = std::min(to_target_.norm(), target_);
+  const Vec3 way = to_target_.normalized() * reach;
+  if (is_free_way(here_, 0, way)) {
+    passing_ = insists() ? passing_ : Passing::nothing;
+    return to_target_;
+  }
+  Detour detour = passing_ == Passing::nothing ? Detour{} : past(way, passing_, kInfinity);
+  if (passing_ == Passing::nothing || !insists()) {
+    detour = shorter_than(detour, seen, way);
+  }
+  if (!detour.aside) {
+    detour = past(way, opposite(detour.passing), kInfinity);
+  }
+  passing_ = detour.passing;
+  return detour.aside.value_or(to_target_);
+}
+
+double FieldPilot::length_along(Passing passing) const {
+  const Vec3 target = here_ + to_target_;
+  const int sign = passing == Passing::left ? 1 : -1;
+  Vec3 at = here_;
+  double flown = 0;
+  int turn = 1;
+  for (int part = 0; part < kMostParts; ++part) {
+    const Vec3 left = target - at;
+    const Vec3 way = left.normalized() * std::min(left.norm(), target_);
+    if (is_free_way(at, flown / speed_, way)) {
+      return flown + left.norm();
+    }
+    turn = std::max(1, turn - 3);  // beside what is passed the turns follow each other closely
+    while (turn <= Fan::kHalf && !is_free_way(at, flown / speed_, fan_.turned(way, sign * turn))) {
+      ++turn;
+    }
+    if (turn > Fan::kHalf) {
+      return kInfinity;
+    }
+    const Vec3 on = fan_.turned(way, sign * turn) / 4;
+    at += on;
+    flown += on.norm();
+  }
+  return flown + (target - at).norm();
+}
+
+FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observation& seen,
+                                            const Vec3& way) {
+  const bool first = chosen.passing == Passing::nothing;
+  const double most = first ? kInfinity : kMuchShorter * chosen.length;
+  if (most <= way.norm()) {
+    return chosen;  // straight through would not be so much shorter
+  }
+  const Detour left = past(way, Passing::left, most);
+  const Detour right = past(way, Passing::right, first ? most : std::min(most, left.length));
+  Detour best = left.length < right.length ? left : right;
+  if (left.length == right.length && (first || left.length < most)) {
+    sum_up(seen);
+    best = bearing_change(way, force_) >= 0 ? left : right;
+  }
+  if (first) {
+    const double along_left = length_along(Passing::left);
+    const double along_right = length_along(Passing::right);
+    if (along_left != along_right) {
+      best = along_left < along_right ? left : right;
+    }
+  }
+  for (const Passing passing : {Passing::above, Passing::below}) {
+    const Detour detour = past(way, passing, std::min(most, best.length));
+    if (detour.length < best.length) {
+      best = detour;
+    }
+  }
+  return first || best.length < most ? best : chosen;
+}
+
+bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) const {
+  const double length = way.norm();
+  return length == 0 || (outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
+                             length / speed_ &&
+                         outlook_.is_open(from, from + way, required_ + room_));
+}
+
+FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double most) const {
+  Detour detour{passing, least_turned(way, passing, most), kInfinity};
+  if (detour.aside) {
+    const Vec3& aside = *detour.aside;
+    detour.length = 2 * aside.norm() + (way - aside).norm();
+    for (int i = 1; i <= kParts; ++i) {
+      const Vec3 on = aside * (double(i) / kParts);
+      if (is_free_way(here_ + on, on.norm() / speed_, way - on)) {
+        detour.length = on.norm() + (way - on).norm();
+        break;
+      }
+    }
+  }
+  return detour;
+}
+
+std::optional<Vec3> FieldPilot::least_turned(const Vec3& way, Passing passing, double most) const {
+  const bool level = passing == Passing::left || passing == Passing::right;
+  const int sign = passing == Passing::left || passing == Passing::above ? 1 : -1;
+  constexpr int kClimbs = 4;
+  for (int k = 1; k <= (level ? Fan::kHalf : kClimbs); ++k) {
+    Vec3 turned = fan_.turned(way, sign * k);
+    if (!level) {
+      const double climb = sign * max_climb() * k / kClimbs;
+      const double flat = std::hypot(way.x(), way.y());
+      if (flat == 0 || sign * climb_of(way) >= sign * climb) {
+        continue;
+      }
+      turned = Vec3(way.x(), way.y(), flat * std::tan(climb)).normalized() * way.norm();
+    }
+    // The shortest that a flight so far aside can be; farther aside it is no shorter.
+    if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > most) {
+      return std::nullopt;
+    }
+    if (is_free_way(here_, 0, turned)) {
+      return turned;
+    }
+  }
+  return std::nullopt;
+}
+}  // namespace apf

@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/kit/lattice_search.hpp"
+#include "altiplan/kit/open_list.hpp"
+#include "altiplan/kit/scratch.hpp"
+
+namespace altiplan::bidirectional {
+
+/// A node of one side: a cell, and the direction of the step that leads to it (forward) or away
+/// from it (backward) on the way to that side's end.
+struct Arrival {
+  double g;       ///< cost of the way to that end
+  double length;  ///< of that way
+  std::uint32_t cell;
+  std::uint32_t from;    ///< the arrival before, toward that end
+  std::uint32_t beside;  ///< another arrival of this side at the cell
+  std::uint8_t along;    ///< that direction; kHere: linked to the end
+};
+
+/// What one side knows of a cell.
+struct Reached {
+  double g;                  ///< of its cheapest arrival
+  kit::DirectionMask taken;  ///< directions on from the cell that need no further arrival
+  std::uint32_t newest;      ///< of its arrivals
+  std::uint8_t along;        ///< of the cheapest
+  bool is_open;              ///< steps that no arrival may take are among `taken`
+};
+
+struct Node {
+  std::array<Reached, 2> by;
+  kit::MoveRules::KnownClearance clearance;
+  std::uint16_t stamp;
+};
+
+struct Memory {
+  kit::NodeStore<Node> nodes;
+  std::array<kit::OpenList, 2> open;
+  std::array<std::vector<Arrival>, 2> arrivals;
+};
+
+/// A* from both ends at once, by W. Pijls, H. Post: Yet Another Bidirectional Algorithm for Finding
+/// the Shortest Path (NBA*), Erasmus University Rotterdam, EI 2009-10.
+///
+/// The sides take turns, each until its least f rises. A node is opened by one of them at most; one
+/// that no better route can lead through, by what its own side estimates or by how far the other
+/// side has come, is left out. The search ends when the least f of a side is no better than the
+/// best meeting.
+///
+/// `by_heading`: nodes are cells with a direction, so that what lies beyond a node depends on the
+/// node alone, where rules look at two legs too; else a cell has its cheapest arrival only.
+class TwoSidedSearch : kit::LatticeSearch {
+ public:
+  TwoSidedSearch(const Request& request, const kit::SearchSettings& settings,
+                 const kit::Lattice& lattice, double best_cost, bool by_heading, Memory& memory)
+      : LatticeSearch(request, settings, lattice, best_cost),
+        to_start_(settings, lattice, request.start.position, 0, costs_.least_per_metre()),
+        by_heading_(by_heading),
+        quantum_(quantum()),
+        nodes_(memory.nodes),
+        open_(memory.open),
+        arrivals_(memory.arrivals) {}
+
+  kit::Found run() {
+    begin();
+    Status status = Status::no_route;
+    while (const std::optional<Side> side = next_side()) {
+      const kit::OpenList::Entry entry = open_[*side].pop();
+      if (is_settled(*side, entry.node) || leads_nowhere(*side, entry.node)) {
+        continue;
+      }
+      if (watch_.spent(progress_.expanded) || memory_full()) {
+        status = ended();
+        break;
+      }
+      expand(*side, entry.node);
+    }
+    const bool cut_short = status != Status::no_route;
+    if (meeting_[forward] != kNone) {
+      return with(route(meeting_[forward], meeting_[backward]), best_cost_, true, cut_short);
+    }
+    if (fallback_ != kNone) {
+      return with(route(fallback_, kNone), arrivals_[forward][fallback_].g, false, cut_short);
+    }
+    progress_.memory_full = memory_full();
+    kit::Found none =
+        without(status, (by_heading_ || !rules_.parent_mattered()) && lengths_prove());
+    none.result.message += by_heading_ ? "; searched by cell and heading" : "";
+    return none;
+  }
+
+ private:
+  enum Side : std::size_t { forward, backward };
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr Reached kUnreached = {kInfinity, 0, kNone, kit::kHere, false};
+  static constexpr Node kFresh = {{kUnreached, kUnreached}, {}, 0};
+  static Side other(Side side) { return side == forward ? backward : forward; }
+
+  void begin() {
+    nodes_.reset(lattice_.size());
+    for (const Side side : {forward, backward}) {
+      open_[side].clear(quantum_);
+      arrivals_[side].clear();
+      const Vec3& end = side == forward ? start_ : goal_;
+      for (const kit::Lattice::Link& link : estimate(other(side)).links()) {
+        const Vec3 there = lattice_.position(link.cell);
+        if (rules_.cell_blocked(link.cell) ||
+            (link.length > 0 &&
+             !(side == forward ? rules_.any_leg_ok(request_.before_start(), end, there)
+                               : rules_.any_leg_ok(std::nullopt, there, end)))) {
+          continue;
+        }
+        centred_[side] = link.length == 0;
+        nodes_.at(lattice_.index(link.cell), kFresh);
+        push(side, link.cell, there,
+             {link_cost(end, there, link.length), link.length, lattice_.index(link.cell), kNone,
+              kNone, kit::kHere});
+      }
+    }
+  }
+
+  /// Of the way that a side has to go.
+  const kit::Estimate& estimate(Side side) const { return side == forward ? to_goal_ : to_start_; }
+  /// Directions that may go on from an arrival.
+  kit::DirectionMask onward(Side side, int along) const {
+    return side == forward ? rules_.after(along) : rules_.before(along);
+  }
+
+  /// The side to go on with; nothing once there is no better meeting.
+  std::optional<Side> next_side() {
+    if (open_[forward].empty()) {
+      return std::nullopt;
+    }
+    if (open_[backward].empty()) {
+      // Only a cell within the goal's tolerance is left to be found.
+      const bool may_fall_back = meeting_[forward] == kNone && request_.goal.tolerance_m > 0;
+      return may_fall_back ? std::optional(forward) : std::nullopt;
+    }
+    for (const Side side : {forward, backward}) {
+      const Vec3& end = side == forward ? goal_ : start_;
+      if (!is_better(least(side) - settings_.weight_g * costs_.at(end))) {
+        return std::nullopt;
+      }
+    }
+    // A side goes on while its f stays the same: in the open one of them gets there alone.
+    if (open_[side_].top().f > level_) {
+      side_ = open_[forward].size() <= open_[backward].size() ? forward : backward;
+    }
+    level_ = open_[side_].top().f;
+    return side_;
+  }
+  /// Whether a route of that f is better than the best, by more than sums of costs are rounded.
+  bool is_better(double f) const {
+    return best_cost_ == kInfinity || f < settings_.weight_g * best_cost_ - 2 * quantum_;
+  }
+  /// Least f on a side's open list.
+  double least(Side side) const { return open_[side].top().f * quantum_; }
+
+  double evaluation_of(Side side, double g, const Cell& c, const Vec3& at) const {
+    return settings_.weight_g * (g + costs_.at(at)) + settings_.weight_h * estimate(side)(c);
+  }
+
+  void push(Side side, const Cell& c, const Vec3& at, Arrival arrival) {
+    ++progress_.generated;
+    const auto index = std::uint32_t(arrivals_[side].size());
+    Reached& reached = nodes_[arrival.cell].by[side];
+    arrival.beside = reached.newest;
+    reached.newest = index;
+    if (arrival.g < reached.g) {
+      reached.g = arrival.g;
+      reached.along = arrival.along;
+    }
+    open_[side].push(evaluation_of(side, arrival.g, c, at), arrival.g, index);
+    arrivals_[side].push_back(arrival);
+    meet(side, index, at);
+  }
+
+  /// Joins the arrival to those of the other side at its cell.
+  void meet(Side side, std::uint32_t index, const Vec3& here) {
+    const Arrival& arrival = arrivals_[side][index];
+    const std::vector<Arrival>& others = arrivals_[other(side)];
+    for (std::uint32_t at = nodes_[arrival.cell].by[other(side)].newest; at != kNone;
+         at = others[at].beside) {
+      const double cost = arrival.g + others[at].g;
+      if (cost >= best_cost_) {
+        continue;
+      }
+      if (arrival.length + others[at].length > longest_) {
+        progress_.too_long = true;
+        continue;
+      }
+      const Arrival& to = side == forward ? arrival : others[at];
+      const Arrival& away = side == forward ? others[at] : arrival;
+      if (join(to, away, here)) {
+        best_cost_ = cost;
+        meeting_ = {side == forward ? index : at, side == forward ? at : index};
+      }
+    }
+  }
+
+  /// Whether the vehicle may go on from an arrival of the forward side as one of the backward side
+  /// says.
+  bool join(const Arrival& to, const Arrival& away, const Vec3& here) {
+    if (away.along == kit::kHere && centred_[backward]) {
+      return true;
+    }
+    const std::optional<Vec3> from = before(to, here);
+    const Vec3 next = away.along == kit::kHere ? goal_ : Vec3(here + lattice_.step(away.along));
+    if (to.along == kit::kHere || away.along == kit::kHere) {
+      return rules_.any_leg_ok(from, here, next);
+    }
+    const bool may_turn = (rules_.after(to.along) >> away.along & 1) != 0;
+    rules_.count_turns(kit::DirectionMask(!may_turn));
+    return may_turn && rules_.admits(from, here, next);
+  }
+
+  /// Where the vehicle comes from at an arrival of the forward side.
+  std::optional<Vec3> before(const Arrival& arrival, const Vec3& here) const {
+    if (arrival.along != kit::kHere) {
+      return Vec3(here - lattice_.step(arrival.along));
+    }
+    return centred_[forward] ? request_.before_start() : std::optional<Vec3>(start_);
+  }
+
+  /// Whether nothing is left that the arrival may take, or the other side has opened its node.
+  bool is_settled(Side side, std::uint32_t index) const {
+    const Arrival& arrival = arrivals_[side][index];
+    const Node& node = nodes_[arrival.cell];
+    const Reached& own = node.by[side];
+    const Reached& there = node.by[other(side)];
+    if (own.is_open && (onward(side, arrival.along) & ~own.taken) == 0) {
+      return true;
+    }
+    // What the other side has opened has met this arrival, in a route that may be too long.
+    if (!there.is_open || arrival.along == kit::kHere || meeting_[forward] == kNone) {
+      return false;
+    }
+    const kit::DirectionMask opened = by_heading_ ? there.taken : onward(other(side), there.along);
+    return (opened >> arrival.along & 1) != 0;
+  }
+
+  /// Whether no route through the arrival is better than the best meeting.
+  bool leads_nowhere(Side side, std::uint32_t index) const {
+    if (best_cost_ == kInfinity || open_[other(side)].empty()) {
+      return false;
+    }
+    const Arrival& arrival = arrivals_[side][index];
+    const Cell c = lattice_.cell(arrival.cell);
+    const double at = costs_.at(lattice_.position(c));
+    // What the other side has not opened costs it at least this.
+    const double beyond = least(other(side)) - settings_.weight_h * estimate(other(side))(c) -
+                          settings_.weight_g * at;
+    return !is_better(settings_.weight_g * arrival.g + beyond);
+  }
+
+  void expand(Side side, std::uint32_t index) {
+    const Arrival arrival = arrivals_[side][index];  // pushes move it
+    Node& node = nodes_[arrival.cell];
+    Reached& own = node.by[side];
+    const Cell c = lattice_.cell(arrival.cell);
+    const Vec3 here = lattice_.position(c);
+    ++progress_.expanded;
+    if (side == forward) {
+      remember_nearest(here);
+      try_fallback(index, arrival, here);
+    }
+    if (request_.trace != nullptr) {
+      add_to_trace(side, index, arrival, c, here);
+    }
+    if (!own.is_open) {
+      own.is_open = true;
+      own.taken = ~(side == forward ? rules_.out_of(c) : rules_.into(c));
+    }
+    const kit::DirectionMask left = ~own.taken;
+    rules_.count_turns(left & ~onward(side, arrival.along));
+    for (kit::DirectionMask open = left & onward(side, arrival.along); open != 0;
+         open &= open - 1) {
+      take(side, index, arrival, node, c, here, __builtin_ctz(open));
+    }
+    if (!by_heading_) {
+      own.taken = ~kit::DirectionMask{0};
+      own.along = arrival.along;
+    }
+  }
+
+  /// Goes on from an arrival along the step of direction d, which the backward side takes back.
+  void take(Side side, std::uint32_t index, const Arrival& arrival, Node& node, const Cell& c,
+            const Vec3& here, int d) {
+    const int sign = side == forward ? 1 : -1;
+    const Cell o = kit::offset(d);
+    const Cell to = {c[0] + sign * o[0], c[1] + sign * o[1], c[2] + sign * o[2]};
+    const Vec3 there = lattice_.position(to);
+    Arrival next = {arrival.g + step_cost(d, here, there),
+                    arrival.length + lattice_.step_length(d),
+                    std::uint32_t(std::int64_t(arrival.cell) + sign * lattice_.stride(d)),
+                    index,
+                    kNone,
+                    std::uint8_t(d)};
+    if (is_too_long(side, next.length, there) ||
+        !is_better(settings_.weight_g * (next.g + estimate(side).at_least(there)))) {
+      return;
+    }
+    Node& neighbour = nodes_.at(next.cell, kFresh);
+    const bool is_free =
+        side == forward
+            ? rules_.place_free(c, d, here, there, node.clearance, neighbour.clearance)
+            : rules_.place_free(to, d, there, here, neighbour.clearance, node.clearance);
+    if (is_free && !admits(side, arrival, here, there)) {
+      return;  // another arrival may take it
+    }
+    node.by[side].taken |= kit::DirectionMask{1} << d;
+    if (is_free && !is_needless(side, neighbour.by[side], next)) {
+      push(side, to, there, next);
+    }
+  }
+
+  bool is_too_long(Side side, double length, const Vec3& at) {
+    if (side == forward) {
+      return too_long(length, at);
+    }
+    const bool beyond = length + (at - start_).norm() > longest_;
+    progress_.too_long = progress_.too_long || beyond;
+    return beyond;
+  }
+
+  /// What two legs in a row must keep beside the turn: forward the leg to `there` comes after the
+  /// arrival, backward the leg of the arrival comes after the one from `there`.
+  bool admits(Side side, const Arrival& arrival, const Vec3& here, const Vec3& there) {
+    if (side == forward) {
+      const std::optional<Vec3> from = before(arrival, here);
+      return rules_.admits(from, here, there) &&
+             (arrival.along != kit::kHere || !from || rules_.any_leg_ok(from, here, there));
+    }
+    if (arrival.along == kit::kHere) {
+      return centred_[backward] || rules_.any_leg_ok(there, here, goal_);
+    }
+    return rules_.admits(there, here, here + lattice_.step(arrival.along));
+  }
+
+  /// Whether another arrival at the cell can do all that this one can, as cheaply.
+  bool is_needless(Side side, const Reached& reached, const Arrival& arrival) const {
+    if (!by_heading_) {
+      return reached.g <= arrival.g || reached.is_open;
+    }
+    const kit::DirectionMask left = onward(side, arrival.along) & ~reached.taken;
+    return left == 0 ||
+           (reached.g <= arrival.g && reached.along != kit::kHere && !rules_.looks_beyond_turns() &&
+            (left & ~onward(side, reached.along)) == 0);
+  }
+
+  void try_fallback(std::uint32_t index, const Arrival& arrival, const Vec3& here) {
+    if (request_.goal.reached_at(here) && arrival.length <= longest_ &&
+        (fallback_ == kNone || arrival.g < arrivals_[forward][fallback_].g)) {
+      fallback_ = index;
+    }
+  }
+
+  /// Of this search, not of what the pool's memory has grown to.
+  bool memory_full() const {
+    std::size_t bytes = lattice_.size() * sizeof(Node);
+    for (const Side side : {forward, backward}) {
+      bytes += arrivals_[side].size() * sizeof(Arrival) +
+               open_[side].size() * sizeof(kit::OpenList::Entry);
+    }
+    return bytes > settings_.max_bytes;
+  }
+
+  Route route(std::uint32_t to, std::uint32_t away) const {
+    Route route;
+    const auto add = [&](const Arrival& arrival) {
+      route.push_back(lattice_.position(lattice_.cell(arrival.cell)));
+    };
+    for (std::uint32_t at = to; at != kNone; at = arrivals_[forward][at].from) {
+      add(arrivals_[forward][at]);
+    }
+    if (centred_[forward]) {
+      route.pop_back();
+    }
+    route.push_back(start_);
+    std::reverse(route.begin(), route.end());
+    if (away != kNone) {
+      for (std::uint32_t at = arrivals_[backward][away].from; at != kNone;
+           at = arrivals_[backward][at].from) {
+        add(arrivals_[backward][at]);
+      }
+      kit::end_at_goal(route, goal_, centred_[backward]);
+    }
+    return route;
+  }
+
+  void add_to_trace(Side side, std::uint32_t index, const Arrival& arrival, const Cell& c,
+                    const Vec3& here) const {
+    const auto id = [&](std::uint32_t at) {
+      return at == kNone ? std::int64_t{-1} : 2 * std::int64_t{at} + (side == backward);
+    };
+    request_.trace->add({TraceEvent::Kind::expanded, id(index), id(arrival.from), here,
+                         evaluation_of(side, arrival.g, c, here)});
+  }
+
+  kit::Estimate to_start_;
+  bool by_heading_;
+  double quantum_;  ///< of f
+  kit::NodeStore<Node>& nodes_;
+  std::array<kit::OpenList, 2>& open_;
+  std::array<std::vector<Arrival>, 2>& arrivals_;
+  Side side_ = forward;
+  double level_ = 0;               ///< f of that side, in quanta
+  std::array<bool, 2> centred_{};  ///< the side's end is the centre of its cell
+  std::array<std::uint32_t, 2> meeting_ = {kNone, kNone};  ///< arrivals that the best route joins
+  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal is out of reach
+};
+}  // namespace altiplan::bidirectional

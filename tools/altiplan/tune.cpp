@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "host/study/report/text.hpp"
+#include "host/study/run/run_values.hpp"
+#include "host/tune/tune_report.hpp"
+#include "progress_line.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using host::report::counted;
+using host::report::readable;
+
+struct Arguments {
+  host::TuneRequest request;
+  host::TuneOptions options;
+  host::Overrides overrides;  ///< of which only the plugin path is asked for
+  bool resume = false;        ///< what happens anyway
+};
+
+std::string line_of(const host::TuneProgress& progress) {
+  std::string line = std::to_string(progress.evaluations) + " of " +
+                     std::to_string(progress.expected) + " evaluations";
+  if (std::isfinite(progress.best)) {
+    line += ", best " + readable(progress.best, 6);
+  }
+  if (progress.runs > 0 && progress.runs_left > 0) {
+    line += ", " +
+            duration(progress.elapsed_s / double(progress.runs) * double(progress.runs_left)) +
+            " to go";
+  }
+  return line;
+}
+
+/// "-3.5 %", by how much the second differs.
+std::string change(double before, double now) {
+  if (!std::isfinite(before) || !std::isfinite(now) || before == 0) {
+    return "-";
+  }
+  const double percent = 100 * (now - before) / std::abs(before);
+  return (percent > 0 ? "+" : "") + fixed(percent, 2) + " %";
+}
+
+void print_row(const std::string& what, const std::string& before, const std::string& now,
+               const std::string& change) {
+  std::printf("  %-44s %14s %14s %10s\n", what.c_str(), before.c_str(), now.c_str(),
+              change.c_str());
+}
+
+void print_comparison(const char* what, const host::TunedComparison& made) {
+  if (made.scenarios == 0) {
+    return;
+  }
+  print_row("mean in " + counted(made.scenarios, "scenario") + " " + what,
+            readable(made.mean_before, 6), readable(made.mean_now, 6),
+            change(made.mean_before, made.mean_now));
+}
+
+std::string share_of(std::size_t part, std::size_t all) {
+  return std::to_string(part) + " (" + host::report::percent(double(part) / double(all)) + ")";
+}
+
+/// "altiplan run …", which repeats the score in the first scenario.
+std::string repeating_call(const host::TunePlan& plan, const std::string& folder) {
+  const host::Variant& scenario = plan.scenarios.front();
+  std::string call = "altiplan run " + host::report::shell(folder + "/tuned.yaml");
+  if (!scenario.file.empty()) {
+    call += " --scenario " + host::report::shell(scenario.file.string());
+  }
+  for (const std::string& set : scenario.set) {
+    call += " --set " + host::report::shell(set);
+  }
+  return call;
+}
+
+void print_table(const host::TunePlan& plan, const host::Tuning& tuning,
+                 const std::string& folder) {
+  const host::TuneSummary summary = host::summary_of(plan, tuning);
+  print_row(plan.request.metric, "as it is", "tuned", "change");
+  print_comparison("tuned on", summary.tuned_on);
+  print_comparison("held back", summary.held_back);
+  for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
+    const host::TunedParameter& parameter = plan.parameters[p];
+    const std::string& before = parameter.as_it_is;
+    std::string now = before;
+    if (tuning.best > 0) {
+      const std::string& set = tuning.tuned().assignments[p];
+      now = readable(std::stod(set.substr(set.find('=') + 1)), 6);
+    }
+    print_row(parameter.over.key, before, now, "");
+  }
+  std::printf("  %s, %s failed, %s on the plateau of the best score\n",
+              counted(summary.evaluations, "evaluation").c_str(),
+              share_of(summary.failed, std::max<std::size_t>(1, summary.evaluations)).c_str(),
+              share_of(summary.on_plateau, std::max<std::size_t>(1, summary.evaluations)).c_str());
+  std::printf("  tuned on: %s\n", summary.tuned_on.words.c_str());
+  if (summary.held_back.scenarios > 0) {
+    std::printf("  held back: %s\n", summary.held_back.words.c_str());
+  }
+  if (tuning.best == 0) {
+    std::printf(
+        "  nothing better than the pipeline as it is was found: tuned.yaml has its values\n");
+  }
+  std::printf("  %s\n", repeating_call(plan, folder).c_str());
+}
+
+int tune(Arguments arguments) {
+  const std::string folder = arguments.options.out.string();
+  const host::TunePlan plan = host::plan_tuning(arguments.request);
+  ProgressLine line;
+  arguments.options.progress = [&](const host::TuneProgress& progress) {
+    line.show(line_of(progress));
+  };
+  const host::Tuning tuning = host::run_tuning(plan, arguments.options);
+  line.clear();
+  if (tuning.damaged_lines > 0) {
+    warn(folder + "/runs.log: " + counted(tuning.damaged_lines, "line") +
+         " were damaged; their runs are done again");
+  }
+  if (tuning.is_interrupted) {
+    std::printf("%s: interrupted after %s, %s of this call: the same call goes on\n",
+                folder.c_str(), counted(tuning.evaluations.size() - 1, "evaluation").c_str(),
+                counted(tuning.runs_done, "run").c_str());
+    return kInterrupted;
+  }
+  host::write_tuning(plan, tuning, arguments.options.out);
+  std::printf("%s: %s done now in %s\n", folder.c_str(), counted(tuning.runs_done, "run").c_str(),
+              duration(tuning.elapsed_s).c_str());
+  print_table(plan, tuning, folder);
+  const auto& all = tuning.evaluations;
+  if (std::all_of(all.begin(), all.end(), [](const auto& each) { return each.failed > 0; })) {
+    warn("every evaluation failed: evaluations.csv says how");
+    return kNoRoute;
+  }
+  return kDone;
+}
+
+/// What Error says of a text, for the option that it stands in; "" where it is well.
+template <class Read>
+std::string problem_of(const Read& read) {
+  try {
+    read();
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+std::string metric_problem(const std::string& text) {
+  return problem_of([&] {
+    for (const host::ClaimValue& value : host::read_objective(text).values) {
+      if (const std::string why = host::why_no_value(value.name); !why.empty()) {
+        throw Error(why);
+      }
+    }
+  });
+}
+
+std::string seed_problem(const std::string& text) {
+  std::int64_t seed = -1;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool whole = error == std::errc() && stop == text.data() + text.size();
+  return whole && seed >= 0
+             ? ""
+             : "expected a whole number from 0 to 9223372036854775807, found '" + text + "'";
+}
+
+void add_what(CLI::App& command, host::TuneRequest& request) {
+  command.add_option("pipeline", request.pipeline, "pipeline to be tuned")->required();
+  command
+      .add_option("--over", request.over,
+                  "a parameter of a step and its range: KEY=LO..HI, KEY=log:LO..HI, or "
+                  "'KEY.{a,b}=simplex' for weights that sum to 1; may be given again")
+      ->required()
+      ->expected(1)
+      ->type_name("KEY=RANGE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--metric", request.metric,
+                  "what shall be least: a value of a run, or an expression of values and numbers "
+                  "with + - * / ( )")
+      ->required()
+      ->type_name("EXPRESSION")
+      ->check(metric_problem);
+  command
+      .add_option("--scenarios", request.scenarios,
+                  "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' with values as in a study "
+                  "(default: the pipeline's own)")
+      ->expected(1, -1)
+      ->type_name("FILE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--hold-out", request.hold_out,
+                  "scenarios held back, in which the result is compared with the pipeline as it is")
+      ->expected(1, -1)
+      ->type_name("FILE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_how(CLI::App& command, host::TuneRequest& request) {
+  command.add_option("--tuner", request.tuner, "plugin that searches (default pso)")
+      ->type_name("NAME");
+  command
+      .add_option("--set-tuner", request.set_tuner, "a parameter of the tuner; may be given again")
+      ->expected(1)
+      ->type_name("KEY=VALUE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check([](const std::string& text) {
+        const std::size_t equals = text.find('=');
+        return equals == 0 || equals == std::string::npos
+                   ? "expected KEY=VALUE, found '" + text + "'"
+                   : std::string();
+      });
+  command.add_option("--seed", request.seed, "of the tuner (default 0)")
+      ->type_name("N")
+      ->check(seed_problem);
+  command
+      .add_option("--evaluations", request.evaluations,
+                  "at most so many points, whatever the tuner asks for")
+      ->check(CLI::Range(1, 100000000));
+  command
+      .add_option("--penalty", request.penalty, "what a run that fails counts (default: infinity)")
+      ->check(number_from(-1e300, 1e300));
+  command
+      .add_option("--wall-s", request.limits.wall_s, "a run is ended after that time (default 600)")
+      ->check(number_from(0.001, 1e9));
+  command
+      .add_option("--memory-mb", request.limits.memory_mb,
+                  "a run is ended at that much memory (default 4096)")
+      ->check(number_from(1, 1e9));
+}
+}  // namespace
+
+void add_tune(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "tune", "parameters of a pipeline by a tuner plugin; goes on where it was interrupted");
+  auto arguments = std::make_shared<Arguments>();
+  add_what(*command, arguments->request);
+  add_how(*command, arguments->request);
+  command->add_option("-o,--out", arguments->options.out, "folder of the results")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--jobs", arguments->options.jobs, "runs at a time (default 1)")
+      ->check(CLI::Range(1, 1024));
+  auto* fresh = command->add_flag("--fresh", arguments->options.fresh,
+                                  "throw away what the folder holds of a tuning");
+  command->add_flag("--resume", arguments->resume, "go on: what happens anyway")->excludes(fresh);
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command,
+              "altiplan tune configs/pipelines/fusion_paper_astar_angles.yaml --out tuned --jobs 2 "
+              "\\\n    --over 'steps.0.with.{weight_g,weight_h}=simplex' --metric length_m");
+  command->callback([&action, arguments] {
+    const std::string over = problem_of([&] { host::read_over(arguments->request.over); });
+    if (!over.empty()) {
+      throw CLI::ValidationError(over);
+    }
+    arguments->request.plugin_path = arguments->overrides.plugin_path;
+    action = [arguments] { return tune(*arguments); };
+  });
+}
+}  // namespace altiplan::cli
