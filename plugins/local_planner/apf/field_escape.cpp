@@ -26,10 +26,18 @@ bool Escape::find(const Outlook& outlook, const Instant& here, double speed, con
     farthest = std::max(farthest, (mover.position - here.at).norm() + mover.radius);
   }
   horizon_s_ = 2 * std::min(farthest, request_.vehicle.sensing_m) / speed;
-  step_s_ = std::max(2.0, 2 * horizon_s_ / kMostLegs);
-  next_look_s_ = here.time_s + kPause;
-  ends_safe_ = search(Aim::safe);
-  return ends_safe_ || search(Aim::lasting);
+  const double coarse = std::max(2.0, 2 * horizon_s_ / kMostLegs);
+  ends_safe_ = false;
+  for (int parts = 4; parts >= 1 && !ends_safe_; parts /= 2) {
+    step_s_ = coarse * parts / 4;
+    ends_safe_ = search(Aim::safe);
+  }
+  next_look_s_ = here.time_s + (ends_safe_ ? 0 : kPause);
+  if (ends_safe_) {
+    return true;
+  }
+  step_s_ = coarse;
+  return search(Aim::lasting);
 }
 
 bool Escape::search(Aim aim) {

@@ -17,7 +17,7 @@ struct Instant {
 };
 
 /// A way out among movers where no straight flight is one: a depth-first search over places and
-/// times on a lattice, each place tried for a straight way out; the
+/// times on a lattice, finer ones where that fails, each place tried for a straight way out; the
 /// way found is kept and flown until it ends or something new crosses it. It may turn sharply and
 /// fly slower than the vehicle can: it is what is left when nothing else is. All memory is taken at
 /// once, before the flight.
@@ -65,7 +65,7 @@ class Escape {
   static constexpr int kMostLegs = 64;
   static constexpr std::size_t kTable = 8192;
   static constexpr double kRoom = 0.05;
-  static constexpr double kPause = 3;  ///< seconds
+  static constexpr double kPause = 2;  ///< seconds
 
   const Request& request_;
   const Outlook* outlook_ = nullptr;
