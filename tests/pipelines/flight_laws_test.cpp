@@ -31,8 +31,9 @@ std::int64_t turns_above_limit(const host::FlightResult& result) {
   return sharp;
 }
 
-/// The routes of these worlds are straight, so every turn is the pilot's or a hand-over's.
-void hold_turns(std::uint64_t from, std::uint64_t to) {
+/// In how many flights the limit yields. The routes of these worlds are straight, so every turn is
+/// the pilot's or a hand-over's.
+int hold_turns(std::uint64_t from, std::uint64_t to) {
   int commanded = 0;
   int yielded = 0;
   for (std::uint64_t seed = from; seed < to; ++seed) {
@@ -47,10 +48,11 @@ void hold_turns(std::uint64_t from, std::uint64_t to) {
     EXPECT_EQ(turns_above_limit(result), counted) << "seed " << seed << ", " << world.tells;
   }
   EXPECT_GT(commanded, int(to - from) * 3 / 4);
-  EXPECT_GT(yielded, 0) << "no world so hard that the limit yields";
+  return yielded;
 }
-TEST(FlightLaws, EveryTurnAboveTheLimitIsCounted) { hold_turns(100, 112); }
-TEST(NightlyFlightLaws, EveryTurnAboveTheLimitIsCounted) { hold_turns(1, 1001); }
+TEST(FlightLaws, EveryTurnAboveTheLimitIsCounted) { hold_turns(1, 41); }
+// Among them worlds so hard that the limit yields; the pilot looks long for a way out of them.
+TEST(NightlyFlightLaws, EveryTurnAboveTheLimitIsCounted) { EXPECT_GT(hold_turns(1, 1001), 0); }
 
 struct Post {
   Cylinder shape;
