@@ -4,6 +4,7 @@
 
 #include "altiplan/kit/obstacle_set.hpp"
 #include "reference/moving_worlds.hpp"
+#include "support/instrumented.hpp"
 
 namespace altiplan::reference {
 namespace {
@@ -129,6 +130,9 @@ TEST(FlightLaws, MirroredHiddenPostsGiveMirroredFlights) {
 }
 
 TEST(FlightLaws, MirroredMoversGiveMirroredFlights) {
+  if (altiplan::testing::kInstrumented) {
+    GTEST_SKIP() << "a sanitizer takes minutes over it";
+  }
   int flown = 0;
   for (std::uint64_t seed = 200; seed < 240; ++seed) {
     SCOPED_TRACE(seed);
