@@ -214,11 +214,14 @@ TEST(EscapeSearch, ReachesTheGoalThroughTheGapOfAWall) {
 /// Rings with a gap or none, in disorder: about half can be left.
 Scene disordered(std::uint64_t seed) {
   RandomStream random = RandomStream(seed).sub("ring");
-  std::vector<Mover> movers =
-      ring(int(random.integer(7, 10)), random.uniform(250, 400), random.uniform(80, 130),
-           kSpeed * random.uniform(0.3, 1), int(random.integer(0, 1)));
+  // One statement a draw: compilers differ in the order in which they evaluate arguments.
+  const int count = int(random.integer(7, 10));
+  const double distance = random.uniform(250, 400);
+  const double radius = random.uniform(80, 130);
+  const double speed = kSpeed * random.uniform(0.3, 1);
+  std::vector<Mover> movers = ring(count, distance, radius, speed, int(random.integer(0, 1)));
   for (Mover& mover : movers) {
-    mover.at_0 += Vec3(random.uniform(-60, 60), random.uniform(-60, 60), 0);
+    mover.at_0 += Vec3{random.uniform(-60, 60), random.uniform(-60, 60), 0};
     mover.velocity *= random.uniform(0.5, 1.2);
   }
   return scene_with(movers);

@@ -171,6 +171,12 @@ class PoolRun {
       if (worker.busy() || waiting_.empty()) {
         continue;
       }
+      const bool last_try =
+          tries_.contains(waiting_.front()) && tries_[waiting_.front()] == kTries - 1;
+      if ((last_try || undisturbed_) && std::ranges::any_of(workers_, &PoolWorker::busy)) {
+        return;
+      }
+      undisturbed_ = last_try;
       WorkerTask task;
       task.batch = next_batch();
       for (const std::size_t job : task.batch) {
@@ -248,7 +254,8 @@ class PoolRun {
                                                                        : Ending::killed;
   }
 
-  /// Whether that may have been the work of another, and the job deserves another try.
+  /// Whether that may have been the work of another, and the job deserves another try: after the
+  /// others, and the last one while no other runs, so that what is of this job alone is told apart.
   bool try_again(const Ended& ended) {
     constexpr std::array kFromOutside = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
     const bool outside =
@@ -269,9 +276,13 @@ class PoolRun {
       last->signal = WIFSIGNALED(reaped.status) ? WTERMSIG(reaped.status) : 0;
       last->exit_code = WIFEXITED(reaped.status) ? WEXITSTATUS(reaped.status) : 0;
       const bool study_error = worker.error() != 0 && last->how != Ending::too_large;
-      if (!study_error && !try_again(*last)) {
-        ended_.push_back(std::move(*last));
+      if (!study_error) {
         ++known;
+        if (try_again(*last)) {
+          waiting_.push_back(last->job);
+        } else {
+          ended_.push_back(std::move(*last));
+        }
       }
     }
     const std::vector<std::size_t>& batch = worker.task().batch;
@@ -353,6 +364,7 @@ class PoolRun {
   double next_look_s_ = 0;
   double next_keep_s_ = 0;
   int stillborn_ = 0;
+  bool undisturbed_ = false;  ///< the job that was started last runs while no other does
   bool stopping_ = false;
   bool keep_threw_ = false;
 };
