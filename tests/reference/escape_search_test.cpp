@@ -231,7 +231,7 @@ TEST(EscapeSearch, AFinerLatticeFindsNoLess) {
   int none = 0;
   int found = 0;
   int more = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const Scene scene = disordered(seed);
     const Lattice coarse{4, 3, 16, 1};
     const bool coarsely = escape(scene, coarse, 30).found();
@@ -248,7 +248,7 @@ TEST(EscapeSearch, AFinerLatticeFindsNoLess) {
 
 TEST(EscapeSearch, OneMoverMoreLeavesNoMoreWays) {
   int lost = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Scene scene = disordered(seed);
     bool before = escape(scene, {}, 30).found();
     while (!scene.movers.empty()) {
