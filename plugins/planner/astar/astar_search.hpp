@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/lattice_search.hpp"
-#include "altiplan/kit/open_list.hpp"
 #include "altiplan/kit/scratch.hpp"
+#include "goal_search.hpp"
 
 namespace altiplan::astar {
 
@@ -33,22 +32,20 @@ struct Memory {
 /// Start and goal join the lattice by straight links (Lattice::links), so neither has to be the
 /// centre of a cell. A closed cell stays closed: with limits on turns its parent then never changes
 /// under its successors, and without them a consistent heuristic never asks for it.
-class Search : kit::LatticeSearch {
+class Search : GoalSearch {
  public:
   Search(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
          double best_cost, Memory& memory)
-      : LatticeSearch(request, settings, lattice, best_cost),
+      : GoalSearch(request, settings, lattice, best_cost, memory.open),
         nodes_(memory.nodes),
-        open_(memory.open),
-        lengths_(memory.lengths),
-        goal_node_(std::uint32_t(lattice.size())) {}
+        lengths_(memory.lengths) {}
 
   kit::Found run() {
     begin();
     Status status = Status::no_route;
     while (!open_.empty()) {
       const auto [f, g, index] = open_.pop();
-      if (index == goal_node_) {
+      if (index == kGoal) {
         return with(route_to(goal_parent_, true), goal_g_, true, false);
       }
       Node& node = nodes_[index];
@@ -71,8 +68,6 @@ class Search : kit::LatticeSearch {
   }
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
   void begin() {
     nodes_.reset(lattice_.size());
     open_.clear(quantum());
@@ -111,25 +106,17 @@ class Search : kit::LatticeSearch {
     return keeps_lengths() ? lengths_[index] : node.g;
   }
 
-  /// Where the vehicle comes from at a closed cell; nothing when it starts there without heading.
-  std::optional<Vec3> before(const Node& node, const Vec3& here) const {
-    if (node.in != kit::kHere) {
-      return Vec3(here - lattice_.step(node.in));
-    }
-    return at_start_ ? request_.before_start() : std::optional<Vec3>(start_);
-  }
-
   void expand(std::uint32_t index, Node& node) {
     const Cell c = lattice_.cell(index);
     const Vec3 here = node.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
-    const std::optional<Vec3> from = before(node, here);
+    const std::optional<Vec3> from = before(node.in, here);
     const double length_here = length_to(index, node);
     ++progress_.expanded;
     remember_nearest(here);
     if (request_.trace != nullptr) {
       add_to_trace(index, node, c, here);
     }
-    try_goal(index, node, c, here, from);
+    try_goal(index, node.g, length_here, c, here, from);
     // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
     const bool judged_whole = node.in == kit::kHere && from;
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
@@ -151,27 +138,6 @@ class Search : kit::LatticeSearch {
       }
       reach(next, g, length, d);
       push(next, to, there);
-    }
-  }
-
-  /// Reaches the goal from a cell that has a link to it.
-  void try_goal(std::uint32_t index, const Node& node, const Cell& c, const Vec3& here,
-                const std::optional<Vec3>& from) {
-    const double length = length_to(index, node);
-    if (const kit::Lattice::Link* link = to_goal_.link_of(c)) {
-      if (length + link->length <= longest_ &&
-          (link->length == 0 || rules_.any_leg_ok(from, here, goal_))) {
-        if (const double g = node.g + link_cost(here, goal_, link->length); g < goal_g_) {
-          goal_g_ = g;
-          goal_parent_ = index;
-          open_.push(settings_.weight_g * (g + costs_.at(goal_)), g, goal_node_);
-        }
-        return;
-      }
-    }
-    if (node.g < fallback_g_ && length <= longest_ && request_.goal.reached_at(here)) {
-      fallback_g_ = node.g;
-      fallback_ = index;
     }
   }
 
@@ -199,13 +165,6 @@ class Search : kit::LatticeSearch {
   }
 
   kit::NodeStore<Node>& nodes_;
-  kit::OpenList& open_;
   std::vector<double>& lengths_;
-  std::uint32_t goal_node_;
-  bool at_start_ = false;  ///< the start is the centre of its cell
-  double goal_g_ = kInfinity;
-  std::uint32_t goal_parent_ = kNone;
-  double fallback_g_ = kInfinity;
-  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
 };
 }  // namespace altiplan::astar

@@ -6,9 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "altiplan/kit/lattice_search.hpp"
-#include "altiplan/kit/open_list.hpp"
 #include "altiplan/kit/scratch.hpp"
+#include "goal_search.hpp"
 
 namespace altiplan::astar {
 
@@ -44,13 +43,12 @@ struct HeadingMemory {
 /// direction takes it for good, and arrivals later on, none of them cheaper, take what is left:
 /// each step is judged, and each node opened, once at most. An arrival that has nothing left to
 /// take, or may take nothing that a cheaper one at the cell could not, is dropped.
-class HeadingSearch : kit::LatticeSearch {
+class HeadingSearch : GoalSearch {
  public:
   HeadingSearch(const Request& request, const kit::SearchSettings& settings,
                 const kit::Lattice& lattice, double best_cost, HeadingMemory& memory)
-      : LatticeSearch(request, settings, lattice, best_cost),
+      : GoalSearch(request, settings, lattice, best_cost, memory.open),
         cells_(memory.cells),
-        open_(memory.open),
         arrivals_(memory.arrivals),
         lengths_(memory.lengths) {}
 
@@ -82,9 +80,6 @@ class HeadingSearch : kit::LatticeSearch {
   }
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  static constexpr std::uint32_t kGoal = kNone - 1;
-
   void begin() {
     cells_.reset(lattice_.size());
     open_.clear(quantum());
@@ -132,18 +127,11 @@ class HeadingSearch : kit::LatticeSearch {
     return false;
   }
 
-  std::optional<Vec3> before(const Arrival& arrival, const Vec3& here) const {
-    if (arrival.in != kit::kHere) {
-      return Vec3(here - lattice_.step(arrival.in));
-    }
-    return at_start_ ? request_.before_start() : std::optional<Vec3>(start_);
-  }
-
   void expand(std::uint32_t index, double g_here, HeadingCell& cell) {
     const Arrival arrival = arrivals_[index];  // pushes move it
     const Cell c = lattice_.cell(arrival.cell);
     const Vec3 here = arrival.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
-    const std::optional<Vec3> from = before(arrival, here);
+    const std::optional<Vec3> from = before(arrival.in, here);
     const double length_here = keeps_lengths() ? lengths_[index] : g_here;
     ++progress_.expanded;
     remember_nearest(here);
@@ -186,26 +174,6 @@ class HeadingSearch : kit::LatticeSearch {
     }
   }
 
-  /// Reaches the goal from a cell that has a link to it.
-  void try_goal(std::uint32_t index, double g_here, double length, const Cell& c, const Vec3& here,
-                const std::optional<Vec3>& from) {
-    if (const kit::Lattice::Link* link = to_goal_.link_of(c)) {
-      if (length + link->length <= longest_ &&
-          (link->length == 0 || rules_.any_leg_ok(from, here, goal_))) {
-        if (const double g = g_here + link_cost(here, goal_, link->length); g < goal_g_) {
-          goal_g_ = g;
-          goal_parent_ = index;
-          open_.push(settings_.weight_g * (g + costs_.at(goal_)), g, kGoal);
-        }
-        return;
-      }
-    }
-    if (g_here < fallback_g_ && length <= longest_ && request_.goal.reached_at(here)) {
-      fallback_g_ = g_here;
-      fallback_ = index;
-    }
-  }
-
   /// Of this search, not of what the pool's memory has grown to.
   bool memory_full() const {
     return lattice_.size() * sizeof(HeadingCell) + arrivals_.size() * sizeof(Arrival) +
@@ -231,13 +199,7 @@ class HeadingSearch : kit::LatticeSearch {
   }
 
   kit::NodeStore<HeadingCell>& cells_;
-  kit::OpenList& open_;
   std::vector<Arrival>& arrivals_;
   std::vector<double>& lengths_;
-  bool at_start_ = false;  ///< the start is the centre of its cell
-  double goal_g_ = kInfinity;
-  std::uint32_t goal_parent_ = kNone;
-  double fallback_g_ = kInfinity;
-  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
 };
 }  // namespace altiplan::astar
