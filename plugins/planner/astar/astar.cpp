@@ -52,12 +52,10 @@ class AStar final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    const SearchSettings settings = params_.settings(request);
-    const auto once = [&](const SearchSettings& round, const Request& rest, double best_cost) {
-      return search(round, rest, best_cost);
-    };
-    return settings.anytime ? kit::improve(settings, request, once)
-                            : search(settings, request, kInfinity).result;
+    return kit::plan_by(params_.settings(request), request,
+                        [&](const SearchSettings& settings, const Request& rest, double best_cost) {
+                          return search(settings, rest, best_cost);
+                        });
   }
 
   Found search(const SearchSettings& settings, const Request& request, double best_cost) const {

@@ -273,6 +273,13 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
   return std::move(best->result);
 }
 
+/// What a planner with these settings gives: the best of several searches, or one alone.
+template <class Once>
+PlanResult plan_by(const SearchSettings& settings, const Request& request, const Once& once) {
+  return settings.anytime ? improve(settings, request, once)
+                          : once(settings, request, kInfinity).result;
+}
+
 /// Ends the route at the goal; `at_goal`: the last cell's centre is the goal but for rounding.
 inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
   if (at_goal && route.size() > 1) {
