@@ -36,6 +36,9 @@ void add_overrides(CLI::App& command, host::Overrides& overrides);
 
 /// A number in the range; CLI::Range lets NaN pass.
 CLI::Validator number_from(double low, double high);
+/// What is wrong with a seed, or with KEY=VALUE; "" where nothing is.
+std::string seed_problem(const std::string& text);
+std::string assignment_problem(const std::string& text);
 
 /// "usage: …\nexample: …" for --help.
 void set_example(CLI::App& command, const std::string& example);

@@ -47,27 +47,14 @@ void add_overrides(CLI::App& command, host::Overrides& overrides) {
       ->type_name("FILE");
   command.add_option("--seed", overrides.seed, "seed in place of the pipeline's")
       ->type_name("N")
-      ->check([](const std::string& text) {
-        std::int64_t seed = -1;
-        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-        const bool whole = error == std::errc() && stop == text.data() + text.size();
-        return whole && seed >= 0 ? std::string()
-                                  : "expected a whole number from 0 to 9223372036854775807, found "
-                                    "'" +
-                                        text + "'";
-      });
+      ->check(seed_problem);
   command
       .add_option("--set", overrides.set,
                   "any key of the pipeline, or of the scenario as scenario.KEY; may be given again")
       ->expected(1)
       ->type_name("KEY=VALUE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check([](const std::string& text) {
-        const std::size_t equals = text.find('=');
-        return equals == 0 || equals == std::string::npos
-                   ? "expected KEY=VALUE, found '" + text + "'"
-                   : std::string();
-      });
+      ->check(assignment_problem);
 }
 
 CLI::Validator number_from(double low, double high) {
@@ -82,6 +69,21 @@ CLI::Validator number_from(double low, double high) {
                        : "expected a number " + range + ", found '" + text + "'";
           },
           range};
+}
+
+std::string seed_problem(const std::string& text) {
+  std::int64_t seed = -1;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool whole = error == std::errc() && stop == text.data() + text.size();
+  return whole && seed >= 0
+             ? ""
+             : "expected a whole number from 0 to 9223372036854775807, found '" + text + "'";
+}
+
+std::string assignment_problem(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  return equals == 0 || equals == std::string::npos ? "expected KEY=VALUE, found '" + text + "'"
+                                                    : "";
 }
 
 std::string fixed(const std::optional<double>& value, int digits) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -161,15 +160,6 @@ std::string metric_problem(const std::string& text) {
   });
 }
 
-std::string seed_problem(const std::string& text) {
-  std::int64_t seed = -1;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  const bool whole = error == std::errc() && stop == text.data() + text.size();
-  return whole && seed >= 0
-             ? ""
-             : "expected a whole number from 0 to 9223372036854775807, found '" + text + "'";
-}
-
 void add_what(CLI::App& command, host::TuneRequest& request) {
   command.add_option("pipeline", request.pipeline, "pipeline to be tuned")->required();
   command
@@ -210,12 +200,7 @@ void add_how(CLI::App& command, host::TuneRequest& request) {
       ->expected(1)
       ->type_name("KEY=VALUE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check([](const std::string& text) {
-        const std::size_t equals = text.find('=');
-        return equals == 0 || equals == std::string::npos
-                   ? "expected KEY=VALUE, found '" + text + "'"
-                   : std::string();
-      });
+      ->check(assignment_problem);
   command.add_option("--seed", request.seed, "of the tuner (default 0)")
       ->type_name("N")
       ->check(seed_problem);
