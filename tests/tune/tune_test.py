@@ -312,7 +312,7 @@ class Resuming(TuneCase):
         spoilt = log.replace(b"solved", b"solvex", 1)
         with open(self.path("out", "runs.log"), "wb") as stream:
             stream.write(spoilt)
-        self.tune(*X)
+        self.assertIn("1 line was damaged; its run is done again", self.tune(*X))
         self.assertEqual(self.results("out"), before)
 
     def test_more_evaluations(self):

@@ -119,7 +119,8 @@ int tune(Arguments arguments) {
   line.clear();
   if (tuning.damaged_lines > 0) {
     warn(folder + "/runs.log: " + counted(tuning.damaged_lines, "line") +
-         " were damaged; their runs are done again");
+         (tuning.damaged_lines == 1 ? " was damaged; its run is done again"
+                                    : " were damaged; their runs are done again"));
   }
   if (tuning.is_interrupted) {
     std::printf("%s: interrupted after %s, %s of this call: the same call goes on\n",

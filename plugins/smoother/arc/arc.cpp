@@ -9,9 +9,8 @@
 //   leaves fewer of them.
 // Complexity: O(corners · chords) leg checks.
 // Deviations: each arc lies in the plane of its two legs, so that it climbs and turns at once; it
-// is
-//   flown as chords, whose corners lie on the arc. Waypoints on straight stretches are left out
-//   first: a leg is as long as it is straight.
+//   is flown as chords, whose corners lie on the arc. Waypoints on straight stretches are left
+//   out first: a leg is as long as it is straight.
 // Why the chords keep the radius, as the judge measures it: three corners of one arc lie on its
 //   circle. Where an arc meets a straight piece, or another arc in another plane, the legs turn by
 //   no more than two such chords would (of at most a quarter turn each), so that their far ends

@@ -5,8 +5,8 @@
 // Guarantees: n points hit the best share q of the space with the chance 1 - (1 - q)^n.
 // Complexity: `evaluations` evaluations, a batch of them at a time.
 // Deviations: weights of a group are uniform numbers divided by their sum, as the particles of
-// `pso`
-//   begin, so that the two are compared on the same draws; they are not uniform on the simplex.
+//   `pso` begin, so that the two are compared on the same draws; they are not uniform on the
+//   simplex.
 #include <algorithm>
 
 #include "altiplan/kit/tuning_space.hpp"
