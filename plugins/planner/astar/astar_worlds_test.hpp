@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <queue>
+#include <string>
+#include <vector>
+
+#include "support/support.hpp"
+
+namespace altiplan::testing {
+
+inline std::int64_t counter(const PlanResult& result, const std::string& name) {
+  for (const Counter& c : result.counters) {
+    if (c.name == name) {
+      return c.value;
+    }
+  }
+  return -1;
+}
+
+/// Length of the shortest way over cells by Dijkstra's algorithm; infinite where there is none.
+inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, const Cell& goal,
+                       int neighbours,
+                       const std::function<bool(const Cell&, const Cell&)>& step_free) {
+  const auto id = [&](const Cell& c) { return (c[2] * counts[1] + c[1]) * counts[0] + c[0]; };
+  std::vector<double> best(std::size_t(counts[0] * counts[1] * counts[2]), kInfinity);
+  using Entry = std::pair<double, Cell>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  queue.push({0, start});
+  best[std::size_t(id(start))] = 0;
+  while (!queue.empty()) {
+    const auto [g, c] = queue.top();
+    queue.pop();
+    if (c == goal) {
+      return g;
+    }
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int moved = std::abs(dx) + std::abs(dy) + std::abs(dz);
+          const Cell n = {c[0] + dx, c[1] + dy, c[2] + dz};
+          const bool inside = n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < counts[0] &&
+                              n[1] < counts[1] && n[2] < counts[2];
+          if (moved == 0 || (neighbours == 6 && moved > 1) || !inside || !step_free(c, n)) {
+            continue;
+          }
+          const double length = g + cell.cwiseProduct(Vec3(dx, dy, dz)).norm();
+          if (length < best[std::size_t(id(n))]) {
+            best[std::size_t(id(n))] = length;
+            queue.push({length, n});
+          }
+        }
+      }
+    }
+  }
+  return kInfinity;
+}
+
+/// Levels of random cells, start and goal free.
+inline std::vector<std::string> random_levels(SplitMix64& random, int nx, int ny, int nz,
+                                              double density) {
+  const std::size_t row = std::size_t(nx) + 1;
+  std::vector<std::string> levels;
+  for (int k = 0; k < nz; ++k) {
+    std::string level(std::size_t(ny) * row, '\n');
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (i % row != std::size_t(nx)) {
+        level[i] = random.uniform() < density ? '#' : '.';
+      }
+    }
+    levels.push_back(level);
+  }
+  const auto place = [&](char what) {
+    auto& level = levels[std::size_t(random.integer(0, nz - 1))];
+    std::size_t at = 0;
+    do {
+      at = std::size_t(random.integer(0, ny - 1)) * row + std::size_t(random.integer(0, nx - 1));
+    } while (level[at] == 'S');
+    level[at] = what;
+  };
+  place('S');
+  place('G');
+  return levels;
+}
+
+/// Solid balls, in closed form.
+class Balls final : public Environment {
+ public:
+  std::vector<Vec3> centres;
+  double radius = 1;
+
+ private:
+  Box do_bounds() const override {
+    Box box = Box::empty();
+    for (const Vec3& c : centres) {
+      box = box.with(c);
+    }
+    return box.grown(radius);
+  }
+  double do_clearance(const Vec3& p) const override {
+    double least = kInfinity;
+    for (const Vec3& c : centres) {
+      least = std::min(least, (c - p).norm() - radius);
+    }
+    return least;
+  }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    for (const Vec3& c : centres) {
+      if (point_leg_distance(c, a, b) < radius + r - kLengthTolerance) {
+        return true;
+      }
+    }
+    return false;
+  }
+  double do_slack() const override { return 0; }
+};
+
+inline std::shared_ptr<Balls> random_balls(SplitMix64& random, int count) {
+  auto balls = std::make_shared<Balls>();
+  balls->radius = 12;
+  for (int i = 0; i < count; ++i) {
+    balls->centres.push_back(
+        Vec3(random.uniform() * 100, random.uniform() * 90, random.uniform() * 40));
+  }
+  return balls;
+}
+
+inline Request among(std::shared_ptr<const Environment> environment) {
+  Request request = request_in(world_of(std::move(environment)), {5, 5, 5}, {95, 85, 35},
+                               {{0, 0, 0}, {100, 90, 40}});
+  request.limits.min_clearance = request.vehicle.radius_m = 1.5;
+  return request;
+}
+}  // namespace altiplan::testing
