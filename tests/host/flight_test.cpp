@@ -102,6 +102,24 @@ TEST(Flight, MovingObstacleIsEvaded) {
   EXPECT_EQ(fly(scene.setup).status, Status::collided);
 }
 
+TEST(Flight, RejectionSaysWhenAndWhere) {
+  Scene scene;
+  scene.follow_alone();
+  scene.setup.route = {
+      {2000, 15000, 500}, {11000, 15000, 500}, {12000, 15000, 900}, {28000, 15000, 500}};
+  const FlightResult steep = fly(scene.setup);
+  EXPECT_EQ(steep.status, Status::rejected);
+  EXPECT_TRUE(steep.reached);
+  EXPECT_EQ(steep.message.find("reached the goal, but at 300.0 s, near (11000, 15000, 500) m: "),
+            0U)
+      << steep.message;
+  // No place is to blame for a length.
+  scene.setup.request.limits.max_climb = kPi / 2;
+  scene.setup.request.limits.max_route_length = 26000;
+  EXPECT_EQ(fly(scene.setup).message,
+            "reached the goal, but the flight is longer than the route may be");
+}
+
 TEST(Flight, EventsAddRemoveAndMove) {
   FlightEvent pop_up;
   pop_up.at_s = 200;

@@ -3,6 +3,7 @@
 #include "host/flight/track_judge.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace altiplan::host {
 
@@ -56,9 +57,19 @@ void Flight::finish() {
   if (!ended_) {
     const CheckResult& check = result_.check;
     result_.status = check.ok() ? Status::solved : Status::rejected;
-    result_.message = check.ok() ? "reached the goal"
-                                 : "reached the goal, but " + check.violations.front().message;
+    result_.message = check.ok() ? "reached the goal" : "reached the goal, but " + blame();
   }
+}
+
+std::string Flight::blame() const {
+  const Violation& first = result_.check.violations.front();
+  if (first.constraint == "route_length") {
+    return first.message;  // of the whole track
+  }
+  const auto& [time_s, at] = result_.track[std::min(first.at, result_.track.size() - 1)];
+  char when[32];
+  std::snprintf(when, sizeof when, "at %.1f s", time_s);
+  return std::string(when) + ", near " + place(at) + " m: " + first.message;
 }
 
 void Flight::judge_whole(const Route& track) {
