@@ -399,6 +399,18 @@ events:
         self.assertIn("1 collision, did not reach the goal", out)
         self.assertIn("collision: the vehicle touches 'post'", out)
 
+    def test_why_a_flight_ended_early_is_printed(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
+        late = self.write("late.yaml", PIPELINE + "  - fly: route\n    max_time_s: 3\n")
+        out, _ = self.call("run", late, code=1)
+        self.assertIn("flight: did not reach the goal after 3 s,", out)
+        self.assertIn("; the flight: timed out after 3 s (max_time_s) at (", out)
+        replans = self.write("replans.yaml", PIPELINE + "  - fly: route\n    replan:\n"
+                             "      plan: astar\n      within_iterations: 1\n"
+                             "      with: {cell_m: [50, 50, 50]}\n")
+        out, _ = self.call("run", replans, code=1)
+        self.assertRegex(out, r"\n +\d+ s  replan by \S+: timed_out: the budget was used up")
+
     def test_check_says_where_events_count(self):
         self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") +
                    "events:\n  - {at_s: 20, remove: post}\n")

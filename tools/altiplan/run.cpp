@@ -41,15 +41,24 @@ void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
                fixed(seconds * 1000, 1).c_str());
 }
 
-void print_flight(std::FILE* to, const host::FlightResult& flight) {
+void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_short) {
   std::fprintf(to, "  flight: %s after %s s, %d collision%s, nearest %s m, %zu replan%s\n",
-               flight.reached ? "reached the goal" : "did not reach the goal",
+               flight.reached ? "reached the goal"
+               : is_cut_short ? "the step's budget ended it"
+                              : "did not reach the goal",
                fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
                flight.collisions == 1 ? "" : "s", fixed(flight.min_separation_m, 1).c_str(),
                flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
   for (const host::Handover& handover : flight.handovers) {
     std::fprintf(to, "  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
                  handover.to.c_str(), handover.why.c_str());
+  }
+  for (const host::Replan& replan : flight.replans) {
+    if (replan.status != Status::solved) {
+      std::fprintf(to, "  %7s s  replan by %s: %s%s%s\n", fixed(replan.at_s, 0).c_str(),
+                   replan.step.c_str(), name(replan.status), replan.message.empty() ? "" : ": ",
+                   replan.message.c_str());
+    }
   }
 }
 
@@ -63,7 +72,7 @@ void print_table(std::FILE* to, const host::RunResult& result) {
               flown ? result.flight->measures : step.measures, step.time_s);
   }
   if (result.flight) {
-    print_flight(to, *result.flight);
+    print_flight(to, *result.flight, result.steps.back().budget_hit);
   }
   for (const host::StepResult& step : result.steps) {
     const std::string& said = result.message;  // printed last

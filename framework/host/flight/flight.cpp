@@ -68,10 +68,10 @@ void Flight::fly_to_the_end() {
   while (!ended_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMostSteps) {
-      end_flight(Status::not_reached, (late ? "the flight's time ended at "
+      end_flight(Status::not_reached, (late ? time_out()
                                             : "the most steps of a flight were used up (step_s is "
-                                              "short for this flight) at ") +
-                                          place(state_.position) + ", " + away() +
+                                              "short for this flight)") +
+                                          " at " + place(state_.position) + ", " + away() +
                                           " from the goal");
     } else if (setup_.request.budget.stop.stop_requested()) {
       end_flight(Status::cancelled, "stopped at " + place(state_.position));
@@ -94,6 +94,13 @@ double Flight::max_time() const {
                              setup_.route[i + 1]);
   }
   return std::max(kTimesDuration * duration, 10 * setup_.step_s);
+}
+
+std::string Flight::time_out() const {
+  char text[48];
+  std::snprintf(text, sizeof text, "timed out after %g s", max_time());
+  return std::string(text) +
+         (setup_.max_time_s ? " (max_time_s)" : " (ten times the route's duration)");
 }
 
 std::string Flight::away() const {

@@ -20,6 +20,8 @@ class Flight {
  private:
   void fly_to_the_end();
   double max_time() const;
+  /// "timed out after 300 s (max_time_s)"
+  std::string time_out() const;
   std::string away() const;
   void end_flight(Status status, std::string message);
   void hand_over(bool to_pilot, std::string why);
