@@ -140,7 +140,7 @@ TEST_F(Merge, is_refused_while_another_process_is_at_work_on_the_store) {
     const WorkFolder of_a_study(work_folder_of(one));
     EXPECT_NE(refusal([&] {
                 merge_stores({one}, one);
-              }).find("another process runs this study: " + std::to_string(::getpid())),
+              }).find("another process is at work here: " + std::to_string(::getpid())),
               std::string::npos);
   }
   EXPECT_EQ(merge_stores({one}, one).runs, 1);

@@ -70,12 +70,12 @@ class Stores(StudyCase):
                 time.sleep(0.01)
             for arguments in (["study", self.study, "--out", self.path("out.db")],
                               ["study", self.study, "--out", self.path("out.db"), "--fresh"]):
-                self.assertIn(f"another process runs this study: {first.pid}",
+                self.assertIn(f"another process is at work here: {first.pid}",
                               self.refused(*arguments))
             while not self.has_runs("out.db"):
                 self.assertLess(time.monotonic(), until)
                 time.sleep(0.01)
-            self.assertIn(f"another process runs this study: {first.pid}", self.refused(
+            self.assertIn(f"another process is at work here: {first.pid}", self.refused(
                 "merge", self.path("out.db"), "-o", self.path("out.db")))
             self.assertIsNone(first.poll(), "it should be at work still")
         finally:

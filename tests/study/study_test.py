@@ -158,7 +158,7 @@ class Study(StudyCase):
         while not (self.folder / "out.db").exists():
             time.sleep(0.01)
         pipeline(0.3)
-        self.assertIn("have changed since the study began", first.communicate(timeout=60)[1])
+        self.assertIn("have changed since the runs were planned", first.communicate(timeout=60)[1])
         self.assertEqual(first.returncode, 3)
         pipeline(0.2)
         self.call()

@@ -46,7 +46,7 @@ Warden::Warden(const WorkFolder& folder) : folder_(folder) { start(); }
 void Warden::start() {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    throw Error(std::string("no socket to the study's warden: ") + std::strerror(errno));
+    throw Error(std::string("no socket to the warden of the workers: ") + std::strerror(errno));
   }
   process_ = ::fork();
   if (process_ == 0) {
@@ -56,7 +56,7 @@ void Warden::start() {
   leash_ = ends[1];
   if (process_ < 0) {
     ::close(leash_);
-    throw Error(std::string("no process for the study's warden: ") + std::strerror(errno));
+    throw Error(std::string("no process for the warden of the workers: ") + std::strerror(errno));
   }
 }
 

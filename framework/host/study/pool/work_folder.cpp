@@ -67,19 +67,19 @@ int try_lock(const fs::path& folder) {
   const fs::path file = folder / "lock";
   const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock < 0) {
-    refuse(folder, "cannot write to the study's work folder", errno);
+    refuse(folder, "cannot write to the work folder", errno);
   }
   const Clock::time_point until = Clock::now() + std::chrono::seconds(10);
   while (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) {
       const int error = errno;
       ::close(lock);
-      refuse(folder, "cannot lock the study's work folder", error);
+      refuse(folder, "cannot lock the work folder", error);
     }
     const Holder by = holder(lock);
     if (Clock::now() > until || (by.process > 0 && !gone(by))) {
       ::close(lock);
-      throw Error(folder.string() + ": another process runs this study: " +
+      throw Error(folder.string() + ": another process is at work here: " +
                   (by.process > 0 ? std::to_string(by.process) + " on " + by.host : "unknown"));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -98,7 +98,7 @@ void sign(const fs::path& folder, int lock) {
   const std::string text = std::to_string(::getpid()) + " on " + host_name();
   if (::ftruncate(lock, 0) != 0 ||
       ::pwrite(lock, text.data(), text.size(), 0) != ssize_t(text.size())) {
-    refuse(folder, "cannot write to the study's work folder", errno);
+    refuse(folder, "cannot write to the work folder", errno);
   }
 }
 
@@ -132,7 +132,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
     fs::create_directories(path_, error);
     std::error_code ignored;
     if (error && !fs::is_directory(path_, ignored)) {
-      refuse(path_, "cannot make the study's work folder", error.value());
+      refuse(path_, "cannot make the work folder", error.value());
     }
     lock_ = try_lock(path_);
   } while (lock_ < 0);

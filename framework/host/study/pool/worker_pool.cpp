@@ -299,7 +299,7 @@ class PoolRun {
       throw Error(worker.task().records + ": cannot be written: " + std::strerror(error));
     }
     if (known == 0 && !worker.born() && ++stillborn_ > kAtMost) {
-      throw Error("the processes for the runs of this study end before they have begun");
+      throw Error("the processes for the runs end before they have begun");
     }
   }
 

@@ -147,7 +147,8 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
   try {
     job.note("reading the files of the run");
     const Config config = planned.load();
-    const RunOutcome changed{kNotDone, "its files have changed since the study began", "", ""};
+    const RunOutcome changed{kNotDone, "its files have changed since the runs were planned", "",
+                             ""};
     if (!planned.is_current(config)) {
       return changed;
     }
@@ -166,7 +167,7 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
       return {kBadParameters, all, "", ""};
     }
     // All was read and checked when the study began.
-    return {kNotDone, "its files have changed since the study began: " + all, "", ""};
+    return {kNotDone, "its files have changed since the runs were planned: " + all, "", ""};
   } catch (const std::bad_alloc&) {
     return {"out_of_memory", "no memory was left", "", ""};
   } catch (const std::exception& error) {
