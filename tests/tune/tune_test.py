@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -169,6 +170,18 @@ class Tune(TuneCase):
         self.assertIn("20 (100 %) on the plateau", said)
         self.assertIn("nothing better than the pipeline as it is", said)
         self.assertIn("x: 0.9 ", self.read("out", "tuned.yaml"))
+
+    def test_axes_are_labelled(self):
+        for metric, label in (("length_m", "Length, m"), ("steps.route.length_m", "Length of step route, m"),
+                              ("length_m / 2 + expanded", "length_m / 2 + expanded")):
+            with self.subTest(metric=metric):
+                self.tune(*X, "--evaluations", 4, "--fresh", metric=metric)
+                figure = self.read("out", "convergence.svg")
+                self.assertIn(f">{label}</text>", figure)
+                self.assertIn(">Iteration, number</text>", figure)
+                for anchor in ("end", "middle"):  # of numbers up the left, and along the bottom
+                    numbers = re.findall(rf'anchor="{anchor}">([-0-9.,e]+)</text>', figure)
+                    self.assertGreaterEqual(len(set(numbers)), 2, figure)
 
     def test_scenarios_and_what_is_held_back(self):
         said = self.tune(

@@ -15,8 +15,8 @@ using report::pixels;
 
 constexpr double kLeft = 66;
 constexpr double kRight = report::kFigureWidth - 14;
-constexpr double kTop = 12;
-constexpr double kBottom = 220;
+constexpr double kTop = 30;  ///< below the label of what goes up
+constexpr double kBottom = 238;
 
 /// By iteration, from the first.
 struct Curves {
@@ -63,10 +63,23 @@ void draw(Canvas& canvas, const std::vector<double>& curve, const Axis& along, c
   }
 }
 
-void draw_left(Canvas& canvas, const Axis& up) {
-  for (const Axis::Tick& tick : up.ticks()) {
+/// "Length, m" of a value, an expression as it is: its names carry their units.
+std::string score_label(const TunePlan& plan, const Axis& up) {
+  constexpr std::size_t kMostCharacters = 60;
+  const std::string metric = report::printable(plan.request.metric);
+  const auto& values = plan.objective.values;
+  const bool is_value = values.size() == 1 && values.front().name == metric;
+  return report::axis_label(
+      report::shortened(is_value ? report::metric_label(metric) : metric, kMostCharacters), up);
+}
+
+void draw_left(Canvas& canvas, const Axis& up, const std::string& label) {
+  canvas.text(6, kTop - 14, label);
+  for (const Axis::Tick& tick : up.ticks_upwards()) {
     canvas.line(kLeft, up(tick.value), kRight, up(tick.value), "hair");
-    canvas.text(kLeft - 6, up(tick.value) + 4, tick.label, "quiet", Anchor::end);
+    if (!tick.label.empty()) {
+      canvas.text(kLeft - 6, up(tick.value) + 4, tick.label, "quiet", Anchor::end);
+    }
   }
 }
 }  // namespace
@@ -79,8 +92,8 @@ report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning) {
   const Axis up = Axis::around(all, kBottom, kTop);
   const Axis along(1, std::max(2.0, double(curves.best.size())), false, kLeft, kRight);
   Canvas canvas;
-  draw_left(canvas, up);
-  report::draw_bottom(canvas, along, kTop, kBottom, "iteration");
+  draw_left(canvas, up, score_label(plan, up));
+  report::draw_bottom(canvas, along, kTop, kBottom, "Iteration, number");
   if (std::isfinite(tuning.as_it_is().score)) {
     const double y = up(tuning.as_it_is().score);
     canvas.line(kLeft, y, kRight, y, "reference");
@@ -103,13 +116,13 @@ report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning) {
     numbers.rows.push_back(
         {std::to_string(i + 1), report::exact(curves.best[i]), report::exact(curves.mean[i])});
   }
-  return {"convergence",
-          "Convergence of " + metric,
-          metric + " over " + report::counted(plan.tuned_on, "scenario") + ", by " +
-              plan.request.tuner + report::axis_label("", up),
-          report::kFigureWidth,
-          y + 12,
-          canvas.take(),
-          std::move(numbers)};
+  return {
+      "convergence",
+      "Convergence of " + metric,
+      metric + " over " + report::counted(plan.tuned_on, "scenario") + ", by " + plan.request.tuner,
+      report::kFigureWidth,
+      y + 12,
+      canvas.take(),
+      std::move(numbers)};
 }
 }  // namespace altiplan::host

@@ -100,7 +100,7 @@ std::vector<Axis::Tick> Axis::logarithmic_ticks() const {
 }
 
 std::vector<Axis::Tick> Axis::ticks() const {
-  std::vector<Tick> ticks = logarithmic_ ? logarithmic_ticks() : even_ticks();
+  std::vector<Tick> ticks = all_ticks();
   double end = -std::numeric_limits<double>::infinity();
   for (Tick& tick : ticks) {
     const double half = double(characters(tick.label)) * kCharacter / 2;
@@ -109,6 +109,21 @@ std::vector<Axis::Tick> Axis::ticks() const {
       tick.label.clear();
     } else {
       end = x + half;
+    }
+  }
+  return ticks;
+}
+
+std::vector<Axis::Tick> Axis::ticks_upwards() const {
+  constexpr double kLine = 14;
+  std::vector<Tick> ticks = all_ticks();
+  double last = std::numeric_limits<double>::infinity();
+  for (Tick& tick : ticks) {
+    const double y = (*this)(tick.value);
+    if (std::abs(y - last) < kLine) {
+      tick.label.clear();
+    } else if (!tick.label.empty()) {
+      last = y;
     }
   }
   return ticks;

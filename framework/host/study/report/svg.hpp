@@ -77,9 +77,11 @@ class Axis {
     double value = 0;
     std::string label;  ///< "" where there is no room
   };
-  std::vector<Tick> ticks() const;
+  std::vector<Tick> ticks() const;          ///< of a horizontal axis
+  std::vector<Tick> ticks_upwards() const;  ///< of a vertical one
 
  private:
+  std::vector<Tick> all_ticks() const { return logarithmic_ ? logarithmic_ticks() : even_ticks(); }
   std::vector<Tick> even_ticks() const;
   std::vector<Tick> logarithmic_ticks() const;
   double low_;
