@@ -23,6 +23,7 @@ struct Params {
   double hoards_from = 2;
   double fails_from = 2;
   double slow_s = 0;
+  AutoNumber free;
 
   void describe(Fields& f) {
     f("x", x).range(0, 1).doc("best where the start's y is a thousand times it");
@@ -36,6 +37,7 @@ struct Params {
     f("hoards_from", hoards_from).doc("x from which it eats memory");
     f("fails_from", fails_from).doc("x from which it finds nothing");
     f("slow_s", slow_s).range(0, 0.9).doc("how long it takes");
+    f("free", free).range(0, 1).doc("of no use");
     f.check(whole != 13, "whole must not be 13");
   }
 };

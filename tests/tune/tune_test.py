@@ -201,6 +201,23 @@ class Tune(TuneCase):
             runs = [float(row[key]) for key in row if key.startswith("s[")]
             self.assertAlmostEqual(float(row["score"]), sum(runs) / 2, delta=1e-9)
 
+    def test_ranks_and_mean_that_disagree_are_told(self):
+        # A little better in fourteen, far worse in the one that likes x as it is.
+        said = self.tune("--over", "steps.0.with.x=0.35..0.36", "--hold-out", *(
+            f"scenarios/s.yaml[start.at_m=[[100,{y},500]]]" for y in (*range(609, 623), 900)))
+        held_back = self.summary()["held_back"]
+        self.assertEqual((held_back["better"], held_back["worse"]), (14, 1))
+        self.assertGreater(held_back["mean_tuned"], held_back["mean_as_it_is"])
+        self.assertIn("the tuned pipeline is better by the ranks of the differences, but its mean is "
+                      "worse\n", said)
+
+    def test_a_value_that_is_no_number_yet(self):
+        said = self.tune("--over", "steps.0.with.free=0..1", "--evaluations", 2)
+        self.assertEqual(self.evaluations()[0]["steps.0.with.free"], "auto")
+        self.assertIn(",auto,", self.read("out", "evaluations.csv"))
+        self.assertNotIn('"auto"', said)
+        self.assertEqual(self.summary()["parameters"]["steps.0.with.free"]["as_it_is"], "auto")
+
     def test_jobs_change_nothing(self):
         def tuned(jobs):
             self.tune(*X, "--hold-out", "scenarios/s.yaml[start.at_m=[[100,200,500]]]", "--jobs",

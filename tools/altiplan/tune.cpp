@@ -85,7 +85,7 @@ void print_table(const host::TunePlan& plan, const host::Tuning& tuning,
   print_comparison("held back", summary.held_back);
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
     const host::TunedParameter& parameter = plan.parameters[p];
-    const std::string& before = parameter.as_it_is;
+    const std::string before = parameter.shown();
     std::string now = before;
     if (tuning.best > 0) {
       const std::string& set = tuning.tuned().assignments[p];
@@ -180,8 +180,8 @@ void add_what(CLI::App& command, host::TuneRequest& request) {
       ->check(metric_problem);
   command
       .add_option("--scenarios", request.scenarios,
-                  "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' with values as in a study "
-                  "(default: the pipeline's own)")
+                  "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' for each combination of "
+                  "the values (default: the pipeline's own)")
       ->expected(1, -1)
       ->type_name("FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -17,7 +17,8 @@ namespace {
 using report::counted;
 using report::exact;
 
-/// What the paired test says of the differences, as the end of a sentence.
+/// What the paired test says of the differences, now less before, as the end of a sentence. It
+/// looks at their ranks, so that a few great ones can leave the mean on the other side.
 std::string test_words(const std::vector<double>& differences) {
   const std::optional<Wilcoxon> test = wilcoxon(differences);
   if (!test) {
@@ -27,7 +28,16 @@ std::string test_words(const std::vector<double>& differences) {
   if (!(test->p < 0.05)) {
     return p + ", no difference that chance does not explain";
   }
-  return p + ", the tuned pipeline is " + (test->rank_biserial < 0 ? "better" : "worse");
+  const bool is_better = test->rank_biserial < 0;
+  const double change = mean(differences);
+  const std::string verdict = p + ", the tuned pipeline is " + (is_better ? "better" : "worse");
+  if (is_better ? change < 0 : change > 0) {
+    return verdict;
+  }
+  return verdict + " by the ranks of the differences, but its mean is " +
+         (change == 0 ? "the same"
+          : is_better ? "worse"
+                      : "better");
 }
 
 TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) {
@@ -98,7 +108,7 @@ report::Grid evaluations_grid(const TunePlan& plan, const Tuning& tuning) {
     const Evaluation& evaluation = tuning.evaluations[i];
     std::vector<std::string> row{std::to_string(i), std::to_string(evaluation.iteration)};
     for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
-      row.push_back(i == 0 ? plan.parameters[p].as_it_is : value_of(evaluation.assignments[p]));
+      row.push_back(i == 0 ? plan.parameters[p].shown() : value_of(evaluation.assignments[p]));
     }
     row.push_back(std::isfinite(evaluation.score) ? exact(evaluation.score) : "inf");
     row.push_back(std::to_string(evaluation.failed));

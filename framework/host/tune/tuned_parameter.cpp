@@ -247,6 +247,11 @@ std::vector<OverEntry> read_over(const std::vector<std::string>& options) {
   return entries;
 }
 
+std::string TunedParameter::shown() const {
+  const Json value = Json::parse(as_it_is, nullptr, false);
+  return value.is_string() ? value.get<std::string>() : as_it_is;
+}
+
 Dimension TunedParameter::dimension() const {
   double min = over.min;
   double max = over.max;

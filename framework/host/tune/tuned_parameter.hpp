@@ -31,6 +31,8 @@ struct TunedParameter {
   bool is_whole = false;  ///< the number is rounded; each whole number has the same share
   std::string as_it_is;   ///< its value in the pipeline, JSON
 
+  /// That value as tables have it: `auto` in place of `"auto"`.
+  std::string shown() const;
   /// What the tuner sees of it.
   Dimension dimension() const;
   /// The parameter's value at a number of that dimension, as YAML has it.
