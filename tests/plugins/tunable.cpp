@@ -101,16 +101,21 @@ class Moody final : public Tuner {
  private:
   class OnePoint final : public Search {
    public:
-    explicit OnePoint(double value, std::size_t size) : value_(value), size_(size) {}
+    OnePoint(double value, std::size_t size, bool ponders)
+        : value_(value), size_(size), most_(ponders ? 1000000 : 3), ponders_(ponders) {}
 
    private:
     std::vector<std::vector<double>> do_ask() override {
-      return asked_++ < 3 ? std::vector<std::vector<double>>{std::vector<double>(size_, value_)}
-                          : std::vector<std::vector<double>>{};
+      const timespec pause{0, ponders_ ? 1000000 : 0};
+      nanosleep(&pause, nullptr);
+      return asked_++ < most_ ? std::vector<std::vector<double>>{std::vector<double>(size_, value_)}
+                              : std::vector<std::vector<double>>{};
     }
     void do_tell(std::span<const double>) override {}
     double value_;
     std::size_t size_;
+    int most_;
+    bool ponders_;
     int asked_ = 0;
   };
 
@@ -121,7 +126,8 @@ class Moody final : public Tuner {
     timespec now{};
     clock_gettime(CLOCK_REALTIME, &now);
     const double moody = double(now.tv_nsec) * 1e-9;
-    return std::make_unique<OnePoint>(params_.does == "outside" ? 7 : moody, space.size());
+    return std::make_unique<OnePoint>(params_.does == "outside" ? 7 : moody, space.size(),
+                                      params_.does == "ponders");
   }
   MoodyParams params_;
 };

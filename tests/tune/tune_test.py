@@ -324,6 +324,29 @@ class Resuming(TuneCase):
         self.tune(*X, out="calm")
         self.assertEqual(self.results("out"), self.results("calm"))
 
+    def test_interrupted_before_the_first_run(self):
+        process = self.start(*X, "--tuner", "moody", "--set-tuner", "does=ponders", size=())
+        lock = self.path("out", "work", "lock")
+        while not (os.path.exists(lock) and os.path.getsize(lock)):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("interrupted after 0 evaluations", said)
+
+    def test_one_call_at_a_time(self):
+        process = self.start(*X, "--tuner", "moody", "--set-tuner", "does=ponders", size=())
+        lock = self.path("out", "work", "lock")
+        while not (os.path.exists(lock) and os.path.getsize(lock)):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        said = self.refused(*X)
+        process.kill()
+        process.communicate()
+        self.assertIn(f"another process is at work here: {process.pid} on ", said)
+        self.assertNotIn("study", said)
+
     def test_finished_is_finished(self):
         self.tune(*X)
         before = self.results("out")

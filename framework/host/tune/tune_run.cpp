@@ -35,7 +35,8 @@ auto of_tuner(const TunePlan& plan, const Call& call) {
   }
 }
 
-/// How many points the tuner asks for when nothing is better than anything.
+/// How many points the tuner asks for when nothing is better than anything; fewer where a signal
+/// ends the tuning meanwhile.
 std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
   constexpr std::size_t kMost = 1'000'000;
   const auto limit = std::size_t(plan.request.evaluations.value_or(kMost));
@@ -43,7 +44,7 @@ std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
   std::size_t points = 0;
   while (points < limit) {
     const std::size_t asked = search->ask().size();
-    if (asked == 0) {
+    if (asked == 0 || stop_asked != 0) {
       break;
     }
     points += asked;
@@ -100,8 +101,8 @@ class TuningRun {
 
   void search() {
     const RandomStream random = RandomStream(std::uint64_t(plan_.request.seed)).sub("tuner");
-    progress_.expected = of_tuner(plan_, [&] { return rehearsed(plan_, random); });
     tuning_.evaluations.emplace_back();
+    progress_.expected = of_tuner(plan_, [&] { return rehearsed(plan_, random); });
     evaluate(0, 0, plan_.tuned_on);
     expect_values();
     const auto search = of_tuner(plan_, [&] { return plan_.tuner->begin(plan_.space(), random); });
