@@ -47,7 +47,8 @@ Vec3 Outlook::velocity_of(const SensedObstacle& moving, std::size_t id) const {
                                      : Vec3((moving.position - was->position) / passed);
 }
 
-double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, double room) const {
+double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, double room,
+                        double enough) const {
   double first = kInfinity;
   for (const Mover& mover : movers()) {
     const Vec3 r = from - mover.position - mover.velocity * after;
@@ -64,6 +65,9 @@ double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, do
     const double root = closing * closing - w.squaredNorm() * apart;
     if (root > 0) {
       first = std::min(first, apart / (closing + std::sqrt(root)));
+      if (first <= enough) {
+        return first;
+      }
     }
   }
   return first;
@@ -77,17 +81,16 @@ bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
 
 std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Vec3& velocity,
                                         double room, double least_s) const {
+  const double meets = contact(from, after, velocity, room, least_s);
   double until = least_s;
-  for (std::size_t i = 0; i < count_ && until < kInfinity;) {
+  for (std::size_t i = 0; i < count_ && until < meets;) {
     const Span span = in_the_way(movers_[i], from, after, velocity, room);
     const bool inside = span.begins <= until && until < span.ends;
     until = inside ? span.ends : until;
     i = inside ? 0 : i + 1;  // now it may be in the way of one looked at before
   }
-  return until < kInfinity && contact(from, after, velocity, room) > until &&
-                 is_open(from, from + velocity * until)
-             ? std::optional(until)
-             : std::nullopt;
+  return until < meets && is_open(from, from + velocity * until) ? std::optional(until)
+                                                                 : std::nullopt;
 }
 
 Outlook::Span Outlook::in_the_way(const Mover& mover, const Vec3& from, double after,

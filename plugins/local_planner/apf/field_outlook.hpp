@@ -32,8 +32,10 @@ class Outlook {
   double reaction_s() const { return reaction_s_; }
 
   /// Seconds until a flight begun `after` seconds from now comes within `room` of a mover that it
-  /// does not part from; infinite where it never does.
-  double contact(const Vec3& from, double after, const Vec3& velocity, double room) const;
+  /// does not part from; infinite where it never does. Any time of at most `enough` will do once
+  /// one is known.
+  double contact(const Vec3& from, double after, const Vec3& velocity, double room,
+                 double enough = 0) const;
   /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
   /// the ground.
   bool is_open(const Vec3& a, const Vec3& b, double room) const;
