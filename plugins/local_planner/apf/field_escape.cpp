@@ -8,9 +8,24 @@
 
 namespace apf {
 
-Escape::Escape(const Request& request) : request_(request), seen_(kTable) {
-  places_.reserve(kMostPlaces);
-  open_.reserve(kMostPlaces);
+Escape::Escape(const Request& request) : request_(request), seen_(std::size_t(1) << kTableBits) {
+  known_.reserve(Outlook::kMost);
+  const int up = request.level_m ? 0 : kCells;
+  for (int x = kCells; x >= -kCells; --x) {
+    for (int y = kCells; y >= -kCells; --y) {
+      for (int z = up; z >= -up; --z) {
+        const double level = std::hypot(x, y);
+        if (level > 0 && std::hypot(level, z) <= kCells &&
+            std::abs(z) <= level * std::tan(steepest())) {
+          neighbours_.push_back({x, y, z});
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < headings_.size(); ++i) {
+    const double angle = 2 * kPi * double(i) / double(headings_.size());
+    headings_[i] = {std::cos(angle), std::sin(angle)};
+  }
 }
 
 bool Escape::find(const Outlook& outlook, const Instant& here, double speed, const Vec3& ahead,
@@ -26,54 +41,71 @@ bool Escape::find(const Outlook& outlook, const Instant& here, double speed, con
     farthest = std::max(farthest, (mover.position - here.at).norm() + mover.radius);
   }
   horizon_s_ = 2 * std::min(farthest, request_.vehicle.sensing_m) / speed;
-  const double coarse = std::max(2.0, 2 * horizon_s_ / kMostLegs);
-  ends_safe_ = false;
-  for (int parts = 4; parts >= 1 && !ends_safe_; parts /= 2) {
-    step_s_ = coarse * parts / 4;
-    ends_safe_ = search(Aim::safe);
+  next_look_s_ = here.time_s + kPause;
+  if ((searched_ == 0 || searched_ == kSearches.size()) && learns(outlook)) {
+    searched_ = 0;
   }
-  next_look_s_ = here.time_s + (ends_safe_ ? 0 : kPause);
-  if (ends_safe_) {
-    return true;
-  }
-  step_s_ = coarse;
-  return search(Aim::lasting);
-}
-
-bool Escape::search(Aim aim) {
-  places_.clear();
-  open_.clear();
-  std::fill(seen_.begin(), seen_.end(), 0);
-  seen_count_ = 0;
-  places_.push_back({here_.at});
-  if (const auto end = straight(places_[0], aim, 192, 4)) {
-    keep(0, *end);
-    return true;
-  }
-  push_neighbours(0);
-  while (!open_.empty()) {
-    const int index = open_.back();
-    open_.pop_back();
-    if (const auto end = straight(places_[std::size_t(index)], aim, 48, 2)) {
-      keep(index, *end);
+  looks_left_ = kMostLooks;
+  for (Outcome outcome = Outcome::none; outcome == Outcome::none && searched_ < kSearches.size();) {
+    const Search& what = kSearches[searched_++];
+    outcome = search(what);
+    if (outcome == Outcome::found) {
+      searched_ = 0;
+      ends_safe_ = what.aim == Aim::safe;
       return true;
     }
-    push_neighbours(index);
   }
   return false;
 }
 
-std::optional<Instant> Escape::straight(const Place& place, Aim aim, int headings,
-                                        int speeds) const {
+bool Escape::learns(const Outlook& outlook) {
+  const auto is_known = [&](const Mover& mover) {
+    return std::any_of(known_.begin(), known_.end(), [&](const Mover& known) {
+      return known.id == mover.id &&
+             (known.velocity - mover.velocity).norm() <= kSameVelocity * speed_;
+    });
+  };
+  const auto movers = outlook.movers();
+  const bool same = outlook.revision() == revision_ && movers.size() == known_.size() &&
+                    std::all_of(movers.begin(), movers.end(), is_known);
+  known_.assign(movers.begin(), movers.end());
+  revision_ = outlook.revision();
+  return !same;
+}
+
+Escape::Outcome Escape::search(const Search& what) {
+  step_s_ = std::max(2.0, 2 * horizon_s_ / kMostLegs) * what.share;
+  std::fill(seen_.begin(), seen_.end(), 0);
+  seen_count_ = 0;
+  tried_[0] = {here_.at};
+  size_tried_ = 1;
+  int looks = kLooksHere;
+  while (size_tried_ > 0) {
+    if (looks > looks_left_) {
+      return Outcome::unfinished;
+    }
+    looks_left_ -= looks;
+    if (const auto end = looks == 1 ? straight(what.aim, 4, 2) : straight(what.aim, 1, 4)) {
+      keep(*end);
+      return Outcome::found;
+    }
+    looks = 1;
+    while (size_tried_ > 0 && !go_on()) {
+      --size_tried_;
+    }
+  }
+  return Outcome::none;
+}
+
+std::optional<Instant> Escape::straight(Aim aim, std::size_t every, int speeds) const {
   for (int part = speeds; part > 0; --part) {
     for (const double climb : {0.0, steepest(), -steepest()}) {
       const double level = speed_ * part / speeds * std::cos(climb);
       const double up = speed_ * part / speeds * std::sin(climb);
-      for (int i = 0; i < headings; ++i) {
-        const double angle = 2 * kPi * i / headings;
-        const Vec3 velocity =
-            level * (std::cos(angle) * ahead_ + std::sin(angle) * aside_) + Vec3(0, 0, up);
-        if (const auto end = straight_along(place, aim, velocity)) {
+      for (std::size_t i = 0; i < headings_.size(); i += every) {
+        const auto [cosine, sine] = headings_[i];
+        const Vec3 velocity = level * (cosine * ahead_ + sine * aside_) + Vec3(0, 0, up);
+        if (const auto end = straight_along(aim, velocity)) {
           return end;
         }
       }
@@ -85,79 +117,64 @@ std::optional<Instant> Escape::straight(const Place& place, Aim aim, int heading
   return std::nullopt;
 }
 
-std::optional<Instant> Escape::straight_along(const Place& place, Aim aim,
-                                              const Vec3& velocity) const {
-  const double after = seconds_to(place);
+std::optional<Instant> Escape::straight_along(Aim aim, const Vec3& velocity) const {
+  const Vec3& from = tried_[std::size_t(size_tried_ - 1)].at;
+  const double after = seconds();
   if (aim == Aim::safe) {
-    const auto lasts = outlook_->escape_s(place.at, after, velocity, kRoom, step_s_);
-    return lasts
-               ? std::optional(Instant{here_.time_s + after + *lasts, place.at + velocity * *lasts})
-               : std::nullopt;
+    const auto lasts = outlook_->escape_s(from, after, velocity, kRoom, step_s_);
+    return lasts ? std::optional(Instant{here_.time_s + after + *lasts, from + velocity * *lasts})
+                 : std::nullopt;
   }
   const double left = horizon_s_ - after;
-  const Vec3 end = place.at + velocity * left;
-  return outlook_->contact(place.at, after, velocity, kRoom) > left &&
-                 outlook_->is_open(place.at, end)
+  const Vec3 end = from + velocity * left;
+  return outlook_->contact(from, after, velocity, kRoom, left) > left &&
+                 outlook_->is_open(from, end)
              ? std::optional(Instant{here_.time_s + horizon_s_, end})
              : std::nullopt;
 }
 
-void Escape::push_neighbours(int index) {
-  const Place place = places_[std::size_t(index)];
-  const double after = seconds_to(place);
-  if (after + step_s_ >= horizon_s_ || place.step + 2 >= kMostLegs) {
-    return;
+bool Escape::go_on() {
+  const double after = seconds();
+  if (after + step_s_ >= horizon_s_ || size_tried_ + 1 >= kMostLegs) {
+    return false;
   }
-  const double cell = speed_ * step_s_ / kCells;
-  const int up = request_.level_m ? 0 : kCells;
-  for (int x = -kCells; x <= kCells; ++x) {
-    for (int y = -kCells; y <= kCells; ++y) {
-      for (int z = -up; z <= up; ++z) {
-        const double level = std::hypot(x, y);
-        if (std::hypot(level, z) > kCells || std::abs(z) > level * std::tan(steepest()) ||
-            (x == 0 && y == 0) || std::int64_t(places_.size()) == kMostPlaces) {
-          continue;
-        }
-        const Vec3 way = cell * (x * ahead_ + y * aside_ + Vec3(0, 0, z));
-        Place next{place.at + way, place.cell, std::int16_t(place.step + 1), index};
-        next.cell[0] = std::int16_t(next.cell[0] + x);
-        next.cell[1] = std::int16_t(next.cell[1] + y);
-        next.cell[2] = std::int16_t(next.cell[2] + z);
-        if (outlook_->contact(place.at, after, way / step_s_, kRoom) > step_s_ && is_new(next) &&
-            leg_ok(std::nullopt, place.at, next.at, request_)) {
-          open_.push_back(int(places_.size()));
-          places_.push_back(next);
-        }
-      }
+  Place& place = tried_[std::size_t(size_tried_ - 1)];
+  const double side = speed_ * step_s_ / kCells;
+  while (place.next < neighbours_.size()) {
+    const Cell& by = neighbours_[place.next++];
+    const Vec3 way = side * (by[0] * ahead_ + by[1] * aside_ + Vec3(0, 0, by[2]));
+    const Place next{place.at + way,
+                     {place.cell[0] + by[0], place.cell[1] + by[1], place.cell[2] + by[2]}};
+    if (outlook_->contact(place.at, after, way / step_s_, kRoom, step_s_) > step_s_ &&
+        is_new(next.cell) && leg_ok(std::nullopt, place.at, next.at, request_)) {
+      tried_[std::size_t(size_tried_++)] = next;
+      return true;
     }
   }
+  return false;
 }
 
-bool Escape::is_new(const Place& place) {
-  std::uint64_t key = std::uint64_t(place.step);
-  for (const std::int16_t cell : place.cell) {
-    key = key << 16 | std::uint16_t(cell);
+bool Escape::is_new(const Cell& cell) {
+  std::uint64_t key = std::uint64_t(size_tried_);
+  for (const int along : cell) {
+    key = key << 16 | std::uint16_t(along);
   }
-  ++key;  // 0 stands for an empty slot
-  std::size_t slot = (key * 0x9E3779B97F4A7C15ULL) >> 51;
+  std::size_t slot = (key * 0x9E3779B97F4A7C15ULL) >> (64 - kTableBits);
   while (seen_[slot] != 0 && seen_[slot] != key) {
-    slot = (slot + 1) % kTable;
+    slot = (slot + 1) % seen_.size();
   }
-  if (seen_[slot] == key || 2 * ++seen_count_ > kTable) {
+  if (seen_[slot] == key || 2 * ++seen_count_ > seen_.size()) {
     return false;
   }
   seen_[slot] = key;
   return true;
 }
 
-void Escape::keep(int index, const Instant& end) {
-  size_ = 0;
-  legs_[std::size_t(size_++)] = end;
-  for (; index > 0; index = places_[std::size_t(index)].before) {
-    const Place& place = places_[std::size_t(index)];
-    legs_[std::size_t(size_++)] = {here_.time_s + seconds_to(place), place.at};
+void Escape::keep(const Instant& end) {
+  for (size_ = 1; size_ < size_tried_; ++size_) {
+    legs_[std::size_t(size_ - 1)] = {here_.time_s + size_ * step_s_, tried_[std::size_t(size_)].at};
   }
-  std::reverse(legs_.begin(), legs_.begin() + size_);
+  legs_[std::size_t(size_ - 1)] = end;
 }
 
 void Escape::keep(const Instant& corner, const Instant& end, double speed) {
@@ -166,6 +183,7 @@ void Escape::keep(const Instant& corner, const Instant& end, double speed) {
   size_ = 2;
   speed_ = speed;
   ends_safe_ = true;
+  searched_ = 0;
 }
 
 std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here, double most_s) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "altiplan/local_planner.hpp"
+#include "altiplan/world.hpp"
 
 namespace apf {
 using namespace altiplan;
@@ -21,6 +22,8 @@ struct Mover {
 /// What is seen in one step, and what it means for a straight flight.
 class Outlook {
  public:
+  static constexpr std::size_t kMost = 256;  ///< movers; the nearest of more
+
   /// `margin`: metres kept off what moves, beyond the clearance required.
   Outlook(const Request& request, double required, double margin, double reaction_s)
       : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
@@ -28,6 +31,8 @@ class Outlook {
   void see(const Observation& seen, double speed);
 
   std::span<const Mover> movers() const { return {movers_.data(), count_}; }
+  /// Of what stands still.
+  std::uint64_t revision() const { return world_->revision(); }
   double margin() const { return margin_; }
   double reaction_s() const { return reaction_s_; }
 
@@ -56,8 +61,6 @@ class Outlook {
   /// When, in seconds of the flight, it is where the mover will come later.
   Span in_the_way(const Mover& mover, const Vec3& from, double after, const Vec3& velocity,
                   double room) const;
-
-  static constexpr std::size_t kMost = 256;  ///< the nearest of more
 
   const Request& request_;
   double required_;
