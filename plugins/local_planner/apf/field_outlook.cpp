@@ -23,7 +23,14 @@ void Outlook::see(const Observation& seen, double speed) {
   count_ = 0;
   for (const SensedObstacle& moving : seen.moving) {
     const std::size_t id = std::hash<std::string_view>()(moving.id);
-    const Mover mover{moving.position, velocity_of(moving, id), moving.radius + required_, id};
+    const Vec3 velocity = velocity_of(moving, id);
+    const double pace = velocity.norm();
+    const Mover mover{moving.position,
+                      velocity,
+                      moving.radius + required_,
+                      id,
+                      pace,
+                      pace > 0 ? Vec3(velocity / pace) : velocity};
     if (count_ < kMost) {
       movers_[count_++] = mover;
     } else if (const auto farthest = std::max_element(
@@ -82,9 +89,14 @@ bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
 std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Vec3& velocity,
                                         double room, double least_s) const {
   const double meets = contact(from, after, velocity, room, least_s);
+  std::array<Span, kMost> spans;
+  std::size_t known = 0;
   double until = least_s;
   for (std::size_t i = 0; i < count_ && until < meets;) {
-    const Span span = in_the_way(movers_[i], from, after, velocity, room);
+    if (i == known) {
+      spans[known++] = in_the_way(movers_[i], from, after, velocity, room);
+    }
+    const Span& span = spans[i];
     const bool inside = span.begins <= until && until < span.ends;
     until = inside ? span.ends : until;
     i = inside ? 0 : i + 1;  // now it may be in the way of one looked at before
@@ -95,16 +107,16 @@ std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Ve
 
 Outlook::Span Outlook::in_the_way(const Mover& mover, const Vec3& from, double after,
                                   const Vec3& velocity, double room) const {
-  const double pace = mover.velocity.norm();
+  const double pace = mover.pace;
   if (pace == 0) {
-    return {};
+    return kNever;
   }
-  const Vec3 onward = mover.velocity / pace;
+  const Vec3& onward = mover.onward;
   const Vec3 r = from - mover.position - mover.velocity * after;
   const double ahead = r.dot(onward);
   const double gains = velocity.dot(onward) - pace;
   if (ahead <= 0 && gains <= 0) {
-    return {};  // behind it for good
+    return kNever;  // behind it for good
   }
   const Vec3 off = r - onward * ahead;
   const Vec3 aside = velocity - onward * velocity.dot(onward);
@@ -115,14 +127,15 @@ Outlook::Span Outlook::in_the_way(const Mover& mover, const Vec3& from, double a
   Span span{-kInfinity, kInfinity};
   if (a < 1e-12 * speed_ * speed_) {
     if (outside >= 0) {
-      return {};
+      return kNever;
     }
   } else {
     const double root = b * b - a * outside;
     if (root <= 0) {
-      return {};
+      return kNever;
     }
-    span = {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a};
+    const double half = std::sqrt(root);
+    span = {(-b - half) / a, (-b + half) / a};
   }
   if (gains > 0) {
     span.begins = std::max(span.begins, -ahead / gains);

@@ -17,6 +17,8 @@ struct Mover {
   Vec3 velocity{0, 0, 0};
   double radius = 0;  ///< with what the vehicle keeps off anything
   std::size_t id = 0;
+  double pace = 0;       ///< of the velocity,
+  Vec3 onward{0, 0, 0};  ///< and its direction
 };
 
 /// What is seen in one step, and what it means for a straight flight.
@@ -55,9 +57,10 @@ class Outlook {
   /// Where it is not observed: from where it was seen last.
   Vec3 velocity_of(const SensedObstacle& moving, std::size_t id) const;
   struct Span {
-    double begins = kInfinity;
-    double ends = kInfinity;
+    double begins;
+    double ends;
   };
+  static constexpr Span kNever{kInfinity, kInfinity};
   /// When, in seconds of the flight, it is where the mover will come later.
   Span in_the_way(const Mover& mover, const Vec3& from, double after, const Vec3& velocity,
                   double room) const;
