@@ -75,22 +75,31 @@ bool Escape::learns(const Outlook& outlook) {
 
 Escape::Outcome Escape::search(const Search& what) {
   step_s_ = std::max(2.0, 2 * horizon_s_ / kMostLegs) * what.share;
+  // Ways of two legs first: depth first, those that begin otherwise would come late.
+  const Outcome outcome = look_on(what.aim, 0, 1);
+  return outcome == Outcome::none ? look_on(what.aim, 2, kMostLegs - 2) : outcome;
+}
+
+Escape::Outcome Escape::look_on(Aim aim, int from, int to) {
   std::fill(seen_.begin(), seen_.end(), 0);
   seen_count_ = 0;
   tried_[0] = {here_.at};
   size_tried_ = 1;
-  int looks = kLooksHere;
   while (size_tried_ > 0) {
+    const int step = size_tried_ - 1;
+    const int looks = step < from ? 0 : step == 0 ? kLooksHere : 1;
     if (looks > looks_left_) {
       return Outcome::unfinished;
     }
     looks_left_ -= looks;
-    if (const auto end = looks == 1 ? straight(what.aim, 4, 2) : straight(what.aim, 1, 4)) {
+    const auto end = looks > 1   ? straight(aim, 1, 4)
+                     : looks > 0 ? straight(aim, 4, 2)
+                                 : std::nullopt;
+    if (end) {
       keep(*end);
       return Outcome::found;
     }
-    looks = 1;
-    while (size_tried_ > 0 && !go_on()) {
+    while (size_tried_ > 0 && !(size_tried_ <= to && go_on())) {
       --size_tried_;
     }
   }
@@ -135,7 +144,7 @@ std::optional<Instant> Escape::straight_along(Aim aim, const Vec3& velocity) con
 
 bool Escape::go_on() {
   const double after = seconds();
-  if (after + step_s_ >= horizon_s_ || size_tried_ + 1 >= kMostLegs) {
+  if (after + step_s_ >= horizon_s_) {
     return false;
   }
   Place& place = tried_[std::size_t(size_tried_ - 1)];

@@ -64,6 +64,8 @@ class Escape {
   /// Whether something is seen that was not when the searches began; takes it as seen.
   bool learns(const Outlook& outlook);
   Outcome search(const Search& what);
+  /// The places from so many to so many steps of time away.
+  Outcome look_on(Aim aim, int from, int to);
   double steepest() const {
     return request_.level_m ? 0 : std::min(request_.limits.max_climb, radians(60)) * (1 - 1e-9);
   }
