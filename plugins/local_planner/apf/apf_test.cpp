@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 #include "altiplan/kit/obstacle_set.hpp"
@@ -374,6 +375,62 @@ TEST(Apf, AllocatesNothingWhereNothingEscapes) {
   counting = false;
   EXPECT_EQ(step.outcome, PilotStep::Outcome::flying) << "it flies on while it can";
   EXPECT_EQ(allocations, 0);
+}
+
+/// Nothing, and how often it was asked.
+class Asked final : public Environment {
+ public:
+  mutable int legs = 0;
+
+ private:
+  Box do_bounds() const override { return {}; }
+  double do_clearance(const Vec3&) const override { return 1e6; }
+  bool do_blocked(const Vec3&, const Vec3&, double) const override {
+    ++legs;
+    return false;
+  }
+  double do_slack() const override { return 0; }
+};
+
+TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
+  const auto asked = std::make_shared<Asked>();
+  Request request = problem(world_of(asked, "asked"), {5000, 15000, 500}, {28000, 15000, 500});
+  request.level_m = 500;
+  const auto pilot = make_local_planner("apf", "{influence_m: 1000}")->begin(request);
+  std::array<SensedObstacle, 16> ring;
+  const std::array<std::string, 16> ids{"0", "1", "2",  "3",  "4",  "5",  "6",  "7",
+                                        "8", "9", "10", "11", "12", "13", "14", "15"};
+  const auto place = [&](double time, double turn) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const double angle = radians(22.5 * double(i) + turn);
+      const Vec3 out(std::cos(angle), std::sin(angle), 0);
+      ring[i] = {ids[i], request.start.position + (1150 - 20 * time) * out, 300, Vec3(-20 * out)};
+    }
+  };
+  Observation seen;
+  seen.state = {0, request.start.position, {30, 0, 0}};
+  seen.goal = request.goal;
+  seen.local_target = request.goal.position;
+  seen.world = request.world.get();
+  seen.moving = ring;
+  const auto legs_asked = [&](double turn) {
+    place(seen.state.time_s, turn);
+    asked->legs = 0;
+    seen.state = pilot->step(seen).next;
+    return asked->legs;
+  };
+  constexpr int kMostLooks = 128;  // each but the first is one leg away from another
+  int most = 0;
+  int least = std::numeric_limits<int>::max();
+  for (int step = 0; step < 12; ++step) {
+    const int legs = legs_asked(0);
+    most = std::max(most, legs);
+    least = std::min(least, legs);
+  }
+  EXPECT_LE(most - least, kMostLooks);
+  EXPECT_GT(most, least) << "it searches,";
+  EXPECT_EQ(legs_asked(0), least) << "and no more once all searches have failed,";
+  EXPECT_GT(legs_asked(10), least) << "until all fly otherwise";
 }
 }  // namespace
 }  // namespace altiplan::testing
