@@ -183,7 +183,7 @@ bool FieldPilot::is_allowed(const Observation& seen, Prospect& prospect, const S
                return request_.volume.contains(to, kLengthTolerance) &&
                       climb_angle(to - here_) <= max_climb() + kAngleTolerance &&
                       seen.world->ground_below(here_, to) &&
-                      !seen.world->blocked(here_, to, required_);
+                      !outlook_.is_blocked(here_, to, required_);
              })) {
     return false;
   }

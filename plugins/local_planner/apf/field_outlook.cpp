@@ -9,7 +9,6 @@
 namespace apf {
 
 void Outlook::see(const Observation& seen, double speed) {
-  world_ = seen.world;
   speed_ = speed;
   if (seen.state.time_s > time_s_) {
     before_s_ = time_s_;
@@ -39,6 +38,34 @@ void Outlook::see(const Observation& seen, double speed) {
                gap(mover) < gap(*farthest)) {
       *farthest = mover;
     }
+  }
+}
+
+void Outlook::look_around(const World& world, const Vec3& here) {
+  world_ = &world;
+  here_ = here;
+  clearance_ = world.clearance(here);
+  layers_size_ = 0;
+  for (const Layer& layer : world.layers()) {
+    if (layers_size_ < kMostLayers) {
+      const Environment& environment = *layer.environment;
+      layers_[layers_size_++] = {&layer, environment.clearance(here) - environment.slack()};
+    }
+  }
+}
+
+bool Outlook::is_blocked(const Vec3& a, const Vec3& b, double room) const {
+  if (world_->layers().size() > kMostLayers) {
+    return world_->blocked(a, b, room);
+  }
+  const double reach = std::max((a - here_).norm(), (b - here_).norm()) + room;
+  try {
+    return std::any_of(
+        layers_.begin(), layers_.begin() + std::ptrdiff_t(layers_size_), [&](const Near& near) {
+          return !(near.free_m >= reach) && near.layer->environment->blocked(a, b, room);
+        });
+  } catch (...) {
+    return world_->blocked(a, b, room);  // which says of what layer it is
   }
 }
 
@@ -83,7 +110,7 @@ double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, do
 bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
   const auto& least = request_.limits.min_ground_clearance;
   return request_.volume.contains(b, kLengthTolerance) && world_->ground_below(a, b) &&
-         !world_->blocked(a, b, room) && (!least || world_->ground_gap(a, b, *least) >= *least);
+         !is_blocked(a, b, room) && (!least || world_->ground_gap(a, b, *least) >= *least);
 }
 
 std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Vec3& velocity,

@@ -30,11 +30,15 @@ class Outlook {
   Outlook(const Request& request, double required, double margin, double reaction_s)
       : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
 
+  /// First what stands still, then, at the speed that follows of it, what moves.
+  void look_around(const World& world, const Vec3& here);
   void see(const Observation& seen, double speed);
 
   std::span<const Mover> movers() const { return {movers_.data(), count_}; }
   /// Of what stands still.
   std::uint64_t revision() const { return world_->revision(); }
+  /// Least clearance of what stands still, here.
+  double clearance() const { return clearance_; }
   double margin() const { return margin_; }
   double reaction_s() const { return reaction_s_; }
 
@@ -43,6 +47,8 @@ class Outlook {
   /// one is known.
   double contact(const Vec3& from, double after, const Vec3& velocity, double room,
                  double enough = 0) const;
+  /// As the world has it; a layer too far from here is not asked.
+  bool is_blocked(const Vec3& a, const Vec3& b, double room) const;
   /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
   /// the ground.
   bool is_open(const Vec3& a, const Vec3& b, double room) const;
@@ -69,7 +75,18 @@ class Outlook {
   double required_;
   double margin_;
   double reaction_s_;
+  /// A layer, and so far from here it blocks nothing.
+  struct Near {
+    const Layer* layer;
+    double free_m;
+  };
+  static constexpr std::size_t kMostLayers = 256;  ///< of more, none is known to be far
+
   const World* world_ = nullptr;
+  Vec3 here_{0, 0, 0};
+  double clearance_ = kInfinity;
+  std::array<Near, kMostLayers> layers_{};
+  std::size_t layers_size_ = 0;
   double speed_ = 0;
   double time_s_ = 0;
   double before_s_ = 0;

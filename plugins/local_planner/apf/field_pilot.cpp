@@ -76,7 +76,8 @@ void FieldPilot::observe(const Observation& seen) {
     before_ = here_ - seen.state.velocity;
   }
   moving_ = seen.moving;
-  double clearance = seen.world->clearance(here_);
+  outlook_.look_around(*seen.world, here_);
+  double clearance = outlook_.clearance();
   room_ = std::clamp(clearance - required_ - kLengthTolerance, 0.0, outlook_.margin());
   for (const SensedObstacle& moving : seen.moving) {
     clearance = std::min(clearance, (here_ - moving.position).norm() - moving.radius);
