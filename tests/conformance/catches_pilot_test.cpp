@@ -87,19 +87,21 @@ class Straight final : public Pilot {
 
 class StraightOn final : public LocalPlanner {
  public:
-  explicit StraightOn(Flaw flaw) : flaw_(flaw) {}
+  explicit StraightOn(Flaw flaw, Traits traits = {}) : flaw_(flaw), traits_(traits) {}
 
  private:
   std::unique_ptr<Pilot> do_begin(const Request& request) const override {
     return std::make_unique<Straight>(request, flaw_);
   }
+  Traits do_traits() const override { return traits_; }
   Flaw flaw_;
+  Traits traits_;
 };
 
-Cases of(Flaw flaw) {
+Cases of(Flaw flaw, Traits traits = {}) {
   Options options;
   options.allocations = [] { return allocations; };
-  return local_planner_cases([flaw] { return std::make_unique<StraightOn>(flaw); }, options);
+  return local_planner_cases([=] { return std::make_unique<StraightOn>(flaw, traits); }, options);
 }
 
 TEST(CatchesPilot, Flaws) {
@@ -118,6 +120,18 @@ TEST(CatchesPilot, Flaws) {
   expect_caught("old world", of(Flaw::old_world), "Pilot: a step that says flying");
   expect_caught("climbs", of(Flaw::climbs), "Planner trait `plane`");
   expect_caught("throws", of(Flaw::throws), "Pilot: being stuck");
+}
+
+TEST(CatchesPilot, WhatIsNotPromisedIsNotAskedFor) {
+  Traits traits;
+  traits.avoids_obstacles = false;
+  expect_clean("through", of(Flaw::through, traits));
+  expect_caught("fast", of(Flaw::fast, traits), "Pilot law 2");
+  traits = {};
+  traits.space = false;
+  expect_clean("level", of(Flaw::none, traits));
+  expect_caught("climbs", of(Flaw::climbs, traits), "Planner trait `plane`");
+  expect_caught("through, on a level", of(Flaw::through, traits), "Pilot: a step that says flying");
 }
 }  // namespace
 }  // namespace altiplan::conformance

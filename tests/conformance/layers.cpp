@@ -38,6 +38,14 @@ void Balls::do_near(const Vec3& p, double reach, const NearSink& sink) const {
   }
 }
 
+std::vector<Threat> Balls::do_threats() const {
+  std::vector<Threat> threats;
+  for (const Sphere& ball : balls_) {
+    threats.push_back({ball.centre, ball.radius, "ball", ""});
+  }
+  return threats;
+}
+
 namespace {
 using Vec2 = std::array<double, 2>;
 

@@ -25,6 +25,9 @@ inline constexpr const char* kNotThrough =
 inline constexpr const char* kLevel = "Planner trait `plane`: level flight stays on its level";
 inline constexpr const char* kNoThrow = "Pilot: being stuck is an outcome, never an exception";
 
+/// The same flight at the start's height.
+Request in_level_flight(Request request);
+
 struct Bench {
   Factory<LocalPlanner> make;
   Options options;
@@ -45,7 +48,7 @@ struct Bench {
     request.vehicle.speed_mps = 0.01 * reach;
     request.vehicle.radius_m = request.limits.min_clearance = 0.001 * reach;
     request.random = RandomStream(options.seed);
-    return request;
+    return make()->traits().space ? request : in_level_flight(request);
   }
 };
 

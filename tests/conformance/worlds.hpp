@@ -22,6 +22,7 @@ class Balls final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
   double do_slack() const override { return 0; }
+  std::vector<Threat> do_threats() const override;
   std::vector<Sphere> balls_;
 };
 

@@ -158,7 +158,8 @@ std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
           {"anytime", traits.anytime},
           {"incremental", traits.incremental},
           {"plane", traits.plane},
-          {"space", traits.space}};
+          {"space", traits.space},
+          {"avoids_obstacles", traits.avoids_obstacles}};
 }
 
 std::optional<Traits> traits_of(const PluginEntry& entry) {

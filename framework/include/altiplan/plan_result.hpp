@@ -43,12 +43,14 @@ struct PlanResult {
 
 /// What a planner holds to for the given parameters; the conformance suite checks it.
 struct Traits {
-  bool complete = false;     ///< finds a route of its search space whenever there is one
-  bool optimal = false;      ///< and the shortest of them
-  bool any_angle = false;    ///< never longer than the grid's shortest
-  bool anytime = false;      ///< more budget never gives a longer route
-  bool incremental = false;  ///< its session keeps what it searched
-  bool plane = true;         ///< level flight
-  bool space = true;         ///< three dimensions
+  bool complete = false;         ///< finds a route of its search space whenever there is one
+  bool optimal = false;          ///< and the shortest of them
+  bool any_angle = false;        ///< never longer than the grid's shortest
+  bool anytime = false;          ///< more budget never gives a longer route
+  bool incremental = false;      ///< its session keeps what it searched
+  bool plane = true;             ///< level flight
+  bool space = true;             ///< three dimensions
+  bool avoids_obstacles = true;  ///< no leg through a known one; false: a local planner's may lead
+                                 ///< there, and the judge says so
 };
 }  // namespace altiplan

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "altiplan/params.hpp"
+#include "field.hpp"
+
+namespace velocity_field {
+using namespace altiplan;
+
+enum class Variant { paper, robust };
+enum class Toward { goal, route };
+
+struct Params {
+  Variant variant = Variant::paper;
+  double pull_weight = 1;
+  double edge_ratio = 0.05;
+  double surface_ratio = 10;
+  double ring_m = 2000;
+  double guide_ratio = 1;
+  double step_s = 1;
+  AutoNumber min_turn_radius_m{500};
+  std::optional<double> min_speed_mps;
+  std::optional<double> max_bank_deg;
+  double release_m = 100;
+  Toward toward = Toward::goal;
+  std::int64_t max_steps = 40000;
+
+  void describe(Fields& f) {
+    f("variant", variant, {{"paper", Variant::paper}, {"robust", Variant::robust}})
+        .doc("paper: the method as published; robust: along a guide, never without a way out");
+    f("pull_weight", pull_weight).range(0, 1e9).doc("omega: speed toward the target");
+    f("edge_ratio", edge_ratio)
+        .greater_than(0)
+        .at_most(1e9)
+        .doc("alpha: push at the outer edge of a threat's ring, of the pull");
+    f("surface_ratio", surface_ratio)
+        .greater_than(0)
+        .at_most(1e9)
+        .doc("beta: push at a threat's edge, of the pull");
+    f("ring_m", ring_m)
+        .unit("m")
+        .range(0.001, 1e9)
+        .doc("Delta R: width of the ring around a threat in which it acts");
+    f("guide_ratio", guide_ratio)
+        .range(0, 1e9)
+        .doc("epsilon: speed beside a threat, toward the target, of its push");
+    f("step_s", step_s)
+        .unit("s")
+        .range(1e-3, 1e6)
+        .doc("Delta T: time of a step; never more than the host's");
+    f("min_turn_radius_m", min_turn_radius_m)
+        .unit("m")
+        .range(1e-3, 1e9)
+        .doc(
+            "R_min: the heading changes by at most 2 asin(v Delta T / (2 R_min)) a step; auto: "
+            "min_speed_mps^2 / (g tan(max_bank_deg))");
+    f("min_speed_mps", min_speed_mps).unit("m/s").range(1e-3, 1e6).doc("V_min of level flight");
+    f("max_bank_deg", max_bank_deg).unit("deg").range(0.1, 89).doc("gamma_max, greatest bank");
+    f("release_m", release_m)
+        .unit("m")
+        .range(1e-3, 1e9)
+        .doc("a virtual target that close is reached");
+    f("toward", toward, {{"goal", Toward::goal}, {"route", Toward::route}})
+        .doc(
+            "what draws: the goal, as published, or the place of the route that a flight is to "
+            "come back to");
+    f("max_steps", max_steps).range(1, 1'000'000).doc("steps after which the pilot gives up");
+    f.check(edge_ratio < surface_ratio, "edge_ratio must be less than surface_ratio");
+    f.check(variant == Variant::paper || toward == Toward::goal,
+            "toward: route is of variant: paper; robust finds its own way to the goal");
+    const bool by_bank = min_speed_mps && max_bank_deg;
+    f.check(by_bank != min_turn_radius_m.value.has_value() &&
+                min_speed_mps.has_value() == max_bank_deg.has_value(),
+            "give min_turn_radius_m, or min_turn_radius_m: auto with min_speed_mps and "
+            "max_bank_deg");
+  }
+
+  Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }
+  /// R_min, eq. (10) where it is not given.
+  double least_radius() const {
+    constexpr double kGravity = 9.80665;
+    return min_turn_radius_m.value
+               ? *min_turn_radius_m.value
+               : *min_speed_mps * *min_speed_mps / (kGravity * std::tan(radians(*max_bank_deg)));
+  }
+};
+}  // namespace velocity_field

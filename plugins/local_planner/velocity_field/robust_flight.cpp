@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robust_flight.hpp"
+
+#include <limits>
+
+namespace velocity_field {
+namespace {
+/// The virtual target's way ahead on the guide, in least turn radii. A shorter one swings, a longer
+/// one cuts corners.
+constexpr double kAhead = 1.8;
+/// The guide's length, of the shortest one's, at most, for a wider berth.
+constexpr double kDetour = 1.2;
+/// Steps that the place beside the vehicle moves along the guide in one step, at most.
+constexpr double kCatchUp = 10;
+/// Steps of a way out, at most: a few hundred lead through the longest narrows.
+constexpr std::size_t kLongest = 1000;
+/// Steps of one manoeuvre, at most: two tightest turns all around.
+constexpr std::size_t kManoeuvre = 210;
+}  // namespace
+
+RobustFlight::RobustFlight(const Field& field, const Threats& threats, const Steps& steps)
+    : field_(field), threats_(&threats), freedom_(threats, steps) {
+  way_out_.courses.reserve(kLongest);
+  tried_.courses.reserve(kLongest);
+}
+
+void RobustFlight::set_world(const Vec2& goal, double tolerance_m, const Vec2& at,
+                             const std::optional<Vec2>& course) {
+  goal_ = goal;
+  tolerance_m_ = tolerance_m;
+  find_guide(at, course);
+  check_way_out(at, course);
+}
+
+/// Threats are given the widest berth that makes the way little longer than the least does: what a
+/// chord of the tightest turn cuts off.
+void RobustFlight::find_guide(const Vec2& at, const std::optional<Vec2>& course) {
+  const double radius = steps().radius_m();
+  const double least = steps().length_m() * steps().length_m() / (8 * radius);
+  ++counts_.guides;
+  along_ = 0;
+  circling_ = 0;
+  guide_ = guide_with(least, at, course);
+  pushed_ = false;
+  const double most_m = kDetour * guide_.length_m();
+  for (double berth = std::min(field_.balance(), radius); berth > least && !guide_.empty();
+       berth /= 4) {
+    Guide wide = guide_with(berth, at, course);
+    if (!wide.empty() && wide.length_m() <= most_m) {
+      guide_ = std::move(wide);
+      pushed_ = berth == std::min(field_.balance(), radius);
+      return;
+    }
+  }
+}
+
+Guide RobustFlight::guide_with(double berth, const Vec2& at,
+                               const std::optional<Vec2>& course) const {
+  std::vector<Disc> grown = threats_->all();
+  for (Disc& disc : grown) {
+    // Neither end may lie inside.
+    const double room =
+        std::min((at - disc.centre).norm(), (goal_ - disc.centre).norm()) - disc.radius;
+    disc.radius += std::min(berth, 0.9 * std::max(room, 0.0));
+  }
+  return shortest_guide(grown, {at, course, steps().radius_m()}, goal_).value_or(Guide());
+}
+
+double RobustFlight::reach_m() const { return kDetour * guide_.length_m() + field_.ring; }
+
+void RobustFlight::check_way_out(const Vec2& at, const std::optional<Vec2>& course) {
+  if (!course) {
+    return;
+  }
+  const Pose here = {at, *course};
+  const bool ends_well = way_out_.circle != 0 || is_goal(way_out_.end(steps(), at));
+  if (known_ && ends_well && way_out_.is_free(freedom_, here)) {
+    return;
+  }
+  counts_.ways_out_lost += known_;
+  begin_way_out(here);
+}
+
+void RobustFlight::begin_way_out(const Pose& from) {
+  way_out_.courses.clear();
+  safe_ = find_way_out(from);
+  known_ = safe_;
+}
+
+/// Where the guide comes back beside itself it must not be left out: along it goes with the steps.
+double RobustFlight::follow(const Vec2& at, double along) const {
+  return std::min(guide_.beside(at, along), along + kCatchUp * steps().length_m());
+}
+
+Vec2 RobustFlight::pull(const Vec2& at, const std::optional<Vec2>& course, double& along) const {
+  const double step = steps().length_m();
+  along = follow(at, along);
+  const double ahead = along + kAhead * steps().radius_m();
+  const Vec2 target = guide_.at(ahead);
+  const Vec2 to_target = target - at;
+  if (course && ahead >= guide_.length_m()) {
+    // The goal inside the tightest turn would be circled for ever: leave it behind first.
+    const int side = cross(*course, to_target) >= 0 ? 1 : -1;
+    const Vec2 centre = steps().circle_centre({at, *course}, side);
+    if ((target - centre).norm() < steps().radius_m()) {
+      return *course;
+    }
+  }
+  const Vec2 beside = guide_.at(along);
+  const Vec2 from_beside = target - beside;
+  if (from_beside.norm() < step) {
+    return to_target.normalized();
+  }
+  // On the guide this is its own next chord, and beside it that chord turned back to the guide.
+  return turned_as(guide_.at(along + step) - beside, from_beside, to_target).normalized();
+}
+
+Vec2 RobustFlight::wish(const Vec2& at, const Vec2& pull, const Vec2& push) const {
+  // A push would lead past the goal, and past a gap that is narrower than its ring.
+  if (!pushed_ || along_ + field_.ring > guide_.length_m()) {
+    return pull;
+  }
+  Vec2 sum = field_.of_target(pull) + push;
+  for (const std::uint32_t n : threats_->near(at)) {
+    sum += field_.of_threat(at, threats_->all()[n], pull);
+  }
+  return sum.squaredNorm() > 0 ? Vec2(sum.normalized()) : pull;
+}
+
+Pose RobustFlight::step(const Vec2& at, const std::optional<Vec2>& course, const Vec2& push) {
+  if (!guide_.empty()) {
+    along_ = follow(at, along_);
+  }
+  if (!way_out_.courses.empty()) {
+    kind_ = Kind::way_out;
+    ++counts_.way_out_steps;
+    const Vec2 next = way_out_.courses.back();
+    way_out_.courses.pop_back();
+    return steps().after(at, next);
+  }
+  if (!guide_.empty()) {
+    if (const std::optional<Pose> next = follow_field(at, course, push)) {
+      kind_ = Kind::field;
+      return *next;
+    }
+  }
+  if (course && known_ && way_out_.circle != 0) {
+    kind_ = Kind::circle;
+    ++counts_.circle_steps;
+    circling_ += steps().length_m();
+    if (!guide_.empty() && circling_ > 2 * kPi * steps().radius_m()) {
+      find_guide(at, course);  // all around in vain
+    }
+    return steps().turned({at, *course}, way_out_.circle);
+  }
+  kind_ = Kind::unproven;
+  ++counts_.unproven_steps;
+  const Pose next = roomiest({at, course.value_or((goal_ - at).normalized())});
+  begin_way_out(next);
+  return next;
+}
+
+std::optional<Pose> RobustFlight::follow_field(const Vec2& at, const std::optional<Vec2>& course,
+                                               const Vec2& push) {
+  double along = along_;
+  const Vec2 wished = wish(at, pull(at, course, along), push);
+  const Pose next = steps().after(at, course ? steps().limited(*course, wished) : wished);
+  if (!freedom_.is_leg_free(at, next.at) || !find_way_out(next)) {
+    return std::nullopt;
+  }
+  counts_.turn_limit_steps += next.course != wished;
+  safe_ = true;
+  known_ = true;
+  return next;
+}
+
+Pose RobustFlight::roomiest(const Pose& pose) const {
+  const auto room = [&](const Pose& at) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t n : threats_->near(at.at)) {
+      const Disc& disc = threats_->all()[n];
+      least = std::min(least, (at.at - disc.centre).norm() - disc.radius);
+    }
+    return least;
+  };
+  Pose best = steps().after(pose.at, pose.course);
+  for (const int side : {1, -1}) {
+    const Pose turned = steps().turned(pose, side);
+    if (room(turned) > room(best)) {
+      best = turned;
+    }
+  }
+  return best;
+}
+
+bool RobustFlight::find_way_out(const Pose& from) {
+  tried_.courses.clear();
+  Pose pose = from;
+  if (!follow_pull(pose)) {
+    // On from the goal, where the way there leads to no circle; else from here.
+    const bool arrives = is_goal(pose.at);
+    if (!arrives) {
+      tried_.courses.clear();
+    }
+    if (!go_on(arrives ? pose : from) && !arrives) {
+      return false;
+    }
+  }
+  std::reverse(tried_.courses.begin(), tried_.courses.end());
+  std::swap(way_out_, tried_);
+  return true;
+}
+
+bool RobustFlight::follow_pull(Pose& pose) {
+  double along = along_;
+  while (!ends_in_circle(pose)) {
+    if (guide_.empty() || is_goal(pose.at) || !try_step(pose, pull(pose.at, pose.course, along))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool RobustFlight::go_on(const Pose& from) {
+  const std::size_t before = tried_.courses.size();
+  for (const int side : {0, 1, -1}) {
+    Pose pose = from;
+    while (tried_.courses.size() - before < kManoeuvre &&
+           try_step(pose, side == 0 ? pose.course : Vec2(side * left_of(pose.course)))) {
+      if (ends_in_circle(pose)) {
+        return true;
+      }
+    }
+    tried_.courses.resize(before);
+  }
+  return false;
+}
+
+bool RobustFlight::try_step(Pose& pose, const Vec2& wish) {
+  const Pose next = steps().after(pose.at, steps().limited(pose.course, wish));
+  if (tried_.courses.size() == kLongest || !freedom_.is_leg_free(pose.at, next.at)) {
+    return false;
+  }
+  tried_.courses.push_back(next.course);
+  pose = next;
+  return true;
+}
+
+bool RobustFlight::ends_in_circle(const Pose& pose) {
+  tried_.circle = freedom_.free_circle(pose, goal_);
+  return tried_.circle != 0;
+}
+}  // namespace velocity_field

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robust_pilot.hpp"
+
+#include <algorithm>
+
+namespace velocity_field {
+namespace {
+PilotStep stuck(const Observation& seen, std::string_view why) {
+  return {seen.state, PilotStep::Outcome::stuck, why};
+}
+
+std::string_view what(RobustFlight::Kind kind, bool has_guide) {
+  switch (kind) {
+    case RobustFlight::Kind::field:
+      return "follows the field along the guide";
+    case RobustFlight::Kind::way_out:
+      return "flies its way out, through where no circle is free";
+    case RobustFlight::Kind::circle:
+      return has_guide ? "circles: the next step toward the goal is not known to be safe"
+                       : "circles: no way to the goal is known";
+    case RobustFlight::Kind::unproven:
+      break;
+  }
+  return "keeps away from threats: no way out is known";
+}
+
+std::optional<Vec2> course_of(const State& state) {
+  const Vec2 velocity = state.velocity.head<2>();
+  const double speed = velocity.norm();
+  return speed > 0 ? std::optional<Vec2>(velocity / speed) : std::nullopt;
+}
+}  // namespace
+
+RobustPilot::RobustPilot(const Params& params, const Request& request)
+    : p_(params),
+      field_(params.field()),
+      speed_(request.vehicle.speed_mps),
+      least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
+      most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
+      most_step_(request.limits.max_leg),
+      feed_(request, std::max(params.ring_m, Freedom::reach_m(steps_of(params.step_s)))),
+      flight_(field_, feed_.threats(), steps_of(params.step_s)),
+      dt_(params.step_s) {
+  const Vec2 here = request.start.position.head<2>();
+  const std::optional<Vec2> course = course_of(request.start);
+  flight_.set_world(request.goal.position.head<2>(), request.goal.tolerance_m, here, course);
+  expected_ = {here, course.value_or(Vec2(0, 0))};
+}
+
+Steps RobustPilot::steps_of(double step_s) const {
+  return {std::min(speed_ * step_s, most_step_), least_radius_, most_turn_};
+}
+
+PilotStep RobustPilot::do_step(const Observation& seen) {
+  if (seen.goal.reached_at(seen.state.position)) {
+    return {{seen.state.time_s + std::min(seen.max_dt_s, 1e-3), seen.state.position,
+             seen.state.velocity},
+            PilotStep::Outcome::arrived,
+            "at the goal"};
+  }
+  if (std::abs(seen.goal.position.z() - seen.state.position.z()) >
+      seen.goal.tolerance_m + kLengthTolerance) {
+    return stuck(seen, "the goal is not at the height of the flight, which is level");
+  }
+  if (steps_ == p_.max_steps) {
+    return stuck(seen, "max_steps steps did not lead to the goal");
+  }
+  const Vec2 here = seen.state.position.head<2>();
+  const std::optional<Vec2> course = course_of(seen.state);
+  const double dt = std::min({p_.step_s, seen.max_dt_s, most_step_ / speed_});
+  take_news(seen, here, course, dt);
+  if (steps_ == 0 && !flight_.is_safe()) {
+    return stuck(seen, "from the start's course no turn is known that enters no threat");
+  }
+  if (steps_ == 0 && !flight_.has_guide()) {
+    return stuck(seen, "no way to the goal was found between the threats");
+  }
+  ++steps_;
+  return fly(seen, flight_.step(here, course, push_of_movers(seen, here)), dt);
+}
+
+void RobustPilot::take_news(const Observation& seen, const Vec2& here,
+                            const std::optional<Vec2>& course, double dt) {
+  const bool other_steps = dt != dt_;
+  if (other_steps) {
+    dt_ = dt;
+    flight_.set_steps(steps_of(dt));
+  }
+  const double off = (here - expected_.at).norm();
+  const bool turned = course && (*course - expected_.course).norm() > kAngleTolerance;
+  if (feed_.update(seen) || off > least_radius_) {
+    flight_.set_world(seen.goal.position.head<2>(), seen.goal.tolerance_m, here, course);
+  } else if (other_steps || turned || off > kLengthTolerance) {
+    flight_.check_way_out(here, course);
+  }
+}
+
+Vec2 RobustPilot::push_of_movers(const Observation& seen, const Vec2& here) const {
+  Vec2 push(0, 0);
+  for (const SensedObstacle& moving : seen.moving) {
+    push += field_.of_threat(here, {moving.position.head<2>(), moving.radius},
+                             seen.goal.position.head<2>() - here);
+  }
+  return push;
+}
+
+PilotStep RobustPilot::fly(const Observation& seen, const Pose& next, double dt) {
+  expected_ = next;
+  const Vec3 course(next.course.x(), next.course.y(), 0);
+  const State state{seen.state.time_s + dt,
+                    {next.at.x(), next.at.y(), seen.state.position.z()},
+                    flight_.steps().length_m() / dt * course};
+  return {state,
+          seen.goal.reached_at(state.position) ? PilotStep::Outcome::arrived
+                                               : PilotStep::Outcome::flying,
+          what(flight_.kind(), flight_.has_guide())};
+}
+
+Counters RobustPilot::do_counters() const {
+  const RobustFlight::Counts& counts = flight_.counts();
+  return {{"guides", counts.guides},
+          {"turn_limit_steps", counts.turn_limit_steps},
+          {"way_out_steps", counts.way_out_steps},
+          {"circle_steps", counts.circle_steps},
+          {"unproven_steps", counts.unproven_steps},
+          {"ways_out_lost", counts.ways_out_lost}};
+}
+}  // namespace velocity_field

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Waypoint reduction: Li Chuntao, Yi Xiaoqin, Hu Mu, "Real-time path planning of UAV based on
+// velocity vector field", Journal of Nanjing University of Aeronautics & Astronautics 44(3), 2012,
+// 340-346 (paper 001), section 4.
+//
+// Guarantees: every leg that is not the route's own keeps the request's rules of legs and turns by
+//   at most max_turn_deg. Not the fewest points (see smoother prune), and no point moves.
+// Complexity: O(n) leg checks for each point that stays, so O(n^2) for n waypoints.
+// Deviations: legs are held to every rule of the request, not to threats alone. Where no end is
+//   admissible, which the paper does not speak of, the next point stays.
+// Symbols: p_begin, p_end the two pointers into the route.
+#include "altiplan/check.hpp"
+#include "altiplan/kit/corners.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct Params {
+  double max_turn_deg = 90;
+
+  void describe(Fields& f) {
+    f("max_turn_deg", max_turn_deg)
+        .unit("deg")
+        .range(0, 180)
+        .doc("a new leg turns by no more from the leg before it");
+  }
+};
+
+/// The two pointers over one route.
+class Reduction {
+ public:
+  Reduction(const Route& route, const Request& request, double max_turn)
+      : route_(route), request_(request), watch_(request.budget), max_turn_(max_turn) {}
+
+  /// The points that stay; cut short where the budget ended.
+  Route reduced() {
+    Route kept{route_.front()};
+    std::optional<Vec3> before;
+    std::size_t begin = 0;
+    while (begin + 1 < route_.size() && !budget_hit_) {
+      const std::size_t end = farthest_end(before, begin);
+      before = route_[begin];
+      begin = end;
+      kept.push_back(route_[end]);
+    }
+    return kept;
+  }
+
+  std::int64_t legs_checked() const { return std::int64_t(legs_checked_); }
+  std::int64_t without_end() const { return without_end_; }
+  bool budget_hit() const { return budget_hit_; }
+
+ private:
+  std::size_t farthest_end(const std::optional<Vec3>& before, std::size_t begin) {
+    for (std::size_t end = route_.size() - 1; end > begin && !budget_hit_; --end) {
+      if (is_admissible(before, route_[begin], route_[end])) {
+        return end;
+      }
+    }
+    ++without_end_;
+    return begin + 1;
+  }
+
+  bool is_admissible(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+    budget_hit_ = watch_.spent(legs_checked_);
+    if (budget_hit_) {
+      return false;
+    }
+    ++legs_checked_;
+    return (!before || turn_angle_in_space(a - *before, b - a) <= max_turn_ + kAngleTolerance) &&
+           leg_ok(before ? before : request_.before_start(), a, b, request_);
+  }
+
+  const Route& route_;
+  const Request& request_;
+  BudgetWatch watch_;
+  double max_turn_;
+  std::uint64_t legs_checked_ = 0;
+  std::int64_t without_end_ = 0;
+  bool budget_hit_ = false;
+};
+
+class WaypointReduction final : public Smoother {
+ public:
+  explicit WaypointReduction(const Params& params) : max_turn_(radians(params.max_turn_deg)) {}
+
+ private:
+  PlanResult do_smooth(const Route& route, const Request& request) const override {
+    const Route clean = without_repeats(route);
+    Reduction reduction(clean, request, max_turn_);
+    Route reduced = reduction.reduced();
+    PlanResult result;
+    result.status = Status::solved;
+    result.budget_hit = reduction.budget_hit();
+    result.counters = {{"legs_checked", reduction.legs_checked()},
+                       {"points_without_end", reduction.without_end()}};
+    if (result.budget_hit) {
+      result.route = route;
+      result.message = "the budget ended: the route stays as it was";
+    } else if (!kit::Excess(check(reduced, request).violations)
+                    .within(kit::Excess(check(route, request).violations))) {
+      // A point that stays for want of an end may turn more sharply than the rules let.
+      result.route = route;
+      result.message =
+          "the reduced route would break a rule, or break it worse: the route stays as it was";
+    } else {
+      result.route = std::move(reduced);
+      result.message = std::to_string(result.route.size()) + " of " + std::to_string(route.size()) +
+                       " waypoints stay" + of_points_without_end(reduction.without_end());
+    }
+    return result;
+  }
+
+  static std::string of_points_without_end(std::int64_t count) {
+    return count == 0 ? ""
+                      : "; from " + std::to_string(count) + (count == 1 ? " point" : " points") +
+                            " no leg to a later one is admissible, and the next one stays";
+  }
+
+  double max_turn_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Smoother, "waypoint_reduction", WaypointReduction, Params,
+                "two pointers: from each point the farthest one that a sound leg leads to")

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// altiplan-field: the time of a step by the velocity field among 12, 80 and 10,000 threats. A step
+// takes less than a clock does, so blocks of steps are timed.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "altiplan/error.hpp"
+#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/random.hpp"
+#include "host/config/config.hpp"
+#include "host/registry/registry.hpp"
+
+namespace altiplan::bench {
+namespace {
+
+using Threats = std::vector<Cylinder>;
+
+/// Table 1 of paper 001.
+const Threats kTable1{{25592, 35739, 1013}, {7665, 17002, 4399},  {7694, 52501, 4599},
+                      {11904, 42995, 8801}, {29989, 2801, 2150},  {29182, 23941, 2398},
+                      {19889, 13092, 8925}, {17900, 25944, 6700}, {30996, 9401, 5197},
+                      {7093, 32608, 1376},  {38581, 7291, 4932},  {12690, 31697, 4901}};
+
+Threats drawn(std::size_t count, double side, double least, double most) {
+  RandomStream random = RandomStream(1).sub("field");
+  Threats threats;
+  for (std::size_t i = 0; i < count; ++i) {
+    threats.push_back(
+        {random.uniform(0, side), random.uniform(0, side), random.uniform(least, most)});
+  }
+  return threats;
+}
+
+/// On a jittered lattice, about 20 of them within 2 km of any place.
+Threats crowd() {
+  constexpr int kSide = 100;
+  constexpr double kApart = 870;
+  RandomStream random = RandomStream(1).sub("crowd");
+  Threats threats;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const double x = column + random.uniform(-0.4, 0.4);
+      const double y = row + random.uniform(-0.4, 0.4);
+      threats.push_back({kApart * x, kApart * y, random.uniform(100, 300)});
+    }
+  }
+  return threats;
+}
+
+struct Row {
+  const char* name;
+  Threats threats;
+  double goal;  ///< along both axes
+};
+
+Request request_of(const Row& row) {
+  Request request;
+  const std::vector<Shape> shapes(row.threats.begin(), row.threats.end());
+  request.world = std::make_shared<const World>(
+      World().with({"threats", "shape", std::make_shared<kit::ShapeLayer>(shapes), true}));
+  request.start.position = {0, 0, 1000};
+  request.goal = {{row.goal, row.goal, 1000}, 15};
+  request.level_m = 1000;
+  request.vehicle.speed_mps = 30;
+  return request;
+}
+
+struct Times {
+  std::vector<double> us;  ///< a step's, one entry a block
+  double in_reach = 0;     ///< threats that act, summed over `looked`
+  std::size_t looked = 0;
+  std::size_t steps = 0;
+};
+
+double now_us() {
+  return std::chrono::duration<double, std::micro>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Flies once, in blocks.
+void fly(const LocalPlanner& planner, const Row& row, const Request& request, int most_steps,
+         Times& times) {
+  constexpr int kBlock = 16;
+  const auto pilot = planner.begin(request);
+  Observation seen;
+  seen.state = request.start;
+  seen.local_target = request.goal.position;
+  seen.goal = request.goal;
+  seen.world = request.world.get();
+  for (int done = 0; done < most_steps; done += kBlock) {
+    const double began = now_us();
+    for (int i = 0; i < kBlock; ++i) {
+      const PilotStep step = pilot->step(seen);
+      if (step.outcome != PilotStep::Outcome::flying) {
+        return;
+      }
+      seen.state = step.next;
+    }
+    times.us.push_back((now_us() - began) / kBlock);
+    times.steps += kBlock;
+    const Vec3& p = seen.state.position;
+    times.in_reach +=
+        double(std::count_if(row.threats.begin(), row.threats.end(), [&](const Cylinder& threat) {
+          return std::hypot(p.x() - threat.x, p.y() - threat.y) <= threat.radius + pilot->reach_m();
+        }));
+    ++times.looked;
+  }
+}
+
+void print(const Row& row, Times& times) {
+  std::sort(times.us.begin(), times.us.end());
+  const auto at = [&](double share) {
+    return times.us[std::size_t(share * double(times.us.size() - 1))];
+  };
+  std::printf(
+      "%-12s %6zu threats, %4.1f in reach: p50 %.3f us, p99 %.3f us, max %.3f us (%zu steps)\n",
+      row.name, row.threats.size(), times.in_reach / double(times.looked), at(0.5), at(0.99), at(1),
+      times.steps);
+}
+
+/// Rows in turn, so that what else the machine does meets all of them.
+void time_rows(const std::string& variant, int passes, host::Registry& registry) {
+  Value parameters;
+  parameters.kind = Value::Kind::map;
+  Value word;
+  word.text = variant;
+  parameters.entries.push_back({"variant", {}, word});
+  const auto planner =
+      host::plugin(registry, "local_planner", "velocity_field").local_planner(&parameters);
+  const std::vector<Row> rows{{"table 1", kTable1, 50e3},
+                              {"random", drawn(80, 90e3, 1000, 5000), 90e3},
+                              {"crowd", crowd(), 86e3}};
+  std::vector<Request> requests;
+  for (const Row& row : rows) {
+    requests.push_back(request_of(row));
+  }
+  std::vector<Times> times(rows.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      fly(*planner, rows[i], requests[i], 4000, times[i]);
+    }
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    print(rows[i], times[i]);
+  }
+}
+}  // namespace
+}  // namespace altiplan::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("Times the steps of the velocity field, through Pilot::step.", "altiplan-field");
+  int passes = 20;
+  app.add_option("--passes", passes, "flights in each world")->check(CLI::Range(1, 10000));
+  std::string variant = "paper";
+  app.add_option("--variant", variant, "of velocity_field");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    altiplan::host::Registry registry(altiplan::host::Registry::search_path({}));
+    altiplan::bench::time_rows(variant, passes, registry);
+  } catch (const std::exception& error) {
+    std::cerr << "altiplan-field: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
