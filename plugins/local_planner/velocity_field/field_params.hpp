@@ -12,6 +12,7 @@ using namespace altiplan;
 
 enum class Variant { paper, robust };
 enum class Toward { goal, route };
+enum class Terrain { ignore, sections };
 
 struct Params {
   Variant variant = Variant::paper;
@@ -26,6 +27,10 @@ struct Params {
   std::optional<double> max_bank_deg;
   double release_m = 100;
   Toward toward = Toward::goal;
+  Terrain terrain = Terrain::ignore;
+  double max_climb_deg = 15;
+  double detour_m = 5000;
+  AutoNumber section_cell_m;
   std::int64_t max_steps = 40000;
 
   void describe(Fields& f) {
@@ -67,10 +72,28 @@ struct Params {
         .doc(
             "what draws: the goal, as published, or the place of the route that a flight is to "
             "come back to");
+    f("terrain", terrain, {{"ignore", Terrain::ignore}, {"sections", Terrain::sections}})
+        .doc(
+            "ignore: ground is not seen, as published; sections: flown round where it is higher "
+            "than the flight, and over where that leads nowhere");
+    f("max_climb_deg", max_climb_deg)
+        .unit("deg")
+        .range(0.1, 80)
+        .doc("terrain: steepest climb and descent");
+    f("detour_m", detour_m)
+        .unit("m")
+        .range(1, 1e9)
+        .doc("terrain: flown round ground so far without coming a tenth of it nearer, it climbs");
+    f("section_cell_m", section_cell_m)
+        .unit("m")
+        .range(0.1, 1e6)
+        .doc("terrain: cells that ground is looked at by; auto: the volume's longer side / 512");
     f("max_steps", max_steps).range(1, 1'000'000).doc("steps after which the pilot gives up");
     f.check(edge_ratio < surface_ratio, "edge_ratio must be less than surface_ratio");
     f.check(variant == Variant::paper || toward == Toward::goal,
             "toward: route is of variant: paper; robust finds its own way to the goal");
+    f.check(variant == Variant::paper || terrain == Terrain::ignore,
+            "terrain: sections is of variant: paper; robust flies level and sees no ground");
     const bool by_bank = min_speed_mps && max_bank_deg;
     f.check(by_bank != min_turn_radius_m.value.has_value() &&
                 min_speed_mps.has_value() == max_bank_deg.has_value(),

@@ -18,6 +18,9 @@ PaperPilot::PaperPilot(const Params& params, const Request& request)
       virtual_targets_(field_.balance(), params.release_m) {
   virtual_targets_.reset(feed_.threats());
   inside_.reserve(feed_.threats().all().size());
+  if (params.terrain == Terrain::sections) {
+    terrain_.emplace(params, request);
+  }
 }
 
 PilotStep PaperPilot::do_step(const Observation& seen) {
@@ -27,8 +30,8 @@ PilotStep PaperPilot::do_step(const Observation& seen) {
             PilotStep::Outcome::arrived,
             "at the goal"};
   }
-  if (std::abs(seen.goal.position.z() - seen.state.position.z()) >
-      seen.goal.tolerance_m + kLengthTolerance) {
+  if (is_level() && std::abs(seen.goal.position.z() - seen.state.position.z()) >
+                        seen.goal.tolerance_m + kLengthTolerance) {
     return {seen.state, PilotStep::Outcome::stuck,
             "the goal is not at the height of the flight, which is level"};
   }
@@ -37,19 +40,32 @@ PilotStep PaperPilot::do_step(const Observation& seen) {
             "max_steps steps are flown, and the goal is not reached"};
   }
   take_news(seen);
+  if (terrain_ && terrain_->is_kept_above()) {
+    return {seen.state, PilotStep::Outcome::stuck,
+            "the goal lies lower than the flight can go and climb out again, and no straight leg "
+            "leads down to it"};
+  }
   const Vec2 here = seen.state.position.head<2>();
   const Vec3& target = p_.toward == Toward::goal ? seen.goal.position : seen.local_target;
   const Vec2 aim = virtual_targets_.aim(feed_.threats(), target.head<2>(), here,
                                         heading_.value_or(target.head<2>() - here), inside_);
   const double v = speed(seen);
   const double dt = std::min({p_.step_s, seen.max_dt_s, most_step_ / v});
-  return fly(seen, flyable(wish(seen, here, aim - here), v * dt), v, dt);
+  const Vec2 wished = wish(seen, here, aim - here);
+  if (terrain_) {
+    return fly(seen, terrain_->step(seen.state, feed_.threats().all(), wished, v * dt), v, dt);
+  }
+  const Vec2 heading = flyable(wished, v * dt);
+  return fly(seen, {heading.x(), heading.y(), 0}, v, dt);
 }
 
 void PaperPilot::take_news(const Observation& seen) {
   if (feed_.update(seen)) {
     virtual_targets_.reset(feed_.threats());
     inside_.reserve(feed_.threats().all().size());
+  }
+  if (terrain_) {
+    terrain_->update(seen);
   }
   const Vec2 here = seen.state.position.head<2>();
   const Vec2 velocity = seen.state.velocity.head<2>();
@@ -65,13 +81,16 @@ void PaperPilot::take_news(const Observation& seen) {
   }
 }
 
-Vec2 PaperPilot::wish(const Observation& seen, const Vec2& here, const Vec2& to_target) const {
+Vec2 PaperPilot::wish(const Observation& seen, const Vec2& here, const Vec2& to_target) {
   Vec2 sum = field_.of_target(to_target);
   for (const std::uint32_t i : inside_) {
     sum += field_.of_threat(here, feed_.threats().all()[i], to_target);
   }
   for (const SensedObstacle& moving : seen.moving) {
     sum += field_.of_threat(here, {moving.position.head<2>(), moving.radius}, to_target);
+  }
+  if (terrain_) {
+    sum += terrain_->push(field_, here, to_target);
   }
   const double size = sum.norm();
   return size > 0 ? Vec2(sum / size) : heading_.value_or(Vec2(1, 0));
@@ -96,8 +115,7 @@ double PaperPilot::speed(const Observation& seen) const {
              : vehicle_.speed_at(seen.world->clearance(seen.state.position));
 }
 
-PilotStep PaperPilot::fly(const Observation& seen, const Vec2& heading, double speed, double dt) {
-  const Vec3 ahead(heading.x(), heading.y(), 0);
+PilotStep PaperPilot::fly(const Observation& seen, const Vec3& ahead, double speed, double dt) {
   const State next{seen.state.time_s + dt, seen.state.position + speed * dt * ahead, speed * ahead};
   return {next,
           seen.goal.reached_at(next.position) ? PilotStep::Outcome::arrived
@@ -106,6 +124,9 @@ PilotStep PaperPilot::fly(const Observation& seen, const Vec2& heading, double s
 }
 
 std::string_view PaperPilot::news_of_virtual_target() {
+  if (terrain_ && !terrain_->why().empty()) {
+    return terrain_->why();
+  }
   const auto active = virtual_targets_.active();
   if (!active) {
     return "follows the field";
@@ -122,10 +143,16 @@ std::string_view PaperPilot::news_of_virtual_target() {
 }
 
 Counters PaperPilot::do_counters() const {
-  return {{"trap_entries", virtual_targets_.entries()},
-          {"potential_virtual_targets", virtual_targets_.potential()},
-          {"virtual_targets_used", virtual_targets_.used()},
-          {"virtual_targets_inside_threats", virtual_targets_.inside_threats()},
-          {"turn_limit_steps", turn_limit_steps_}};
+  Counters counters{{"trap_entries", virtual_targets_.entries()},
+                    {"potential_virtual_targets", virtual_targets_.potential()},
+                    {"virtual_targets_used", virtual_targets_.used()},
+                    {"virtual_targets_inside_threats", virtual_targets_.inside_threats()},
+                    {"turn_limit_steps", turn_limit_steps_}};
+  if (terrain_) {
+    counters.back().value = terrain_->turn_limit_steps();
+    counters.insert(counters.end(), {{"climbs_over", terrain_->climbs_over()},
+                                     {"low_steps", terrain_->low_steps()}});
+  }
+  return counters;
 }
 }  // namespace velocity_field

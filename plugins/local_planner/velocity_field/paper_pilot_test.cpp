@@ -56,6 +56,18 @@ TEST(PaperPilot, AllocatesNothingInAStep) {
   EXPECT_EQ(allocated_in(problem(world_of(random_map('C', 3, 3000)), {90000, 90000, 1000})), 0);
 }
 
+TEST(PaperPilot, AllocatesNothingInAStepOverGround) {
+  Request request = problem(World().with({"hills", "hills",
+                                          altiplan::testing::make_environment(
+                                              "hills",
+                                              "{peaks: [{at_m: [20000, 20000], height_m: 2000, "
+                                              "sigma_m: [3000, 90000]}]}")}),
+                            {50000, 50000, 1000});
+  request.level_m.reset();
+  request.volume = {{-1e5, -1e5, 0}, {2e5, 2e5, 5000}};
+  EXPECT_EQ(allocated_in(request, "{terrain: sections}"), 0);
+}
+
 /// Through narrow gaps too, where ways out are long.
 TEST(RobustPilot, AllocatesNothingInAStep) {
   EXPECT_EQ(allocated_in(table1(), "{variant: robust}"), 0);
@@ -238,12 +250,28 @@ TEST(PaperPilot, RefusesWrongParameters) {
   const auto problems = [](std::string_view yaml) {
     return parameter_problems("local_planner", "velocity_field", yaml);
   };
-  for (const char* wrong :
-       {"{pull_weight: -1}", "{guide_ratio: -0.1}", "{edge_ratio: 0}", "{surface_ratio: 0}",
-        "{edge_ratio: 10}", "{ring_m: 0}", "{step_s: 0}", "{release_m: 0}", "{max_steps: 0}",
-        "{min_turn_radius_m: 0}", "{min_turn_radius_m: auto}", "{max_bank_deg: 30}",
-        "{min_turn_radius_m: auto, max_bank_deg: 30}", "{variant: best}", "{toward: north}",
-        "{min_speed_mps: 25, max_bank_deg: 30}", "{ring: 2000}", "{pull_weight: .nan}"}) {
+  for (const char* wrong : {"{pull_weight: -1}",
+                            "{guide_ratio: -0.1}",
+                            "{edge_ratio: 0}",
+                            "{surface_ratio: 0}",
+                            "{edge_ratio: 10}",
+                            "{ring_m: 0}",
+                            "{step_s: 0}",
+                            "{release_m: 0}",
+                            "{max_steps: 0}",
+                            "{min_turn_radius_m: 0}",
+                            "{min_turn_radius_m: auto}",
+                            "{max_bank_deg: 30}",
+                            "{min_turn_radius_m: auto, max_bank_deg: 30}",
+                            "{variant: best}",
+                            "{toward: north}",
+                            "{min_speed_mps: 25, max_bank_deg: 30}",
+                            "{terrain: hills}",
+                            "{max_climb_deg: 0}",
+                            "{detour_m: 0}",
+                            "{section_cell_m: 0}",
+                            "{ring: 2000}",
+                            "{pull_weight: .nan}"}) {
     EXPECT_NE(problems(wrong), "") << wrong;
   }
   for (const char* right : {"{}", "{pull_weight: 0}", "{guide_ratio: 0}",

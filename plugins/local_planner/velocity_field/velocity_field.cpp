@@ -13,7 +13,8 @@
 // Deviations: 1. eq. (5) is read as L = Delta R / sqrt(beta / alpha - 1). 2. The wedge of a trap is
 //   on the far side of its chord: on the near side, as drawn, it never arrives. 3. A virtual target
 //   is given up on leaving that wedge, or near it, not as soon as the trap is left. 4. Threats
-//   grow by the clearance asked for; moving obstacles push as threats where they are.
+//   grow by the clearance asked for; moving obstacles push as threats where they are. 5. Beyond the
+//   paper, and only on request: ground (terrain_flight.hpp).
 // Symbols: omega pull, alpha and beta push at the ring's and the threat's edge, epsilon guidance,
 //   Delta R ring, T target, L1 from it to a threat's centre, L2 from there to the virtual target.
 #include "altiplan/plugin.hpp"
@@ -36,7 +37,7 @@ class VelocityField final : public LocalPlanner {
   }
   Traits do_traits() const override {
     Traits traits;
-    traits.space = false;
+    traits.space = false;  // a threat is a disc at every height, over ground too
     traits.avoids_obstacles = false;
     return traits;
   }
