@@ -16,8 +16,16 @@ FieldPilot::FieldPilot(const Params& params, const Request& request)
       step_near_(params.step_near_m.value.value_or(params.influence_m / 30)),
       required_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
       start_to_goal_(std::max((request.goal.position - request.start.position).norm(), 1e-6)),
+      lowest_(request.volume.min.z() - kLengthTolerance),
+      highest_(request.volume.max.z() + kLengthTolerance),
       outlook_(request_, required_, 0.01 * params.influence_m, params.reaction_s),
       escape_(request_) {
+  for (const AltitudeBand& band : request.limits.altitude) {
+    if (band.datum == AltitudeBand::Datum::sea) {
+      lowest_ = std::max(lowest_, band.min - kLengthTolerance);
+      highest_ = std::min(highest_, band.max + kLengthTolerance);
+    }
+  }
   if (params.variant != Variant::improved) {
     p_.turned_repulsion = p_.stronger_goal = p_.two_steps = p_.turn_limit = false;
     p_.side = Side::field;

@@ -84,6 +84,8 @@ class FieldPilot final : public Pilot {
   /// Whether the vehicle came out of a local minimum near here: then the side is kept for good.
   bool insists() const { return trap_ && (here_ - *trap_).norm() < p_.influence_m; }
   bool is_free_way(const Vec3& from, double after, const Vec3& way) const;
+  /// The way where it is free, or the one that rises over the ground in it.
+  std::optional<Vec3> free_way(const Vec3& from, double after, const Vec3& way) const;
   /// Predicted length of the flight to the local target along that side of all that is in the way,
   /// left or right: what the way aside meets next, too.
   double length_along(Passing passing) const;
@@ -133,6 +135,8 @@ class FieldPilot final : public Pilot {
   double step_near_;
   double required_;
   double start_to_goal_;
+  double lowest_;  ///< altitude that the limits allow
+  double highest_;
   Passing passing_ = Passing::nothing;  ///< of what lies before the target, while it does
   std::optional<Vec3> trap_;
   Outlook outlook_;

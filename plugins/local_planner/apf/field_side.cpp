@@ -28,6 +28,8 @@ Passing opposite(Passing passing) {
   return passing;
 }
 
+bool is_level(Passing passing) { return passing == Passing::left || passing == Passing::right; }
+
 double climb_of(const Vec3& way) { return std::atan2(way.z(), std::hypot(way.x(), way.y())); }
 }  // namespace
 
@@ -62,13 +64,15 @@ double FieldPilot::length_along(Passing passing) const {
       return flown + left.norm();
     }
     turn = std::max(1, turn - 3);  // beside what is passed the turns follow each other closely
-    while (turn <= Fan::kHalf && !is_free_way(at, flown / speed_, fan_.turned(way, sign * turn))) {
+    std::optional<Vec3> aside;
+    while (turn <= Fan::kHalf &&
+           !(aside = free_way(at, flown / speed_, fan_.turned(way, sign * turn)))) {
       ++turn;
     }
-    if (turn > Fan::kHalf) {
+    if (!aside) {
       return kInfinity;
     }
-    const Vec3 on = fan_.turned(way, sign * turn) / 4;
+    const Vec3 on = *aside / 4;
     at += on;
     flown += on.norm();
   }
@@ -95,6 +99,9 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
     if (along_left != along_right) {
       best = along_left < along_right ? left : right;
     }
+  } else if (is_level(chosen.passing) && best.length < most &&
+             length_along(best.passing) >= kMuchShorter * length_along(chosen.passing)) {
+    best = chosen;
   }
   for (const Passing passing : {Passing::above, Passing::below}) {
     const Detour detour = past(way, passing, std::min(most, best.length));
@@ -107,9 +114,26 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
 
 bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) const {
   const double length = way.norm();
-  return length == 0 || (outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
-                             length / speed_ &&
-                         outlook_.is_open(from, from + way, required_ + room_));
+  const double end = from.z() + way.z();
+  return length == 0 ||
+         (lowest_ <= end && end <= highest_ &&
+          outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
+              length / speed_ &&
+          outlook_.is_open(from, from + way, required_ + room_));
+}
+
+std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const Vec3& way) const {
+  if (is_free_way(from, after, way)) {
+    return way;
+  }
+  if (!request_.world->has_ground()) {
+    return std::nullopt;
+  }
+  const double rise =
+      std::min(std::hypot(way.x(), way.y()) * std::tan(max_climb()), highest_ - from.z());
+  const Vec3 risen(way.x(), way.y(), rise);
+  return rise > std::max(way.z(), 0.0) && is_free_way(from, after, risen) ? std::optional(risen)
+                                                                         : std::nullopt;
 }
 
 FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double most) const {
@@ -129,7 +153,7 @@ FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double mos
 }
 
 std::optional<Vec3> FieldPilot::least_turned(const Vec3& way, Passing passing, double most) const {
-  const bool level = passing == Passing::left || passing == Passing::right;
+  const bool level = is_level(passing);
   const int sign = passing == Passing::left || passing == Passing::above ? 1 : -1;
   constexpr int kClimbs = 4;
   for (int k = 1; k <= (level ? Fan::kHalf : kClimbs); ++k) {
@@ -146,8 +170,8 @@ std::optional<Vec3> FieldPilot::least_turned(const Vec3& way, Passing passing, d
     if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > most) {
       return std::nullopt;
     }
-    if (is_free_way(here_, 0, turned)) {
-      return turned;
+    if (const auto way_on = level ? free_way(here_, 0, turned) : is_free_way(here_, 0, turned)?std::optional(turned):std::nullopt) {
+      return way_on;
     }
   }
   return std::nullopt;
