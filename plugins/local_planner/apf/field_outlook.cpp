@@ -62,7 +62,9 @@ bool Outlook::is_blocked(const Vec3& a, const Vec3& b, double room) const {
   try {
     return std::any_of(
         layers_.begin(), layers_.begin() + std::ptrdiff_t(layers_size_), [&](const Near& near) {
-          return !(near.free_m >= reach) && near.layer->environment->blocked(a, b, room);
+          const Environment& environment = *near.layer->environment;
+          return !(near.free_m >= reach) &&
+                 environment.blocked(a, b, environment.has_ground() ? required_ : room);
         });
   } catch (...) {
     return world_->blocked(a, b, room);  // which says of what layer it is

@@ -47,7 +47,9 @@ class Outlook {
   /// one is known.
   double contact(const Vec3& from, double after, const Vec3& velocity, double room,
                  double enough = 0) const;
-  /// As the world has it; a layer too far from here is not asked.
+  /// As the world has it, but within what is required alone of ground: what the flight keeps off
+  /// that is the ground clearance, and a way along a valley or below a ceiling may be narrower than
+  /// any room. A layer too far from here is not asked.
   bool is_blocked(const Vec3& a, const Vec3& b, double room) const;
   /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
   /// the ground.

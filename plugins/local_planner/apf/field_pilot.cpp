@@ -4,6 +4,9 @@
 #include "field_pilot.hpp"
 
 namespace apf {
+namespace {
+constexpr double kProgress = 0.1;  ///< of the way flown; less is none
+}
 
 FieldPilot::FieldPilot(const Params& params, const Request& request)
     : p_(params),
@@ -16,14 +19,14 @@ FieldPilot::FieldPilot(const Params& params, const Request& request)
       step_near_(params.step_near_m.value.value_or(params.influence_m / 30)),
       required_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
       start_to_goal_(std::max((request.goal.position - request.start.position).norm(), 1e-6)),
-      lowest_(request.volume.min.z() - kLengthTolerance),
-      highest_(request.volume.max.z() + kLengthTolerance),
+      lowest_(request.volume.min.z()),
+      highest_(request.volume.max.z()),
       outlook_(request_, required_, 0.01 * params.influence_m, params.reaction_s),
       escape_(request_) {
   for (const AltitudeBand& band : request.limits.altitude) {
     if (band.datum == AltitudeBand::Datum::sea) {
-      lowest_ = std::max(lowest_, band.min - kLengthTolerance);
-      highest_ = std::min(highest_, band.max + kLengthTolerance);
+      lowest_ = std::max(lowest_, band.min);
+      highest_ = std::min(highest_, band.max);
     }
   }
   if (params.variant != Variant::improved) {
@@ -109,7 +112,7 @@ double FieldPilot::turn_to(const Vec3& direction) const {
 PilotStep FieldPilot::fly(const Observation& seen, const Leg& leg) {
   const Vec3 way = leg.to - here_;
   const double length = way.norm();
-  oscillations_ += turn_to(way) > kPi / 2;
+  swing(way);
   remember();
   flown_ += length;
   const double dt = std::min(leg.seconds, seen.max_dt_s);
@@ -125,12 +128,26 @@ void FieldPilot::remember() {
   }
 }
 
+void FieldPilot::swing(const Vec3& way) {
+  const double left = to_goal_.norm();
+  if (course_.dot(way) < 0) {
+    const bool nearer = left_then_ - left > kProgress * (flown_ - flown_then_);
+    swings_ = nearer ? 0 : swings_ + 1;
+    oscillations_ += swings_ > 1;
+  } else if (!course_.isZero()) {
+    return;
+  }
+  course_ = way;
+  left_then_ = left;
+  flown_then_ = flown_;
+}
+
 bool FieldPilot::no_progress() {
   if (places_ < kWindow) {
     return false;
   }
   const Past& oldest = past_[std::size_t(places_ % kWindow)];
-  if ((here_ - oldest.position).norm() > 0.1 * (flown_ - oldest.flown)) {
+  if ((here_ - oldest.position).norm() > kProgress * (flown_ - oldest.flown)) {
     return false;
   }
   places_ = 0;

@@ -56,6 +56,9 @@ class FieldPilot final : public Pilot {
   PilotStep fly(const Observation& seen, const Leg& leg);
   /// Keeps places at least a hundredth of the influence, or kWindow steps, apart.
   void remember();
+  /// Counts a course that is turned back, by more than 90 degrees, for the second time and more
+  /// without a way that leads nearer to the goal in between.
+  void swing(const Vec3& way);
   /// Whether the last places lie close together; begins to count anew when they do.
   bool no_progress();
 
@@ -84,8 +87,8 @@ class FieldPilot final : public Pilot {
   /// Whether the vehicle came out of a local minimum near here: then the side is kept for good.
   bool insists() const { return trap_ && (here_ - *trap_).norm() < p_.influence_m; }
   bool is_free_way(const Vec3& from, double after, const Vec3& way) const;
-  /// The way where it is free, or the one that rises over the ground in it.
-  std::optional<Vec3> free_way(const Vec3& from, double after, const Vec3& way) const;
+  /// The way where it is free, or one that rises to get over the ground in it.
+  std::optional<Vec3> free_way(const Vec3& from, double after, const Vec3& way, bool rises) const;
   /// Predicted length of the flight to the local target along that side of all that is in the way,
   /// left or right: what the way aside meets next, too.
   double length_along(Passing passing) const;
@@ -148,6 +151,10 @@ class FieldPilot final : public Pilot {
   double flown_ = 0;
   std::int64_t places_ = 0;
   std::int64_t since_ = 0;
+  Vec3 course_{0, 0, 0};  ///< flown when it was turned back last; zero: not begun
+  double left_then_ = 0;  ///< to the goal,
+  double flown_then_ = 0;
+  std::int64_t swings_ = 0;
   std::int64_t local_minima_ = 0;
   std::int64_t oscillations_ = 0;
   std::int64_t clamp_yielded_ = 0;

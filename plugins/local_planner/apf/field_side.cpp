@@ -66,7 +66,7 @@ double FieldPilot::length_along(Passing passing) const {
     turn = std::max(1, turn - 3);  // beside what is passed the turns follow each other closely
     std::optional<Vec3> aside;
     while (turn <= Fan::kHalf &&
-           !(aside = free_way(at, flown / speed_, fan_.turned(way, sign * turn)))) {
+           !(aside = free_way(at, flown / speed_, fan_.turned(way, sign * turn), true))) {
       ++turn;
     }
     if (!aside) {
@@ -81,7 +81,8 @@ double FieldPilot::length_along(Passing passing) const {
 
 FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observation& seen,
                                             const Vec3& way) {
-  const bool first = chosen.passing == Passing::nothing;
+  const bool first =
+      chosen.passing == Passing::nothing || !(is_level(chosen.passing) || chosen.aside);
   const double most = first ? kInfinity : kMuchShorter * chosen.length;
   if (most <= way.norm()) {
     return chosen;  // straight through would not be so much shorter
@@ -116,17 +117,18 @@ bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) co
   const double length = way.norm();
   const double end = from.z() + way.z();
   return length == 0 ||
-         (lowest_ <= end && end <= highest_ &&
+         (lowest_ - kLengthTolerance <= end && end <= highest_ + kLengthTolerance &&
           outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
               length / speed_ &&
           outlook_.is_open(from, from + way, required_ + room_));
 }
 
-std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const Vec3& way) const {
+std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const Vec3& way,
+                                         bool rises) const {
   if (is_free_way(from, after, way)) {
     return way;
   }
-  if (!request_.world->has_ground()) {
+  if (!rises || !request_.world->has_ground()) {
     return std::nullopt;
   }
   const double rise =
@@ -170,8 +172,8 @@ std::optional<Vec3> FieldPilot::least_turned(const Vec3& way, Passing passing, d
     if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > most) {
       return std::nullopt;
     }
-    if (const auto way_on = level ? free_way(here_, 0, turned) : is_free_way(here_, 0, turned)?std::optional(turned):std::nullopt) {
-      return way_on;
+    if (const auto aside = free_way(here_, 0, turned, level)) {
+      return aside;
     }
   }
   return std::nullopt;
