@@ -191,6 +191,7 @@ TEST(Apf, ArrivesAroundSeveralWithoutATurnAboveTheLimit) {
     const Flown flown = flight(request, "{}");
     expect_arrives(request, flown);
     EXPECT_EQ(flown.counter("clamp_yielded"), 0);
+    EXPECT_EQ(flown.counter("oscillations"), 0);
     EXPECT_LE(greatest_turn_deg(flown.route), kNaturalTurn + degrees(1e-6));
   }
 }
@@ -260,6 +261,7 @@ TEST(Apf, PlainFieldReportsTheLocalMinimumOfATrap) {
   const Flown flown = flight(request, "{variant: plain}");
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
   EXPECT_EQ(flown.counter("local_minima"), 1);
+  EXPECT_GT(flown.counter("oscillations"), 30);
   EXPECT_NE(flown.why.find("local minimum"), std::string::npos) << flown.why;
   EXPECT_GT(flown.route.back().x(), 10000);
 }

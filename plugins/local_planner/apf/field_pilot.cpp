@@ -129,17 +129,18 @@ void FieldPilot::remember() {
 }
 
 void FieldPilot::swing(const Vec3& way) {
-  const double left = to_goal_.norm();
-  if (course_.dot(way) < 0) {
-    const bool nearer = left_then_ - left > kProgress * (flown_ - flown_then_);
-    swings_ = nearer ? 0 : swings_ + 1;
-    oscillations_ += swings_ > 1;
-  } else if (!course_.isZero()) {
+  if (course_.dot(way) > 0) {
     return;
   }
   course_ = way;
-  left_then_ = left;
-  flown_then_ = flown_;
+  const double left = to_goal_.norm();
+  if (swings_ == 0 || nearest_ - left > kProgress * (flown_ - flown_then_)) {
+    nearest_ = left;
+    flown_then_ = flown_;
+    swings_ = 1;
+    return;
+  }
+  oscillations_ += ++swings_ > 2;
 }
 
 bool FieldPilot::no_progress() {

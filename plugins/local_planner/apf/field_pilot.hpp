@@ -56,8 +56,8 @@ class FieldPilot final : public Pilot {
   PilotStep fly(const Observation& seen, const Leg& leg);
   /// Keeps places at least a hundredth of the influence, or kWindow steps, apart.
   void remember();
-  /// Counts a course that is turned back, by more than 90 degrees, for the second time and more
-  /// without a way that leads nearer to the goal in between.
+  /// Counts the times that the course is turned back, by 90 degrees or more, from the second on
+  /// since the vehicle came nearer to the goal by a tenth of what it flew.
   void swing(const Vec3& way);
   /// Whether the last places lie close together; begins to count anew when they do.
   bool no_progress();
@@ -151,10 +151,10 @@ class FieldPilot final : public Pilot {
   double flown_ = 0;
   std::int64_t places_ = 0;
   std::int64_t since_ = 0;
-  Vec3 course_{0, 0, 0};  ///< flown when it was turned back last; zero: not begun
-  double left_then_ = 0;  ///< to the goal,
+  Vec3 course_{0, 0, 0};  ///< since it was turned back last
+  double nearest_ = 0;    ///< to the goal, when it was turned back having come nearer,
   double flown_then_ = 0;
-  std::int64_t swings_ = 0;
+  std::int64_t swings_ = 0;  ///< and the turns back, that one and those since
   std::int64_t local_minima_ = 0;
   std::int64_t oscillations_ = 0;
   std::int64_t clamp_yielded_ = 0;
