@@ -116,11 +116,10 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
 bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) const {
   const double length = way.norm();
   const double end = from.z() + way.z();
-  return length == 0 ||
-         (lowest_ - kLengthTolerance <= end && end <= highest_ + kLengthTolerance &&
-          outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
-              length / speed_ &&
-          outlook_.is_open(from, from + way, required_ + room_));
+  return length == 0 || (lowest_ - kLengthTolerance <= end && end <= highest_ + kLengthTolerance &&
+                         outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
+                             length / speed_ &&
+                         outlook_.is_open(from, from + way, required_ + room_));
 }
 
 std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const Vec3& way,
@@ -135,7 +134,7 @@ std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const V
       std::min(std::hypot(way.x(), way.y()) * std::tan(max_climb()), highest_ - from.z());
   const Vec3 risen(way.x(), way.y(), rise);
   return rise > std::max(way.z(), 0.0) && is_free_way(from, after, risen) ? std::optional(risen)
-                                                                         : std::nullopt;
+                                                                          : std::nullopt;
 }
 
 FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double most) const {
