@@ -8,6 +8,7 @@
 
 namespace velocity_field {
 using altiplan::kPi;
+using altiplan::radians;
 
 using Vec2 = Eigen::Vector2d;
 

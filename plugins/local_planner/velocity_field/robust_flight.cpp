@@ -5,9 +5,10 @@
 
 namespace velocity_field {
 namespace {
-/// The virtual target's way ahead on the guide, in least turn radii. A shorter one swings, a longer
-/// one cuts corners.
+/// The virtual target's way ahead on the guide, in least turn radii, and in steps. A shorter one
+/// swings, a longer one cuts corners.
 constexpr double kAhead = 1.8;
+constexpr double kStepsAhead = 3;
 /// The guide's length, of the shortest one's, at most, for a wider berth.
 constexpr double kDetour = 1.2;
 /// Steps that the place beside the vehicle moves along the guide in one step, at most.
@@ -18,8 +19,9 @@ constexpr std::size_t kLongest = 1000;
 constexpr std::size_t kManoeuvre = 210;
 }  // namespace
 
-RobustFlight::RobustFlight(const Field& field, const Threats& threats, const Steps& steps)
-    : field_(field), threats_(&threats), freedom_(threats, steps) {
+RobustFlight::RobustFlight(const Field& field, const Threats& threats, const Steps& steps,
+                           const altiplan::Budget& budget)
+    : field_(field), threats_(&threats), freedom_(threats, steps), effort_{budget} {
   way_out_.courses.reserve(kLongest);
   tried_.courses.reserve(kLongest);
 }
@@ -54,8 +56,7 @@ void RobustFlight::find_guide(const Vec2& at, const std::optional<Vec2>& course)
   }
 }
 
-Guide RobustFlight::guide_with(double berth, const Vec2& at,
-                               const std::optional<Vec2>& course) const {
+Guide RobustFlight::guide_with(double berth, const Vec2& at, const std::optional<Vec2>& course) {
   std::vector<Disc> grown = threats_->all();
   for (Disc& disc : grown) {
     // Neither end may lie inside.
@@ -63,13 +64,16 @@ Guide RobustFlight::guide_with(double berth, const Vec2& at,
         std::min((at - disc.centre).norm(), (goal_ - disc.centre).norm()) - disc.radius;
     disc.radius += std::min(berth, 0.9 * std::max(room, 0.0));
   }
-  return shortest_guide(grown, {at, course, steps().radius_m()}, goal_).value_or(Guide());
+  return shortest_guide(grown, {at, course, steps().radius_m()}, goal_, &effort_).value_or(Guide());
 }
 
 double RobustFlight::reach_m() const { return kDetour * guide_.length_m() + field_.ring; }
 
 void RobustFlight::check_way_out(const Vec2& at, const std::optional<Vec2>& course) {
   if (!course) {
+    safe_ = follow_field(at, course, {0, 0}).has_value();
+    way_out_.courses.clear();
+    known_ = false;
     return;
   }
   const Pose here = {at, *course};
@@ -95,7 +99,7 @@ double RobustFlight::follow(const Vec2& at, double along) const {
 Vec2 RobustFlight::pull(const Vec2& at, const std::optional<Vec2>& course, double& along) const {
   const double step = steps().length_m();
   along = follow(at, along);
-  const double ahead = along + kAhead * steps().radius_m();
+  const double ahead = along + std::max(kAhead * steps().radius_m(), kStepsAhead * step);
   const Vec2 target = guide_.at(ahead);
   const Vec2 to_target = target - at;
   if (course && ahead >= guide_.length_m()) {
@@ -138,7 +142,7 @@ Pose RobustFlight::step(const Vec2& at, const std::optional<Vec2>& course, const
     way_out_.courses.pop_back();
     return steps().after(at, next);
   }
-  if (!guide_.empty()) {
+  if (!guide_.empty() || !course) {
     if (const std::optional<Pose> next = follow_field(at, course, push)) {
       kind_ = Kind::field;
       return *next;
@@ -163,8 +167,12 @@ Pose RobustFlight::step(const Vec2& at, const std::optional<Vec2>& course, const
 std::optional<Pose> RobustFlight::follow_field(const Vec2& at, const std::optional<Vec2>& course,
                                                const Vec2& push) {
   double along = along_;
-  const Vec2 wished = wish(at, pull(at, course, along), push);
-  const Pose next = steps().after(at, course ? steps().limited(*course, wished) : wished);
+  const Vec2 wished =
+      guide_.empty() ? Vec2((goal_ - at).normalized()) : wish(at, pull(at, course, along), push);
+  if (!course) {
+    return begin_flight(at, wished);
+  }
+  const Pose next = steps().after(at, steps().limited(*course, wished));
   if (!freedom_.is_leg_free(at, next.at) || !find_way_out(next)) {
     return std::nullopt;
   }
@@ -172,6 +180,20 @@ std::optional<Pose> RobustFlight::follow_field(const Vec2& at, const std::option
   safe_ = true;
   known_ = true;
   return next;
+}
+
+/// Degree by degree to both sides.
+std::optional<Pose> RobustFlight::begin_flight(const Vec2& at, const Vec2& wish) {
+  for (int n = 0; n < 360; ++n) {
+    const double turn = radians(n % 2 == 0 ? -n / 2 : (n + 1) / 2);
+    const Pose next = steps().after(at, std::cos(turn) * wish + std::sin(turn) * left_of(wish));
+    if (freedom_.is_leg_free(at, next.at) && find_way_out(next)) {
+      safe_ = true;
+      known_ = true;
+      return next;
+    }
+  }
+  return std::nullopt;
 }
 
 Pose RobustFlight::roomiest(const Pose& pose) const {

@@ -21,8 +21,10 @@ class RobustFlight {
     std::int64_t ways_out_lost = 0;
   };
 
-  /// The threats must outlive the flight; their reach must be at least that of `Freedom`.
-  RobustFlight(const Field& field, const Threats& threats, const Steps& steps);
+  /// The threats must outlive the flight; their reach must be at least that of `Freedom`. Of the
+  /// budget a search of a guide keeps the deadline and the stop token.
+  RobustFlight(const Field& field, const Threats& threats, const Steps& steps,
+               const altiplan::Budget& budget = {});
 
   /// Takes over the threats as they are now, and the goal: looks for a guide, and keeps the way out
   /// where it is still free. Not a step's work: takes memory and a search.
@@ -34,7 +36,9 @@ class RobustFlight {
   void check_way_out(const Vec2& at, const std::optional<Vec2>& course);
 
   bool has_guide() const { return !guide_.empty(); }
-  /// Whether a way out is known, or none is needed yet: without a course any may be chosen.
+  /// Whether there may be a guide that was not found, as the search used up too much.
+  bool gave_up() const { return effort_.given_up; }
+  /// Whether a way out is known; without a course, whether there is a course with one.
   bool is_safe() const { return safe_; }
   /// No threat farther away than that moves the vehicle before it is somewhere else: no guide that
   /// is chosen leads there.
@@ -52,15 +56,17 @@ class RobustFlight {
  private:
   void find_guide(const Vec2& at, const std::optional<Vec2>& course);
   /// The shortest way that keeps the berth from all threats; empty where there is none.
-  Guide guide_with(double berth, const Vec2& at, const std::optional<Vec2>& course) const;
+  Guide guide_with(double berth, const Vec2& at, const std::optional<Vec2>& course);
   /// The place of the guide beside the vehicle, from where it was one step before.
   double follow(const Vec2& at, double along) const;
   /// V_T: to the virtual target, ahead on the guide; moves `along` on.
   Vec2 pull(const Vec2& at, const std::optional<Vec2>& course, double& along) const;
   /// V_T + sum (V_P + V_G).
   Vec2 wish(const Vec2& at, const Vec2& pull, const Vec2& push) const;
+  /// A step by the field, or, where there is no course yet, one as near to it as can be.
   std::optional<Pose> follow_field(const Vec2& at, const std::optional<Vec2>& course,
                                    const Vec2& push);
+  std::optional<Pose> begin_flight(const Vec2& at, const Vec2& wish);
   /// Where nothing is proven: the step, of three, that keeps most room.
   Pose roomiest(const Pose& pose) const;
 
@@ -78,6 +84,7 @@ class RobustFlight {
   Field field_;
   const Threats* threats_;
   Freedom freedom_;
+  GuideEffort effort_;
   Guide guide_;
   Vec2 goal_{0, 0};
   double tolerance_m_ = 0;

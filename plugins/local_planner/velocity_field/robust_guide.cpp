@@ -4,7 +4,9 @@
 // over the rims, each with a sense; a tangent is looked at only when its turn comes.
 #include "robust_guide.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 namespace velocity_field {
@@ -39,8 +41,12 @@ struct Contact {
 
 class TangentSearch {
  public:
-  TangentSearch(std::span<const Disc> discs, const GuideStart& start, const Vec2& goal)
-      : discs_(discs.begin(), discs.end()), goal_(discs.size()) {
+  TangentSearch(std::span<const Disc> discs, const GuideStart& start, const Vec2& goal,
+                GuideEffort& effort)
+      : discs_(discs.begin(), discs.end()),
+        goal_(discs.size()),
+        effort_(effort),
+        watch_(effort.budget) {
     discs_.push_back({goal, 0});
     if (start.course) {
       add_start(start.at, start.turn_radius_m * left_of(*start.course), 1);
@@ -50,21 +56,18 @@ class TangentSearch {
     }
     starts_ = contacts_.size();
     reached_.resize(2 * discs_.size());
-    overlaps_.resize(discs_.size());
-    for (std::size_t a = 0; a < discs_.size(); ++a) {
-      for (std::size_t b = 0; b < goal_; ++b) {
-        if (a != b && a != goal_) {
-          note_overlap(a, b);
-        }
-      }
-    }
+    note_overlaps();
   }
 
   std::optional<Guide> run() {
     for (std::size_t n = 0; n < starts_; ++n) {
       expand(n);
     }
-    while (!open_.empty() && offered_ < kMostTangents) {
+    while (!open_.empty()) {
+      effort_.given_up = offered_ >= kMostTangents || watch_.spent(0);
+      if (effort_.given_up) {
+        break;
+      }
       const Contact next = open_.top().contact;
       open_.pop();
       if (is_behind(next) || !is_clear(next.from, next.at)) {
@@ -96,6 +99,29 @@ class TangentSearch {
   void add_start(const Vec2& at, const Vec2& to_centre, int sense) {
     contacts_.push_back({discs_.size(), sense, angle_of(-to_centre), 0, at, at});
     discs_.push_back({at + to_centre, to_centre.norm()});
+  }
+
+  /// Of each rim with those threats that are not too far east or west.
+  void note_overlaps() {
+    overlaps_.resize(discs_.size());
+    std::vector<std::size_t> eastward(goal_);
+    std::iota(eastward.begin(), eastward.end(), 0);
+    std::ranges::sort(eastward, {}, [&](std::size_t n) { return discs_[n].centre.x(); });
+    double largest = 0;
+    for (std::size_t n = 0; n < goal_; ++n) {
+      largest = std::max(largest, discs_[n].radius);
+    }
+    for (std::size_t a = 0; a < discs_.size(); ++a) {
+      const double reach = discs_[a].radius + largest;
+      const double x = discs_[a].centre.x();
+      auto b = std::ranges::lower_bound(eastward, x - reach, {},
+                                        [&](std::size_t n) { return discs_[n].centre.x(); });
+      for (; b != eastward.end() && discs_[*b].centre.x() <= x + reach; ++b) {
+        if (a != *b && a != goal_) {
+          note_overlap(a, *b);
+        }
+      }
+    }
   }
 
   void note_overlap(std::size_t a, std::size_t b) {
@@ -220,6 +246,8 @@ class TangentSearch {
   std::vector<double> free_;
   std::priority_queue<Open> open_;
   std::size_t offered_ = 0;  ///< tangents
+  GuideEffort& effort_;
+  altiplan::BudgetWatch watch_;
 };
 }  // namespace
 
@@ -280,7 +308,8 @@ double Guide::beside(const Vec2& p, double metres) const {
 }
 
 std::optional<Guide> shortest_guide(std::span<const Disc> discs, const GuideStart& start,
-                                    const Vec2& goal) {
-  return TangentSearch(discs, start, goal).run();
+                                    const Vec2& goal, GuideEffort* effort) {
+  GuideEffort own;
+  return TangentSearch(discs, start, goal, effort != nullptr ? *effort : own).run();
 }
 }  // namespace velocity_field

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "altiplan/request.hpp"
 #include "field.hpp"
 
 namespace velocity_field {
@@ -47,10 +48,16 @@ struct GuideStart {
   double turn_radius_m = 0;
 };
 
+/// What a search of a guide may use up, and whether that was too little.
+struct GuideEffort {
+  altiplan::Budget budget;  ///< its deadline and its stop token
+  bool given_up = false;
+};
+
 /// The shortest line from start to goal that enters none of the discs; none where there is none, or
-/// was none found. Among more than 200 discs it may be 2 % longer.
+/// where the search was given up. Among more than 200 discs it may be 2 % longer.
 std::optional<Guide> shortest_guide(std::span<const Disc> discs, const GuideStart& start,
-                                    const Vec2& goal);
+                                    const Vec2& goal, GuideEffort* effort = nullptr);
 
 /// v turned as x must be to point as y does, and stretched as much.
 inline Vec2 turned_as(const Vec2& v, const Vec2& x, const Vec2& y) {

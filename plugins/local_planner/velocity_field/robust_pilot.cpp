@@ -5,6 +5,12 @@
 
 namespace velocity_field {
 namespace {
+/// How far from the goal's place a level flight at height z has arrived.
+double tolerance_at(const Goal& goal, double z) {
+  const double off = goal.position.z() - z;
+  return std::sqrt(std::max(0.0, goal.tolerance_m * goal.tolerance_m - off * off));
+}
+
 PilotStep stuck(const Observation& seen, std::string_view why) {
   return {seen.state, PilotStep::Outcome::stuck, why};
 }
@@ -39,11 +45,12 @@ RobustPilot::RobustPilot(const Params& params, const Request& request)
       most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
       most_step_(request.limits.max_leg),
       feed_(request, std::max(params.ring_m, Freedom::reach_m(steps_of(params.step_s)))),
-      flight_(field_, feed_.threats(), steps_of(params.step_s)),
+      flight_(field_, feed_.threats(), steps_of(params.step_s), request.budget),
       dt_(params.step_s) {
   const Vec2 here = request.start.position.head<2>();
   const std::optional<Vec2> course = course_of(request.start);
-  flight_.set_world(request.goal.position.head<2>(), request.goal.tolerance_m, here, course);
+  flight_.set_world(request.goal.position.head<2>(),
+                    tolerance_at(request.goal, request.start.position.z()), here, course);
   expected_ = {here, course.value_or(Vec2(0, 0))};
 }
 
@@ -63,17 +70,24 @@ PilotStep RobustPilot::do_step(const Observation& seen) {
     return stuck(seen, "the goal is not at the height of the flight, which is level");
   }
   if (steps_ == p_.max_steps) {
-    return stuck(seen, "max_steps steps did not lead to the goal");
+    return stuck(seen,
+                 tolerance_at(seen.goal, seen.state.position.z()) < flight_.steps().length_m() / 2
+                     ? "max_steps steps did not lead to the goal, whose tolerance is less than "
+                       "half a step at this height"
+                     : "max_steps steps did not lead to the goal");
   }
   const Vec2 here = seen.state.position.head<2>();
   const std::optional<Vec2> course = course_of(seen.state);
   const double dt = std::min({p_.step_s, seen.max_dt_s, most_step_ / speed_});
   take_news(seen, here, course, dt);
   if (steps_ == 0 && !flight_.is_safe()) {
-    return stuck(seen, "from the start's course no turn is known that enters no threat");
+    return stuck(seen, course ? "from the course here no turn is known that enters no threat"
+                              : "no course from here is known that enters no threat");
   }
   if (steps_ == 0 && !flight_.has_guide()) {
-    return stuck(seen, "no way to the goal was found between the threats");
+    return stuck(seen, flight_.gave_up()
+                           ? "the search for a way between so many threats was given up"
+                           : "there is no way to the goal between the threats");
   }
   ++steps_;
   return fly(seen, flight_.step(here, course, push_of_movers(seen, here)), dt);
@@ -88,8 +102,10 @@ void RobustPilot::take_news(const Observation& seen, const Vec2& here,
   }
   const double off = (here - expected_.at).norm();
   const bool turned = course && (*course - expected_.course).norm() > kAngleTolerance;
-  if (feed_.update(seen) || off > least_radius_) {
-    flight_.set_world(seen.goal.position.head<2>(), seen.goal.tolerance_m, here, course);
+  const bool other_guide = other_steps && steps_ == 0;
+  if (feed_.update(seen) || off > least_radius_ || other_guide) {
+    flight_.set_world(seen.goal.position.head<2>(),
+                      tolerance_at(seen.goal, seen.state.position.z()), here, course);
   } else if (other_steps || turned || off > kLengthTolerance) {
     flight_.check_way_out(here, course);
   }

@@ -118,13 +118,13 @@ TEST(RobustPilot, IsStuckWhereItCannotBegin) {
   }
   const Flown enclosed = flight(problem(world_of(ring), {50000, 0, 1000}), kRobust);
   EXPECT_EQ(enclosed.outcome, PilotStep::Outcome::stuck);
-  EXPECT_EQ(enclosed.why.back(), "no way to the goal was found between the threats");
+  EXPECT_EQ(enclosed.why.back(), "there is no way to the goal between the threats");
 
   Request into = problem(world_of({{3050, 0, 3000}}), {-20000, 0, 1000});
   into.start.velocity = {30, 0, 0};
   const Flown doomed = flight(into, kRobust);
   EXPECT_EQ(doomed.outcome, PilotStep::Outcome::stuck);
-  EXPECT_EQ(doomed.why.back(), "from the start's course no turn is known that enters no threat");
+  EXPECT_EQ(doomed.why.back(), "from the course here no turn is known that enters no threat");
 
   Request above = problem(world_of({}), {20000, 0, 1200});
   EXPECT_EQ(flight(above, kRobust).outcome, PilotStep::Outcome::stuck);
