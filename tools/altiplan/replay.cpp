@@ -151,7 +151,7 @@ void add_replay(CLI::App& app, Action& action) {
                    "the run: its id, its key or the beginning of it, or its name 'PIPELINE "
                    "SCENARIO #REPETITION'")
       ->required();
-  command->add_option("--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command->add_option("-o,--out", arguments->out, "write the result as JSON")->type_name("FILE");
   command->add_option("--trace", arguments->trace, "write what the searches did")
       ->type_name("FILE");
   command->add_flag("--stored", arguments->stored,

@@ -172,7 +172,7 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--trace", arguments->trace, "write what the searches did")
       ->type_name("FILE");
-  command->add_option("--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command->add_option("-o,--out", arguments->out, "write the result as JSON")->type_name("FILE");
   command
       ->add_option("--patience", arguments->patience_s,
                    "seconds for a step without within_s, and for all that has no time of its own: "

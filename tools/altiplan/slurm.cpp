@@ -235,7 +235,7 @@ void add_slurm(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("slurm", "run a study as a job array of a Slurm cluster");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("study", arguments->study, "study file")->required();
-  command->add_option("--out", arguments->out, "the database of all results")
+  command->add_option("-o,--out", arguments->out, "the database of all results")
       ->required()
       ->type_name("DB");
   command->add_option("--chunk-minutes", arguments->chunk_minutes, "how long a task should take")
