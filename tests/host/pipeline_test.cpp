@@ -207,6 +207,9 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   EXPECT_EQ(result.status, Status::solved) << result.message;
   EXPECT_EQ(result.steps[0].route, expected);
   EXPECT_EQ(result.steps[1].route, expected);
+  EXPECT_EQ(result.steps[1].message,
+            "to via point 0: nothing to smooth; to via point 1: nothing to smooth; to the goal: "
+            "nothing to smooth");
   EXPECT_TRUE(result.steps[2].stands) << result.steps[2].message;
   scenario("via: [{at_m: [300, 700, 500]}, {at_m: [500, 1200, 500]}]\n");
   const RunResult outside = run(told("straight"));

@@ -67,12 +67,23 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   cuts.push_back(before.size() - 1);
   std::size_t from = 0;
   std::size_t piece = 0;
-  return plan_along(request, fixed, [&](const Request& part) {
+  std::string told;  // of every piece: a smoother counts in one alone
+  PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
     const Route raw(before.begin() + std::ptrdiff_t(from),
                     before.begin() + std::ptrdiff_t(cuts[piece]) + 1);
+    PlanResult result = smoother.smooth(raw, part);
+    if (!result.message.empty()) {
+      told += (told.empty() ? "to " : "; to ") +
+              (piece == fixed.size() ? "the goal" : "via point " + std::to_string(piece)) + ": " +
+              result.message;
+    }
     from = cuts[piece++];
-    return smoother.smooth(raw, part);
+    return result;
   });
+  if (!fixed.empty() && whole.status == Status::solved) {
+    whole.message = std::move(told);
+  }
+  return whole;
 }
 
 void Run::judge_step(StepResult& step, const Request& request) {

@@ -5,7 +5,8 @@
 // 340-346 (paper 001), section 4.
 //
 // Guarantees: every leg that is not the route's own keeps the request's rules of legs and turns by
-//   at most max_turn_deg. Not the fewest points (see smoother prune), and no point moves.
+//   at most max_turn_deg, the first one from the heading at the start. Not the fewest points (see
+//   smoother prune), and no point moves.
 // Complexity: O(n) leg checks for each point that stays, so O(n^2) for n waypoints.
 // Deviations: legs are held to every rule of the request, not to threats alone. Where no end is
 //   admissible, which the paper does not speak of, the next point stays.
@@ -25,7 +26,7 @@ struct Params {
     f("max_turn_deg", max_turn_deg)
         .unit("deg")
         .range(0, 180)
-        .doc("a new leg turns by no more from the leg before it");
+        .doc("a new leg turns by no more from the leg before it, or the start's heading");
   }
 };
 
@@ -38,7 +39,7 @@ class Reduction {
   /// The points that stay; cut short where the budget ended.
   Route reduced() {
     Route kept{route_.front()};
-    std::optional<Vec3> before;
+    std::optional<Vec3> before = request_.before_start();  // past a via point, the leg to it
     std::size_t begin = 0;
     while (begin + 1 < route_.size() && !budget_hit_) {
       const std::size_t end = farthest_end(before, begin);
@@ -71,7 +72,7 @@ class Reduction {
     }
     ++legs_checked_;
     return (!before || turn_angle_in_space(a - *before, b - a) <= max_turn_ + kAngleTolerance) &&
-           leg_ok(before ? before : request_.before_start(), a, b, request_);
+           leg_ok(before, a, b, request_);
   }
 
   const Route& route_;

@@ -49,6 +49,21 @@ TEST(WaypointReduction, TurnsByAtMostNinetyDegrees) {
   EXPECT_EQ(sharp.route, (Route{route[0], route[2], route[4]}));
 }
 
+TEST(WaypointReduction, TurnsFromTheHeadingAtTheStart) {
+  // Such is what the host tells behind a via point: the heading of the leg that leads to it.
+  const Route route{{0, 0, 0}, {0, 5, 0}, {5, 8, 0}, {10, 8, 0}};
+  Request request = past({}, route);
+  const auto reduced = [&](const char* parameters) {
+    return make_smoother("waypoint_reduction", parameters)->smooth(route, request);
+  };
+  EXPECT_EQ(reduced("{}").route, (Route{route[0], route[3]}));
+  request.start.velocity = {-10, 0, 0};
+  EXPECT_EQ(reduced("{}").route, (Route{route[0], route[1], route[3]}));
+  EXPECT_EQ(counter(reduced("{}"), "points_without_end"), 0);
+  EXPECT_EQ(reduced("{max_turn_deg: 60}").route, route);
+  EXPECT_EQ(counter(reduced("{max_turn_deg: 60}"), "points_without_end"), 1);
+}
+
 TEST(WaypointReduction, KeepsTheNextPointWhereNoEndIsAdmissible) {
   // No later point is within 60 degrees of the leg along the wall.
   const Route route{{0, 0, 0}, {10, 0, 0}, {9, 4, 0}, {6, 8, 0}};
