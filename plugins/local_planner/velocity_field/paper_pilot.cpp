@@ -36,8 +36,7 @@ PilotStep PaperPilot::do_step(const Observation& seen) {
             "the goal is not at the height of the flight, which is level"};
   }
   if (++steps_ > p_.max_steps) {
-    return {seen.state, PilotStep::Outcome::stuck,
-            "max_steps steps are flown, and the goal is not reached"};
+    return {seen.state, PilotStep::Outcome::stuck, why_not_reached(seen)};
   }
   take_news(seen);
   if (terrain_ && terrain_->is_kept_above()) {
@@ -50,7 +49,7 @@ PilotStep PaperPilot::do_step(const Observation& seen) {
   const Vec2 aim = virtual_targets_.aim(feed_.threats(), target.head<2>(), here,
                                         heading_.value_or(target.head<2>() - here), inside_);
   const double v = speed(seen);
-  const double dt = std::min({p_.step_s, seen.max_dt_s, most_step_ / v});
+  const double dt = step_time(seen, v);
   const Vec2 wished = wish(seen, here, aim - here);
   if (terrain_) {
     return fly(seen, terrain_->step(seen.state, feed_.threats().all(), wished, v * dt), v, dt);
@@ -115,12 +114,29 @@ double PaperPilot::speed(const Observation& seen) const {
              : vehicle_.speed_at(seen.world->clearance(seen.state.position));
 }
 
+double PaperPilot::step_time(const Observation& seen, double speed) const {
+  return std::min({p_.step_s, seen.max_dt_s, most_step_ / speed});
+}
+
 PilotStep PaperPilot::fly(const Observation& seen, const Vec3& ahead, double speed, double dt) {
   const State next{seen.state.time_s + dt, seen.state.position + speed * dt * ahead, speed * ahead};
   return {next,
           seen.goal.reached_at(next.position) ? PilotStep::Outcome::arrived
                                               : PilotStep::Outcome::flying,
           news_of_virtual_target()};
+}
+
+std::string_view PaperPilot::why_not_reached(const Observation& seen) {
+  constexpr std::string_view kGivenUp = "max_steps steps are flown, and the goal is not reached";
+  const double v = speed(seen);
+  const double half_step = v * step_time(seen, v) / 2;
+  if (seen.goal.tolerance_m >= half_step) {
+    return kGivenUp;
+  }
+  const int length = std::snprintf(
+      why_.data(), why_.size(), "%s; the goal's tolerance of %g m is less than half a step, %g m",
+      kGivenUp.data(), seen.goal.tolerance_m, half_step);
+  return {why_.data(), std::min(std::size_t(length), why_.size() - 1)};
 }
 
 std::string_view PaperPilot::news_of_virtual_target() {

@@ -32,9 +32,12 @@ class PaperPilot final : public Pilot {
   /// The heading nearest to the wish that the least turn radius leaves, after the step before.
   Vec2 flyable(const Vec2& wish, double step);
   double speed(const Observation& seen) const;
+  double step_time(const Observation& seen, double speed) const;
   PilotStep fly(const Observation& seen, const Vec3& ahead, double speed, double dt);
   bool is_level() const { return !terrain_ || !terrain_->climbs(); }
   std::string_view news_of_virtual_target();
+  /// After max_steps steps; names a goal too small for them.
+  std::string_view why_not_reached(const Observation& seen);
 
   Params p_;
   Field field_;
@@ -49,7 +52,7 @@ class PaperPilot final : public Pilot {
   std::optional<TerrainFlight> terrain_;  ///< where ground is seen
   std::vector<std::uint32_t> inside_;     ///< threats whose ring the vehicle is in
   std::optional<Vec2> heading_;           ///< of the vehicle; none before the first step
-  std::array<char, 120> why_{};
+  std::array<char, 160> why_{};
   std::size_t why_length_ = 0;
   std::int64_t told_ = 0;  ///< entries when why_ was written
   std::int64_t steps_ = 0;

@@ -175,7 +175,14 @@ TEST(PaperPilot, GivesUpAfterMostStepsAndKeepsTheRoute) {
   const Flown flown = flight(table1(), "{max_steps: 500}");
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
   EXPECT_EQ(flown.route.size(), 501U);
-  EXPECT_NE(flown.why.back().find("max_steps"), std::string::npos) << flown.why.back();
+  EXPECT_EQ(flown.why.back(), "max_steps steps are flown, and the goal is not reached");
+  Request request = problem(World(), {5005, 0, 1000});  // between two steps of 30 m
+  request.goal.tolerance_m = 0;
+  EXPECT_EQ(
+      flight(request, "{max_steps: 500}").why.back(),
+      "max_steps steps are flown, and the goal is not reached; the goal's tolerance of 0 m is "
+      "less than half a step, 15 m");
+  EXPECT_EQ(allocated_in(request, "{max_steps: 500}"), 0);
 }
 
 TEST(PaperPilot, RefusesAGoalAtAnotherHeight) {
