@@ -358,7 +358,7 @@ events:
         self.call("check", code=2)
 
     def test_check_a_result_without_a_flight(self):
-        self.call("run", self.pipeline, "--out", "result.json")
+        self.call("run", self.pipeline, "-o", "result.json")
         out, _ = self.call("check", "result.json")
         self.assertTrue(out.startswith("sound"), out)
         self.assertNotIn("flight", out)
