@@ -3,32 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cstdlib>
 #include <limits>
-#include <new>
 
 #include "altiplan/kit/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "apf_field.hpp"
+#include "support/counted_allocations.hpp"
 #include "support/support.hpp"
-
-namespace {
-bool counting = false;
-long allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  allocations += counting;
-  if (void* memory = std::malloc(size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where only one of the two is inlined
-#endif
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace altiplan::testing {
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "pilot_ends.hpp"
+
 namespace velocity_field {
 
 PaperPilot::PaperPilot(const Params& params, const Request& request)
@@ -24,25 +26,18 @@ PaperPilot::PaperPilot(const Params& params, const Request& request)
 }
 
 PilotStep PaperPilot::do_step(const Observation& seen) {
-  if (seen.goal.reached_at(seen.state.position)) {
-    return {{seen.state.time_s + std::min(seen.max_dt_s, 1e-3), seen.state.position,
-             seen.state.velocity},
-            PilotStep::Outcome::arrived,
-            "at the goal"};
-  }
-  if (is_level() && std::abs(seen.goal.position.z() - seen.state.position.z()) >
-                        seen.goal.tolerance_m + kLengthTolerance) {
-    return {seen.state, PilotStep::Outcome::stuck,
-            "the goal is not at the height of the flight, which is level"};
+  if (const auto end = end_of_flight(seen, is_level())) {
+    return *end;
   }
   if (++steps_ > p_.max_steps) {
-    return {seen.state, PilotStep::Outcome::stuck, why_not_reached(seen)};
+    return stuck(seen, why_not_reached(seen));
   }
   take_news(seen);
   if (terrain_ && terrain_->is_kept_above()) {
-    return {seen.state, PilotStep::Outcome::stuck,
-            "the goal lies lower than the flight can go and climb out again, and no straight leg "
-            "leads down to it"};
+    return stuck(
+        seen,
+        "the goal lies lower than the flight can go and climb out again, and no straight leg "
+        "leads down to it");
   }
   const Vec2 here = seen.state.position.head<2>();
   const Vec3& target = p_.toward == Toward::goal ? seen.goal.position : seen.local_target;

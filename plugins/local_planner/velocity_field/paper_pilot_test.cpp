@@ -2,29 +2,9 @@
 // Laws of a pilot and of the method's updates, beyond the conformance suite.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "field.hpp"
 #include "reference/velocity_flights.hpp"
-
-namespace {
-bool counting = false;
-long allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  allocations += counting;
-  if (void* memory = std::malloc(size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where only one of the two is inlined
-#endif
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "support/counted_allocations.hpp"
 
 namespace velocity_field {
 namespace {

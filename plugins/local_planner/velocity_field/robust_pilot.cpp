@@ -3,16 +3,14 @@
 
 #include <algorithm>
 
+#include "pilot_ends.hpp"
+
 namespace velocity_field {
 namespace {
 /// How far from the goal's place a level flight at height z has arrived.
 double tolerance_at(const Goal& goal, double z) {
   const double off = goal.position.z() - z;
   return std::sqrt(std::max(0.0, goal.tolerance_m * goal.tolerance_m - off * off));
-}
-
-PilotStep stuck(const Observation& seen, std::string_view why) {
-  return {seen.state, PilotStep::Outcome::stuck, why};
 }
 
 std::string_view what(RobustFlight::Kind kind, bool has_guide) {
@@ -59,15 +57,8 @@ Steps RobustPilot::steps_of(double step_s) const {
 }
 
 PilotStep RobustPilot::do_step(const Observation& seen) {
-  if (seen.goal.reached_at(seen.state.position)) {
-    return {{seen.state.time_s + std::min(seen.max_dt_s, 1e-3), seen.state.position,
-             seen.state.velocity},
-            PilotStep::Outcome::arrived,
-            "at the goal"};
-  }
-  if (std::abs(seen.goal.position.z() - seen.state.position.z()) >
-      seen.goal.tolerance_m + kLengthTolerance) {
-    return stuck(seen, "the goal is not at the height of the flight, which is level");
+  if (const auto end = end_of_flight(seen, true)) {
+    return *end;
   }
   if (steps_ == p_.max_steps) {
     return stuck(seen,
