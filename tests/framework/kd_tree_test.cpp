@@ -35,6 +35,49 @@ TEST(KdTree, EqualsBruteForceAfterEveryInsert) {
     tree.within(p, radius, found);
     ASSERT_EQ(found, expected);
   }
+  // Every third is taken out, every ninth put back.
+  const auto in = [](std::size_t i) { return i % 3 != 0 || i % 9 == 0; };
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    tree.erase(i);
+  }
+  for (std::size_t i = 0; i < points.size(); i += 9) {
+    tree.restore(i);
+  }
+  for (int n = 0; n < 300; ++n) {
+    const auto draw = [&] { return double(random.integer(0, 1000)); };
+    const Vec3 p(draw(), draw(), draw() / 4);
+    const Vec3 q(draw(), draw(), draw() / 4);
+    const double q_weight = random.integer(0, 3) / 2.0;
+    const Box box = Box::empty().with(p).with(q);
+    std::size_t nearest = KdTree::kNone;
+    std::size_t least_sum = KdTree::kNone;
+    double distance = kInfinity;
+    double sum = kInfinity;
+    std::vector<std::size_t> inside;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_EQ(tree.contains(i), in(i));
+      if (!in(i)) {
+        continue;
+      }
+      const double to_p = (points[i] - p).norm();
+      const double both = to_p + q_weight * (points[i] - q).norm();
+      if ((points[i] - p).squaredNorm() < distance) {
+        distance = (points[i] - p).squaredNorm();
+        nearest = i;
+      }
+      if (both < sum) {
+        sum = both;
+        least_sum = i;
+      }
+      if (box.contains(points[i])) {
+        inside.push_back(i);
+      }
+    }
+    EXPECT_EQ(tree.nearest(p), nearest);
+    EXPECT_EQ(tree.least_sum(p, 1, q, q_weight), least_sum);
+    tree.within(box, found);
+    EXPECT_EQ(found, inside);
+  }
   tree.clear();
   EXPECT_EQ(tree.size(), 0u);
   EXPECT_EQ(tree.nearest({0, 0, 0}), KdTree::kNone);

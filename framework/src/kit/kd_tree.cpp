@@ -7,18 +7,21 @@ namespace altiplan::kit {
 
 void KdTree::clear() {
   points_.clear();
+  out_.clear();
   order_.clear();
   axis_.clear();
 }
 
 void KdTree::reserve(std::size_t count) {
   points_.reserve(count);
+  out_.reserve(count);
   order_.reserve(count);
   axis_.reserve(count);
 }
 
 std::size_t KdTree::insert(const Vec3& p) {
   points_.push_back(p);
+  out_.push_back(0);
   const std::size_t waiting = points_.size() - order_.size();
   if (waiting >= std::max(order_.size(), kFirst)) {
     while (order_.size() < points_.size()) {
@@ -90,6 +93,9 @@ std::size_t KdTree::nearest(const Vec3& p) const {
     double reach() const { return least; }
     void see(std::size_t number) {
       const double square = (tree.points_[number] - p).squaredNorm();
+      if (tree.out_[number] != 0) {
+        return;
+      }
       if (square < least || (square == least && number < best)) {
         least = square;
         best = number;
@@ -111,7 +117,7 @@ void KdTree::within(const Vec3& p, double radius, std::vector<std::size_t>& foun
     std::vector<std::size_t>& found;
     double reach() const { return square; }
     void see(std::size_t number) {
-      if ((tree.points_[number] - p).squaredNorm() <= square) {
+      if (tree.out_[number] == 0 && (tree.points_[number] - p).squaredNorm() <= square) {
         found.push_back(number);
       }
     }
@@ -122,5 +128,28 @@ void KdTree::within(const Vec3& p, double radius, std::vector<std::size_t>& foun
     visit.see(i);
   }
   std::sort(found.begin(), found.end());
+}
+
+std::size_t KdTree::least_sum(const Vec3& p, double p_weight, const Vec3& q,
+                              double q_weight) const {
+  std::size_t best = kNone;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double sum = p_weight * (points_[i] - p).norm() + q_weight * (points_[i] - q).norm();
+    if (out_[i] == 0 && sum < least) {
+      least = sum;
+      best = i;
+    }
+  }
+  return best;
+}
+
+void KdTree::within(const Box& box, std::vector<std::size_t>& found) const {
+  found.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (out_[i] == 0 && box.contains(points_[i])) {
+      found.push_back(i);
+    }
+  }
 }
 }  // namespace altiplan::kit

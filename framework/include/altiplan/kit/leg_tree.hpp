@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/route.hpp"
+
+namespace altiplan::kit {
+
+/// Points that hang together by legs, as sampling planners grow them: each has a parent, or is a
+/// root. Nodes are numbered 0, 1, 2 … as added; a number is never used again.
+class LegTree {
+ public:
+  using Node = std::int32_t;
+  static constexpr Node kNone = -1;
+
+  void clear() {
+    points_.clear();
+    links_.clear();
+  }
+  void reserve(std::size_t count) {
+    points_.reserve(count);
+    links_.reserve(count);
+  }
+  /// Numbers given.
+  std::size_t size() const { return points_.size(); }
+
+  /// Adds a node below `parent`, a root where that is kNone.
+  Node add(const Vec3& p, Node parent) {
+    const Node node = Node(points_.size());
+    points_.push_back(p);
+    links_.push_back({});
+    hang(node, parent);
+    return node;
+  }
+  const Vec3& point(Node node) const { return points_[std::size_t(node)]; }
+  Node parent(Node node) const { return links_[std::size_t(node)].parent; }
+  Node first_child(Node node) const { return links_[std::size_t(node)].child; }
+  /// The next child of the same parent.
+  Node sibling(Node node) const { return links_[std::size_t(node)].next; }
+
+  /// Hangs a node, with all below it, under another parent (not one of those), or makes it a root.
+  void move(Node node, Node parent) {
+    Links& links = links_[std::size_t(node)];
+    if (links.previous != kNone) {
+      links_[std::size_t(links.previous)].next = links.next;
+    } else if (links.parent != kNone) {
+      links_[std::size_t(links.parent)].child = links.next;
+    }
+    if (links.next != kNone) {
+      links_[std::size_t(links.next)].previous = links.previous;
+    }
+    hang(node, parent);
+  }
+
+  /// The node and all below it, each after its parent.
+  void below(Node node, std::vector<Node>& found) const {
+    found.assign(1, node);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (Node child = first_child(found[i]); child != kNone; child = sibling(child)) {
+        found.push_back(child);
+      }
+    }
+  }
+
+  /// The points from its root to the node.
+  Route way_to(Node node) const {
+    Route way;
+    for (; node != kNone; node = parent(node)) {
+      way.push_back(point(node));
+    }
+    return {way.rbegin(), way.rend()};
+  }
+
+ private:
+  struct Links {
+    Node parent = kNone;
+    Node child = kNone;     ///< the one added last
+    Node next = kNone;      ///< child of the same parent
+    Node previous = kNone;  ///< the other way
+  };
+
+  void hang(Node node, Node parent) {
+    Links& links = links_[std::size_t(node)];
+    links.parent = parent;
+    links.previous = kNone;
+    links.next = kNone;
+    if (parent != kNone) {
+      Links& above = links_[std::size_t(parent)];
+      links.next = above.child;
+      if (above.child != kNone) {
+        links_[std::size_t(above.child)].previous = node;
+      }
+      above.child = node;
+    }
+  }
+
+  std::vector<Vec3> points_;
+  std::vector<Links> links_;  ///< one entry per point
+};
+}  // namespace altiplan::kit
