@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random shortcuts under the judge.
+//
+// Citation: R. Geraerts, M. H. Overmars: Creating High-quality Paths for Motion Planning. The
+//   International Journal of Robotics Research 26(8), 2007, 845-863,
+//   doi:10.1177/0278364907079280, procedure Shortcut.
+// Guarantees: a new leg, and the legs that it joins, keep every rule of legs; the route never gets
+//   longer, and for no rule does the worst excess grow. Not the shortest route there is.
+// Complexity: O(k (log n + c) + s n) for k draws, s shortcuts taken, n waypoints and a leg check c.
+// Deviations: legs are judged exactly, with the turns at both ends of the shortcut (the paper
+//   samples states, which have no turns). A place is drawn on the legs or, with probability
+//   waypoint_share, moved to the nearest waypoint: legs are then not cut, which a least length of
+//   legs may forbid. It ends after a number of draws in vain. No partial shortcuts: coordinates
+//   that move alone are those of robots with joints.
+// Symbols: pi the route; pi_a and pi_b the two places drawn on it.
+#include <algorithm>
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/corners.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct Params {
+  int iterations = 1000;
+  int failures = 200;
+  double waypoint_share = 0.5;
+
+  void describe(Fields& f) {
+    f("iterations", iterations).range(0, 10'000'000).doc("pairs of places drawn at most");
+    f("failures", failures).at_least(1).doc("so many pairs in vain, one after the other, end it");
+    f("waypoint_share", waypoint_share)
+        .range(0, 1)
+        .doc("share of places moved to the nearest waypoint; the others stay on the legs");
+  }
+};
+
+/// A shortcut that gains less, as a share of the route, is not worth its waypoints.
+constexpr double kLeastGain = 1e-5;
+
+/// One route that gets shorter.
+class Shortening {
+ public:
+  Shortening(Route route, const Request& request, double waypoint_share)
+      : pi_(std::move(route)),
+        request_(request),
+        random_(request.random.sub("shortcut")),
+        waypoint_share_(waypoint_share) {
+    measure();
+  }
+
+  /// Draws two places and tries the straight leg between them; whether it was taken.
+  bool shortcut() {
+    Place a = draw();
+    Place b = draw();
+    if (b.from_start < a.from_start) {
+      std::swap(a, b);
+    }
+    const bool straight_already = a.after >= b.before;
+    const double gain = b.from_start - a.from_start - (b.at - a.at).norm();
+    if (straight_already || gain <= kLeastGain * from_start_.back() || !keeps_rules(a, b)) {
+      return false;
+    }
+    Route shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
+    shorter.insert(shorter.end(), {a.at, b.at});
+    shorter.insert(shorter.end(), pi_.begin() + std::ptrdiff_t(b.after), pi_.end());
+    pi_ = std::move(shorter);
+    measure();
+    return true;
+  }
+
+  const Route& route() const { return pi_; }
+  std::int64_t legs_checked() const { return legs_checked_; }
+
+ private:
+  struct Place {
+    Vec3 at;
+    double from_start;   ///< metres along the route
+    std::size_t before;  ///< so many waypoints lie before it
+    std::size_t after;   ///< the first waypoint behind it
+    bool is_waypoint() const { return after > before; }
+  };
+
+  void measure() {
+    from_start_.assign(1, 0.0);
+    for (std::size_t i = 1; i < pi_.size(); ++i) {
+      from_start_.push_back(from_start_.back() + (pi_[i] - pi_[i - 1]).norm());
+    }
+  }
+
+  Place draw() {
+    const double metres = random_.uniform(0, from_start_.back());
+    const bool to_waypoint = random_.uniform() < waypoint_share_;
+    const auto end = std::upper_bound(from_start_.begin() + 1, from_start_.end() - 1, metres);
+    const auto i = std::size_t(end - from_start_.begin());
+    const double into = metres - from_start_[i - 1];
+    const double leg = from_start_[i] - from_start_[i - 1];
+    if (to_waypoint) {
+      const std::size_t nearest = into < leg / 2 ? i - 1 : i;
+      return {pi_[nearest], from_start_[nearest], nearest, nearest + 1};
+    }
+    return {pi_[i - 1] + into / leg * (pi_[i] - pi_[i - 1]), metres, i, i};
+  }
+
+  /// The leg a-b, and those beside it that are cut, or whose turn is another.
+  bool keeps_rules(const Place& a, const Place& b) {
+    return (a.is_waypoint() || leg_kept(point(a.before, 2), pi_[a.before - 1], a.at)) &&
+           leg_kept(point(a.before, 1), a.at, b.at) &&
+           (b.after == pi_.size() || leg_kept(a.at, b.at, pi_[b.after])) &&
+           (b.is_waypoint() || b.after + 1 == pi_.size() ||
+            leg_kept(b.at, pi_[b.after], pi_[b.after + 1]));
+  }
+  bool leg_kept(const std::optional<Vec3>& before, const Vec3& from, const Vec3& to) {
+    ++legs_checked_;
+    return leg_ok(before, from, to, request_);
+  }
+  /// The waypoint that many before number i, or where the vehicle comes from.
+  std::optional<Vec3> point(std::size_t i, std::size_t many) const {
+    return i < many ? request_.before_start() : std::optional(pi_[i - many]);
+  }
+
+  Route pi_;
+  const Request& request_;
+  RandomStream random_;
+  double waypoint_share_;
+  std::vector<double> from_start_;  // of each waypoint, metres along the route
+  std::int64_t legs_checked_ = 0;
+};
+
+class Shortcut final : public Smoother {
+ public:
+  explicit Shortcut(const Params& params) : params_(params) {}
+
+ private:
+  PlanResult do_smooth(const Route& route, const Request& request) const override {
+    Shortening shortening(without_repeats(route), request, params_.waypoint_share);
+    BudgetWatch watch(request.budget);
+    PlanResult result;
+    std::int64_t drawn = 0;
+    std::int64_t taken = 0;
+    for (int in_vain = 0;
+         drawn < params_.iterations && in_vain < params_.failures && shortening.route().size() > 2;
+         ++drawn) {
+      result.budget_hit = watch.spent(std::uint64_t(drawn));
+      if (result.budget_hit) {
+        break;
+      }
+      const bool shorter = shortening.shortcut();
+      taken += shorter ? 1 : 0;
+      in_vain = shorter ? 0 : in_vain + 1;
+    }
+    result.status = Status::solved;
+    result.counters = {
+        {"expanded", drawn}, {"taken", taken}, {"legs_checked", shortening.legs_checked()}};
+    // Rules of whole routes have the last word.
+    const bool stands = taken > 0 && kit::Excess(check(shortening.route(), request).violations)
+                                         .within(kit::Excess(check(route, request).violations));
+    result.route = stands ? shortening.route() : route;
+    result.message =
+        taken > 0 && !stands
+            ? "the shorter route would break a rule of whole routes: it stays as it was"
+            : std::to_string(taken) + " shortcuts taken, of " + std::to_string(drawn) + " tried" +
+                  (result.budget_hit ? "; the budget ended" : "");
+    return result;
+  }
+
+  Params params_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Smoother, "shortcut", Shortcut, Params,
+                "straight legs between places drawn at random on the route")
