@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <functional>
+#include <thread>
 
 #include "support/support.hpp"
 
@@ -145,6 +146,37 @@ TEST(OmplPlugin, WithoutAWayItEndsWithItsQuestions) {
     EXPECT_EQ(result.status, Status::no_route) << planner << ": " << result.message;
     EXPECT_FALSE(result.proved);
   }
+}
+
+/// Open air that, asked for the hundredth time, has something else done in another thread.
+class Interruption final : public Environment {
+ public:
+  explicit Interruption(std::function<void()> by) : by_(std::move(by)) {}
+
+ private:
+  double do_clearance(const Vec3&) const override {
+    if (++asked_ == 100) {
+      std::thread(by_).join();
+    }
+    return 1000;
+  }
+  Box do_bounds() const override { return {{0, 0, 0}, {1000, 1000, 400}}; }
+
+  std::function<void()> by_;
+  mutable int asked_ = 0;
+};
+
+TEST(OmplPlugin, APlanWaitsForTheOneBeforeAsLongAsItHasTime) {
+  const auto planner = make_planner("ompl", with("RRTstar", 1000));
+  Request hurried = through_a_window();
+  hurried.budget.max_iterations = 0;
+  PlanResult beside;
+  Request request = through_a_window();
+  request.world = std::make_shared<const World>(
+      testing::world_of(std::make_shared<Interruption>([&] { beside = planner->plan(hurried); })));
+  EXPECT_EQ(planner->plan(request).status, Status::solved);
+  EXPECT_EQ(beside.status, Status::timed_out);
+  EXPECT_NE(beside.message.find("another plan had OMPL"), std::string::npos) << beside.message;
 }
 
 TEST(OmplPlugin, AStopEndsThoseThatGoOn) {
