@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points found in a k-d tree beside a look at each: the nearest, and the least weighted sum of the
+// distances to a sample and the goal. Points lie anywhere, or where trees grow over the volume of
+// uav_rrt's main layout without obstacles.
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "altiplan/kit/kd_tree.hpp"
+#include "altiplan/random.hpp"
+#include "rows.hpp"
+
+namespace altiplan::bench {
+namespace {
+
+constexpr std::size_t kQueries = 1024;
+constexpr std::size_t kCompared = 64;  ///< queries whose answers are compared before timing
+
+const Box kVolume{{0, 0, 0}, {27000, 28000, 2500}};
+const Vec3 kStart(4000, 5000, 700);
+const Vec3 kGoal(23000, 23500, 700);
+constexpr double kStep = 150;
+
+using kit::KdTree;
+
+Vec3 stepped(const Vec3& from, const Vec3& to) {
+  const double distance = (to - from).norm();
+  return distance <= kStep ? to : Vec3(from + (kStep / distance) * (to - from));
+}
+
+void scatter(KdTree& tree, std::size_t count) {
+  RandomStream random(1);
+  while (tree.size() < count) {
+    tree.insert(random.in(kVolume));
+  }
+}
+
+/// From the nearest node toward the sample.
+void grow_nearest(KdTree& tree, std::size_t count) {
+  RandomStream random(2);
+  tree.insert(kStart);
+  while (tree.size() < count) {
+    const Vec3 sample = random.in(kVolume);
+    tree.insert(stepped(tree.point(tree.nearest(sample)), sample));
+  }
+}
+
+/// From the node of the least sum of distances, once toward the goal, then toward the sample.
+void grow_least_sum(KdTree& tree, std::size_t count) {
+  RandomStream random(3);
+  std::vector<bool> tried{false};
+  tree.insert(kStart);
+  while (tree.size() < count) {
+    const Vec3 sample = random.in(kVolume);
+    const std::size_t near = tree.least_sum(sample, 1, kGoal, 1);
+    const bool toward_goal = !tried[near] && random.uniform() >= 0.5;
+    if (toward_goal) {
+      tried[near] = true;
+    }
+    tree.insert(stepped(tree.point(near), toward_goal ? kGoal : sample));
+    tried.push_back(false);
+  }
+}
+
+using Grow = void (*)(KdTree&, std::size_t);
+using Ask = std::size_t (*)(const KdTree&, const Vec3&);
+
+std::size_t nearest(const KdTree& tree, const Vec3& sample) { return tree.nearest(sample); }
+
+std::size_t nearest_linear(const KdTree& tree, const Vec3& sample) {
+  std::size_t best = KdTree::kNone;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    const double square = (tree.point(i) - sample).squaredNorm();
+    if (square < least) {
+      least = square;
+      best = i;
+    }
+  }
+  return best;
+}
+
+std::size_t least_sum(const KdTree& tree, const Vec3& sample) {
+  return tree.least_sum(sample, 1, kGoal, 1);
+}
+
+std::size_t least_sum_linear(const KdTree& tree, const Vec3& sample) {
+  std::size_t best = KdTree::kNone;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    const double sum = (tree.point(i) - sample).norm() + (tree.point(i) - kGoal).norm();
+    if (sum < least) {
+      least = sum;
+      best = i;
+    }
+  }
+  return best;
+}
+
+struct Points {
+  KdTree tree;
+  std::vector<Vec3> samples;
+
+  Points(Grow grow, std::size_t count) {
+    grow(tree, count);
+    RandomStream random(4);
+    for (std::size_t n = 0; n < kQueries; ++n) {
+      samples.push_back(random.in(kVolume));
+    }
+  }
+};
+
+/// Made when first asked for; the tree and the linear row share it.
+class LatePoints {
+ public:
+  LatePoints(Grow grow, std::size_t count) : grow_(grow), count_(count) {}
+  const Points& get() {
+    if (!points_) {
+      points_ = std::make_unique<Points>(grow_, count_);
+    }
+    return *points_;
+  }
+
+ private:
+  Grow grow_;
+  std::size_t count_;
+  std::unique_ptr<Points> points_;
+};
+
+void add_row(const std::string& name, const std::shared_ptr<LatePoints>& late, Ask ask, Ask other) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    const Points& points = late->get();
+    for (std::size_t n = 0; n < kCompared; ++n) {
+      if (ask(points.tree, points.samples[n]) != other(points.tree, points.samples[n])) {
+        throw Error(name + ": query " + std::to_string(n) + " has two answers");
+      }
+    }
+    std::size_t n = 0;
+    for (auto _ : state) {
+      benchmark::DoNotOptimize(ask(points.tree, points.samples[n]));
+      n = (n + 1) % kQueries;
+    }
+  });
+}
+
+/// Mean time of a node: a tree grown from nothing.
+void add_growth_row(const std::string& name, Grow grow, std::size_t count) {
+  benchmark::RegisterBenchmark(
+      (name + std::to_string(count)).c_str(), [=](benchmark::State& state) {
+        KdTree tree;
+        for (auto _ : state) {
+          tree.clear();
+          grow(tree, count);
+        }
+        using benchmark::Counter;
+        state.counters["per_node"] =
+            Counter(double(count), Counter::kIsIterationInvariantRate | Counter::kInvert);
+      });
+}
+}  // namespace
+
+void add_point_rows() {
+  for (const std::size_t count : {1'000, 10'000, 100'000, 1'000'000}) {
+    const std::string of = "/" + std::to_string(count) + "/";
+    const auto scattered = std::make_shared<LatePoints>(scatter, count);
+    const auto basic = std::make_shared<LatePoints>(grow_nearest, count);
+    const auto improved = std::make_shared<LatePoints>(grow_least_sum, count);
+    add_row("nearest/scattered" + of + "tree", scattered, nearest, nearest_linear);
+    add_row("nearest/scattered" + of + "linear", scattered, nearest_linear, nearest);
+    add_row("nearest/grown" + of + "tree", basic, nearest, nearest_linear);
+    add_row("nearest/grown" + of + "linear", basic, nearest_linear, nearest);
+    add_row("least_sum/scattered" + of + "tree", scattered, least_sum, least_sum_linear);
+    add_row("least_sum/scattered" + of + "linear", scattered, least_sum_linear, least_sum);
+    add_row("least_sum/grown" + of + "tree", improved, least_sum, least_sum_linear);
+    add_row("least_sum/grown" + of + "linear", improved, least_sum_linear, least_sum);
+  }
+  for (const std::size_t count : {100, 10'000, 100'000, 1'000'000}) {
+    add_growth_row("growth/nearest/", grow_nearest, count);
+    add_growth_row("growth/least_sum/", grow_least_sum, count);
+  }
+}
+}  // namespace altiplan::bench

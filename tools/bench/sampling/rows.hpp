@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::bench {
+
+// Each topic adds its rows. What a row needs is made when it runs for the first time, so that
+// --benchmark_filter costs nothing for rows left out; it is timed after its answers have been
+// compared, and Error names a row where they differ.
+void add_point_rows();
+}  // namespace altiplan::bench
