@@ -10,8 +10,12 @@ namespace altiplan::kit {
 
 /// Points in space under their numbers 0, 1, 2 …, as inserted; a number is never used again. All
 /// queries are exact and see the points that are in the tree; the smallest number among equals.
-/// New points wait in a list that is searched whole; when they are as many as those in the tree,
-/// the tree is built anew, balanced.
+/// Coordinates are finite and below 1e100.
+///
+/// Up to sixteen points share a leaf, up to eight parts of the tree a branch, which knows the
+/// tightest box around each. What overflows is halved, and its parent has one part more, as in a
+/// B-tree: all leaves are equally deep, whatever the order of the points, and nothing is ever
+/// built anew. insert, erase and restore take O(log n); memory is kept when the tree is cleared.
 class ALTIPLAN_API KdTree {
  public:
   static constexpr std::size_t kNone = ~std::size_t{0};
@@ -24,10 +28,10 @@ class ALTIPLAN_API KdTree {
   /// Returns the point's number.
   std::size_t insert(const Vec3& p);
   /// Takes the point out, which must be in; its number stays given.
-  void erase(std::size_t number) { out_[number] = 1; }
+  void erase(std::size_t number);
   /// Puts an erased point back in.
-  void restore(std::size_t number) { out_[number] = 0; }
-  bool contains(std::size_t number) const { return out_[number] == 0; }
+  void restore(std::size_t number);
+  bool contains(std::size_t number) const { return leaf_of_[number] != kOut; }
   /// The point nearest to p; kNone in an empty tree.
   std::size_t nearest(const Vec3& p) const;
   /// The point x with the least p_weight |x − p| + q_weight |x − q|, weights >= 0; kNone in an
@@ -37,19 +41,53 @@ class ALTIPLAN_API KdTree {
   void within(const Vec3& p, double radius, std::vector<std::size_t>& found) const;
   /// Numbers of the points in the closed box, ascending. `found` is emptied first.
   void within(const Box& box, std::vector<std::size_t>& found) const;
+  /// Branches above a leaf: at most log4 of the insertions and restorations.
+  std::size_t depth() const { return height_; }
+
+  /// Parts side by side, for vector operations. What is beyond `count` is undefined but finite.
+  struct alignas(64) Leaf {
+    static constexpr std::uint32_t kMost = 16;
+    double at[3][kMost] = {};
+    std::uint32_t number[kMost] = {};
+    std::uint32_t above = 0;  ///< its branch, of the root kOut
+    std::uint32_t count = 0;
+  };
+  struct alignas(64) Branch {
+    static constexpr std::uint32_t kMost = 8;
+    double side[3][2][kMost] = {};   ///< of the boxes: by axis, the lower and the upper one
+    std::uint32_t part[kMost] = {};  ///< indices of leaves in the lowest branches, else of branches
+    std::uint32_t above = 0;
+    std::uint32_t count = 0;
+  };
 
  private:
-  /// The range of order_ splits at its middle, on the axis stored for that middle.
-  void build(std::size_t begin, std::size_t end);
-  template <class Visit>
-  void search(std::size_t begin, std::size_t end, const Vec3& p, Visit& visit) const;
+  static constexpr std::uint32_t kOut = ~std::uint32_t{0};
 
-  static constexpr std::size_t kLeaf = 8;    ///< points that are not split further
-  static constexpr std::size_t kFirst = 64;  ///< points before the first tree
+  struct Part {
+    Box box;
+    std::uint32_t index;
+  };
+
+  void put(std::uint32_t number);
+  void halve(std::uint32_t leaf, std::uint32_t number);
+  void replace(std::uint32_t level, std::uint32_t above, const Part& part, const Part& added);
+  void halve(std::uint32_t level, std::uint32_t branch, const Part& added);
+  void take_part(std::uint32_t above, std::uint32_t part);
+  void close_boxes(std::uint32_t above, std::uint32_t part, Box box);
+  std::uint32_t new_leaf();
+  std::uint32_t new_branch();
+  void set_above(std::uint32_t level, std::uint32_t part, std::uint32_t branch);
 
   std::vector<Vec3> points_;
-  std::vector<std::uint8_t> out_;     ///< one entry per point
-  std::vector<std::uint32_t> order_;  ///< numbers of the points in the tree
-  std::vector<std::uint8_t> axis_;    ///< one entry per entry of order_
+  std::vector<std::uint32_t> leaf_of_;  ///< one entry per point; kOut of one that is out
+  // Those in use come first, but for free ones among them.
+  std::vector<Leaf> leaves_;
+  std::vector<Branch> branches_;
+  std::uint32_t leaves_used_ = 0;
+  std::uint32_t branches_used_ = 0;
+  std::vector<std::uint32_t> free_leaves_;
+  std::vector<std::uint32_t> free_branches_;
+  std::uint32_t root_ = kOut;  ///< a leaf where height_ is 0, kOut of an empty tree
+  std::uint32_t height_ = 0;
 };
 }  // namespace altiplan::kit

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstring>
+
+#include "altiplan/kit/kd_tree.hpp"
+
+namespace altiplan::kit {
+
+/// Four numbers, or yes (all bits) and no, that one vector operation takes at once; compilers make
+/// two of it for CPUs whose vectors are half as wide.
+using Four = double __attribute__((vector_size(32), may_alias));
+using FourBits = std::int64_t __attribute__((vector_size(32)));
+
+inline const Four& four(const double* numbers) { return *reinterpret_cast<const Four*>(numbers); }
+
+inline void take_roots(Four& numbers) {
+  for (int i = 0; i < 4; ++i) {
+    numbers[i] = std::sqrt(numbers[i]);
+  }
+}
+
+/// Lower bounds of a query's figure in each part of a branch, >= 0. Their last three bits are the
+/// lane's number, which keeps the order but among those that differ in these bits alone.
+struct Keys {
+  Four half[2];
+
+  double& operator[](int lane) { return reinterpret_cast<double*>(half)[lane]; }
+};
+
+/// More than any figure. As a limit, a little less.
+inline constexpr double kBeyond = 0x1p1000;
+inline constexpr double kNoLimit = 0x1p999;
+
+inline int lane_of(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
+/// What keys of figures up to `most` do not exceed.
+inline double limit_of(double most) {
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(most) | 7);
+}
+
+/// Makes keys of bounds; parts not in use are beyond any limit.
+inline void make_keys(std::uint32_t count, Keys& keys) {
+  constexpr FourBits kLane{0, 1, 2, 3};
+  for (int half = 0; half < 2; ++half) {
+    const FourBits lane = kLane + 4 * half;
+    Four bound = lane < std::int64_t(count) ? keys.half[half] : kBeyond + Four{};
+    FourBits bits;
+    std::memcpy(&bits, &bound, sizeof bits);
+    bits = (bits & ~std::int64_t{7}) | lane;
+    std::memcpy(&keys.half[half], &bits, sizeof bits);
+  }
+}
+
+inline double least_of(const Four& numbers) {
+  using Two = double __attribute__((vector_size(16)));
+  const Two low = __builtin_shufflevector(numbers, numbers, 0, 1);
+  const Two high = __builtin_shufflevector(numbers, numbers, 2, 3);
+  const Two least = low < high ? low : high;
+  return least[0] < least[1] ? least[0] : least[1];
+}
+
+inline double least_of(const Keys& keys) {
+  const Four least = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
+  return least_of(least);
+}
+
+/// Keys of the squares of the least distances to the parts. Rounding keeps the order of numbers,
+/// so none of them exceeds a computed distance to a point of the part.
+inline void distance_keys(const KdTree::Branch& branch, const Vec3& p, Keys& keys) {
+  for (int half = 0; half < 2; ++half) {
+    Four square{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four at = p[axis] + Four{};
+      const Four& low = four(&branch.side[axis][0][4 * half]);
+      const Four& high = four(&branch.side[axis][1][4 * half]);
+      const Four above = at > low ? at : low;
+      const Four nearest = above < high ? above : high;
+      square += (at - nearest) * (at - nearest);
+    }
+    keys.half[half] = square;
+  }
+  make_keys(branch.count, keys);
+}
+
+/// The square of the distance to each point of a leaf's quarter.
+inline void squares(const KdTree::Leaf& leaf, int quarter, const Vec3& p, Four& square) {
+  const Four x = four(&leaf.at[0][4 * quarter]) - p.x();
+  const Four y = four(&leaf.at[1][4 * quarter]) - p.y();
+  const Four z = four(&leaf.at[2][4 * quarter]) - p.z();
+  square = x * x + y * y + z * z;
+}
+
+/// The point of the least figure, the smallest number among equals.
+struct Best {
+  double least = kBeyond;
+  std::uint32_t number = ~std::uint32_t{0};
+
+  /// Looks at the points of a leaf whose figures those are, by quarter.
+  void see(const KdTree::Leaf& leaf, Four* figures) {
+    constexpr FourBits kSlot{0, 1, 2, 3};
+    Four most_promising = kBeyond + Four{};
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      Four& figure = figures[quarter];
+      figure = kSlot + 4 * quarter < std::int64_t(leaf.count) ? figure : kBeyond + Four{};
+      most_promising = figure < most_promising ? figure : most_promising;
+    }
+    const double here = least_of(most_promising);
+    if (here > least) {
+      return;
+    }
+    if (here < least) {
+      least = here;
+      number = ~std::uint32_t{0};
+    }
+    for (std::uint32_t slot = 0; slot < KdTree::Leaf::kMost; ++slot) {
+      if (figures[slot / 4][slot % 4] == here && leaf.number[slot] < number) {
+        number = leaf.number[slot];
+      }
+    }
+  }
+};
+
+/// The most promising leaf first, so that on the way back little is still promising. `query` has
+/// keys_of(branch, keys), limit(), which keys must not exceed, and see(leaf).
+template <class Query>
+[[gnu::always_inline]] inline void search(const KdTree::Leaf* leaves,
+                                          const KdTree::Branch* branches, std::uint32_t root,
+                                          std::uint32_t height, Query& query) {
+  constexpr int kMostLevels = 24;
+  struct Open {
+    Keys keys;
+    const KdTree::Branch* branch;
+  };
+  if (height == 0) {
+    query.see(leaves[root]);
+    return;
+  }
+  Open way[kMostLevels];
+  Open* here = way;
+  Open* const lowest = way + height - 1;
+  here->branch = branches + root;
+  query.keys_of(*here->branch, here->keys);
+  for (;;) {
+    const double key = least_of(here->keys);
+    if (key > query.limit()) {
+      if (here == way) {
+        return;
+      }
+      --here;
+      continue;
+    }
+    const int lane = lane_of(key);
+    here->keys[lane] = kBeyond;
+    const std::uint32_t part = here->branch->part[lane];
+    if (here == lowest) {
+      query.see(leaves[part]);
+    } else {
+      ++here;
+      here->branch = branches + part;
+      query.keys_of(*here->branch, here->keys);
+    }
+  }
+}
+}  // namespace altiplan::kit
