@@ -33,7 +33,7 @@ struct Keys {
 inline constexpr double kBeyond = 0x1p1000;
 inline constexpr double kNoLimit = 0x1p999;
 
-inline int lane_of(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
+inline int lane_in(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
 /// What keys of figures up to `most` do not exceed.
 inline double limit_of(double most) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(most) | 7);
@@ -150,7 +150,7 @@ template <class Query>
       --here;
       continue;
     }
-    const int lane = lane_of(key);
+    const int lane = lane_in(key);
     here->keys[lane] = kBeyond;
     const std::uint32_t part = here->branch->part[lane];
     if (here == lowest) {

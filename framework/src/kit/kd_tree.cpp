@@ -63,15 +63,49 @@ std::uint32_t lane_of(const Branch& branch, std::uint32_t part) {
   return std::uint32_t(std::find(branch.part, branch.part + branch.count, part) - branch.part);
 }
 
-// The leaf that lies nearest, step by step; the boxes on the way reach the point from now on.
+// Whether the box of a part would meet another part's if it reached the point.
+inline bool would_meet(const Branch& branch, int lane, const Vec3& p) {
+  FourBits meets[2] = {~FourBits{}, ~FourBits{}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min(branch.side[axis][0][lane], p[axis]);
+    const double high = std::max(branch.side[axis][1][lane], p[axis]);
+    for (int half = 0; half < 2; ++half) {
+      meets[half] &= four(&branch.side[axis][0][4 * half]) <= high;
+      meets[half] &= four(&branch.side[axis][1][4 * half]) >= low;
+    }
+  }
+  constexpr FourBits kLane{0, 1, 2, 3};
+  FourBits others = meets[0] & (kLane < std::int64_t(branch.count)) & (kLane != lane);
+  others |= meets[1] & (kLane + 4 < std::int64_t(branch.count)) & (kLane + 4 != lane);
+  return (others[0] | others[1] | others[2] | others[3]) != 0;
+}
+
+// The nearest part whose box can reach the point without meeting another's, just the nearest if
+// there is none: parts that overlap cost every query.
+inline int lane_for(const Branch& branch, const Vec3& p) {
+  Keys keys;
+  distance_keys(branch, p, keys);
+  const double nearest = least_of(keys);
+  if (nearest <= limit_of(0)) {
+    return lane_in(nearest);
+  }
+  for (double key = nearest; key < kNoLimit; key = least_of(keys)) {
+    const int lane = lane_in(key);
+    if (!would_meet(branch, lane, p)) {
+      return lane;
+    }
+    keys[lane] = kBeyond;
+  }
+  return lane_in(nearest);
+}
+
+// The boxes on the way reach the point from now on.
 ALTIPLAN_CLONES std::uint32_t way_to_leaf(Branch* branches, std::uint32_t root,
                                           std::uint32_t height, const Vec3& p) {
   std::uint32_t part = root;
   for (std::uint32_t level = height; level > 0; --level) {
     Branch& branch = branches[part];
-    Keys keys;
-    distance_keys(branch, p, keys);
-    const int lane = kit::lane_of(least_of(keys));
+    const int lane = lane_for(branch, p);
     for (int axis = 0; axis < 3; ++axis) {
       double& low = branch.side[axis][0][lane];
       double& high = branch.side[axis][1][lane];
@@ -286,25 +320,33 @@ void KdTree::put(std::uint32_t number) {
 /// The leaf is full, and the point is one more: half of them move to a new leaf, beyond the median
 /// along the longest side of their box.
 void KdTree::halve(std::uint32_t leaf, std::uint32_t number) {
+  struct Entry {
+    Vec3 p;
+    std::uint32_t number;
+  };
   const std::uint32_t added = new_leaf();
   Leaf& low = leaves_[leaf];
   Leaf& high = leaves_[added];
-  std::array<std::uint32_t, Leaf::kMost + 1> all;
-  std::copy(low.number, low.number + Leaf::kMost, all.begin());
-  all.back() = number;
+  std::array<Entry, Leaf::kMost + 1> all;
+  for (std::uint32_t slot = 0; slot < Leaf::kMost; ++slot) {
+    all[slot] = {{low.at[0][slot], low.at[1][slot], low.at[2][slot]}, low.number[slot]};
+  }
+  all.back() = {points_[number], number};
   const Box box = box_of(low).with(points_[number]);
   int axis = 0;
   (box.max - box.min).maxCoeff(&axis);
   const auto middle = all.begin() + all.size() / 2;
-  std::nth_element(all.begin(), middle, all.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const double x = points_[a][axis];
-    const double y = points_[b][axis];
-    return x != y ? x < y : a < b;
+  std::nth_element(all.begin(), middle, all.end(), [&](const Entry& a, const Entry& b) {
+    return a.p[axis] != b.p[axis] ? a.p[axis] < b.p[axis] : a.number < b.number;
   });
+  leaf_of_[number] = leaf;
   low.count = 0;
-  for (auto n = all.begin(); n != all.end(); ++n) {
-    append(n < middle ? low : high, points_[*n], *n);
-    leaf_of_[*n] = n < middle ? leaf : added;
+  for (auto entry = all.begin(); entry != middle; ++entry) {
+    append(low, entry->p, entry->number);
+  }
+  for (auto entry = middle; entry != all.end(); ++entry) {
+    append(high, entry->p, entry->number);
+    leaf_of_[entry->number] = added;
   }
   replace(1, low.above, {box_of(low), leaf}, {box_of(high), added});
 }
@@ -332,59 +374,71 @@ void KdTree::replace(std::uint32_t level, std::uint32_t above, const Part& part,
   }
 }
 
-/// The branch is full, and the part is one more: where the two boxes have the least sides, some of
-/// them move to a new branch.
+/// The branch is full, and the part is one more: some of them move to a new branch, where the two
+/// boxes overlap least and have the least sides.
 void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added) {
-  constexpr std::size_t kAll = Branch::kMost + 1;
-  constexpr std::size_t kFewest = 3;
-  std::array<Part, kAll> all;
+  std::array<Part, kParts> all;
   for (std::uint32_t lane = 0; lane < Branch::kMost; ++lane) {
     all[lane] = {box_of_part(branches_[branch], lane), branches_[branch].part[lane]};
   }
   all.back() = added;
-
+  std::array<Part, kParts> best{};
+  std::size_t stay = 0;
   double least = kInfinity;
-  std::array<std::uint8_t, kAll> best{};
-  std::size_t best_low = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    std::array<std::uint8_t, kAll> order;
-    for (std::size_t i = 0; i < kAll; ++i) {
-      order[i] = std::uint8_t(i);
-    }
-    std::sort(order.begin(), order.end(), [&](std::uint8_t a, std::uint8_t b) {
-      const double x = all[a].box.min[axis] + all[a].box.max[axis];
-      const double y = all[b].box.min[axis] + all[b].box.max[axis];
-      return x != y ? x < y : a < b;
+    std::sort(all.begin(), all.end(), [&](const Part& a, const Part& b) {
+      const double x = a.box.min[axis] + a.box.max[axis];
+      const double y = b.box.min[axis] + b.box.max[axis];
+      return x != y ? x < y : a.index < b.index;
     });
-    std::array<double, kAll> low_sides;  // of the box around the first ones
-    Box box = Box::empty();
-    for (std::size_t i = 0; i < kAll; ++i) {
-      low_sides[i] = box.is_empty() ? 0 : (box.max - box.min).sum();
-      box = box.united(all[order[i]].box);
-    }
-    box = Box::empty();
-    for (std::size_t i = kAll - 1; i >= kFewest; --i) {
-      box = box.united(all[order[i]].box);
-      const double sides = low_sides[i] + (box.max - box.min).sum();
-      if (i <= kAll - kFewest && sides < least) {
-        least = sides;
-        best = order;
-        best_low = i;
-      }
+    const auto [badness, count] = best_cut(all);
+    if (badness < least) {
+      least = badness;
+      best = all;
+      stay = count;
     }
   }
-
   const std::uint32_t other = new_branch();
   Branch& low = branches_[branch];
   Branch& high = branches_[other];
   low.count = 0;
-  for (std::size_t i = 0; i < kAll; ++i) {
-    const Part& part = all[best[i]];
-    Branch& to = i < best_low ? low : high;
-    set_part(to, to.count++, part.box, part.index);
-    set_above(level, part.index, i < best_low ? branch : other);
+  for (std::size_t i = 0; i < kParts; ++i) {
+    Branch& to = i < stay ? low : high;
+    set_part(to, to.count++, best[i].box, best[i].index);
+    set_above(level, best[i].index, i < stay ? branch : other);
   }
   replace(level + 1, low.above, {box_of(low), branch}, {box_of(high), other});
+}
+
+/// After how many of the parts, in that order, to cut, and how bad that is, metres.
+std::pair<double, std::size_t> KdTree::best_cut(const std::array<Part, kParts>& parts) {
+  constexpr std::size_t kFewest = 2;
+  constexpr double kOverlap = 1000;  // parts that overlap cost every query
+  constexpr double kUneven = 0.5;    // few parts in a branch cost another level
+  std::array<Box, kParts> first;     // around those before
+  Box box = Box::empty();
+  for (std::size_t i = 0; i < kParts; ++i) {
+    first[i] = box;
+    box = box.united(parts[i].box);
+  }
+  const double all_sides = (box.max - box.min).sum();
+  std::pair<double, std::size_t> best{kInfinity, 0};
+  box = Box::empty();
+  for (std::size_t i = kParts - 1; i >= kFewest; --i) {
+    box = box.united(parts[i].box);
+    if (i > kParts - kFewest) {
+      continue;
+    }
+    const Box common = first[i].intersected(box);
+    const double overlap = std::max((common.max - common.min).minCoeff(), 0.0);
+    const double sides = (first[i].max - first[i].min).sum() + (box.max - box.min).sum();
+    const bool is_uneven = i == kFewest || i == kParts - kFewest;
+    const double badness = sides + kOverlap * overlap + (is_uneven ? kUneven * all_sides : 0);
+    if (badness < best.first) {
+      best = {badness, i};
+    }
+  }
+  return best;
 }
 
 void KdTree::erase(std::size_t number) {

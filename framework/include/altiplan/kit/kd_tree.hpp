@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "altiplan/geometry.hpp"
@@ -68,10 +70,13 @@ class ALTIPLAN_API KdTree {
     std::uint32_t index;
   };
 
+  static constexpr std::size_t kParts = Branch::kMost + 1;
+
   void put(std::uint32_t number);
   void halve(std::uint32_t leaf, std::uint32_t number);
   void replace(std::uint32_t level, std::uint32_t above, const Part& part, const Part& added);
   void halve(std::uint32_t level, std::uint32_t branch, const Part& added);
+  static std::pair<double, std::size_t> best_cut(const std::array<Part, kParts>& parts);
   void take_part(std::uint32_t above, std::uint32_t part);
   void close_boxes(std::uint32_t above, std::uint32_t part, Box box);
   std::uint32_t new_leaf();
