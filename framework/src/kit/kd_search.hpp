@@ -97,12 +97,10 @@ struct Best {
   std::uint32_t number = ~std::uint32_t{0};
 
   /// Looks at the points of a leaf whose figures those are, by quarter.
-  void see(const KdTree::Leaf& leaf, Four* figures) {
-    constexpr FourBits kSlot{0, 1, 2, 3};
+  void see(const KdTree::Leaf& leaf, const Four* figures) {
     Four most_promising = kBeyond + Four{};
     for (int quarter = 0; quarter < 4; ++quarter) {
-      Four& figure = figures[quarter];
-      figure = kSlot + 4 * quarter < std::int64_t(leaf.count) ? figure : kBeyond + Four{};
+      const Four& figure = figures[quarter];
       most_promising = figure < most_promising ? figure : most_promising;
     }
     const double here = least_of(most_promising);
@@ -121,15 +119,25 @@ struct Best {
   }
 };
 
+/// Asks for the lines of a part that is likely to be looked at next.
+template <class Part>
+inline void prefetch(const Part& part) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < 6 * kLine; at += kLine) {
+    __builtin_prefetch(reinterpret_cast<const char*>(&part) + at);
+  }
+}
+
 /// The most promising leaf first, so that on the way back little is still promising. `query` has
 /// keys_of(branch, keys), limit(), which keys must not exceed, and see(leaf).
 template <class Query>
 [[gnu::always_inline]] inline void search(const KdTree::Leaf* leaves,
                                           const KdTree::Branch* branches, std::uint32_t root,
                                           std::uint32_t height, Query& query) {
-  constexpr int kMostLevels = 24;
+  constexpr int kMostLevels = 32;
   struct Open {
     Keys keys;
+    double next;  ///< the least of them
     const KdTree::Branch* branch;
   };
   if (height == 0) {
@@ -138,27 +146,34 @@ template <class Query>
   }
   Open way[kMostLevels];
   Open* here = way;
-  Open* const lowest = way + height - 1;
-  here->branch = branches + root;
-  query.keys_of(*here->branch, here->keys);
-  for (;;) {
-    const double key = least_of(here->keys);
-    if (key > query.limit()) {
-      if (here == way) {
-        return;
+  const Open* const lowest = way + height - 1;
+  for (std::uint32_t part = root;; ++here) {
+    here->branch = branches + part;
+    query.keys_of(*here->branch, here->keys);
+    here->next = least_of(here->keys);
+    for (bool is_branch = false; !is_branch;) {
+      if (here->next > query.limit()) {
+        if (here == way) {
+          return;
+        }
+        --here;
+        continue;
       }
-      --here;
-      continue;
-    }
-    const int lane = lane_in(key);
-    here->keys[lane] = kBeyond;
-    const std::uint32_t part = here->branch->part[lane];
-    if (here == lowest) {
-      query.see(leaves[part]);
-    } else {
-      ++here;
-      here->branch = branches + part;
-      query.keys_of(*here->branch, here->keys);
+      const int lane = lane_in(here->next);
+      here->keys[lane] = kBeyond;
+      here->next = least_of(here->keys);
+      part = here->branch->part[lane];
+      const std::uint32_t after = here->branch->part[lane_in(here->next)];
+      const bool is_likely = here->next <= query.limit();
+      is_branch = here != lowest;
+      if (is_likely && is_branch) {
+        prefetch(branches[after]);
+      } else if (is_likely) {
+        prefetch(leaves[after]);
+      }
+      if (!is_branch) {
+        query.see(leaves[part]);
+      }
     }
   }
 }

@@ -13,6 +13,8 @@ namespace {
 using Leaf = KdTree::Leaf;
 using Branch = KdTree::Branch;
 
+constexpr double kFar = 1e150;  // x of a leaf's slots that are not in use
+
 Box box_of(const Leaf& leaf) {
   Box box = Box::empty();
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,6 +59,13 @@ void append(Leaf& leaf, const Vec3& p, std::uint32_t number) {
     leaf.at[axis][leaf.count] = p[axis];
   }
   leaf.number[leaf.count++] = number;
+}
+
+// No slot in use: far away and without a number.
+void make_empty(Leaf& leaf) {
+  leaf.count = 0;
+  std::fill_n(leaf.at[0], Leaf::kMost, kFar);
+  std::fill_n(leaf.number, Leaf::kMost, ~std::uint32_t{0});
 }
 
 std::uint32_t lane_of(const Branch& branch, std::uint32_t part) {
@@ -239,7 +248,7 @@ struct WithinBall {
       squares(leaf, quarter, p, here);
       for (std::uint32_t i = 0; i < 4; ++i) {
         const std::uint32_t slot = 4 * std::uint32_t(quarter) + i;
-        if (slot < leaf.count && here[i] <= square) {
+        if (here[i] <= square && slot < leaf.count) {
           found.push_back(leaf.number[slot]);
         }
       }
@@ -340,7 +349,7 @@ void KdTree::halve(std::uint32_t leaf, std::uint32_t number) {
     return a.p[axis] != b.p[axis] ? a.p[axis] < b.p[axis] : a.number < b.number;
   });
   leaf_of_[number] = leaf;
-  low.count = 0;
+  make_empty(low);
   for (auto entry = all.begin(); entry != middle; ++entry) {
     append(low, entry->p, entry->number);
   }
@@ -410,30 +419,32 @@ void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added)
   replace(level + 1, low.above, {box_of(low), branch}, {box_of(high), other});
 }
 
-/// After how many of the parts, in that order, to cut, and how bad that is, metres.
+/// After how many of the parts, in that order, to cut, and how bad that is, metres. The more even
+/// among equals.
 std::pair<double, std::size_t> KdTree::best_cut(const std::array<Part, kParts>& parts) {
-  constexpr std::size_t kFewest = 2;
   constexpr double kOverlap = 1000;  // parts that overlap cost every query
   constexpr double kUneven = 0.5;    // few parts in a branch cost another level
   std::array<Box, kParts> first;     // around those before
+  std::array<Box, kParts> last;      // around this and those after it
   Box box = Box::empty();
   for (std::size_t i = 0; i < kParts; ++i) {
     first[i] = box;
     box = box.united(parts[i].box);
   }
   const double all_sides = (box.max - box.min).sum();
-  std::pair<double, std::size_t> best{kInfinity, 0};
   box = Box::empty();
-  for (std::size_t i = kParts - 1; i >= kFewest; --i) {
+  for (std::size_t i = kParts; i-- > 0;) {
     box = box.united(parts[i].box);
-    if (i > kParts - kFewest) {
-      continue;
-    }
-    const Box common = first[i].intersected(box);
+    last[i] = box;
+  }
+  std::pair<double, std::size_t> best{kInfinity, 0};
+  for (const std::size_t i : {4, 5, 3, 6, 2, 7}) {
+    const Box common = first[i].intersected(last[i]);
     const double overlap = std::max((common.max - common.min).minCoeff(), 0.0);
-    const double sides = (first[i].max - first[i].min).sum() + (box.max - box.min).sum();
-    const bool is_uneven = i == kFewest || i == kParts - kFewest;
-    const double badness = sides + kOverlap * overlap + (is_uneven ? kUneven * all_sides : 0);
+    const Vec3 sides = first[i].max - first[i].min + last[i].max - last[i].min;
+    const bool is_uneven = i == 2 || i == 7;
+    const double badness =
+        sides.sum() + kOverlap * overlap + (is_uneven ? kUneven * all_sides : 0.0);
     if (badness < best.first) {
       best = {badness, i};
     }
@@ -452,6 +463,8 @@ void KdTree::erase(std::size_t number) {
     leaf.at[axis][slot] = leaf.at[axis][last];
   }
   leaf.number[slot] = leaf.number[last];
+  leaf.at[0][last] = kFar;
+  leaf.number[last] = kOut;
   if (leaf.count > 0) {
     close_boxes(leaf.above, index, box_of(leaf));
   } else {
@@ -504,12 +517,13 @@ std::uint32_t KdTree::new_leaf() {
   if (!free_leaves_.empty()) {
     const std::uint32_t leaf = free_leaves_.back();
     free_leaves_.pop_back();
+    make_empty(leaves_[leaf]);
     return leaf;
   }
   if (leaves_used_ == leaves_.size()) {
     leaves_.emplace_back();
   }
-  leaves_[leaves_used_].count = 0;
+  make_empty(leaves_[leaves_used_]);
   return leaves_used_++;
 }
 
@@ -517,6 +531,7 @@ std::uint32_t KdTree::new_branch() {
   if (!free_branches_.empty()) {
     const std::uint32_t branch = free_branches_.back();
     free_branches_.pop_back();
+    branches_[branch].count = 0;
     return branch;
   }
   if (branches_used_ == branches_.size()) {

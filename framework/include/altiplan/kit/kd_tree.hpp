@@ -15,9 +15,10 @@ namespace altiplan::kit {
 /// Coordinates are finite and below 1e100.
 ///
 /// Up to sixteen points share a leaf, up to eight parts of the tree a branch, which knows the
-/// tightest box around each. What overflows is halved, and its parent has one part more, as in a
-/// B-tree: all leaves are equally deep, whatever the order of the points, and nothing is ever
-/// built anew. insert, erase and restore take O(log n); memory is kept when the tree is cleared.
+/// tightest box around each; few of them overlap. What overflows is cut in two, and its parent has
+/// one part more, as in a B-tree: all leaves are equally deep, whatever the order of the points,
+/// and nothing is ever built anew. insert, erase and restore take O(log n); a cleared tree keeps
+/// its memory.
 class ALTIPLAN_API KdTree {
  public:
   static constexpr std::size_t kNone = ~std::size_t{0};
@@ -43,7 +44,8 @@ class ALTIPLAN_API KdTree {
   void within(const Vec3& p, double radius, std::vector<std::size_t>& found) const;
   /// Numbers of the points in the closed box, ascending. `found` is emptied first.
   void within(const Box& box, std::vector<std::size_t>& found) const;
-  /// Branches above a leaf: at most log4 of the insertions and restorations.
+  /// Branches above each leaf: at most log2(n / 4) after n insertions and restorations, as a leaf
+  /// takes eight more points before it is halved again, a branch two more parts.
   std::size_t depth() const { return height_; }
 
   /// Parts side by side, for vector operations. What is beyond `count` is undefined but finite.
