@@ -34,8 +34,9 @@ inline constexpr double kBeyond = 0x1p1000;
 inline constexpr double kNoLimit = 0x1p999;
 
 inline int lane_in(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
-/// What keys of figures up to `most` do not exceed.
-inline double limit_of(double most) {
+/// What keys of figures up to this one do not exceed.
+inline double limit_of(double figure) {
+  const double most = figure < kNoLimit ? figure : kNoLimit;
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(most) | 7);
 }
 
@@ -94,7 +95,7 @@ inline void squares(const KdTree::Leaf& leaf, int quarter, const Vec3& p, Four& 
 /// The point of the least figure, the smallest number among equals.
 struct Best {
   double least = kBeyond;
-  std::uint32_t number = ~std::uint32_t{0};
+  std::size_t number = KdTree::kNone;
 
   /// Looks at the points of a leaf whose figures those are, by quarter.
   void see(const KdTree::Leaf& leaf, const Four* figures) {
@@ -109,7 +110,7 @@ struct Best {
     }
     if (here < least) {
       least = here;
-      number = ~std::uint32_t{0};
+      number = KdTree::kNone;
     }
     for (std::uint32_t slot = 0; slot < KdTree::Leaf::kMost; ++slot) {
       if (figures[slot / 4][slot % 4] == here && leaf.number[slot] < number) {
@@ -152,7 +153,7 @@ template <class Query>
     query.keys_of(*here->branch, here->keys);
     here->next = least_of(here->keys);
     for (bool is_branch = false; !is_branch;) {
-      if (here->next > query.limit()) {
+      if (!(here->next <= query.limit())) {
         if (here == way) {
           return;
         }

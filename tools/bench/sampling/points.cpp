@@ -13,7 +13,7 @@
 namespace altiplan::bench {
 namespace {
 
-constexpr std::size_t kQueries = 1024;
+constexpr std::size_t kQueries = 16'384;
 constexpr std::size_t kCompared = 64;  ///< queries whose answers are compared before timing
 
 const Box kVolume{{0, 0, 0}, {27000, 28000, 2500}};
