@@ -14,7 +14,7 @@ namespace altiplan::bench {
 namespace {
 
 constexpr std::size_t kQueries = 16'384;
-constexpr std::size_t kCompared = 64;  ///< queries whose answers are compared before timing
+constexpr std::size_t kCompared = 64;  ///< their answers, before a row is timed
 
 const Box kVolume{{0, 0, 0}, {27000, 28000, 2500}};
 const Vec3 kStart(4000, 5000, 700);
@@ -157,6 +157,27 @@ void add_growth_row(const std::string& name, Grow grow, std::size_t count) {
             Counter(double(count), Counter::kIsIterationInvariantRate | Counter::kInvert);
       });
 }
+/// Mean time to take a point out and put it back in: half the tree at once, as where a branch of it
+/// is cut off.
+void add_pruning_row(const std::string& name, const std::shared_ptr<LatePoints>& late) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    KdTree tree = late->get().tree;
+    const Vec3 middle = (kVolume.min + kVolume.max) / 2;
+    std::vector<std::size_t> half;
+    tree.within(Box{kVolume.min, {middle.x(), kVolume.max.y(), kVolume.max.z()}}, half);
+    for (auto _ : state) {
+      for (const std::size_t number : half) {
+        tree.erase(number);
+      }
+      for (const std::size_t number : half) {
+        tree.restore(number);
+      }
+    }
+    using benchmark::Counter;
+    state.counters["per_point"] =
+        Counter(double(half.size()), Counter::kIsIterationInvariantRate | Counter::kInvert);
+  });
+}
 }  // namespace
 
 void add_point_rows() {
@@ -173,6 +194,7 @@ void add_point_rows() {
     add_row("least_sum/scattered" + of + "linear", scattered, least_sum_linear, least_sum);
     add_row("least_sum/grown" + of + "tree", improved, least_sum, least_sum_linear);
     add_row("least_sum/grown" + of + "linear", improved, least_sum_linear, least_sum);
+    add_pruning_row("erase_and_restore" + of + "tree", basic);
   }
   for (const std::size_t count : {100, 10'000, 100'000, 1'000'000}) {
     add_growth_row("growth/nearest/", grow_nearest, count);
