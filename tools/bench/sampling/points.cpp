@@ -45,20 +45,31 @@ void grow_nearest(KdTree& tree, std::size_t count) {
   }
 }
 
-/// From the node of the least sum of distances, once toward the goal, then toward the sample.
+/// From the node of the least sum of distances, once toward the goal, then toward the sample. The
+/// goal is walled in, or the nodes would be a star around it; a node that has failed 50 times is
+/// taken out.
 void grow_least_sum(KdTree& tree, std::size_t count) {
+  constexpr double kWall = 2000;
+  constexpr int kMostFailures = 50;
+  struct Node {
+    bool tried;
+    int failures;
+  };
   RandomStream random(3);
-  std::vector<bool> tried{false};
+  std::vector<Node> nodes{{false, 0}};
   tree.insert(kStart);
   while (tree.size() < count) {
     const Vec3 sample = random.in(kVolume);
     const std::size_t near = tree.least_sum(sample, 1, kGoal, 1);
-    const bool toward_goal = !tried[near] && random.uniform() >= 0.5;
-    if (toward_goal) {
-      tried[near] = true;
+    const bool toward_goal = !nodes[near].tried && random.uniform() >= 0.5;
+    nodes[near].tried = nodes[near].tried || toward_goal;
+    const Vec3 p = stepped(tree.point(near), toward_goal ? kGoal : sample);
+    if ((p - kGoal).norm() > kWall) {
+      tree.insert(p);
+      nodes.push_back({false, 0});
+    } else if (++nodes[near].failures == kMostFailures) {
+      tree.erase(near);
     }
-    tree.insert(stepped(tree.point(near), toward_goal ? kGoal : sample));
-    tried.push_back(false);
   }
 }
 
@@ -89,7 +100,7 @@ std::size_t least_sum_linear(const KdTree& tree, const Vec3& sample) {
   double least = kInfinity;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const double sum = (tree.point(i) - sample).norm() + (tree.point(i) - kGoal).norm();
-    if (sum < least) {
+    if (sum < least && tree.contains(i)) {
       least = sum;
       best = i;
     }
