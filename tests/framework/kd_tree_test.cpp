@@ -178,6 +178,7 @@ TEST(KdTree, IsAsDeepWhateverTheOrder) {
     for (std::size_t i = 0; i < kCount; i += 2) {
       tree.restore(i);
     }
+    tree.restore(0);  // is in
     EXPECT_LE(tree.depth(), before + 1) << order;
   }
 }

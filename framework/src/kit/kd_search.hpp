@@ -6,7 +6,10 @@
 
 #include "altiplan/kit/kd_tree.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::kd {
+
+using Leaf = KdTree::Leaf;
+using Branch = KdTree::Branch;
 
 /// Four numbers, or yes (all bits) and no, that one vector operation takes at once; compilers make
 /// two of it for CPUs whose vectors are half as wide.
@@ -66,9 +69,31 @@ inline double least_of(const Keys& keys) {
   return least_of(least);
 }
 
+inline Box box_of(const Leaf& leaf) {
+  Box box = Box::empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t slot = 0; slot < leaf.count; ++slot) {
+      box.min[axis] = std::min(box.min[axis], leaf.at[axis][slot]);
+      box.max[axis] = std::max(box.max[axis], leaf.at[axis][slot]);
+    }
+  }
+  return box;
+}
+
+inline Box box_of(const Branch& branch) {
+  Box box = Box::empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t lane = 0; lane < branch.count; ++lane) {
+      box.min[axis] = std::min(box.min[axis], branch.side[axis][0][lane]);
+      box.max[axis] = std::max(box.max[axis], branch.side[axis][1][lane]);
+    }
+  }
+  return box;
+}
+
 /// Keys of the squares of the least distances to the parts. Rounding keeps the order of numbers,
 /// so none of them exceeds a computed distance to a point of the part.
-inline void distance_keys(const KdTree::Branch& branch, const Vec3& p, Keys& keys) {
+inline void distance_keys(const Branch& branch, const Vec3& p, Keys& keys) {
   for (int half = 0; half < 2; ++half) {
     Four square{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,7 +110,7 @@ inline void distance_keys(const KdTree::Branch& branch, const Vec3& p, Keys& key
 }
 
 /// The square of the distance to each point of a leaf's quarter.
-inline void squares(const KdTree::Leaf& leaf, int quarter, const Vec3& p, Four& square) {
+inline void squares(const Leaf& leaf, int quarter, const Vec3& p, Four& square) {
   const Four x = four(&leaf.at[0][4 * quarter]) - p.x();
   const Four y = four(&leaf.at[1][4 * quarter]) - p.y();
   const Four z = four(&leaf.at[2][4 * quarter]) - p.z();
@@ -98,7 +123,7 @@ struct Best {
   std::size_t number = KdTree::kNone;
 
   /// Looks at the points of a leaf whose figures those are, by quarter.
-  void see(const KdTree::Leaf& leaf, const Four* figures) {
+  void see(const Leaf& leaf, const Four* figures) {
     Four most_promising = kBeyond + Four{};
     for (int quarter = 0; quarter < 4; ++quarter) {
       const Four& figure = figures[quarter];
@@ -112,7 +137,7 @@ struct Best {
       least = here;
       number = KdTree::kNone;
     }
-    for (std::uint32_t slot = 0; slot < KdTree::Leaf::kMost; ++slot) {
+    for (std::uint32_t slot = 0; slot < Leaf::kMost; ++slot) {
       if (figures[slot / 4][slot % 4] == here && leaf.number[slot] < number) {
         number = leaf.number[slot];
       }
@@ -132,14 +157,13 @@ inline void prefetch(const Part& part) {
 /// The most promising leaf first, so that on the way back little is still promising. `query` has
 /// keys_of(branch, keys), limit(), which keys must not exceed, and see(leaf).
 template <class Query>
-[[gnu::always_inline]] inline void search(const KdTree::Leaf* leaves,
-                                          const KdTree::Branch* branches, std::uint32_t root,
-                                          std::uint32_t height, Query& query) {
+[[gnu::always_inline]] inline void search(const Leaf* leaves, const Branch* branches,
+                                          std::uint32_t root, std::uint32_t height, Query& query) {
   constexpr int kMostLevels = 32;
   struct Open {
     Keys keys;
     double next;  ///< the least of them
-    const KdTree::Branch* branch;
+    const Branch* branch;
   };
   if (height == 0) {
     query.see(leaves[root]);
@@ -178,4 +202,4 @@ template <class Query>
     }
   }
 }
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::kd

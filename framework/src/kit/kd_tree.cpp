@@ -10,32 +10,9 @@
 namespace altiplan::kit {
 namespace {
 
-using Leaf = KdTree::Leaf;
-using Branch = KdTree::Branch;
+using namespace kd;
 
 constexpr double kFar = 1e150;  // x of a leaf's slots that are not in use
-
-Box box_of(const Leaf& leaf) {
-  Box box = Box::empty();
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::uint32_t slot = 0; slot < leaf.count; ++slot) {
-      box.min[axis] = std::min(box.min[axis], leaf.at[axis][slot]);
-      box.max[axis] = std::max(box.max[axis], leaf.at[axis][slot]);
-    }
-  }
-  return box;
-}
-
-Box box_of(const Branch& branch) {
-  Box box = Box::empty();
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::uint32_t lane = 0; lane < branch.count; ++lane) {
-      box.min[axis] = std::min(box.min[axis], branch.side[axis][0][lane]);
-      box.max[axis] = std::max(box.max[axis], branch.side[axis][1][lane]);
-    }
-  }
-  return box;
-}
 
 Box box_of_part(const Branch& branch, std::uint32_t lane) {
   Box box;
@@ -68,7 +45,7 @@ void make_empty(Leaf& leaf) {
   std::fill_n(leaf.number, Leaf::kMost, ~std::uint32_t{0});
 }
 
-std::uint32_t lane_of(const Branch& branch, std::uint32_t part) {
+std::uint32_t lane_with(const Branch& branch, std::uint32_t part) {
   return std::uint32_t(std::find(branch.part, branch.part + branch.count, part) - branch.part);
 }
 
@@ -126,152 +103,6 @@ ALTIPLAN_CLONES std::uint32_t way_to_leaf(Branch* branches, std::uint32_t root,
   return part;
 }
 
-struct Nearest {
-  const Vec3& p;
-  Best best{};
-  double limit() const { return limit_of(best.least); }
-  void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
-  void see(const Leaf& leaf) {
-    Four square[4];
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      squares(leaf, quarter, p, square[quarter]);
-    }
-    best.see(leaf, square);
-  }
-};
-
-ALTIPLAN_CLONES void find_nearest(const Leaf* leaves, const Branch* branches, std::uint32_t root,
-                                  std::uint32_t height, Nearest& query) {
-  search(leaves, branches, root, height, query);
-}
-
-// F(x) = p_weight |x − p| + q_weight |x − q| is convex: over a box it is at least what its tangent
-// at any c of the box says, that is F(c) and, for each axis, the lesser of the gradient times the
-// ways from c to both sides. The nearer c is to where F is least in the box, the better; that is
-// about where the box is nearest to the segment p–q. Rounding errs by less than `slack`, 450 times
-// the precision of doubles of what is added up: each part of it by less than 30 times.
-struct LeastSum {
-  const Vec3& p;
-  double p_weight;
-  const Vec3& q;
-  double q_weight;
-  Vec3 way = q - p;
-  double inverse = 1 / std::max(way.squaredNorm(), 1e-200);
-  double slack = 0;
-  Best best{};
-
-  double limit() const { return limit_of(best.least + slack); }
-
-  void keys_of(const Branch& branch, Keys& keys) const {
-    for (int half = 0; half < 2; ++half) {
-      bound(branch, half, keys.half[half]);
-    }
-    make_keys(branch.count, keys);
-  }
-
-  void bound(const Branch& branch, int half, Four& least) const {
-    Four t{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const Four& low = four(&branch.side[axis][0][4 * half]);
-      const Four& high = four(&branch.side[axis][1][4 * half]);
-      t += (0.5 * (low + high) - p[axis]) * way[axis];
-    }
-    t *= inverse;
-    t = t > 0.0 ? t : Four{};
-    t = t < 1.0 ? t : 1.0 + Four{};
-    Four c[3];
-    Four p_distance{};
-    Four q_distance{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const Four& low = four(&branch.side[axis][0][4 * half]);
-      const Four& high = four(&branch.side[axis][1][4 * half]);
-      const Four at = p[axis] + t * way[axis];
-      const Four above = at > low ? at : low;
-      c[axis] = above < high ? above : high;
-      p_distance += (c[axis] - p[axis]) * (c[axis] - p[axis]);
-      q_distance += (c[axis] - q[axis]) * (c[axis] - q[axis]);
-    }
-    take_roots(p_distance);
-    take_roots(q_distance);
-    constexpr double kNoDistance = 1e-100;
-    const Four p_pull = p_weight / (p_distance > kNoDistance ? p_distance : kNoDistance + Four{});
-    const Four q_pull = q_weight / (q_distance > kNoDistance ? q_distance : kNoDistance + Four{});
-    least = p_weight * p_distance + q_weight * q_distance;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Four& low = four(&branch.side[axis][0][4 * half]);
-      const Four& high = four(&branch.side[axis][1][4 * half]);
-      const Four gradient = p_pull * (c[axis] - p[axis]) + q_pull * (c[axis] - q[axis]);
-      const Four down = gradient * (low - c[axis]);
-      const Four up = gradient * (high - c[axis]);
-      least += down < up ? down : up;
-    }
-    least = least > 0.0 ? least : Four{};
-  }
-
-  void see(const Leaf& leaf) {
-    Four sum[4];
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      Four p_distance;
-      Four q_distance;
-      squares(leaf, quarter, p, p_distance);
-      squares(leaf, quarter, q, q_distance);
-      take_roots(p_distance);
-      take_roots(q_distance);
-      sum[quarter] = p_weight * p_distance + q_weight * q_distance;
-    }
-    best.see(leaf, sum);
-  }
-};
-
-ALTIPLAN_CLONES void find_least_sum(const Leaf* leaves, const Branch* branches, std::uint32_t root,
-                                    std::uint32_t height, LeastSum& query) {
-  search(leaves, branches, root, height, query);
-}
-
-struct WithinBall {
-  const Vec3& p;
-  double square;
-  std::vector<std::size_t>& found;
-  double limit() const { return limit_of(square); }
-  void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
-  void see(const Leaf& leaf) {
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      Four here;
-      squares(leaf, quarter, p, here);
-      for (std::uint32_t i = 0; i < 4; ++i) {
-        const std::uint32_t slot = 4 * std::uint32_t(quarter) + i;
-        if (here[i] <= square && slot < leaf.count) {
-          found.push_back(leaf.number[slot]);
-        }
-      }
-    }
-  }
-};
-
-struct WithinBox {
-  const Box& box;
-  std::vector<std::size_t>& found;
-  double limit() const { return limit_of(0); }
-  void keys_of(const Branch& branch, Keys& keys) const {
-    for (int half = 0; half < 2; ++half) {
-      Four outside{};
-      for (int axis = 0; axis < 3; ++axis) {
-        const Four& low = four(&branch.side[axis][0][4 * half]);
-        const Four& high = four(&branch.side[axis][1][4 * half]);
-        outside = low > box.max[axis] || high < box.min[axis] ? 1.0 + Four{} : outside;
-      }
-      keys.half[half] = outside;
-    }
-    make_keys(branch.count, keys);
-  }
-  void see(const Leaf& leaf) {
-    for (std::uint32_t slot = 0; slot < leaf.count; ++slot) {
-      if (box.contains({leaf.at[0][slot], leaf.at[1][slot], leaf.at[2][slot]})) {
-        found.push_back(leaf.number[slot]);
-      }
-    }
-  }
-};
 }  // namespace
 
 void KdTree::clear() {
@@ -300,7 +131,11 @@ std::size_t KdTree::insert(const Vec3& p) {
   return number;
 }
 
-void KdTree::restore(std::size_t number) { put(std::uint32_t(number)); }
+void KdTree::restore(std::size_t number) {
+  if (!contains(number)) {
+    put(std::uint32_t(number));
+  }
+}
 
 void KdTree::put(std::uint32_t number) {
   if (root_ == kOut) {
@@ -366,7 +201,7 @@ void KdTree::replace(std::uint32_t level, std::uint32_t above, const Part& part,
     height_ = level;
   }
   Branch& branch = branches_[above];
-  set_part(branch, lane_of(branch, part.index), part.box, part.index);
+  set_part(branch, lane_with(branch, part.index), part.box, part.index);
   if (branch.count == Branch::kMost) {
     halve(level, above, added);
   } else {
@@ -445,6 +280,9 @@ std::pair<double, std::size_t> KdTree::best_cut(const std::array<Part, kParts>& 
 }
 
 void KdTree::erase(std::size_t number) {
+  if (!contains(number)) {
+    return;
+  }
   const std::uint32_t index = leaf_of_[number];
   leaf_of_[number] = kOut;
   Leaf& leaf = leaves_[index];
@@ -479,7 +317,7 @@ void KdTree::take_part(std::uint32_t above, std::uint32_t part) {
   }
   Branch& branch = branches_[above];
   const std::uint32_t last = --branch.count;
-  set_part(branch, lane_of(branch, part), box_of_part(branch, last), branch.part[last]);
+  set_part(branch, lane_with(branch, part), box_of_part(branch, last), branch.part[last]);
   close_boxes(branch.above, above, box_of(branch));
   while (height_ > 0 && branches_[root_].count == 1) {
     free_branches_.push_back(root_);
@@ -493,7 +331,7 @@ void KdTree::take_part(std::uint32_t above, std::uint32_t part) {
 void KdTree::close_boxes(std::uint32_t above, std::uint32_t part, Box box) {
   while (above != kOut) {
     Branch& branch = branches_[above];
-    const std::uint32_t lane = lane_of(branch, part);
+    const std::uint32_t lane = lane_with(branch, part);
     const Box before = box_of_part(branch, lane);
     if (before.min == box.min && before.max == box.max) {
       return;
@@ -536,48 +374,5 @@ std::uint32_t KdTree::new_branch() {
 /// The part lies below that level.
 void KdTree::set_above(std::uint32_t level, std::uint32_t part, std::uint32_t branch) {
   (level == 1 ? leaves_[part].above : branches_[part].above) = branch;
-}
-
-std::size_t KdTree::nearest(const Vec3& p) const {
-  if (root_ == kOut) {
-    return kNone;
-  }
-  Nearest query{p};
-  find_nearest(leaves_.data(), branches_.data(), root_, height_, query);
-  return query.best.number;
-}
-
-std::size_t KdTree::least_sum(const Vec3& p, double p_weight, const Vec3& q,
-                              double q_weight) const {
-  if (root_ == kOut) {
-    return kNone;
-  }
-  LeastSum query{p, p_weight, q, q_weight};
-  if (height_ > 0) {
-    const Box all = box_of(branches_[root_]);
-    const double farthest =
-        (all.max - all.min).sum() + (p - all.min).cwiseAbs().sum() + (q - all.min).cwiseAbs().sum();
-    query.slack = 1e-13 * (p_weight + q_weight) * farthest;
-  }
-  find_least_sum(leaves_.data(), branches_.data(), root_, height_, query);
-  return query.best.number;
-}
-
-void KdTree::within(const Vec3& p, double radius, std::vector<std::size_t>& found) const {
-  found.clear();
-  if (root_ != kOut) {
-    WithinBall query{p, radius * radius, found};
-    search(leaves_.data(), branches_.data(), root_, height_, query);
-    std::sort(found.begin(), found.end());
-  }
-}
-
-void KdTree::within(const Box& box, std::vector<std::size_t>& found) const {
-  found.clear();
-  if (root_ != kOut) {
-    WithinBox query{box, found};
-    search(leaves_.data(), branches_.data(), root_, height_, query);
-    std::sort(found.begin(), found.end());
-  }
 }
 }  // namespace altiplan::kit

@@ -30,9 +30,9 @@ class ALTIPLAN_API KdTree {
   const Vec3& point(std::size_t number) const { return points_[number]; }
   /// Returns the point's number.
   std::size_t insert(const Vec3& p);
-  /// Takes the point out, which must be in; its number stays given.
+  /// Takes the point out if it is in; its number stays given.
   void erase(std::size_t number);
-  /// Puts an erased point back in.
+  /// Puts the point back in if it is out.
   void restore(std::size_t number);
   bool contains(std::size_t number) const { return leaf_of_[number] != kOut; }
   /// The point nearest to p; kNone in an empty tree.
@@ -48,7 +48,7 @@ class ALTIPLAN_API KdTree {
   /// takes eight more points before it is halved again, a branch two more parts.
   std::size_t depth() const { return height_; }
 
-  /// Parts side by side, for vector operations. What is beyond `count` is undefined but finite.
+  /// Points side by side, for vector operations. Slots not in use are far away, without a number.
   struct alignas(64) Leaf {
     static constexpr std::uint32_t kMost = 16;
     double at[3][kMost] = {};
@@ -56,6 +56,7 @@ class ALTIPLAN_API KdTree {
     std::uint32_t above = 0;  ///< its branch, of the root kOut
     std::uint32_t count = 0;
   };
+  /// Parts side by side; what is in those not in use does not matter.
   struct alignas(64) Branch {
     static constexpr std::uint32_t kMost = 8;
     double side[3][2][kMost] = {};   ///< of the boxes: by axis, the lower and the upper one
