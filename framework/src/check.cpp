@@ -92,8 +92,12 @@ class LegJudge {
              return beyond(rule, at_, value * scale, limit * scale, unit, what, false);
            });
   }
-  bool at_most_angle(double value, double limit, const char* rule, const char* what) const {
-    return at_most(value, limit, kAngleTolerance, rule, what, " degrees", degrees(1));
+  /// `angle` is asked for only where the limit is below `widest`, which no angle exceeds.
+  template <class Angle>
+  bool at_most_angle(const Angle& angle, double limit, double widest, const char* rule,
+                     const char* what) const {
+    return limit >= widest ||
+           at_most(angle(), limit, kAngleTolerance, rule, what, " degrees", degrees(1));
   }
 
   bool keeps_place(const Vec3& p, std::size_t index) const {
@@ -119,7 +123,8 @@ class LegJudge {
                     " m") &&
            at_most(run, limits_.max_leg, kLengthTolerance, "leg_length", "the leg's length",
                    " m") &&
-           at_most_angle(climb_angle(leg_), limits_.max_climb, "climb_angle", "the climb angle");
+           at_most_angle([&] { return climb_angle(leg_); }, limits_.max_climb, kPi / 2,
+                         "climb_angle", "the climb angle");
   }
 
   bool keeps_bend() const {
@@ -127,10 +132,10 @@ class LegJudge {
       return true;
     }
     const Vec3 incoming = a_ - *before_;
-    return at_most_angle(turn_angle_horizontal(incoming, leg_), limits_.max_turn_horizontal,
-                         "turn_angle", "the turn angle") &&
-           at_most_angle(turn_angle_in_space(incoming, leg_), limits_.max_turn_space, "turn_angle",
-                         "the turn angle") &&
+    return at_most_angle([&] { return turn_angle_horizontal(incoming, leg_); },
+                         limits_.max_turn_horizontal, kPi, "turn_angle", "the turn angle") &&
+           at_most_angle([&] { return turn_angle_in_space(incoming, leg_); },
+                         limits_.max_turn_space, kPi, "turn_angle", "the turn angle") &&
            (limits_.min_turn_radius == 0 ||
             at_least(radius_through(*before_, a_, b_), limits_.min_turn_radius, kLengthTolerance,
                      "turn_radius", "the turn radius", " m"));

@@ -130,6 +130,12 @@ double CellLayer::depth(const Vec3& p) const {
 }
 
 bool CellLayer::do_blocked(const Vec3& a, const Vec3& b, double r) const {
+  if (r <= 0 && a == b) {
+    const Cell at = cells_.spec().cell_of(a);
+    if (cells_.spec().holds(at) && !cells_.blocked(at)) {
+      return false;  // at the most it touches one that is blocked
+    }
+  }
   return solid_.blocked(a, b, r) || (r <= kSeam && runs_in_a_seam(a, b));
 }
 

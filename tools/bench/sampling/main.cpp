@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-sampling: times what sampling planners are made of beside plain ways of doing it. A row
-// is timed only after its answers have been compared.
+// altiplan-sampling: times what sampling planners are made of and those planners, beside plain ways
+// of doing it and beside OMPL. A row is timed only after its answers have been compared or judged.
 #include <iostream>
 
 #include "rows.hpp"
@@ -12,6 +12,8 @@ int main(int argc, char** argv) {
   }
   try {
     altiplan::bench::add_point_rows();
+    altiplan::bench::add_connect_rows();
+    altiplan::bench::add_star_rows();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::cerr << "altiplan-sampling: " << error.what() << '\n';

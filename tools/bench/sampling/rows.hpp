@@ -13,4 +13,6 @@ namespace altiplan::bench {
 // --benchmark_filter costs nothing for rows left out; it is timed after its answers have been
 // compared, and Error names a row where they differ.
 void add_point_rows();
+void add_connect_rows();
+void add_star_rows();
 }  // namespace altiplan::bench

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "altiplan/request.hpp"
+
+namespace altiplan::kit {
+
+/// The judge's rules for the legs of planners that ask for any legs, many of them: the answers of
+/// leg_ok, sooner where all layers are cells of one grid and no clearance is needed. (As everywhere
+/// where cells decide, a layer's own cells are taken to be what it blocks.)
+/// Belongs to one search; remembers what was refused.
+class ALTIPLAN_API LegRules {
+ public:
+  /// The request must outlive the rules.
+  explicit LegRules(const Request& request);
+
+  /// leg_ok.
+  bool ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+  /// Whether a rule looks at the point before a leg.
+  bool looks_back() const { return looks_back_; }
+  /// The rules of the leg a–b, known to be free, that look at the point before it.
+  bool follows(const Vec3& before, const Vec3& a, const Vec3& b);
+  /// Whether a vehicle may be at p at all, by obstacles, ground and heights.
+  bool point_ok(const Vec3& p) const;
+
+  std::int64_t checked() const { return checked_; }
+  /// The rules and layers that refused the last legs, the busiest first: "ground_clearance (40),
+  /// 'radar' (7)"; "" if nothing was refused.
+  std::string refusals() const;
+
+ private:
+  enum class Answer { free, blocked, unsure };
+  struct Refused {
+    std::optional<Vec3> before;
+    Vec3 a;
+    Vec3 b;
+  };
+  struct CellLeg;
+  static constexpr std::size_t kRemembered = 64;
+
+  bool leg_kept(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) const;
+  Answer by_cells(const Vec3& a, const Vec3& b) const;
+  // Of places and legs in cells of the grid, from its lower corner.
+  bool in_grid(const Vec3& p) const;
+  bool surely_blocked(const Vec3& p) const;
+  Answer by_layers(const CellLeg& leg) const;
+  Answer walk(const CellLeg& leg) const;
+  std::string refused_by(const Refused& leg, const Request& open) const;
+  std::optional<GridSpec> cells_that_decide() const;
+
+  const Request& request_;
+  bool looks_back_;
+  bool cells_alone_ = false;               ///< whether beside the grid only the volume counts
+  std::shared_ptr<const VoxelGrid> grid_;  ///< null where cells do not decide
+  Vec3 per_cell_{1, 1, 1};
+  Request rest_;  ///< by cells: the problem without its layers; else: with what a point can keep
+  std::int64_t checked_ = 0;
+  std::uint64_t refused_count_ = 0;
+  std::array<Refused, kRemembered> refused_;
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/support.hpp"
+
+namespace altiplan {
+namespace {
+
+using testing::make_planner;
+
+constexpr const char* kStep = "{range_m: 12}";
+
+Request among_balls(std::uint64_t seed, int count) {
+  RandomStream random(seed);
+  const Vec3 start(5, 5, 5);
+  const Vec3 goal(95, 85, 35);
+  std::vector<Shape> balls;
+  while (int(balls.size()) < count) {
+    const Vec3 at = random.in({{0, 0, 0}, {100, 90, 40}});
+    if ((at - start).norm() > 16 && (at - goal).norm() > 16) {
+      balls.emplace_back(Sphere{at, 12});
+    }
+  }
+  Request request = testing::request_in(testing::world_of(std::move(balls)), start, goal,
+                                        {{0, 0, 0}, {100, 90, 40}});
+  request.limits.min_clearance = request.vehicle.radius_m = 1.5;
+  request.random = RandomStream(seed);
+  return request;
+}
+
+std::int64_t counter(const PlanResult& result, const std::string& name) {
+  for (const Counter& c : result.counters) {
+    if (c.name == name) {
+      return c.value;
+    }
+  }
+  return -1;
+}
+
+TEST(RrtConnect, AStraightWayIsFoundAtOnceInEqualLegs) {
+  const Request request =
+      testing::request_in(World(), {0, 0, 0}, {100, 0, 0}, {{-10, -10, -10}, {110, 10, 10}});
+  const PlanResult result = make_planner("rrt_connect", "{range_m: 30}")->plan(request);
+  ASSERT_EQ(result.route.size(), 5u);
+  EXPECT_LE(counter(result, "expanded"), 4);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(result.route[i].x(), 25 * double(i), 1e-9);
+  }
+}
+
+TEST(RrtConnect, FindsWaysAmongBallsInLegsOfTheRange) {
+  int solved = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Request request = among_balls(seed, 25);
+    const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
+    solved += result.status == Status::solved;
+    if (result.status == Status::solved) {
+      EXPECT_TRUE(check(result.route, request).ok());
+      for (std::size_t i = 0; i + 1 < result.route.size(); ++i) {
+        EXPECT_LE((result.route[i + 1] - result.route[i]).norm(), 12 * (1 + 1e-9));
+      }
+    }
+  }
+  EXPECT_GE(solved, 38);
+}
+
+/// Each leg of a route was judged in one direction; all of it must hold in the other.
+TEST(RrtConnect, TurnsHoldAtBothEndsAndWhereTheTreesMeet) {
+  int solved = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Request request = among_balls(seed, 8);
+    request.limits.max_turn_space = radians(50);
+    request.limits.max_climb = radians(30);
+    request.limits.min_leg = 4;
+    request.start.velocity = {10, 2, 0};
+    if (seed % 4 == 1) {
+      request.limits.min_turn_radius = 9;
+    }
+    const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
+    if (result.status == Status::solved) {
+      ++solved;
+      const CheckResult judged = check(result.route, request);
+      EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
+    }
+  }
+  EXPECT_GE(solved, 36);
+}
+
+/// Admits a leg after one before it only where both lead up, or both down or level.
+class NoPorpoising final : public Constraint {
+  bool do_admits(const Leg& leg) const override {
+    return !leg.before || (leg.from.z() > leg.before->z()) == (leg.to.z() > leg.from.z());
+  }
+};
+
+TEST(RrtConnect, ConstraintsThatLookAtTwoLegsAreKept) {
+  int solved = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Request request = among_balls(seed, 6);
+    request.constraints.push_back({"no_porpoising", std::make_shared<NoPorpoising>()});
+    const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
+    if (result.status == Status::solved) {
+      ++solved;
+      EXPECT_TRUE(check(result.route, request).ok());
+    }
+  }
+  EXPECT_GE(solved, 15);
+}
+
+TEST(RrtConnect, RoutesAreNoLongerThanAllowedAndEndWithinTheTolerance) {
+  int solved = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Request request = among_balls(seed, 15);
+    request.limits.max_route_length = 150;
+    request.goal.tolerance_m = seed % 2 == 0 ? 10 : 0;
+    const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
+    if (result.status == Status::solved) {
+      ++solved;
+      EXPECT_TRUE(check(result.route, request).ok());
+    }
+  }
+  EXPECT_GE(solved, 15);
+}
+
+TEST(RrtConnect, SaysWhatWasInTheWayAndNeverThatThereIsNoWay) {
+  testing::Drawn sealed = testing::draw({"S....\n.....\n..###\n..#G#\n..###"});
+  sealed.request.level_m = 0.5;
+  const PlanResult shut =
+      make_planner("rrt_connect", "{max_iterations: 500}")->plan(sealed.request);
+  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_FALSE(shut.proved || shut.budget_hit);
+  EXPECT_EQ(counter(shut, "expanded"), 500);
+  EXPECT_NE(shut.message.find("m of the goal"), std::string::npos) << shut.message;
+  EXPECT_NE(shut.message.find("refused by '"), std::string::npos) << shut.message;
+  sealed.request.budget.max_iterations = 30;
+  const PlanResult cut = make_planner("rrt_connect")->plan(sealed.request);
+  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_TRUE(cut.budget_hit);
+}
+
+TEST(RrtConnect, TheTraceHoldsATreeForEachSide) {
+  struct Kept final : Trace {
+    std::vector<TraceEvent> events;
+    void add(const TraceEvent& event) override { events.push_back(event); }
+  } trace;
+  Request request = among_balls(3, 25);
+  request.trace = &trace;
+  const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
+  ASSERT_EQ(result.status, Status::solved);
+  EXPECT_EQ(std::int64_t(trace.events.size()), counter(result, "nodes"));
+  std::set<std::int64_t> added;
+  for (const TraceEvent& event : trace.events) {
+    EXPECT_TRUE(added.insert(event.node).second);
+    if (event.parent >= 0) {
+      EXPECT_TRUE(added.contains(event.parent));
+      EXPECT_EQ(event.parent % 2, event.node % 2);
+    }
+  }
+}
+}  // namespace
+}  // namespace altiplan
