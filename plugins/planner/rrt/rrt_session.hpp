@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tree of `rrt` that lives on: what changes of the world break is cut off, the tree is rooted
+// where the vehicle is, and grows on.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "altiplan/measures.hpp"
+#include "altiplan/planner.hpp"
+#include "rrt_growth.hpp"
+
+namespace altiplan::rrt {
+
+enum class CutOff { drop, reconnect };
+
+class TreeSession final : public Session {
+ public:
+  TreeSession(const Settings& settings, CutOff cut_off, const Request& request)
+      : cut_off_(cut_off), request_(request), growth_(settings, request_, tree_) {
+    tree_.clear(request_.trace);
+    growth_.set_root(tree_.add(request_.start.position, kNone));
+    result_ = growth_.run();
+    route_ = nodes_of_route();
+  }
+
+ private:
+  using Place = Tree::Place;
+
+  const PlanResult& do_result() const override { return result_; }
+
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change> changes,
+                              const Budget& budget) override {
+    const bool goal_moved =
+        goal.position != request_.goal.position || goal.tolerance_m != request_.goal.tolerance_m;
+    const bool stayed =
+        state.position == request_.start.position && state.velocity == request_.start.velocity;
+    const std::size_t nodes_before = tree_.in_use();
+    const Node first_new = Node(tree_.size());
+    request_.world = std::move(world);
+    request_.start = state;
+    request_.goal = goal;
+    request_.budget = budget;
+    if (goal_moved) {
+      growth_.drop_end();
+    }
+    cut_.clear();
+    damage_ = Box::empty();
+    prune(changes);
+    const std::size_t next = next_of_route();
+    if (!stayed) {
+      take_root(next);
+    }
+    cut_off();
+    const std::size_t kept = tree_.in_use() - (stayed ? 0 : 1);
+    growth_.aim_at(tail(), damage_around());
+    result_ = solve(goal_moved);
+    result_.counters.push_back({"nodes_kept", std::int64_t(kept)});
+    result_.counters.push_back({"nodes_pruned", std::int64_t(nodes_before - kept)});
+    result_.counters.push_back({"nodes_added", std::int64_t(tree_.in_use() - kept)});
+    keep_route(first_new, next);
+    return result_;
+  }
+
+  /// What makes start or goal impossible, else the way from one to the other.
+  PlanResult solve(bool goal_moved) {
+    for (const auto& [what, p] :
+         {std::pair("start", request_.start.position), std::pair("goal", request_.goal.position)}) {
+      if (const std::string problem = point_problem(p, request_); !problem.empty()) {
+        PlanResult result;
+        result.status = Status::invalid_problem;
+        result.message = std::string("the ") + what + " " + problem;
+        result.counters = {{"expanded", 0}, {"nodes", std::int64_t(tree_.in_use())}};
+        return result;
+      }
+    }
+    if (goal_moved) {
+      growth_.close_near_goal();
+    }
+    return growth_.run();
+  }
+
+  /// Cuts the legs that the changes break, and removes the nodes in forbidden places.
+  void prune(std::span<const Change> changes) {
+    std::vector<Node> near;
+    for (const Change& change : changes) {
+      const Layer* layer = request_.world->find(change.layer);
+      if (change.kind == Change::Kind::remove || layer == nullptr) {
+        continue;
+      }
+      tree_.within(reach_of(change.box, layer->environment->has_ground()), near);
+      for (const Node node : near) {
+        if (tree_.parent(node) != kNone && !keeps_leg(node)) {
+          cut(node);
+          damage_ = damage_.with(tree_.point(node));
+        }
+      }
+      for (const Node node : near) {
+        if (tree_.parent(node) == kNone && !point_problem(tree_.point(node), request_).empty()) {
+          for (const Node child : tree_.children(node)) {
+            cut(child);
+          }
+          tree_.put(node, Place::removed);
+        }
+      }
+    }
+  }
+
+  /// Where nodes may be whose legs the box touches; ground matters to all that is above it.
+  Box reach_of(const Box& box, bool ground) const {
+    const double reach =
+        tree_.longest_leg() + std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
+    Box wide{box.min - Vec3::Constant(reach), box.max + Vec3::Constant(reach)};
+    if (ground) {
+      wide.min.z() = -kInfinity;
+      wide.max.z() = kInfinity;
+    }
+    return wide;
+  }
+
+  bool keeps_leg(Node node) const {
+    return leg_ok(tree_.before(tree_.parent(node)), tree_.point(tree_.parent(node)),
+                  tree_.point(node), request_);
+  }
+
+  void cut(Node node) {
+    tree_.move(node, kNone);
+    cut_.push_back(node);
+  }
+
+  /// The vehicle becomes the root: the old route goes on from the first of its next nodes that the
+  /// vehicle can fly to.
+  void take_root(std::size_t next) {
+    cut_.push_back(growth_.root());
+    const Node root = tree_.add(request_.start.position, kNone);
+    growth_.set_root(root);
+    const std::size_t last = std::min(next + kMostSkipped, route_.size());
+    for (std::size_t i = next; i < last; ++i) {
+      if (tree_.place(route_[i]) < Place::loose && growth_.hang(route_[i], root, cut_)) {
+        return;
+      }
+    }
+  }
+
+  /// The index in the old route of the end of the leg nearest to the vehicle.
+  std::size_t next_of_route() const {
+    const Vec3& p = request_.start.position;
+    std::size_t next = 1;
+    double least = kInfinity;
+    for (std::size_t i = 1; i < route_.size(); ++i) {
+      const Vec3& a = tree_.point(route_[i - 1]);
+      const Vec3 leg = tree_.point(route_[i]) - a;
+      const double along = std::clamp((p - a).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
+      const double distance = (a + along * leg - p).squaredNorm();
+      if (distance <= least) {
+        least = distance;
+        next = i;
+      }
+    }
+    return next;
+  }
+
+  /// All that does not hang below the root any more.
+  void cut_off() {
+    const Place place = cut_off_ == CutOff::drop ? Place::removed : Place::loose;
+    for (const Node top : cut_) {
+      if (tree_.parent(top) != kNone || top == growth_.root()) {
+        continue;  // hangs again
+      }
+      for (const Node node : tree_.below(top)) {
+        if (tree_.place(node) != Place::removed) {
+          tree_.put(node, place);
+        }
+      }
+    }
+  }
+
+  /// What is left of the old route's end, where the tree does not reach it.
+  std::vector<Node> tail() const {
+    std::vector<Node> tail;
+    if (growth_.end() != kNone) {
+      for (Node node = growth_.end(); node != kNone && tree_.place(node) == Place::loose;
+           node = tree_.parent(node)) {
+        tail.push_back(node);
+      }
+    }
+    return tail;
+  }
+
+  Box damage_around() const {
+    if (cut_off_ == CutOff::drop || damage_.is_empty()) {
+      return Box::empty();
+    }
+    const Vec3 half = (damage_.max - damage_.min) / 2;
+    return Box{damage_.min - half, damage_.max + half}.intersected(request_.volume);
+  }
+
+  /// Notes the route, and how much of what was ahead of the vehicle on the last one is part of it.
+  void keep_route(Node first_new, std::size_t next) {
+    const auto leg = [&](Node a, Node b) { return (tree_.point(b) - tree_.point(a)).norm(); };
+    double ahead = 0;
+    for (std::size_t i = next; i + 1 < route_.size(); ++i) {
+      ahead += leg(route_[i], route_[i + 1]);
+    }
+    if (result_.status == Status::solved) {
+      route_ = nodes_of_route();
+    }
+    double kept = 0;
+    for (std::size_t i = 0; i + 1 < route_.size() && result_.status == Status::solved; ++i) {
+      if (std::max(route_[i], route_[i + 1]) < first_new) {
+        kept += leg(route_[i], route_[i + 1]);
+      }
+    }
+    result_.counters.push_back(
+        {"route_kept_percent", ahead > 0 ? std::lround(100 * std::min(1.0, kept / ahead)) : 0});
+  }
+
+  std::vector<Node> nodes_of_route() const {
+    std::vector<Node> nodes;
+    if (result_.status == Status::solved) {
+      for (Node node = growth_.end(); node != kNone; node = tree_.parent(node)) {
+        nodes.push_back(node);
+      }
+    }
+    return {nodes.rbegin(), nodes.rend()};
+  }
+
+  static constexpr std::size_t kMostSkipped = 5;  ///< nodes of the old route, to reach the rest
+
+  CutOff cut_off_;
+  Request request_;
+  Tree tree_;
+  Growth growth_;
+  PlanResult result_;
+  std::vector<Node> route_;  ///< from the root to the end, when last solved
+  std::vector<Node> cut_;    ///< roots of what may have been cut off by this update
+  Box damage_ = Box::empty();
+};
+}  // namespace altiplan::rrt

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tree of `rrt`: legs, an index of the nodes that may grow, and what has been cut off. Nodes
+// are never renumbered: one that is kept through changes is the same node.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/kd_tree.hpp"
+#include "altiplan/kit/leg_tree.hpp"
+#include "altiplan/trace.hpp"
+
+namespace altiplan::rrt {
+
+using Node = kit::LegTree::Node;
+inline constexpr Node kNone = kit::LegTree::kNone;
+
+class Tree {
+ public:
+  enum class Place : std::uint8_t {
+    growing,  ///< may be chosen
+    resting,  ///< failed too often
+    end,      ///< at the goal
+    loose,    ///< cut off, waits for the tree to come by
+    removed,
+  };
+  static constexpr std::size_t kBytesPerNode = 160;
+
+  void clear(Trace* trace) {
+    trace_ = trace;
+    legs_.clear();
+    growing_.clear();
+    marks_.clear();
+    resting_.clear();
+    counts_ = {};
+    longest_leg_ = 0;
+    clear_loose();
+  }
+
+  /// Numbers given.
+  std::size_t size() const { return legs_.size(); }
+  std::size_t count(Place place) const { return counts_[std::size_t(place)]; }
+  /// Nodes that are not removed.
+  std::size_t in_use() const { return size() - count(Place::removed); }
+  const Vec3& point(Node node) const { return legs_.point(node); }
+  Node parent(Node node) const { return legs_.parent(node); }
+  Place place(Node node) const { return marks_[std::size_t(node)].place; }
+  bool is_rooted(Node node) const { return place(node) < Place::loose; }
+  Route way_to(Node node) const { return legs_.way_to(node); }
+  /// Where the vehicle comes from at a node; none at a root.
+  std::optional<Vec3> before(Node node) const {
+    const Node above = parent(node);
+    return above == kNone ? std::nullopt : std::optional(point(above));
+  }
+  /// No leg is longer.
+  double longest_leg() const { return longest_leg_; }
+
+  Node add(const Vec3& p, Node parent, Place place = Place::growing) {
+    const Node node = legs_.add(p, parent);
+    growing_.insert(p);  // under the same number
+    marks_.push_back({});
+    ++counts_[std::size_t(Place::growing)];
+    put(node, place);
+    note_leg(node);
+    note(TraceEvent::Kind::added, node);
+    return node;
+  }
+
+  /// The growing node q with the least w_random |q - random| + w_goal |q - goal|
+  /// (paper 000, eqs. (2) to (4)).
+  Node choose(const Vec3& random, double w_random, const Vec3& goal, double w_goal) const {
+    return Node(w_goal == 0 ? growing_.nearest(random)
+                            : growing_.least_sum(random, w_random, goal, w_goal));
+  }
+  /// The growing node nearest to p.
+  Node nearest(const Vec3& p) const { return Node(growing_.nearest(p)); }
+
+  bool has_grown_to_goal(Node node) const { return marks_[std::size_t(node)].grown_to_goal; }
+  void set_grown_to_goal(Node node) { marks_[std::size_t(node)].grown_to_goal = true; }
+
+  /// Counts a failed extension. A node that has `most` of them rests, until none is left to grow.
+  void count_failure(Node node, int most) {
+    if (++marks_[std::size_t(node)].failures < most) {
+      return;
+    }
+    put(node, Place::resting);
+    resting_.push_back(node);
+    if (count(Place::growing) == 0) {
+      wake();
+    }
+  }
+  void wake() {
+    for (const Node node : resting_) {
+      if (place(node) == Place::resting) {
+        marks_[std::size_t(node)].failures = 0;
+        put(node, Place::growing);
+      }
+    }
+    resting_.clear();
+  }
+
+  /// Hangs a node, with all below it, under another: no change of place.
+  void move(Node node, Node parent) {
+    legs_.move(node, parent);
+    if (parent != kNone) {
+      note_leg(node);
+      note(TraceEvent::Kind::rewired, node);
+    }
+  }
+  /// The node and all below it, each after its parent.
+  const std::vector<Node>& below(Node node) {
+    legs_.below(node, below_);
+    return below_;
+  }
+  /// The children of a node, of which some may be moved meanwhile.
+  std::vector<Node> children(Node node) const {
+    std::vector<Node> found;
+    for (Node child = legs_.first_child(node); child != kNone; child = legs_.sibling(child)) {
+      found.push_back(child);
+    }
+    return found;
+  }
+
+  void put(Node node, Place place) {
+    Mark& mark = marks_[std::size_t(node)];
+    if (mark.place == place) {
+      return;
+    }
+    if (mark.place == Place::growing) {
+      growing_.erase(std::size_t(node));
+    } else if (mark.place == Place::loose) {
+      loose_.erase(std::size_t(mark.loose));
+    }
+    if (place == Place::growing) {
+      growing_.restore(std::size_t(node));
+    } else if (place == Place::loose) {
+      mark.loose = std::int32_t(loose_.insert(point(node)));
+      loose_nodes_.push_back(node);
+    } else if (place == Place::removed) {
+      note(TraceEvent::Kind::removed, node);
+    }
+    --counts_[std::size_t(mark.place)];
+    ++counts_[std::size_t(place)];
+    mark.place = place;
+    if (count(Place::loose) == 0) {
+      clear_loose();
+    }
+  }
+
+  /// Nodes in the box that are not removed, but for the end; `found` is emptied first.
+  void within(const Box& box, std::vector<Node>& found) {
+    growing_.within(box, numbers_);
+    found.assign(numbers_.begin(), numbers_.end());
+    loose_.within(box, numbers_);
+    for (const std::size_t number : numbers_) {
+      found.push_back(loose_nodes_[number]);
+    }
+    for (const Node node : resting_) {
+      if (place(node) == Place::resting && box.contains(point(node))) {
+        found.push_back(node);
+      }
+    }
+  }
+  /// Loose nodes at most `radius` from p; `found` is emptied first.
+  void loose_within(const Vec3& p, double radius, std::vector<Node>& found) {
+    found.clear();
+    loose_.within(p, radius, numbers_);
+    for (const std::size_t number : numbers_) {
+      found.push_back(loose_nodes_[number]);
+    }
+  }
+
+ private:
+  struct Mark {
+    std::uint16_t failures = 0;
+    bool grown_to_goal = false;
+    Place place = Place::growing;
+    std::int32_t loose = 0;  ///< number in loose_
+  };
+
+  void clear_loose() {
+    loose_.clear();
+    loose_nodes_.clear();
+  }
+  void note_leg(Node node) {
+    if (parent(node) != kNone) {
+      longest_leg_ = std::max(longest_leg_, (point(node) - point(parent(node))).norm());
+    }
+  }
+  void note(TraceEvent::Kind kind, Node node) const {
+    if (trace_ != nullptr) {
+      trace_->add({kind, node, parent(node), point(node), 0});
+    }
+  }
+
+  kit::LegTree legs_;
+  kit::KdTree growing_;
+  kit::KdTree loose_;
+  std::vector<Node> loose_nodes_;  ///< by number in loose_
+  std::vector<Mark> marks_;        ///< one entry per node
+  std::vector<Node> resting_;      ///< some may be elsewhere by now
+  std::array<std::size_t, 5> counts_{};
+  double longest_leg_ = 0;
+  Trace* trace_ = nullptr;
+  std::vector<Node> below_;
+  std::vector<std::size_t> numbers_;
+};
+}  // namespace altiplan::rrt
