@@ -62,10 +62,11 @@ struct Params {
         .range(0, 60000)
         .doc("failed extensions after which a node rests until all others do; 0: never");
     f("max_iterations", max_iterations).at_least(1).doc("extensions tried before it gives up");
-    f("cut_off", cut_off, {{"drop", CutOff::drop}, {"reconnect", CutOff::reconnect}})
+    f("cut_off", cut_off,
+      {{"drop", CutOff::drop}, {"reconnect", CutOff::reconnect}, {"afresh", CutOff::afresh}})
         .doc(
-            "what becomes of branches that a change cuts off: they are forgotten, or taken back "
-            "where the tree comes by");
+            "what becomes of branches that a change cuts off: they are forgotten (drop), or taken "
+            "back where the tree comes by (reconnect); afresh forgets the whole tree, to compare");
     f.check(weight_random > 0 || weight_goal > 0, "one of weight_random, weight_goal must be > 0");
   }
 
@@ -95,7 +96,9 @@ class Rrt final : public Planner {
     tree->clear(request.trace);
     rrt::Growth growth(params_.settings(request), request, *tree);
     growth.set_root(tree->add(request.start.position, rrt::kNone));
-    return growth.run();
+    growth.start();
+    RandomStream random = request.random.sub("growth");
+    return growth.run({}, random);
   }
 
   std::unique_ptr<Session> do_begin(const Request& request) const override {
@@ -104,7 +107,7 @@ class Rrt final : public Planner {
 
   Traits do_traits() const override {
     Traits traits;
-    traits.incremental = true;
+    traits.incremental = params_.cut_off != CutOff::afresh;
     return traits;
   }
 

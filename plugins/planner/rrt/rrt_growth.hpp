@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "altiplan/check.hpp"
@@ -24,44 +26,95 @@ struct Settings {
   std::uint64_t max_iterations = 0;
 };
 
-/// Grows a tree of the request, which may change between two runs.
+/// Where samples are drawn and what the tree grows to, after a change has cut it.
+struct Damage {
+  Box box = Box::empty();  ///< empty: there is none
+  std::vector<Node> tail;  ///< loose nodes of the old route's end
+};
+
+/// Grows the tree of a request; between two starts both may change.
 class Growth {
  public:
   Growth(const Settings& settings, const Request& request, Tree& tree)
-      : settings_(settings),
-        request_(request),
-        tree_(tree),
-        random_(request.random.sub("growth")) {}
+      : settings_(settings), request_(request), tree_(tree) {}
 
   Node root() const { return root_; }
-  /// Where the route ends; kNone while there is none. It may be loose.
-  Node end() const { return end_; }
   void set_root(Node root) { root_ = root; }
-  /// Forgets where the route ends.
-  void drop_end() {
-    if (end_ != kNone && end_is_goal_) {
-      tree_.move(end_, kNone);
-      tree_.put(end_, Tree::Place::removed);
-    }
-    end_ = kNone;
-  }
-  /// For the next run: loose nodes to grow to instead of the goal, and where half of the random
-  /// places are drawn.
-  void aim_at(std::vector<Node> tail, const Box& damage) {
-    tail_ = std::move(tail);
-    damage_ = damage;
+  /// Where the route ends, loose or not; kNone while there is none.
+  Node end() const { return end_; }
+  bool is_done() const { return end_ != kNone && tree_.is_rooted(end_); }
+  double step() const { return settings_.step; }
+
+  /// A budget begins.
+  void start() {
+    watch_.emplace(request_.budget);
+    iterations_ = 0;
+    stopped_.reset();
+    reach_out(root_);
   }
 
-  /// Hangs a branch under a node, if the leg between them and the turn of at least one leg after it
-  /// keep the rules. Branches that cannot follow are cut off there, and added to `cut`.
+  /// Counts an iteration; false where none is left.
+  bool next_iteration() {
+    if (watch_->spent(iterations_) ||
+        tree_.size() * Tree::kBytesPerNode > request_.budget.max_memory_bytes) {
+      stopped_ = watch_->cancelled() ? Status::cancelled : Status::timed_out;
+    } else if (iterations_ == settings_.max_iterations) {
+      stopped_ = Status::no_route;
+    } else {
+      ++iterations_;
+    }
+    return !stopped_;
+  }
+
+  /// The paper's loop: sample, choose, extend.
+  PlanResult run(const Damage& damage, RandomStream& random) {
+    while (!is_done() && !stopped_ && next_iteration()) {
+      const Vec3 goal = aim(damage, random);
+      const Vec3 sample = draw(damage, random);
+      const Node near = tree_.choose(sample, settings_.w_random, goal, settings_.w_goal);
+      const Vec3 toward = grows_to_goal(near, random) ? goal : sample;
+      tree_.has_woken() ? steer(near, toward) : extend(near, toward);
+    }
+    return is_done() ? with_route() : without_route(*stopped_);
+  }
+
+  /// A new node one step from `near` as straight toward a place as turns and climbs allow; kNone
+  /// where a rule forbids the leg.
+  Node steer(Node near, const Vec3& toward) {
+    const Vec3& from = tree_.point(near);
+    Vec3 way = toward - from;
+    if (way.squaredNorm() == 0) {
+      return add_step(near, from);
+    }
+    const Limits& limits = request_.limits;
+    double climb = std::clamp(std::atan2(way.z(), way.head<2>().norm()),
+                              -kNearly * limits.max_climb, kNearly * limits.max_climb);
+    double azimuth = std::atan2(way.y(), way.x());
+    if (const auto last = before(near)) {
+      // Two legs of a step lie on a circle of radius step / (2 sin(turn / 2)).
+      const double by_radius =
+          2 * std::asin(std::min(1.0, settings_.step / (2 * limits.min_turn_radius)));
+      const double most =
+          kNearly * std::min({limits.max_turn_horizontal, limits.max_turn_space, by_radius});
+      const Vec3 in = from - *last;
+      const double heading = std::atan2(in.y(), in.x());
+      azimuth = heading + std::clamp(std::remainder(azimuth - heading, 2 * kPi), -most, most);
+    }
+    const double run = std::cos(climb);
+    way = {run * std::cos(azimuth), run * std::sin(azimuth), std::sin(climb)};
+    return add_step(near, from + settings_.step * way);
+  }
+
+  /// Hangs a branch under a node, if the leg between them and a leg after it keep the rules.
+  /// Branches that cannot follow there are cut off, and added to `cut`.
   bool hang(Node branch, Node under, std::vector<Node>& cut) {
     const Vec3& from = tree_.point(under);
     const Vec3& at = tree_.point(branch);
     if (!leg_ok(before(under), from, at, request_)) {
       return false;
     }
-    std::vector<Node> failing;
     const std::vector<Node> children = tree_.children(branch);
+    std::vector<Node> failing;
     for (const Node child : children) {
       if (!leg_ok(from, at, tree_.point(child), request_)) {
         failing.push_back(child);
@@ -83,6 +136,15 @@ class Growth {
     return true;
   }
 
+  /// Forgets where the route ends.
+  void drop_end() {
+    if (end_ != kNone && end_is_goal_ && tree_.place(end_) != Tree::Place::removed) {
+      tree_.move(end_, kNone);
+      tree_.put(end_, Tree::Place::removed);
+    }
+    end_ = kNone;
+  }
+
   /// After the goal has moved: ends at a node that has it in reach already.
   void close_near_goal() {
     const Vec3& goal = request_.goal.position;
@@ -95,48 +157,25 @@ class Growth {
     }
   }
 
-  PlanResult run() {
-    BudgetWatch watch(request_.budget);
-    expanded_ = 0;
-    reach_out(root_);
-    while (!is_done()) {
-      if (watch.spent(expanded_) ||
-          tree_.size() * Tree::kBytesPerNode > request_.budget.max_memory_bytes) {
-        return without_route(watch.cancelled() ? Status::cancelled : Status::timed_out);
-      }
-      if (expanded_ == settings_.max_iterations) {
-        return without_route(Status::no_route);
-      }
-      ++expanded_;
-      const Vec3 goal = aim();
-      const Vec3 random = draw();
-      const Node near = tree_.choose(random, settings_.w_random, goal, settings_.w_goal);
-      const Node added = extend(near, grows_to_goal(near) ? goal : random);
-      if (added != kNone) {
-        reach_out(added);
-      }
-    }
-    return with_route();
-  }
-
  private:
-  bool is_done() const { return end_ != kNone && tree_.is_rooted(end_); }
+  static constexpr double kNearly = 1 - 1e-9;  ///< so that rounding does not break a limit
 
   /// q_goal.
-  Vec3 aim() {
-    if (tail_.empty()) {
+  Vec3 aim(const Damage& damage, RandomStream& random) const {
+    if (damage.tail.empty() || random.uniform() < 0.5) {
       return request_.goal.position;
     }
-    return tree_.point(tail_[std::size_t(random_.integer(0, std::int64_t(tail_.size()) - 1))]);
+    const auto last = std::int64_t(damage.tail.size()) - 1;
+    return tree_.point(damage.tail[std::size_t(random.integer(0, last))]);
   }
 
   /// q_rand.
-  Vec3 draw() {
-    if (settings_.goal_share > 0 && random_.uniform() < settings_.goal_share) {
+  Vec3 draw(const Damage& damage, RandomStream& random) const {
+    if (settings_.goal_share > 0 && random.uniform() < settings_.goal_share) {
       return request_.goal.position;
     }
-    const bool near_damage = !damage_.is_empty() && random_.uniform() < 0.5;
-    Vec3 p = random_.in(near_damage ? damage_ : request_.volume);
+    const bool near_damage = !damage.box.is_empty() && random.uniform() < 0.5;
+    Vec3 p = random.in(near_damage ? damage.box : request_.volume);
     if (request_.level_m) {
       p.z() = *request_.level_m;
     }
@@ -144,8 +183,8 @@ class Growth {
   }
 
   /// Eq. (5).
-  bool grows_to_goal(Node near) {
-    if (random_.uniform() < settings_.random_share ||
+  bool grows_to_goal(Node near, RandomStream& random) {
+    if (random.uniform() < settings_.random_share ||
         (settings_.goal_once && tree_.has_grown_to_goal(near))) {
       return false;
     }
@@ -157,16 +196,20 @@ class Growth {
     return node == root_ ? request_.before_start() : tree_.before(node);
   }
 
-  /// A new node one step from `near`, or kNone where a rule forbids the leg.
+  /// One step from `near` straight toward a place.
   Node extend(Node near, const Vec3& toward) {
     const Vec3& from = tree_.point(near);
     const Vec3 way = toward - from;
     const double distance = way.norm();
-    if (distance > 0) {
-      const Vec3 p = from + settings_.step / distance * way;
-      if (leg_ok(before(near), from, p, request_)) {
-        return tree_.add(p, near);
-      }
+    return add_step(near, distance > 0 ? Vec3(from + settings_.step / distance * way) : from);
+  }
+
+  Node add_step(Node near, const Vec3& p) {
+    const Vec3& from = tree_.point(near);
+    if (p != from && leg_ok(before(near), from, p, request_)) {
+      const Node added = tree_.add(p, near);
+      reach_out(added);
+      return added;
     }
     if (settings_.max_failures > 0) {
       tree_.count_failure(near, settings_.max_failures);
@@ -174,10 +217,18 @@ class Growth {
     return kNone;
   }
 
-  /// Ends at the goal, or takes loose branches back, where one or two steps do.
+  /// Ends at the goal, or takes loose branches back, where a leg of up to two steps does.
   void reach_out(Node node) {
     if (tree_.count(Tree::Place::loose) > 0) {
-      graft_at(node);
+      tree_.loose_within(tree_.point(node), 2 * settings_.step, near_);
+      for (const Node branch : near_) {
+        if (!tree_.is_rooted(branch)) {
+          hang(branch, node, cut_);
+        }
+      }
+      if (is_done() && !keeps_route_rules(tree_.way_to(end_))) {
+        drop_end();
+      }
     }
     if (!is_done()) {
       close(node);
@@ -187,20 +238,19 @@ class Growth {
   void close(Node node) {
     const Vec3& p = tree_.point(node);
     const Vec3& goal = request_.goal.position;
-    if (request_.goal.reached_at(p)) {
-      if (keeps_route_rules(tree_.way_to(node))) {
-        drop_end();
-        end_ = node;
-        end_is_goal_ = false;
-      }
-    } else if ((goal - p).norm() <= 2 * settings_.step && leg_ok(before(node), p, goal, request_)) {
-      Route route = tree_.way_to(node);
+    const bool is_there = request_.goal.reached_at(p);
+    if (!is_there &&
+        ((goal - p).norm() > 2 * settings_.step || !leg_ok(before(node), p, goal, request_))) {
+      return;
+    }
+    Route route = tree_.way_to(node);
+    if (!is_there) {
       route.push_back(goal);
-      if (keeps_route_rules(route)) {
-        drop_end();
-        end_ = tree_.add(goal, node, Tree::Place::end);
-        end_is_goal_ = true;
-      }
+    }
+    if (keeps_route_rules(route)) {
+      drop_end();
+      end_ = is_there ? node : tree_.add(goal, node, Tree::Place::end);
+      end_is_goal_ = !is_there;
     }
   }
 
@@ -210,62 +260,49 @@ class Growth {
            check(route, request_).ok();
   }
 
-  /// Takes back the loose branches that a leg of up to two steps joins to the node.
-  void graft_at(Node node) {
-    tree_.loose_within(tree_.point(node), 2 * settings_.step, near_);
-    for (const Node branch : near_) {
-      if (!tree_.is_rooted(branch)) {
-        hang(branch, node, cut_);
-      }
-    }
-    if (is_done() && !keeps_route_rules(tree_.way_to(end_))) {
-      drop_end();
-    }
-  }
-
-  PlanResult with_route() {
+  PlanResult with_route() const {
     PlanResult result;
     result.status = Status::solved;
     result.route = tree_.way_to(end_);
-    result.message = "a route of " + std::to_string(result.route.size() - 1) +
-                     " legs in a tree of " + std::to_string(tree_.in_use()) + " nodes";
+    result.message = std::to_string(result.route.size() - 1) + " legs of a tree of " +
+                     std::to_string(tree_.in_use()) + " nodes";
     count(result);
     return result;
   }
 
-  PlanResult without_route(Status status) {
+  PlanResult without_route(Status status) const {
     const Vec3& goal = request_.goal.position;
     const Node nearest = tree_.nearest(goal);
     const Vec3& p = tree_.point(nearest);
+    const double away = (goal - p).norm();
     PlanResult result;
     result.status = status;
     result.budget_hit = status == Status::timed_out;
     result.message = "the nearest of " + std::to_string(tree_.in_use()) + " nodes is " +
-                     std::to_string(std::lround((goal - p).norm())) + " m from the goal";
-    const double ahead = std::min(1.0, settings_.step / (goal - p).norm());
-    const auto wrong = leg_violations(before(nearest), p, p + ahead * (goal - p), request_, 0);
+                     std::to_string(std::lround(away)) + " m from the goal";
+    const Vec3 next = p + std::min(1.0, settings_.step / away) * (goal - p);
+    const auto wrong = leg_violations(before(nearest), p, next, request_, 0);
     if (!wrong.empty()) {
-      result.message += "; on the next leg to it " + wrong.front().message;
+      result.message += "; on the next leg " + wrong.front().message;
     }
     count(result);
     return result;
   }
 
   void count(PlanResult& result) const {
-    result.counters = {{"expanded", std::int64_t(expanded_)},
+    result.counters = {{"expanded", std::int64_t(iterations_)},
                        {"nodes", std::int64_t(tree_.in_use())}};
   }
 
   const Settings settings_;
   const Request& request_;
   Tree& tree_;
-  RandomStream random_;
+  std::optional<BudgetWatch> watch_;
+  std::uint64_t iterations_ = 0;
+  std::optional<Status> stopped_;
   Node root_ = kNone;
   Node end_ = kNone;
   bool end_is_goal_ = false;  ///< a node of its own at the goal, not one within its tolerance
-  std::uint64_t expanded_ = 0;
-  std::vector<Node> tail_;
-  Box damage_ = Box::empty();
   std::vector<Node> near_;
   std::vector<Node> cut_;
 };

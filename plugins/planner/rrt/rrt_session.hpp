@@ -9,19 +9,28 @@
 
 #include "altiplan/measures.hpp"
 #include "altiplan/planner.hpp"
-#include "rrt_growth.hpp"
+#include "rrt_repair.hpp"
 
 namespace altiplan::rrt {
 
-enum class CutOff { drop, reconnect };
+/// What becomes of nodes that a change cuts off.
+enum class CutOff {
+  drop,       ///< they are removed
+  reconnect,  ///< they stay, and are taken back where the tree comes by
+  afresh,     ///< so are all others: for comparison
+};
 
 class TreeSession final : public Session {
  public:
   TreeSession(const Settings& settings, CutOff cut_off, const Request& request)
-      : cut_off_(cut_off), request_(request), growth_(settings, request_, tree_) {
+      : cut_off_(cut_off),
+        request_(request),
+        growth_(settings, request_, tree_),
+        random_(stream()) {
     tree_.clear(request_.trace);
     growth_.set_root(tree_.add(request_.start.position, kNone));
-    result_ = growth_.run();
+    growth_.start();
+    result_ = growth_.run({}, random_);
     route_ = nodes_of_route();
   }
 
@@ -35,27 +44,26 @@ class TreeSession final : public Session {
                               const Budget& budget) override {
     const bool goal_moved =
         goal.position != request_.goal.position || goal.tolerance_m != request_.goal.tolerance_m;
-    const bool stayed =
-        state.position == request_.start.position && state.velocity == request_.start.velocity;
+    const bool stays = cut_off_ != CutOff::afresh && state.position == request_.start.position &&
+                       state.velocity == request_.start.velocity;
     const std::size_t nodes_before = tree_.in_use();
     const Node first_new = Node(tree_.size());
     request_.world = std::move(world);
     request_.start = state;
     request_.goal = goal;
     request_.budget = budget;
-    if (goal_moved) {
+    if (goal_moved || cut_off_ == CutOff::afresh) {
       growth_.drop_end();
     }
     cut_.clear();
     damage_ = Box::empty();
     prune(changes);
     const std::size_t next = next_of_route();
-    if (!stayed) {
+    if (!stays) {
       take_root(next);
     }
     cut_off();
-    const std::size_t kept = tree_.in_use() - (stayed ? 0 : 1);
-    growth_.aim_at(tail(), damage_around());
+    const std::size_t kept = tree_.in_use() - (stays ? 0 : 1);
     result_ = solve(goal_moved);
     result_.counters.push_back({"nodes_kept", std::int64_t(kept)});
     result_.counters.push_back({"nodes_pruned", std::int64_t(nodes_before - kept)});
@@ -63,6 +71,8 @@ class TreeSession final : public Session {
     keep_route(first_new, next);
     return result_;
   }
+
+  RandomStream stream() const { return request_.random.sub("growth"); }
 
   /// What makes start or goal impossible, else the way from one to the other.
   PlanResult solve(bool goal_moved) {
@@ -76,10 +86,14 @@ class TreeSession final : public Session {
         return result;
       }
     }
+    growth_.start();
     if (goal_moved) {
       growth_.close_near_goal();
     }
-    return growth_.run();
+    const Box around = damage_around();
+    const Damage damage{around, tail(around)};
+    Repair(request_, growth_, tree_).run(damage, random_);
+    return growth_.run(damage, random_);
   }
 
   /// Cuts the legs that the changes break, and removes the nodes in forbidden places.
@@ -91,10 +105,13 @@ class TreeSession final : public Session {
         continue;
       }
       tree_.within(reach_of(change.box, layer->environment->has_ground()), near);
+      if (growth_.end() != kNone) {
+        near.push_back(growth_.end());
+      }
       for (const Node node : near) {
         if (tree_.parent(node) != kNone && !keeps_leg(node)) {
           cut(node);
-          damage_ = damage_.with(tree_.point(node));
+          damage_ = damage_.with(change.box.min).with(change.box.max);
         }
       }
       for (const Node node : near) {
@@ -136,6 +153,10 @@ class TreeSession final : public Session {
     cut_.push_back(growth_.root());
     const Node root = tree_.add(request_.start.position, kNone);
     growth_.set_root(root);
+    if (cut_off_ == CutOff::afresh) {
+      random_ = stream();
+      return;
+    }
     const std::size_t last = std::min(next + kMostSkipped, route_.size());
     for (std::size_t i = next; i < last; ++i) {
       if (tree_.place(route_[i]) < Place::loose && growth_.hang(route_[i], root, cut_)) {
@@ -164,7 +185,7 @@ class TreeSession final : public Session {
 
   /// All that does not hang below the root any more.
   void cut_off() {
-    const Place place = cut_off_ == CutOff::drop ? Place::removed : Place::loose;
+    const Place place = cut_off_ == CutOff::reconnect ? Place::loose : Place::removed;
     for (const Node top : cut_) {
       if (tree_.parent(top) != kNone || top == growth_.root()) {
         continue;  // hangs again
@@ -177,20 +198,28 @@ class TreeSession final : public Session {
     }
   }
 
-  /// What is left of the old route's end, where the tree does not reach it.
-  std::vector<Node> tail() const {
+  /// What is left of the old route's end, where the tree does not reach it: its nodes in the box,
+  /// or at least the first.
+  std::vector<Node> tail(const Box& box) const {
     std::vector<Node> tail;
+    Node first = kNone;
     if (growth_.end() != kNone) {
       for (Node node = growth_.end(); node != kNone && tree_.place(node) == Place::loose;
            node = tree_.parent(node)) {
-        tail.push_back(node);
+        first = node;
+        if (box.contains(tree_.point(node))) {
+          tail.push_back(node);
+        }
       }
+    }
+    if (tail.empty() && first != kNone) {
+      tail.push_back(first);
     }
     return tail;
   }
 
   Box damage_around() const {
-    if (cut_off_ == CutOff::drop || damage_.is_empty()) {
+    if (cut_off_ != CutOff::reconnect || damage_.is_empty()) {
       return Box::empty();
     }
     const Vec3 half = (damage_.max - damage_.min) / 2;
@@ -233,6 +262,7 @@ class TreeSession final : public Session {
   Request request_;
   Tree tree_;
   Growth growth_;
+  RandomStream random_;
   PlanResult result_;
   std::vector<Node> route_;  ///< from the root to the end, when last solved
   std::vector<Node> cut_;    ///< roots of what may have been cut off by this update

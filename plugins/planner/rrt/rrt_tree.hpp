@@ -37,6 +37,7 @@ class Tree {
     resting_.clear();
     counts_ = {};
     longest_leg_ = 0;
+    has_woken_ = false;
     clear_loose();
   }
 
@@ -92,7 +93,10 @@ class Tree {
       wake();
     }
   }
+  /// Whether all nodes have rested.
+  bool has_woken() const { return has_woken_; }
   void wake() {
+    has_woken_ = true;
     for (const Node node : resting_) {
       if (place(node) == Place::resting) {
         marks_[std::size_t(node)].failures = 0;
@@ -204,6 +208,7 @@ class Tree {
   std::vector<Node> resting_;      ///< some may be elsewhere by now
   std::array<std::size_t, 5> counts_{};
   double longest_leg_ = 0;
+  bool has_woken_ = false;
   Trace* trace_ = nullptr;
   std::vector<Node> below_;
   std::vector<std::size_t> numbers_;
