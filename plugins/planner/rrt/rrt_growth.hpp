@@ -256,8 +256,9 @@ class Growth {
 
   /// The rules that legs cannot tell.
   bool keeps_route_rules(const Route& route) const {
-    return (request_.limits.max_route_length == kInfinity && request_.constraints.empty()) ||
-           check(route, request_).ok();
+    const double most = request_.limits.max_route_length;
+    return (most == kInfinity && request_.constraints.empty()) ||
+           (length(route) <= most + kLengthTolerance && check(route, request_).ok());
   }
 
   PlanResult with_route() const {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "altiplan/kit/obstacle_set.hpp"
+#include "reference/pop_ups.hpp"
+#include "support/support.hpp"
+
+namespace altiplan {
+namespace {
+
+using testing::make_planner;
+
+Request over_the_plain(std::uint64_t seed) {
+  Request request =
+      testing::request_in(testing::world_of(std::vector<Shape>{Sphere{{100, 100, 20}, 25}}),
+                          {5, 100, 50}, {390, 100, 50}, {{0, 0, 0}, {400, 200, 100}});
+  request.limits.max_turn_horizontal = radians(60);
+  request.random = RandomStream(seed);
+  return request;
+}
+
+std::map<std::string, std::int64_t> counters(const PlanResult& result) {
+  std::map<std::string, std::int64_t> all;
+  for (const Counter& counter : result.counters) {
+    all[counter.name] = counter.value;
+  }
+  return all;
+}
+
+/// The nodes that are in the tree after all that happened to them.
+struct Nodes : Trace {
+  void add(const TraceEvent& event) override {
+    if (event.kind == TraceEvent::Kind::added) {
+      EXPECT_TRUE(given.insert(event.node).second) << "a number used again";
+      at[event.node] = event.position;
+    } else if (event.kind == TraceEvent::Kind::removed) {
+      EXPECT_EQ(at.erase(event.node), 1u);
+    }
+  }
+  std::set<std::int64_t> given;
+  std::map<std::int64_t, Vec3> at;
+};
+
+TEST(RrtSession, AnUpdateWithoutAChangeKeepsTheTree) {
+  Request request = over_the_plain(1);
+  const auto session = make_planner("rrt")->begin(request);
+  const PlanResult first = session->result();
+  ASSERT_EQ(first.status, Status::solved) << first.message;
+  const PlanResult& same = session->update(request.start, request.goal, request.world, {}, {});
+  EXPECT_EQ(same.route, first.route);
+  EXPECT_EQ(counters(same)["expanded"], 0);
+  EXPECT_EQ(counters(same)["nodes_kept"], counters(first)["nodes"]);
+  EXPECT_EQ(counters(same)["route_kept_percent"], 100);
+
+  // Half-way along the second leg the rest of the route is flown as it was.
+  const State state =
+      testing::on_route(first.route, 1.5 * (first.route[1] - first.route[0]).norm(), 20);
+  request.start = state;
+  const PlanResult& rest = session->update(state, request.goal, request.world, {}, {});
+  ASSERT_EQ(rest.status, Status::solved) << rest.message;
+  EXPECT_EQ(counters(rest)["expanded"], 0);
+  EXPECT_EQ(rest.route.front(), state.position);
+  EXPECT_TRUE(std::equal(rest.route.begin() + 1, rest.route.end(), first.route.begin() + 2));
+}
+
+// Of a flight with threats that come and go, a goal that moves, and the vehicle off its route.
+TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
+  for (const char* cut_off : {"drop", "reconnect"}) {
+    for (std::uint64_t seed = 0; seed < 25; ++seed) {
+      SCOPED_TRACE(std::string(cut_off) + " " + std::to_string(seed));
+      RandomStream random = RandomStream(seed).sub("flight");
+      Request request = over_the_plain(seed);
+      Nodes nodes;
+      request.trace = &nodes;
+      const auto session =
+          make_planner("rrt", std::string("{cut_off: ") + cut_off + "}")->begin(request);
+      ASSERT_EQ(session->result().status, Status::solved);
+      for (int update = 0; update < 6; ++update) {
+        const std::int64_t before = counters(session->result())["nodes"];
+        ASSERT_EQ(std::int64_t(nodes.at.size()), before);
+        const std::map<std::int64_t, Vec3> known = nodes.at;
+        if (session->result().status == Status::solved && update % 4 != 3) {
+          request.start = testing::on_route(session->result().route, random.uniform(0, 60), 20);
+          request.start.position += 0.01 * (update % 2) * Vec3(1, 1, 1);
+        }
+        if (update % 3 == 2) {
+          request.goal.position.y() = random.uniform(20, 180);
+        }
+        const Vec3 centre = random.in({{150, 40, 30}, {350, 160, 70}});
+        const auto shape =
+            std::make_shared<kit::ShapeLayer>(std::vector<Shape>{Sphere{centre, 25}});
+        std::vector<Change> changes = {
+            {Change::Kind::add, "new" + std::to_string(update), shape->bounds()}};
+        World world = request.world->with({changes[0].layer, "sphere", shape, true});
+        if (update > 1) {
+          const std::string old = "new" + std::to_string(update - 2);
+          changes.push_back({Change::Kind::remove, old, world.find(old)->environment->bounds()});
+          world = world.without(old);
+        }
+        request.world = std::make_shared<const World>(std::move(world));
+        const PlanResult& result =
+            session->update(request.start, request.goal, request.world, changes, {});
+        std::map<std::string, std::int64_t> counted = counters(result);
+        EXPECT_EQ(counted["nodes_kept"] + counted["nodes_pruned"], before);
+        EXPECT_EQ(counted["nodes_kept"] + counted["nodes_added"], counted["nodes"]);
+        EXPECT_EQ(counted["nodes"], std::int64_t(nodes.at.size()));
+        std::int64_t kept = 0;
+        for (const auto& [node, p] : nodes.at) {
+          const auto found = known.find(node);
+          kept += found != known.end() && found->second == p ? 1 : 0;
+        }
+        EXPECT_EQ(kept, counted["nodes_kept"]);
+        if (result.status == Status::solved) {
+          EXPECT_TRUE(check(result.route, request).ok());
+        } else {
+          EXPECT_EQ(result.status, Status::invalid_problem) << result.message;
+        }
+      }
+    }
+  }
+}
+
+TEST(RrtSession, AfreshIsAPlanFromThere) {
+  Request request = over_the_plain(3);
+  const auto planner = make_planner("rrt", "{cut_off: afresh}");
+  const auto session = planner->begin(request);
+  request.start = testing::on_route(session->result().route, 40, 20);
+  const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
+  EXPECT_EQ(result.route, planner->plan(request).route);
+  EXPECT_EQ(counters(result)["nodes_kept"], 0);
+}
+}  // namespace
+}  // namespace altiplan
