@@ -50,6 +50,9 @@ class Growth {
     watch_.emplace(request_.budget);
     iterations_ = 0;
     stopped_.reset();
+    if (tree_.count(Tree::Place::growing) == 0) {
+      tree_.wake();  // what is left rested
+    }
     reach_out(root_);
   }
 

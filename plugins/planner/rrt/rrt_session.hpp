@@ -44,8 +44,8 @@ class TreeSession final : public Session {
                               const Budget& budget) override {
     const bool goal_moved =
         goal.position != request_.goal.position || goal.tolerance_m != request_.goal.tolerance_m;
-    const bool stays = cut_off_ != CutOff::afresh && state.position == request_.start.position &&
-                       state.velocity == request_.start.velocity;
+    const bool moved =
+        state.position != request_.start.position || state.velocity != request_.start.velocity;
     const std::size_t nodes_before = tree_.in_use();
     const Node first_new = Node(tree_.size());
     request_.world = std::move(world);
@@ -59,11 +59,13 @@ class TreeSession final : public Session {
     damage_ = Box::empty();
     prune(changes);
     const std::size_t next = next_of_route();
-    if (!stays) {
+    const bool is_rerooted =
+        moved || cut_off_ == CutOff::afresh || !tree_.is_rooted(growth_.root());
+    if (is_rerooted) {
       take_root(next);
     }
     cut_off();
-    const std::size_t kept = tree_.in_use() - (stays ? 0 : 1);
+    const std::size_t kept = tree_.in_use() - (is_rerooted ? 1 : 0);
     result_ = solve(goal_moved);
     result_.counters.push_back({"nodes_kept", std::int64_t(kept)});
     result_.counters.push_back({"nodes_pruned", std::int64_t(nodes_before - kept)});
