@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "altiplan/check.hpp"
+#include "altiplan/kit/sampling.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/request.hpp"
 #include "rrt_tree.hpp"
@@ -36,7 +37,7 @@ struct Damage {
 class Growth {
  public:
   Growth(const Settings& settings, const Request& request, Tree& tree)
-      : settings_(settings), request_(request), tree_(tree) {}
+      : settings_(settings), request_(request), sampled_(kit::sampled_box(request)), tree_(tree) {}
 
   Node root() const { return root_; }
   void set_root(Node root) { root_ = root; }
@@ -76,7 +77,7 @@ class Growth {
       const Vec3 sample = draw(damage, random);
       const Node near = tree_.choose(sample, settings_.w_random, goal, settings_.w_goal);
       const Vec3 toward = grows_to_goal(near, random) ? goal : sample;
-      tree_.has_woken() ? steer(near, toward) : extend(near, toward);
+      tree_.has_woken() ? steer(near, toward) : extend(near, toward - tree_.point(near));
     }
     return is_done() ? with_route() : without_route(*stopped_);
   }
@@ -85,27 +86,9 @@ class Growth {
   /// where a rule forbids the leg.
   Node steer(Node near, const Vec3& toward) {
     const Vec3& from = tree_.point(near);
-    Vec3 way = toward - from;
-    if (way.squaredNorm() == 0) {
-      return add_step(near, from);
-    }
-    const Limits& limits = request_.limits;
-    double climb = std::clamp(std::atan2(way.z(), way.head<2>().norm()),
-                              -kNearly * limits.max_climb, kNearly * limits.max_climb);
-    double azimuth = std::atan2(way.y(), way.x());
-    if (const auto last = before(near)) {
-      // Two legs of a step lie on a circle of radius step / (2 sin(turn / 2)).
-      const double by_radius =
-          2 * std::asin(std::min(1.0, settings_.step / (2 * limits.min_turn_radius)));
-      const double most =
-          kNearly * std::min({limits.max_turn_horizontal, limits.max_turn_space, by_radius});
-      const Vec3 in = from - *last;
-      const double heading = std::atan2(in.y(), in.x());
-      azimuth = heading + std::clamp(std::remainder(azimuth - heading, 2 * kPi), -most, most);
-    }
-    const double run = std::cos(climb);
-    way = {run * std::cos(azimuth), run * std::sin(azimuth), std::sin(climb)};
-    return add_step(near, from + settings_.step * way);
+    const auto last = before(near);
+    const auto incoming = last ? std::optional<Vec3>(from - *last) : std::nullopt;
+    return extend(near, kit::bent(incoming, toward - from, settings_.step, request_.limits));
   }
 
   /// Hangs a branch under a node, if the leg between them and a leg after it keep the rules.
@@ -161,8 +144,6 @@ class Growth {
   }
 
  private:
-  static constexpr double kNearly = 1 - 1e-9;  ///< so that rounding does not break a limit
-
   /// q_goal.
   Vec3 aim(const Damage& damage, RandomStream& random) const {
     if (damage.tail.empty() || random.uniform() < 0.5) {
@@ -178,11 +159,7 @@ class Growth {
       return request_.goal.position;
     }
     const bool near_damage = !damage.box.is_empty() && random.uniform() < 0.5;
-    Vec3 p = random.in(near_damage ? damage.box : request_.volume);
-    if (request_.level_m) {
-      p.z() = *request_.level_m;
-    }
-    return p;
+    return random.in(near_damage ? damage.box : sampled_);
   }
 
   /// Eq. (5).
@@ -199,17 +176,12 @@ class Growth {
     return node == root_ ? request_.before_start() : tree_.before(node);
   }
 
-  /// One step from `near` straight toward a place.
-  Node extend(Node near, const Vec3& toward) {
+  /// A new node one step from `near` in a direction, or kNone where a rule forbids the leg.
+  Node extend(Node near, const Vec3& way) {
     const Vec3& from = tree_.point(near);
-    const Vec3 way = toward - from;
-    const double distance = way.norm();
-    return add_step(near, distance > 0 ? Vec3(from + settings_.step / distance * way) : from);
-  }
-
-  Node add_step(Node near, const Vec3& p) {
-    const Vec3& from = tree_.point(near);
-    if (p != from && leg_ok(before(near), from, p, request_)) {
+    const double length = way.norm();
+    const Vec3 p = from + settings_.step / length * way;
+    if (length > 0 && leg_ok(before(near), from, p, request_)) {
       const Node added = tree_.add(p, near);
       reach_out(added);
       return added;
@@ -300,6 +272,7 @@ class Growth {
 
   const Settings settings_;
   const Request& request_;
+  const Box sampled_;
   Tree& tree_;
   std::optional<BudgetWatch> watch_;
   std::uint64_t iterations_ = 0;

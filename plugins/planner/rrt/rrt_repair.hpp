@@ -37,10 +37,7 @@ class Detour {
   /// The way, its first and last place nodes of the tree; empty where none was found.
   std::vector<Place> find(Growth& growth, RandomStream& random) {
     for (std::size_t i = 0; i < kDraws && growth.next_iteration(); ++i) {
-      Vec3 p = random.in(box_);
-      if (request_.level_m) {
-        p.z() = *request_.level_m;
-      }
+      const Vec3 p = random.in(box_);
       std::vector<Place>& here = sides_[i % 2];
       std::vector<Place>& there = sides_[1 - i % 2];
       const std::size_t near = nearest(here, p);

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "altiplan/measures.hpp"
+#include "altiplan/kit/leg_rules.hpp"
 #include "altiplan/planner.hpp"
 #include "rrt_repair.hpp"
 
@@ -100,6 +100,7 @@ class TreeSession final : public Session {
 
   /// Cuts the legs that the changes break, and removes the nodes in forbidden places.
   void prune(std::span<const Change> changes) {
+    const kit::LegRules rules(request_);
     std::vector<Node> near;
     for (const Change& change : changes) {
       const Layer* layer = request_.world->find(change.layer);
@@ -117,7 +118,7 @@ class TreeSession final : public Session {
         }
       }
       for (const Node node : near) {
-        if (tree_.parent(node) == kNone && !point_problem(tree_.point(node), request_).empty()) {
+        if (tree_.parent(node) == kNone && !rules.point_ok(tree_.point(node))) {
           for (const Node child : tree_.children(node)) {
             cut(child);
           }
@@ -225,7 +226,7 @@ class TreeSession final : public Session {
       return Box::empty();
     }
     const Vec3 half = (damage_.max - damage_.min) / 2;
-    return Box{damage_.min - half, damage_.max + half}.intersected(request_.volume);
+    return Box{damage_.min - half, damage_.max + half}.intersected(kit::sampled_box(request_));
   }
 
   /// Notes the route, and how much of what was ahead of the vehicle on the last one is part of it.

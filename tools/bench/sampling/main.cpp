@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     altiplan::bench::add_point_rows();
     altiplan::bench::add_connect_rows();
     altiplan::bench::add_star_rows();
+    altiplan::bench::add_tree_rows();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::cerr << "altiplan-sampling: " << error.what() << '\n';

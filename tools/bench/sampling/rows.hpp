@@ -15,4 +15,5 @@ namespace altiplan::bench {
 void add_point_rows();
 void add_connect_rows();
 void add_star_rows();
+void add_tree_rows();
 }  // namespace altiplan::bench

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tree of `rrt` over real ground, the main layout of paper 000's page: whole plans, what a
+// threat that appears costs, and growth to a million nodes.
+#include <chrono>
+#include <utility>
+
+#include "altiplan/check.hpp"
+#include "city.hpp"
+#include "host/run/mission.hpp"
+#include "reference/pop_ups.hpp"
+#include "rows.hpp"
+
+namespace altiplan::bench {
+namespace {
+
+constexpr std::uint64_t kSeeds = 100;
+constexpr double kThreat = 2000;  // metres
+constexpr double kRoom = 600;
+
+const Request& main_layout() {
+  static const Request kRequest =
+      host::build_mission(
+          host::load_config(
+              std::filesystem::path(ALTIPLAN_CONFIGS) / "pipelines/rrt_jacksboro.yaml", {}),
+          1)
+          .request;
+  return kRequest;
+}
+
+Request with_seed(std::uint64_t seed) {
+  Request request = main_layout();
+  request.random = RandomStream(seed);
+  return request;
+}
+
+template <class Call>
+double seconds(const Call& call) {
+  const auto before = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+}
+
+void expect_sound(const PlanResult& result, const Request& request) {
+  if (result.status != Status::solved || !check(result.route, request).ok()) {
+    throw Error("rrt: a seed without a sound route: " + result.message);
+  }
+}
+
+/// A row whose iteration times a case for each seed: median and 99th percentile in microseconds.
+template <class Case>
+void add_row(const std::string& name, const Case& time_case) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 std::vector<double> times;
+                                 for (auto _ : state) {
+                                   double total = 0;
+                                   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+                                     times.push_back(time_case(seed));
+                                     total += times.back();
+                                   }
+                                   state.SetIterationTime(total / double(kSeeds));
+                                 }
+                                 state.counters["median_us"] = 1e6 * quantile(times, 0.5);
+                                 state.counters["p99_us"] = 1e6 * quantile(times, 0.99);
+                               })
+      ->UseManualTime()
+      ->Iterations(5)
+      ->Unit(benchmark::kMicrosecond);
+}
+
+double time_plan(std::uint64_t seed) {
+  static const auto kPlanner = planner("rrt", "{step_m: 150}");
+  const Request request = with_seed(seed);
+  PlanResult result;
+  const double time = seconds([&] { result = kPlanner->plan(request); });
+  expect_sound(result, request);
+  return time;
+}
+
+double time_update(const Planner& planner, std::uint64_t seed) {
+  Request request = with_seed(seed);
+  const auto session = planner.begin(request);
+  expect_sound(session->result(), request);
+  const testing::PopUp pop_up = testing::draw_pop_up(session->result().route, request, kThreat,
+                                                     kRoom, request.random.sub("pop-up"));
+  request.world = pop_up.world;
+  request.start = pop_up.state;
+  const double time = seconds([&] {
+    session->update(pop_up.state, request.goal, pop_up.world, std::span(&pop_up.change, 1), {});
+  });
+  expect_sound(session->result(), request);
+  return time;
+}
+
+/// No route is short enough, so the tree of the basic choice grows for as many iterations: nodes a
+/// second as the mean from the first to the last.
+void grow(benchmark::State& state, bool over_ground) {
+  const auto tree = planner("rrt",
+                            "{step_m: 150, weight_goal: 0, random_share: 1, max_failures: 0, "
+                            "toward_goal_once: false, max_iterations: 100000000}");
+  Request request = with_seed(1);
+  request.limits = {};
+  request.limits.max_route_length = 1;
+  if (over_ground) {
+    request.limits.min_ground_clearance = 150;
+  } else {
+    request.world = std::make_shared<const World>();
+  }
+  request.budget.max_iterations = std::uint64_t(state.range(0));
+  PlanResult result;
+  for (auto _ : state) {
+    result = tree->plan(request);
+  }
+  double nodes = 0;
+  for (const Counter& counter : result.counters) {
+    nodes = counter.name == "nodes" ? double(counter.value) : nodes;
+  }
+  state.counters["nodes"] = nodes;
+  state.counters["nodes_per_s"] =
+      benchmark::Counter(nodes, benchmark::Counter::kIsIterationInvariantRate);
+}
+}  // namespace
+
+void add_tree_rows() {
+  add_row("tree/plan", time_plan);
+  for (const char* cut_off : {"afresh", "drop", "reconnect"}) {
+    const auto rrt = planner("rrt", std::string("{step_m: 150, cut_off: ") + cut_off + "}");
+    add_row(std::string("tree/threat/") + cut_off,
+            [=](std::uint64_t seed) { return time_update(*rrt, seed); });
+  }
+  for (const bool over_ground : {false, true}) {
+    benchmark::RegisterBenchmark(over_ground ? "tree/growth/ground" : "tree/growth/open",
+                                 [=](benchmark::State& state) { grow(state, over_ground); })
+        ->RangeMultiplier(10)
+        ->Range(1000, 1000000)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+}  // namespace altiplan::bench
