@@ -43,9 +43,9 @@ repetitions: {repetitions}
 {more}""")
 
     def call(self, *words, expect=0, store="out.db"):
+        out = ["--out", store] if store else []
         done = subprocess.run(
-            [PROGRAM, "study", "study.yaml", "--out", store, "--plugin-path", PLUGINS,
-             *map(str, words)],
+            [PROGRAM, "study", "study.yaml", *out, "--plugin-path", PLUGINS, *map(str, words)],
             cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done.stdout + done.stderr
@@ -117,6 +117,8 @@ class Study(StudyCase):
         said = self.call("--dry-run")
         self.assertIn("2 pipelines x 5 scenarios x 2 repetitions = 20 runs", said)
         self.assertFalse((self.folder / "out.db").exists())
+        self.assertIn("to do 20", self.call("--dry-run", store=None))
+        self.assertIn("--out is required", self.call(store=None, expect=2))
         self.call("--sample", "20%")
         self.assertEqual(len(self.rows()), 4)
         self.assertIn("selected 20, stored 4, to do 16", self.call("--dry-run"))
@@ -156,6 +158,7 @@ class Study(StudyCase):
                                   PLUGINS], cwd=self.folder, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.PIPE, text=True)
         while not (self.folder / "out.db").exists():
+            self.assertIsNone(first.poll())
             time.sleep(0.01)
         pipeline(0.3)
         self.assertIn("have changed since the runs were planned", first.communicate(timeout=60)[1])

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -106,8 +108,13 @@ int dry_run(const Arguments& arguments, const host::StudyPlan& plan) {
 }
 
 int study(Arguments arguments) {
-  arguments.options.store = arguments.store;
-  expect_writable(arguments.store, "--out");
+  if (arguments.store.empty()) {  // a rehearsal, which needs a place for its runs only
+    const std::string name = "altiplan-study-" + std::to_string(getpid());
+    arguments.options.store = std::filesystem::temp_directory_path() / name;
+  } else {
+    arguments.options.store = arguments.store;
+    expect_writable(arguments.store, "--out");
+  }
   const host::StudyPlan plan =
       host::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
   if (plan.runs.empty()) {
@@ -187,8 +194,9 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
   auto arguments = std::make_shared<Arguments>();
   arguments->options.command = command_line;
   command->add_option("study", arguments->study, "study file")->required();
-  command->add_option("-o,--out", arguments->store, "the store of the results (SQLite)")
-      ->required()
+  command
+      ->add_option("-o,--out", arguments->store,
+                   "the store of the results (SQLite); only --dry-run goes without")
       ->type_name("DB");
   command->add_option("--jobs", arguments->options.jobs, "runs at a time (default 1)")
       ->check(CLI::Range(1, 1024));
@@ -231,6 +239,9 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
   add_plugin_path(*command, *plugins);
   set_example(*command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");
   command->callback([&action, arguments] {
+    if (arguments->store.empty() && !arguments->dry_run) {
+      throw CLI::RequiredError("--out");
+    }
     arguments->options.plugin_path = arguments->overrides.plugin_path;
     action = [arguments] { return study(*arguments); };
   });
