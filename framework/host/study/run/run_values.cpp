@@ -21,6 +21,16 @@ class Values {
       add(prefix + name, value);
     }
   }
+  /// Sums over all replans: what they took, and each of their counters.
+  void add_replans(const Json& replans) {
+    add("flight.replans", replans.size());
+    for (const Json& replan : replans) {
+      all_["flight.replan_time_s"] += replan.at("time_s").get<double>();
+      for (const auto& [name, value] : replan.at("counters").items()) {
+        all_["flight.replan_counters." + name] += value.get<double>();
+      }
+    }
+  }
   std::vector<std::pair<std::string, double>> sorted() const { return {all_.begin(), all_.end()}; }
 
  private:
@@ -58,7 +68,7 @@ std::vector<std::pair<std::string, double>> values_of(const Json& result) {
     for (const char* name : {"collisions", "min_separation_m", "reached"}) {
       values.add(std::string("flight.") + name, flight.at(name));
     }
-    values.add("flight.replans", flight.at("replans").size());
+    values.add_replans(flight.at("replans"));
     values.add("flight.handovers", flight.at("handovers").size());
     values.add_each("flight.counters.", flight.at("counters"));
     values.add_each("flight.", flight.at("metrics"));
@@ -73,20 +83,22 @@ std::string why_no_value(const std::string& name) {
                         "wall_time_s", "cpu_time_s", "peak_memory_mb"});
   static const std::vector<std::string> kOfStep =
       joined(kOfRoute, {"time_s", "setup_time_s", "stands", "budget_hit"});
-  static const std::vector<std::string> kOfFlight =
-      joined(kOfRoute, {"collisions", "min_separation_m", "reached", "replans", "handovers"});
+  static const std::vector<std::string> kOfFlight = joined(
+      kOfRoute,
+      {"collisions", "min_separation_m", "reached", "replans", "replan_time_s", "handovers"});
   const std::size_t last = name.rfind('.');
   const std::string end = name.substr(last == std::string::npos ? 0 : last + 1);
   const std::string before = last == std::string::npos ? "" : name.substr(0, last);
   const bool is_of_flight = before == "flight";
   const bool is_of_step = before.starts_with("steps.") && before.size() > 6;
-  if (before == "flight.counters" || (is_of_step && before.ends_with(".counters"))) {
+  if (before == "flight.counters" || before == "flight.replan_counters" ||
+      (is_of_step && before.ends_with(".counters"))) {
     return "";  // a plugin names its counters as it likes
   }
   if (!before.empty() && !is_of_flight && !is_of_step) {
     return "no run has a value '" + name +
-           "': expected one of the run, or flight.…, flight.counters.…, steps.ID.…, "
-           "steps.ID.counters.…";
+           "': expected one of the run, or flight.…, flight.counters.…, "
+           "flight.replan_counters.…, steps.ID.…, steps.ID.counters.…";
   }
   const std::vector<std::string>& known = is_of_flight ? kOfFlight : is_of_step ? kOfStep : kOfRun;
   if (std::find(known.begin(), known.end(), end) != known.end()) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/study/run/run_values.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace altiplan::host {
+namespace {
+
+std::map<std::string, double> values_of_flight(const std::string& replans) {
+  Json result = Json::parse(R"({"metrics": {"length_m": 5}, "setup_time_s": 0.5, "steps": []})");
+  result["flight"] = Json::parse(R"({"collisions": 0, "min_separation_m": null, "reached": true,
+    "handovers": [], "counters": {"steps": 7}, "metrics": {"length_m": 6}})");
+  result["flight"]["replans"] = Json::parse(replans);
+  const auto values = values_of(result);
+  return {values.begin(), values.end()};
+}
+
+TEST(RunValues, ReplansAreSummedUp) {
+  const auto values = values_of_flight(R"([
+    {"at_s": 1, "time_s": 0.25, "counters": {"expanded": 3, "nodes_kept": 10}},
+    {"at_s": 9, "time_s": 0.5, "counters": {"expanded": 4}}])");
+  EXPECT_EQ(values.at("flight.replans"), 2);
+  EXPECT_EQ(values.at("flight.replan_time_s"), 0.75);
+  EXPECT_EQ(values.at("flight.replan_counters.expanded"), 7);
+  EXPECT_EQ(values.at("flight.replan_counters.nodes_kept"), 10);
+}
+
+TEST(RunValues, WithoutReplansTheirSumsHaveNoValue) {
+  const std::map<std::string, double> expected = {
+      {"length_m", 5},        {"setup_time_s", 0.5},        {"flight.collisions", 0},
+      {"flight.reached", 1},  {"flight.handovers", 0},      {"flight.replans", 0},
+      {"flight.length_m", 6}, {"flight.counters.steps", 7},
+  };
+  EXPECT_EQ(values_of_flight("[]"), expected);
+}
+
+TEST(RunValues, NamesOfReplansAreKnown) {
+  EXPECT_EQ(why_no_value("flight.replan_time_s"), "");
+  EXPECT_EQ(why_no_value("flight.replan_counters.nodes_added"), "");
+  EXPECT_EQ(why_no_value("flight.replan_times"),
+            "no run has a value 'flight.replan_times'; did you mean 'flight.replan_time_s'?");
+  EXPECT_EQ(why_no_value("replan_counters.expanded"),
+            "no run has a value 'replan_counters.expanded': expected one of the run, or flight.…, "
+            "flight.counters.…, flight.replan_counters.…, steps.ID.…, steps.ID.counters.…");
+}
+}  // namespace
+}  // namespace altiplan::host
