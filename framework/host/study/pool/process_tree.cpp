@@ -227,7 +227,20 @@ TreeUse use_of(const std::vector<pid_t>& processes, double base_mb) {
   for (const pid_t process : processes) {
     const ProcessUse use = use_of(process);
     all.cpu_s += use.cpu_s;
-    all.memory_mb += processes.size() == 1 ? use.memory_mb : proportional_memory_mb(process);
+    all.memory_mb += use.memory_mb;
+  }
+  if (processes.size() > 1) {
+    const auto proportional = [&] {
+      double sum = 0;
+      for (const pid_t process : processes) {
+        sum += proportional_memory_mb(process);
+      }
+      return sum;
+    };
+    // When one of them ends between two looks, its share of common pages counts with the next's:
+    // only what is there in two rounds counts.
+    const double first = proportional();
+    all.memory_mb = std::min(first, proportional());
   }
   all.memory_mb = std::max(0.0, all.memory_mb - base_mb);
   return all;
