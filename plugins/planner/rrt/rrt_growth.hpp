@@ -54,6 +54,9 @@ class Growth {
     if (tree_.count(Tree::Place::growing) == 0) {
       tree_.wake();  // what is left rested
     }
+    if (is_done() && !keeps_route_rules(tree_.way_to(end_))) {
+      drop_end();  // by the way to what comes next
+    }
     reach_out(root_);
   }
 

@@ -123,6 +123,26 @@ TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
   }
 }
 
+// From far beside its route the vehicle has a sound leg to it, but not the length.
+TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
+  for (const char* cut_off : {"drop", "reconnect"}) {
+    SCOPED_TRACE(cut_off);
+    Request request = over_the_plain(2);
+    request.limits.max_turn_horizontal = kPi;
+    const auto planner =
+        make_planner("rrt", std::string("{max_iterations: 2000, cut_off: ") + cut_off + "}");
+    request.limits.max_route_length = length(planner->plan(request).route) + 1;
+    const auto session = planner->begin(request);
+    ASSERT_EQ(session->result().status, Status::solved) << session->result().message;
+    request.start.position = {5, 190, 50};
+    const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
+    EXPECT_TRUE(result.status == Status::no_route || check(result.route, request).ok());
+    request.start.position = {5, 100, 50};
+    const PlanResult& back = session->update(request.start, request.goal, request.world, {}, {});
+    EXPECT_TRUE(back.status == Status::no_route || check(back.route, request).ok());
+  }
+}
+
 TEST(RrtSession, AfreshIsAPlanFromThere) {
   Request request = over_the_plain(3);
   const auto planner = make_planner("rrt", "{cut_off: afresh}");
