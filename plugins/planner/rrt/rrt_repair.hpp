@@ -112,7 +112,7 @@ class Repair {
       : request_(request), growth_(growth), tree_(tree) {}
 
   void run(const Damage& damage, RandomStream& random) {
-    if (damage.tail.empty()) {
+    if (damage.tail.empty() || damage.box.is_empty()) {
       return;
     }
     std::vector<Node> starts;

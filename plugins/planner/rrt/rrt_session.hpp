@@ -56,7 +56,9 @@ class TreeSession final : public Session {
       growth_.drop_end();
     }
     cut_.clear();
-    damage_ = Box::empty();
+    if (goal_moved || result_.status == Status::solved) {
+      damage_ = Box::empty();  // else it waits to be mended still
+    }
     prune(changes);
     const std::size_t next = next_of_route();
     const bool is_rerooted =
@@ -65,8 +67,13 @@ class TreeSession final : public Session {
       take_root(next);
     }
     cut_off();
-    const std::size_t kept = tree_.in_use() - (is_rerooted ? 1 : 0);
+    std::size_t kept = tree_.in_use() - (is_rerooted ? 1 : 0);
+    const Node old_end = growth_.end();
+    const bool had_end = old_end != kNone && tree_.place(old_end) != Place::removed;
     result_ = solve(goal_moved);
+    if (had_end && tree_.place(old_end) == Place::removed) {
+      --kept;  // for another end
+    }
     result_.counters.push_back({"nodes_kept", std::int64_t(kept)});
     result_.counters.push_back({"nodes_pruned", std::int64_t(nodes_before - kept)});
     result_.counters.push_back({"nodes_added", std::int64_t(tree_.in_use() - kept)});
@@ -166,6 +173,12 @@ class TreeSession final : public Session {
         return;
       }
     }
+    if (damage_.is_empty()) {  // what is missing is the way back to the old route
+      damage_ = damage_.with(request_.start.position);
+      for (std::size_t i = next; i < last; ++i) {
+        damage_ = damage_.with(tree_.point(route_[i]));
+      }
+    }
   }
 
   /// The index in the old route of the end of the leg nearest to the vehicle.
@@ -225,7 +238,9 @@ class TreeSession final : public Session {
     if (cut_off_ != CutOff::reconnect || damage_.is_empty()) {
       return Box::empty();
     }
-    const Vec3 half = (damage_.max - damage_.min) / 2;
+    const double room =
+        2 * growth_.step() + std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
+    const Vec3 half = ((damage_.max - damage_.min) / 2).cwiseMax(room);
     return Box{damage_.min - half, damage_.max + half}.intersected(kit::sampled_box(request_));
   }
 

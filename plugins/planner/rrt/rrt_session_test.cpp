@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -28,6 +29,15 @@ std::map<std::string, std::int64_t> counters(const PlanResult& result) {
     all[counter.name] = counter.value;
   }
   return all;
+}
+
+/// A sphere about the middle of a route, as a change of the request's world.
+Change pop_up_on(const Route& route, Request& request) {
+  const auto shape =
+      std::make_shared<kit::ShapeLayer>(std::vector<Shape>{Sphere{route[route.size() / 2], 25}});
+  request.world =
+      std::make_shared<const World>(request.world->with({"pop_up", "sphere", shape, true}));
+  return {Change::Kind::add, "pop_up", shape->bounds()};
 }
 
 /// The nodes that are in the tree after all that happened to them.
@@ -132,14 +142,61 @@ TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
     const auto planner =
         make_planner("rrt", std::string("{max_iterations: 2000, cut_off: ") + cut_off + "}");
     request.limits.max_route_length = length(planner->plan(request).route) + 1;
+    Nodes nodes;
+    request.trace = &nodes;
     const auto session = planner->begin(request);
     ASSERT_EQ(session->result().status, Status::solved) << session->result().message;
+    const std::map<std::int64_t, Vec3> known = nodes.at;
     request.start.position = {5, 190, 50};
     const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
     EXPECT_TRUE(result.status == Status::no_route || check(result.route, request).ok());
-    request.start.position = {5, 100, 50};
-    const PlanResult& back = session->update(request.start, request.goal, request.world, {}, {});
-    EXPECT_TRUE(back.status == Status::no_route || check(back.route, request).ok());
+    // The end that was given up was not kept.
+    const auto kept = std::count_if(nodes.at.begin(), nodes.at.end(),
+                                    [&](const auto& node) { return known.count(node.first) > 0; });
+    EXPECT_EQ(counters(result)["nodes_kept"], kept);
+    EXPECT_EQ(counters(result)["nodes_added"], std::int64_t(nodes.at.size()) - kept);
+  }
+}
+
+// Nothing has changed but the vehicle's place: what is left of its route is near.
+TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
+  std::int64_t back = 0;
+  std::int64_t planned = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Request request = over_the_plain(seed);
+    request.limits.min_leg = 4;
+    const auto planner = make_planner("rrt");
+    const auto session = planner->begin(request);
+    request.start = testing::on_route(session->result().route, 150, 20);
+    request.start.position.y() += 30;
+    request.start.velocity = {0, 20, 0};
+    const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
+    ASSERT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_TRUE(check(result.route, request).ok());
+    back += counters(result)["expanded"];
+    planned += counters(planner->plan(request))["expanded"];
+  }
+  EXPECT_LT(back, planned / 2);
+}
+
+TEST(RrtSession, AnUpdateMendsWhatTheOneBeforeHadNoBudgetFor) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Request request = over_the_plain(seed);
+    const auto planner = make_planner("rrt");
+    const auto session = planner->begin(request);
+    const auto late = planner->begin(request);
+    const std::vector<Change> changes = {pop_up_on(session->result().route, request)};
+    const PlanResult& at_once =
+        session->update(request.start, request.goal, request.world, changes, {});
+    ASSERT_EQ(at_once.status, Status::solved) << at_once.message;
+    Budget none;
+    none.max_iterations = 0;
+    EXPECT_EQ(late->update(request.start, request.goal, request.world, changes, none).status,
+              Status::timed_out);
+    const PlanResult& then = late->update(request.start, request.goal, request.world, {}, {});
+    ASSERT_EQ(then.status, Status::solved) << then.message;
+    EXPECT_TRUE(check(then.route, request).ok());
+    EXPECT_LE(counters(then)["expanded"], counters(at_once)["expanded"] + 200);
   }
 }
 
