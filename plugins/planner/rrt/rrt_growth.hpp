@@ -99,7 +99,8 @@ class Growth {
   bool hang(Node branch, Node under, std::vector<Node>& cut) {
     const Vec3& from = tree_.point(under);
     const Vec3& at = tree_.point(branch);
-    if (!leg_ok(before(under), from, at, request_)) {
+    // A leg without length would hide the turn into the next one.
+    if (at == from || !leg_ok(before(under), from, at, request_)) {
       return false;
     }
     const std::vector<Node> children = tree_.children(branch);

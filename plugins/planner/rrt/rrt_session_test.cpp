@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -177,6 +178,23 @@ TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
     planned += counters(planner->plan(request))["expanded"];
   }
   EXPECT_LT(back, planned / 2);
+}
+
+// The old root waits at the place of the new one.
+TEST(RrtSession, AVehicleThatTurnsOnTheSpotIsHeldToItsHeading) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Request request = over_the_plain(seed);
+    const auto session = make_planner("rrt")->begin(request);
+    request.start.position = testing::on_route(session->result().route, 100, 20).position;
+    for (const double heading : {0.0, 90.0, 200.0, 300.0}) {
+      request.start.velocity = 20 * Vec3(std::cos(radians(heading)), std::sin(radians(heading)), 0);
+      const PlanResult& result =
+          session->update(request.start, request.goal, request.world, {}, {});
+      ASSERT_EQ(result.status, Status::solved) << result.message;
+      const CheckResult found = check(result.route, request);
+      EXPECT_TRUE(found.ok()) << found.violations.front().message;
+    }
+  }
 }
 
 TEST(RrtSession, AnUpdateMendsWhatTheOneBeforeHadNoBudgetFor) {
