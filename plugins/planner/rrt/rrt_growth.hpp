@@ -200,6 +200,7 @@ class Growth {
   void reach_out(Node node) {
     if (tree_.count(Tree::Place::loose) > 0) {
       tree_.loose_within(tree_.point(node), 2 * settings_.step, near_);
+      cut_.clear();
       for (const Node branch : near_) {
         if (!tree_.is_rooted(branch)) {
           hang(branch, node, cut_);

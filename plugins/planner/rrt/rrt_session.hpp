@@ -59,6 +59,7 @@ class TreeSession final : public Session {
     if (goal_moved || result_.status == Status::solved) {
       damage_ = Box::empty();  // else it waits to be mended still
     }
+    forget_waiting();
     prune(changes);
     const std::size_t next = next_of_route();
     const bool is_rerooted =
@@ -103,6 +104,19 @@ class TreeSession final : public Session {
     const Damage damage{around, tail(around)};
     Repair(request_, growth_, tree_).run(damage, random_);
     return growth_.run(damage, random_);
+  }
+
+  /// Where more nodes wait than the tree has, they are forgotten, so that a long flight does not
+  /// gather them. The branch of the old route's end stays.
+  void forget_waiting() {
+    const std::size_t waiting = tree_.count(Place::loose);
+    if (waiting > std::max(kMostWaiting, tree_.in_use() - waiting)) {
+      Node top = growth_.end();
+      while (top != kNone && tree_.parent(top) != kNone) {
+        top = tree_.parent(top);
+      }
+      tree_.remove_loose(top);
+    }
   }
 
   /// Cuts the legs that the changes break, and removes the nodes in forbidden places.
@@ -274,6 +288,7 @@ class TreeSession final : public Session {
     return {nodes.rbegin(), nodes.rend()};
   }
 
+  static constexpr std::size_t kMostWaiting = 1000;
   static constexpr std::size_t kMostSkipped = 5;  ///< nodes of the old route, to reach the rest
 
   CutOff cut_off_;

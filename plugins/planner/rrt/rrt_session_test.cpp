@@ -218,6 +218,22 @@ TEST(RrtSession, AnUpdateMendsWhatTheOneBeforeHadNoBudgetFor) {
   }
 }
 
+// To and fro between two goals: what is cut off behind the vehicle does not gather.
+TEST(RrtSession, ALongFlightDoesNotGatherNodes) {
+  Request request = over_the_plain(1);
+  const auto session = make_planner("rrt")->begin(request);
+  for (int update = 0; update < 2000; ++update) {
+    const PlanResult& last = session->result();
+    ASSERT_EQ(last.status, Status::solved) << last.message;
+    request.start = testing::on_route(last.route, 15, 20);
+    if ((request.start.position - request.goal.position).norm() < 40) {
+      request.goal.position.x() = request.goal.position.x() > 200 ? 10 : 390;
+    }
+    session->update(request.start, request.goal, request.world, {}, {});
+    EXPECT_LT(counters(session->result())["nodes"], 3000);
+  }
+}
+
 TEST(RrtSession, AfreshIsAPlanFromThere) {
   Request request = over_the_plain(3);
   const auto planner = make_planner("rrt", "{cut_off: afresh}");

@@ -154,6 +154,22 @@ class Tree {
     }
   }
 
+  /// Removes the loose nodes but for those of one branch; of none where that is kNone.
+  void remove_loose(Node branch) {
+    std::vector<Node> kept;
+    if (branch != kNone) {
+      kept = below(branch);
+      std::sort(kept.begin(), kept.end());
+    }
+    loose_.within(Box{Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}, numbers_);
+    for (const std::size_t number : numbers_) {
+      const Node node = loose_nodes_[number];
+      if (!std::binary_search(kept.begin(), kept.end(), node)) {
+        put(node, Place::removed);
+      }
+    }
+  }
+
   /// Nodes in the box that are not removed, but for the end; `found` is emptied first.
   void within(const Box& box, std::vector<Node>& found) {
     growing_.within(box, numbers_);
@@ -162,8 +178,9 @@ class Tree {
     for (const std::size_t number : numbers_) {
       found.push_back(loose_nodes_[number]);
     }
+    std::erase_if(resting_, [&](Node node) { return place(node) != Place::resting; });
     for (const Node node : resting_) {
-      if (place(node) == Place::resting && box.contains(point(node))) {
+      if (box.contains(point(node))) {
         found.push_back(node);
       }
     }
