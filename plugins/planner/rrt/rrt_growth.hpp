@@ -51,6 +51,7 @@ class Growth {
     watch_.emplace(request_.budget);
     iterations_ = 0;
     stopped_.reset();
+    refused_.clear();
     if (tree_.count(Tree::Place::growing) == 0) {
       tree_.wake();  // what is left rested
     }
@@ -231,6 +232,8 @@ class Growth {
       drop_end();
       end_ = is_there ? node : tree_.add(goal, node, Tree::Place::end);
       end_is_goal_ = !is_there;
+    } else if (refused_.empty()) {
+      refused_ = check(route, request_).violations.front().message;
     }
   }
 
@@ -263,7 +266,9 @@ class Growth {
                      std::to_string(std::lround(away)) + " m from the goal";
     const Vec3 next = p + std::min(1.0, settings_.step / away) * (goal - p);
     const auto wrong = leg_violations(before(nearest), p, next, request_, 0);
-    if (!wrong.empty()) {
+    if (!refused_.empty()) {
+      result.message += "; the first route to it was refused: " + refused_;
+    } else if (!wrong.empty()) {
       result.message += "; on the next leg " + wrong.front().message;
     }
     count(result);
@@ -282,6 +287,7 @@ class Growth {
   std::optional<BudgetWatch> watch_;
   std::uint64_t iterations_ = 0;
   std::optional<Status> stopped_;
+  std::string refused_;  ///< why the first route to the goal was
   Node root_ = kNone;
   Node end_ = kNone;
   bool end_is_goal_ = false;  ///< a node of its own at the goal, not one within its tolerance

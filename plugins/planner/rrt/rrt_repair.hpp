@@ -121,8 +121,10 @@ class Repair {
     if (starts.empty()) {
       starts.push_back(growth_.root());
     }
+    Request long_legs = request_;
+    long_legs.limits.max_leg = kInfinity;  // steps along them are short
     for (int i = 0; i < kDetours && !growth_.is_done(); ++i) {
-      Detour detour(request_, tree_, starts, damage.tail, damage.box);
+      Detour detour(long_legs, tree_, starts, damage.tail, damage.box);
       const std::vector<Detour::Place> way = detour.find(growth_, random);
       if (way.empty()) {
         continue;

@@ -181,6 +181,26 @@ TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
 }
 
 // The old root waits at the place of the new one.
+// Ways past a threat are looked for with legs of any length, and grown along with short ones.
+TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
+  std::int64_t repaired = 0;
+  std::int64_t planned = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Request request = over_the_plain(seed);
+    request.limits.max_leg = 8;
+    const auto planner = make_planner("rrt");
+    const auto session = planner->begin(request);
+    const std::vector<Change> changes = {pop_up_on(session->result().route, request)};
+    const PlanResult& result =
+        session->update(request.start, request.goal, request.world, changes, {});
+    ASSERT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_TRUE(check(result.route, request).ok());
+    repaired += counters(result)["expanded"];
+    planned += counters(planner->plan(request))["expanded"];
+  }
+  EXPECT_LT(repaired, planned / 2);
+}
+
 TEST(RrtSession, AVehicleThatTurnsOnTheSpotIsHeldToItsHeading) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Request request = over_the_plain(seed);

@@ -167,6 +167,15 @@ TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
   EXPECT_FALSE(result.proved);
   EXPECT_NE(result.message.find("m from the goal; on the next leg"), std::string::npos)
       << result.message;
+
+  // A rule of the whole route stands in the way.
+  request = testing::request_in(testing::world_of(std::vector<Shape>{Sphere{{50, 50, 50}, 5}}),
+                                {5, 50, 50}, {95, 50, 50}, {{0, 0, 0}, {100, 100, 100}});
+  request.limits.max_route_length = 80;
+  const PlanResult longer = make_planner("rrt", "{max_iterations: 3000}")->plan(request);
+  EXPECT_EQ(longer.status, Status::no_route);
+  EXPECT_NE(longer.message.find("refused: the route's length is"), std::string::npos)
+      << longer.message;
 }
 }  // namespace
 }  // namespace altiplan
