@@ -45,9 +45,8 @@ struct Params {
         .unit("m")
         .at_least(0.001)
         .doc(
-            "L, length of a leg; auto: the least that the limits allow, at least a hundredth of "
-            "the "
-            "volume's diagonal");
+            "L, length of a leg; auto: a hundredth of the volume's diagonal, within the limits on "
+            "legs");
     f("weight_random", weight_random)
         .range(0, 1000)
         .doc("w_1: the node with the least w_1 |q - q_rand| + w_2 |q - goal| is extended");
