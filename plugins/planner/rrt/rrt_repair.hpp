@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "altiplan/check.hpp"
@@ -16,85 +15,78 @@ namespace altiplan::rrt {
 /// with legs as long as they come.
 class Detour {
  public:
-  struct Place {
-    Vec3 point{0, 0, 0};
-    Node node = kNone;  ///< of the tree, where it is one
-    std::size_t parent = kRoot;
+  struct Way {
+    Node from = kNone;
+    Node to = kNone;
+    Route line;  ///< empty: none was found
   };
 
   /// From one of the nodes `from` to one of `to`, by places drawn in the box.
   Detour(const Request& request, const Tree& tree, const std::vector<Node>& from,
          const std::vector<Node>& to, const Box& box)
-      : request_(request), box_(box) {
-    for (const Node node : from) {
-      sides_[0].push_back({tree.point(node), node});
-    }
-    for (const Node node : to) {
-      sides_[1].push_back({tree.point(node), node});
-    }
-  }
+      : request_(request), box_(box), sides_{Side(tree, from), Side(tree, to)} {}
 
-  /// The way, its first and last place nodes of the tree; empty where none was found.
-  std::vector<Place> find(Growth& growth, RandomStream& random) {
+  Way find(Growth& growth, RandomStream& random) {
     for (std::size_t i = 0; i < kDraws && growth.next_iteration(); ++i) {
       const Vec3 p = random.in(box_);
-      std::vector<Place>& here = sides_[i % 2];
-      std::vector<Place>& there = sides_[1 - i % 2];
-      const std::size_t near = nearest(here, p);
-      if (!is_free(here[near].point, p)) {
+      Side& here = sides_[i % 2];
+      Side& there = sides_[1 - i % 2];
+      const Node near = here.nearest(p);
+      if (!is_free(here.legs.point(near), p)) {
         continue;
       }
-      here.push_back({p, kNone, near});
-      const std::size_t other = nearest(there, p);
-      if (is_free(p, there[other].point)) {
-        std::vector<Place> way = way_back(here, here.size() - 1);
-        std::reverse(way.begin(), way.end());
-        const std::vector<Place> rest = way_back(there, other);
-        way.insert(way.end(), rest.begin(), rest.end());
-        if (i % 2 == 1) {
-          std::reverse(way.begin(), way.end());
-        }
-        return without_idle_corners(way);
+      const Node added = here.add(p, near);
+      const Node other = there.nearest(p);
+      if (is_free(p, there.legs.point(other))) {
+        return i % 2 == 0 ? joined(added, other) : joined(other, added);
       }
     }
     return {};
   }
 
  private:
-  static constexpr std::size_t kRoot = std::numeric_limits<std::size_t>::max();
   static constexpr std::size_t kDraws = 300;
+
+  /// A tree of its own, whose roots are nodes of the tree that grows.
+  struct Side {
+    Side(const Tree& tree, const std::vector<Node>& from) : roots(from) {
+      for (const Node node : roots) {
+        add(tree.point(node), kNone);
+      }
+    }
+    Node add(const Vec3& p, Node parent) {
+      points.insert(p);  // under the same number
+      return legs.add(p, parent);
+    }
+    Node nearest(const Vec3& p) const { return Node(points.nearest(p)); }
+    Node root_of(Node node) const {
+      while (legs.parent(node) != kNone) {
+        node = legs.parent(node);
+      }
+      return roots[std::size_t(node)];
+    }
+    std::vector<Node> roots;
+    kit::LegTree legs;
+    kit::KdTree points;
+  };
 
   bool is_free(const Vec3& a, const Vec3& b) const { return leg_ok(std::nullopt, a, b, request_); }
 
-  static std::size_t nearest(const std::vector<Place>& places, const Vec3& p) {
-    std::size_t best = 0;
-    double least = kInfinity;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double square = (places[i].point - p).squaredNorm();
-      if (square < least) {
-        least = square;
-        best = i;
-      }
-    }
-    return best;
+  Way joined(Node a, Node b) const {
+    Route line = sides_[0].legs.way_to(a);
+    const Route rest = sides_[1].legs.way_to(b);
+    line.insert(line.end(), rest.rbegin(), rest.rend());
+    return {sides_[0].root_of(a), sides_[1].root_of(b), without_idle_corners(line)};
   }
 
-  static std::vector<Place> way_back(const std::vector<Place>& places, std::size_t last) {
-    std::vector<Place> way;
-    for (; last != kRoot; last = places[last].parent) {
-      way.push_back(places[last]);
-    }
-    return way;
-  }
-
-  std::vector<Place> without_idle_corners(const std::vector<Place>& way) const {
-    std::vector<Place> shorter = {way.front()};
-    for (std::size_t i = 0; i + 1 < way.size();) {
-      std::size_t next = way.size() - 1;
-      while (next > i + 1 && !is_free(way[i].point, way[next].point)) {
+  Route without_idle_corners(const Route& line) const {
+    Route shorter = {line.front()};
+    for (std::size_t i = 0; i + 1 < line.size();) {
+      std::size_t next = line.size() - 1;
+      while (next > i + 1 && !is_free(line[i], line[next])) {
         --next;
       }
-      shorter.push_back(way[next]);
+      shorter.push_back(line[next]);
       i = next;
     }
     return shorter;
@@ -102,7 +94,7 @@ class Detour {
 
   const Request& request_;
   Box box_;
-  std::vector<Place> sides_[2];
+  Side sides_[2];
 };
 
 /// Grows along detours until the tail of the old route hangs on the tree again.
@@ -125,20 +117,15 @@ class Repair {
     long_legs.limits.max_leg = kInfinity;  // steps along them are short
     for (int i = 0; i < kDetours && !growth_.is_done(); ++i) {
       Detour detour(long_legs, tree_, starts, damage.tail, damage.box);
-      const std::vector<Detour::Place> way = detour.find(growth_, random);
-      if (way.empty()) {
+      Detour::Way way = detour.find(growth_, random);
+      if (way.line.empty()) {
         continue;
       }
-      Route line;
-      for (const Detour::Place& place : way) {
-        line.push_back(place.point);
-      }
-      add_rest_of_tail(way.back().node, line);
+      add_rest_of_tail(way.to, way.line);
       // Where the turn at its beginning is too sharp, some nodes before that.
-      Node from = way.front().node;
-      for (int back = 0; back < kBack && from != kNone && !growth_.is_done(); ++back) {
-        follow(line, from);
-        from = tree_.parent(from);
+      for (int back = 0; back < kBack && way.from != kNone && !growth_.is_done(); ++back) {
+        follow(way.line, way.from);
+        way.from = tree_.parent(way.from);
       }
     }
   }
