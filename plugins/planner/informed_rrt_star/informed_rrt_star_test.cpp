@@ -1,40 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "support/support.hpp"
+#include "reference/star_planners.hpp"
 
 namespace altiplan {
 namespace {
 
+using testing::around_a_wall;
 using testing::make_planner;
 
-/// Cells with a wall that leaves a gap at either side, one much nearer.
-Request around_a_wall() {
-  return testing::draw({"..........\n..........\n..........\n.########.\n....S.....\n..........\n"
-                        "..........",
-                        "..........\n....G.....\n..........\n.########.\n..........\n..........\n"
-                        ".........."},
-                       10)
-      .request;
-}
-
-TEST(InformedRrtStar, FindsTheNearerGap) {
-  const Request request = around_a_wall();
-  const PlanResult result =
-      make_planner("informed_rrt_star", "{max_iterations: 8000}")->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
-  EXPECT_TRUE(check(result.route, request).ok());
-  EXPECT_LT(length(result.route), 108);
-  EXPECT_FALSE(result.budget_hit);
-}
+TEST(InformedRrtStar, FindsTheNearerGap) { testing::expect_the_nearer_gap("informed_rrt_star"); }
 
 TEST(InformedRrtStar, UsesTheWholeBudget) {
-  Request request = around_a_wall();
-  request.budget.max_iterations = 3000;
-  const PlanResult result = make_planner("informed_rrt_star")->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
-  EXPECT_TRUE(result.budget_hit);
-  EXPECT_EQ(result.counters.front().value, 3000);
+  testing::expect_the_whole_budget_used("informed_rrt_star");
 }
 
 TEST(InformedRrtStar, IsShorterThanRrtStarAfterTheSameSamples) {
