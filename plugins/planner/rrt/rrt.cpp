@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rapidly exploring random tree with a goal heuristic, flight constraints and a dynamic tree.
 //
-// Citation: paper 000 (improved RRT for UAV route planning with a dynamic tree); the basic tree: S.
-// M.
-//   LaValle: Rapidly-Exploring Random Trees: A New Tool for Path Planning. TR 98-11, Iowa State
-//   University, 1998.
-// Guarantees: every leg keeps the rules; with random_share > 0 a route is found sooner or later
-// where
-//   steps can make one (probabilistically complete, but for limits on turns), never proved absent.
+// Citation: paper 000: Gu Zilyu, Liu Yu, Sun Wenbang, Yue Guang, Sun Shangwen: UAV Dynamic Route
+//   Planning Algorithm Based on RRT. Computer Science 50(6A), 2023. The basic tree: S. M. LaValle:
+//   Rapidly-Exploring Random Trees: A New Tool for Path Planning. TR 98-11, Iowa State University,
+//   1998.
+// Guarantees: every leg keeps the rules; no route is ever proved absent. Without limits on turns,
+//   and with random_share > 0, a route that steps can make is found sooner or later.
 // Complexity: O(n log n) for n nodes with weight_goal 0; with both weights the choice of a node
-// grows
-//   about as n^0.65.
-// Deviations: eq. (5) with eqs. (2) to (4) alone makes the same child for ever, so a node grows
-// toward
-//   the goal once, and rests after max_failures; the last leg is up to two steps long; after a
-//   change (cut_off: reconnect) branches that were cut off are taken back where the tree comes by.
-// Symbols: q_rand a random place, q_near the chosen node, w_1 weight_random, w_2 weight_goal, p
-//   random_share, L step_m.
+//   grows about as n^0.65.
+// Deviations: eqs. (2) to (5) alone make the same child for ever, so a node grows toward the goal
+//   once, and rests after max_failures; when all have rested, extensions are bent to the limits
+//   on turn and climb. The last leg is up to two steps long. With cut_off: reconnect the tree
+//   grows along a way past the threat (rrt_repair.hpp), and takes back what was cut off.
+// Symbols: q_rand a random place, q_near the chosen node, w_1 weight_random, w_2 weight_goal,
+//   p random_share, L step_m.
 #include <memory>
 
 #include "altiplan/kit/scratch.hpp"

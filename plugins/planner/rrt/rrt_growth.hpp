@@ -262,8 +262,12 @@ class Growth {
     PlanResult result;
     result.status = status;
     result.budget_hit = status == Status::timed_out;
-    result.message = "the nearest of " + std::to_string(tree_.in_use()) + " nodes is " +
-                     std::to_string(std::lround(away)) + " m from the goal";
+    if (status == Status::no_route) {
+      result.message =
+          "gave up after " + std::to_string(iterations_) + " extensions (max_iterations): ";
+    }
+    result.message += "the nearest of " + std::to_string(tree_.in_use()) + " nodes is " +
+                      std::to_string(std::lround(away)) + " m from the goal";
     const Vec3 next = p + std::min(1.0, settings_.step / away) * (goal - p);
     const auto wrong = leg_violations(before(nearest), p, next, request_, 0);
     if (!refused_.empty()) {

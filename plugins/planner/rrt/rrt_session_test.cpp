@@ -180,7 +180,6 @@ TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
   EXPECT_LT(back, planned / 2);
 }
 
-// The old root waits at the place of the new one.
 // Ways past a threat are looked for with legs of any length, and grown along with short ones.
 TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
   std::int64_t repaired = 0;
@@ -201,6 +200,7 @@ TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
   EXPECT_LT(repaired, planned / 2);
 }
 
+// The old root waits at the place of the new one.
 TEST(RrtSession, AVehicleThatTurnsOnTheSpotIsHeldToItsHeading) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Request request = over_the_plain(seed);
