@@ -70,8 +70,7 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   for (std::size_t axis = 0; axis < 3; ++axis) {
     spec_.counts[axis] = int(counts[axis]);
   }
-  per_row_ = divisor(spec_.counts[0]);
-  per_level_ = divisor(spec_.counts[1]);
+  numbers_ = CellIndex(spec_.counts);
   std::array<double, 8> along{};  // by the axes, as bits, that a step leads along
   for (int set = 0; set < 8; ++set) {
     along[std::size_t(set)] = step(direction(set & 1, set >> 1 & 1, set >> 2 & 1)).norm();
@@ -79,8 +78,7 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   for (int d = 0; d < kDirections; ++d) {
     const Cell o = offset(d);
     lengths_[std::size_t(d)] = along[std::size_t((o[0] & 1) | (o[1] & 1) << 1 | (o[2] & 1) << 2)];
-    strides_[std::size_t(d)] =
-        (std::int64_t(o[2]) * spec_.counts[1] + o[1]) * spec_.counts[0] + o[0];
+    strides_[std::size_t(d)] = numbers_.stride(d);
     const int moved = (o[0] != 0) + (o[1] != 0) + (o[2] != 0);
     const bool wanted = neighbourhood_ == Neighbourhood::all ? moved > 0 : moved == 1;
     if (wanted && (o[2] == 0 || !level_m_)) {

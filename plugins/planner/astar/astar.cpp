@@ -17,11 +17,11 @@
 // Symbols: g travelled cost, h heuristic, f = w_g g + w_h h.
 #include <memory>
 
+#include "altiplan/kit/heading_search.hpp"
 #include "altiplan/kit/search_params.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
 #include "cell_search.hpp"
-#include "heading_search.hpp"
 
 namespace {
 
@@ -66,13 +66,13 @@ class AStar final : public Planner {
       }
     }
     return kit::search_by_state(
-        settings, request, best_cost, sizeof(astar::HeadingCell) + 1,
+        settings, request, best_cost, sizeof(kit::HeadingCell) + 1,
         [&](const Request& rest) {
           return on_lattice<astar::Search, astar::Node>(rest, settings, best_cost, memory_);
         },
         [&](const Request& rest) {
-          return on_lattice<astar::HeadingSearch, astar::HeadingCell>(rest, settings, best_cost,
-                                                                      heading_memory_);
+          return on_lattice<kit::HeadingSearch, kit::HeadingCell>(rest, settings, best_cost,
+                                                                  heading_memory_);
         });
   }
 
@@ -122,7 +122,7 @@ class AStar final : public Planner {
 
   Params params_;
   mutable kit::ScratchPool<astar::Memory> memory_;
-  mutable kit::ScratchPool<astar::HeadingMemory> heading_memory_;
+  mutable kit::ScratchPool<kit::HeadingMemory> heading_memory_;
   mutable kit::ScratchPool<astar::CellMemory> cell_memory_;
 };
 }  // namespace

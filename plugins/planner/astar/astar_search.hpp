@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/kit/goal_search.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "goal_search.hpp"
 
 namespace altiplan::astar {
 
@@ -32,7 +32,7 @@ struct Memory {
 /// Start and goal join the lattice by straight links (Lattice::links), so neither has to be the
 /// centre of a cell. A closed cell stays closed: with limits on turns its parent then never changes
 /// under its successors, and without them a consistent heuristic never asks for it.
-class Search : GoalSearch {
+class Search : kit::GoalSearch {
  public:
   Search(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
          double best_cost, Memory& memory)

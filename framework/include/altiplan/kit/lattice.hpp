@@ -38,6 +38,46 @@ constexpr DirectionMask reversed(DirectionMask mask) {
   return __builtin_bswap32(mask) >> (32 - kDirections);
 }
 
+/// The numbers of the cells of a box, x fastest.
+class CellIndex {
+ public:
+  CellIndex() = default;
+  explicit CellIndex(const Cell& counts)
+      : counts_(counts), per_row_(divisor(counts[0])), per_level_(divisor(counts[1])) {}
+
+  std::size_t size() const {
+    return std::size_t(counts_[0]) * std::size_t(counts_[1]) * std::size_t(counts_[2]);
+  }
+  std::uint32_t index(const Cell& c) const {
+    return std::uint32_t((std::size_t(c[2]) * std::size_t(counts_[1]) + std::size_t(c[1])) *
+                             std::size_t(counts_[0]) +
+                         std::size_t(c[0]));
+  }
+  Cell cell(std::uint32_t index) const {
+    const std::uint32_t row = divided(index, per_row_);
+    const std::uint32_t level = divided(row, per_level_);
+    return {int(index - row * std::uint32_t(counts_[0])),
+            int(row - level * std::uint32_t(counts_[1])), int(level)};
+  }
+  /// Difference of index to the neighbour.
+  std::int64_t stride(int d) const {
+    const Cell o = offset(d);
+    return (std::int64_t(o[2]) * counts_[1] + o[1]) * counts_[0] + o[0];
+  }
+
+ private:
+  /// floor((2^64 - 1) / d), and n / d by it: a division would be the dearest part of a step.
+  static std::uint64_t divisor(int d) { return ~std::uint64_t{0} / std::uint64_t(d); }
+  static std::uint32_t divided(std::uint32_t n, std::uint64_t divisor) {
+    __extension__ using Wide = unsigned __int128;
+    return std::uint32_t((Wide(divisor) * n + divisor) >> 64);
+  }
+
+  Cell counts_{};
+  std::uint64_t per_row_ = 0;
+  std::uint64_t per_level_ = 0;
+};
+
 /// How many bytes a search may keep, and how many it keeps for each cell.
 struct LatticeMemory {
   std::size_t max_bytes = ~std::size_t{0};
@@ -63,17 +103,8 @@ class ALTIPLAN_API Lattice {
     return p;
   }
   std::size_t size() const { return spec_.cell_count(); }
-  std::uint32_t index(const Cell& c) const {
-    return std::uint32_t((std::size_t(c[2]) * std::size_t(spec_.counts[1]) + std::size_t(c[1])) *
-                             std::size_t(spec_.counts[0]) +
-                         std::size_t(c[0]));
-  }
-  Cell cell(std::uint32_t index) const {
-    const std::uint32_t row = divided(index, per_row_);
-    const std::uint32_t level = divided(row, per_level_);
-    return {int(index - row * std::uint32_t(spec_.counts[0])),
-            int(row - level * std::uint32_t(spec_.counts[1])), int(level)};
-  }
+  std::uint32_t index(const Cell& c) const { return numbers_.index(c); }
+  Cell cell(std::uint32_t index) const { return numbers_.cell(index); }
 
   /// Directions of the neighbourhood.
   DirectionMask steps() const { return steps_; }
@@ -109,16 +140,8 @@ class ALTIPLAN_API Lattice {
   std::vector<Link> links(const Vec3& p) const;
 
  private:
-  /// floor((2^64 - 1) / d), and n / d by it: a division would be the dearest part of a step.
-  static std::uint64_t divisor(int d) { return ~std::uint64_t{0} / std::uint64_t(d); }
-  static std::uint32_t divided(std::uint32_t n, std::uint64_t divisor) {
-    __extension__ using Wide = unsigned __int128;
-    return std::uint32_t((Wide(divisor) * n + divisor) >> 64);
-  }
-
   GridSpec spec_;
-  std::uint64_t per_row_ = 0;
-  std::uint64_t per_level_ = 0;
+  CellIndex numbers_;
   std::optional<double> level_m_;
   Neighbourhood neighbourhood_;
   DirectionMask steps_ = 0;

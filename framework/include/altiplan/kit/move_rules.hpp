@@ -67,6 +67,8 @@ class ALTIPLAN_API MoveRules {
   DirectionMask before(int out) const { return before_[std::size_t(out)]; }
   /// Whether a step may be refused for what led to its first cell, beside the turn.
   bool looks_beyond_turns() const { return !constraints_.empty(); }
+  /// Counts moves that blocked cells have ruled out.
+  void count_blocked(std::int64_t refused) { refused_[by_cells] += refused; }
   /// Counts directions that a turn has ruled out.
   void count_turns(DirectionMask refused) { refused_[by_turn] += __builtin_popcount(refused); }
 
@@ -100,6 +102,11 @@ class ALTIPLAN_API MoveRules {
   /// says so too. The world is then asked for ground and constraints alone, where there are any,
   /// never for obstacles: none reaches into free cells.
   bool sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b);
+
+  /// Whether the leg keeps the limits on length, climb and the turn before it.
+  bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+    return keeps_limits(before, a, b, (b - a).norm());
+  }
 
   /// Directions that keep the rules which depend on the direction alone.
   DirectionMask steps() const { return steps_; }

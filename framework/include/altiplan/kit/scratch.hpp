@@ -141,6 +141,8 @@ class ScratchArray {
     return values_.get()[i];
   }
   std::size_t bytes() const { return count_ * sizeof(T) + count_ / kBlock; }
+  /// Of the blocks written since the last reset.
+  std::size_t written_bytes() const { return written_.size() * kBlockBytes; }
 
  private:
   [[gnu::noinline]] void note(std::size_t block) {

@@ -6,21 +6,21 @@
 #include <limits>
 #include <vector>
 
+#include "altiplan/kit/goal_search.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "goal_search.hpp"
 
-namespace altiplan::astar {
+namespace altiplan::kit {
 
 /// What a search by cell and heading knows of a cell.
 struct HeadingCell {
-  double g;                  ///< of the cheapest arrival that waits, or waited
-  kit::DirectionMask taken;  ///< directions out of the cell that need no further arrival
-  kit::MoveRules::KnownClearance clearance;
+  double g;             ///< of the cheapest arrival that waits, or waited
+  DirectionMask taken;  ///< directions out of the cell that need no further arrival
+  MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
   std::uint8_t in;  ///< direction of that arrival
   bool is_open;     ///< steps that no arrival may take are among `taken`
 };
-inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kit::kHere, false};
+inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kHere, false};
 
 /// A node of the search: a cell, reached in a direction.
 struct Arrival {
@@ -30,8 +30,8 @@ struct Arrival {
 };
 
 struct HeadingMemory {
-  kit::NodeStore<HeadingCell> cells;
-  kit::OpenList open;
+  NodeStore<HeadingCell> cells;
+  OpenList open;
   std::vector<Arrival> arrivals;
   std::vector<double> lengths;  ///< of the ways to them, where costs are others
 };
@@ -45,14 +45,14 @@ struct HeadingMemory {
 /// take, or may take nothing that a cheaper one at the cell could not, is dropped.
 class HeadingSearch : GoalSearch {
  public:
-  HeadingSearch(const Request& request, const kit::SearchSettings& settings,
-                const kit::Lattice& lattice, double best_cost, HeadingMemory& memory)
+  HeadingSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+                double best_cost, HeadingMemory& memory)
       : GoalSearch(request, settings, lattice, best_cost, memory.open),
         cells_(memory.cells),
         arrivals_(memory.arrivals),
         lengths_(memory.lengths) {}
 
-  kit::Found run() {
+  Found run() {
     begin();
     Status status = Status::no_route;
     while (!open_.empty()) {
@@ -74,7 +74,7 @@ class HeadingSearch : GoalSearch {
       return with(route_to(fallback_, false), fallback_g_, false, status != Status::no_route);
     }
     progress_.memory_full = memory_full();
-    kit::Found none = without(status, lengths_prove());
+    Found none = without(status, lengths_prove());
     none.result.message += "; searched by cell and heading";
     return none;
   }
@@ -85,7 +85,7 @@ class HeadingSearch : GoalSearch {
     open_.clear(quantum());
     arrivals_.clear();
     lengths_.clear();
-    for (const kit::Lattice::Link& link : lattice_.links(start_)) {
+    for (const Lattice::Link& link : lattice_.links(start_)) {
       const Vec3 there = lattice_.position(link.cell);
       if (rules_.cell_blocked(link.cell) ||
           (link.length > 0 && !rules_.any_leg_ok(request_.before_start(), start_, there))) {
@@ -93,7 +93,7 @@ class HeadingSearch : GoalSearch {
       }
       at_start_ = link.length == 0;
       cells_.at(lattice_.index(link.cell), kFreshCell);
-      push({lattice_.index(link.cell), kNone, kit::kHere}, link.cell, there,
+      push({lattice_.index(link.cell), kNone, kHere}, link.cell, there,
            link_cost(start_, there, link.length), link.length);
     }
   }
@@ -114,9 +114,9 @@ class HeadingSearch : GoalSearch {
 
   /// Whether an arrival at the cell in direction d can do nothing that another cannot, as cheaply.
   bool is_needless(HeadingCell& cell, const Cell& c, int d, double g) const {
-    const kit::DirectionMask left = rules_.after(d) & ~cell.taken;
-    const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 &&
-                          cell.in != kit::kHere && !rules_.looks_beyond_turns();
+    const DirectionMask left = rules_.after(d) & ~cell.taken;
+    const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 && cell.in != kHere &&
+                          !rules_.looks_beyond_turns();
     if ((left == 0 || by_other) && to_goal_.link_of(c) == nullptr) {
       return true;
     }
@@ -130,7 +130,7 @@ class HeadingSearch : GoalSearch {
   void expand(std::uint32_t index, double g_here, HeadingCell& cell) {
     const Arrival arrival = arrivals_[index];  // pushes move it
     const Cell c = lattice_.cell(arrival.cell);
-    const Vec3 here = arrival.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
+    const Vec3 here = arrival.in == kHere && at_start_ ? start_ : lattice_.position(c);
     const std::optional<Vec3> from = before(arrival.in, here);
     const double length_here = keeps_lengths() ? lengths_[index] : g_here;
     ++progress_.expanded;
@@ -146,12 +146,12 @@ class HeadingSearch : GoalSearch {
       cell.taken = ~rules_.out_of(c);
     }
     // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
-    const bool judged_whole = arrival.in == kit::kHere && from;
-    const kit::DirectionMask left = ~cell.taken;
+    const bool judged_whole = arrival.in == kHere && from;
+    const DirectionMask left = ~cell.taken;
     rules_.count_turns(left & ~rules_.after(arrival.in));
-    for (kit::DirectionMask open = left & rules_.after(arrival.in); open != 0; open &= open - 1) {
+    for (DirectionMask open = left & rules_.after(arrival.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
-      const Cell o = kit::offset(d);
+      const Cell o = offset(d);
       const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
       const Vec3 there = lattice_.position(to);
       const double g = g_here + step_cost(d, here, there);
@@ -167,7 +167,7 @@ class HeadingSearch : GoalSearch {
                       (judged_whole && !rules_.any_leg_ok(from, here, there)))) {
         continue;  // another arrival may take it
       }
-      cell.taken |= kit::DirectionMask{1} << d;
+      cell.taken |= DirectionMask{1} << d;
       if (is_free && !is_needless(successor, to, d, g)) {
         push({next, index, std::uint8_t(d)}, to, there, g, length);
       }
@@ -177,7 +177,7 @@ class HeadingSearch : GoalSearch {
   /// Of this search, not of what the pool's memory has grown to.
   bool memory_full() const {
     return lattice_.size() * sizeof(HeadingCell) + arrivals_.size() * sizeof(Arrival) +
-               open_.size() * sizeof(kit::OpenList::Entry) >
+               open_.size() * sizeof(OpenList::Entry) >
            settings_.max_bytes;
   }
 
@@ -193,13 +193,13 @@ class HeadingSearch : GoalSearch {
     std::reverse(route.begin(), route.end());
     if (at_goal) {
       const Cell c = lattice_.cell(arrivals_[last].cell);
-      kit::end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
+      end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
     }
     return route;
   }
 
-  kit::NodeStore<HeadingCell>& cells_;
+  NodeStore<HeadingCell>& cells_;
   std::vector<Arrival>& arrivals_;
   std::vector<double>& lengths_;
 };
-}  // namespace altiplan::astar
+}  // namespace altiplan::kit

@@ -7,23 +7,23 @@
 #include "altiplan/kit/lattice_search.hpp"
 #include "altiplan/kit/open_list.hpp"
 
-namespace altiplan::astar {
+namespace altiplan::kit {
 
 /// What searches by real numbers have in common, whether a node is a cell or an arrival at one: how
 /// the start and the goal join the lattice.
-class GoalSearch : protected kit::LatticeSearch {
+class GoalSearch : protected LatticeSearch {
  protected:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   static constexpr std::uint32_t kGoal = kNone - 1;  ///< the goal on the open list
 
-  GoalSearch(const Request& request, const kit::SearchSettings& settings,
-             const kit::Lattice& lattice, double best_cost, kit::OpenList& open)
+  GoalSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+             double best_cost, OpenList& open)
       : LatticeSearch(request, settings, lattice, best_cost), open_(open) {}
 
   /// Where the vehicle comes from at a cell reached by a step of direction `in`; nothing when it
   /// starts there without heading.
   std::optional<Vec3> before(int in, const Vec3& here) const {
-    if (in != kit::kHere) {
+    if (in != kHere) {
       return Vec3(here - lattice_.step(in));
     }
     return at_start_ ? request_.before_start() : std::optional<Vec3>(start_);
@@ -33,7 +33,7 @@ class GoalSearch : protected kit::LatticeSearch {
   /// of the way to the node.
   void try_goal(std::uint32_t node, double g, double length, const Cell& c, const Vec3& here,
                 const std::optional<Vec3>& from) {
-    if (const kit::Lattice::Link* link = to_goal_.link_of(c)) {
+    if (const Lattice::Link* link = to_goal_.link_of(c)) {
       if (length + link->length <= longest_ &&
           (link->length == 0 || rules_.any_leg_ok(from, here, goal_))) {
         if (const double at_goal = g + link_cost(here, goal_, link->length); at_goal < goal_g_) {
@@ -50,11 +50,11 @@ class GoalSearch : protected kit::LatticeSearch {
     }
   }
 
-  kit::OpenList& open_;
+  OpenList& open_;
   bool at_start_ = false;  ///< the start is the centre of its cell
   double goal_g_ = kInfinity;
   std::uint32_t goal_parent_ = kNone;
   double fallback_g_ = kInfinity;
   std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
 };
-}  // namespace altiplan::astar
+}  // namespace altiplan::kit
