@@ -123,7 +123,7 @@ inline void expect_the_ends_joined_wherever_they_are(const std::string& planner)
   const PlanResult beside = make_planner(planner)->plan(drawn.request);
   ASSERT_EQ(beside.status, Status::solved) << beside.message;
   expect_sound(beside, drawn.request);
-  EXPECT_LT(length(beside.route), 92);
+  EXPECT_LT(length(beside.route), 100);
 }
 
 inline void expect_budget_and_refusals_told(const std::string& planner) {

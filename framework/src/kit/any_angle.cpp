@@ -68,7 +68,7 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
         return result;
       }
       progress_.memory_full = memory_full();
-      return {*status, {}, false, *status != Status::no_route, progress_};
+      return {*status, {}, false, *status != Status::no_route, progress_, {}};
     }
   }
 }
@@ -326,7 +326,7 @@ void AnyAngleSearch::remember_fallback(Node s) {
 }
 
 AnyAngleSearch::Result AnyAngleSearch::with(Node last, bool at_goal) const {
-  Result result{Status::solved, {}, at_goal, false, progress_};
+  Result result{Status::solved, {}, at_goal, false, progress_, {}};
   for (Node n = last; n != start_.node; n = parent(n)) {
     result.route.push_back(position(n));
   }

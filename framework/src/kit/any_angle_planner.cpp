@@ -18,16 +18,16 @@ bool legs_differ(const Request& request) {
 
 PlanResult result_of(AnyAngleSearch::Result found, const Request& request, const Lattice& lattice,
                      const MoveRules& rules) {
-  if (found.status == Status::solved) {
-    PlanResult result = solved(std::move(found.route), found.progress, lattice, rules);
-    result.budget_hit = found.budget_hit;
-    return result;
-  }
   PlanResult result;
-  result.status = found.status;
+  if (found.status == Status::solved) {
+    result = solved(std::move(found.route), found.progress, lattice, rules);
+  } else {
+    result.status = found.status;
+    result.message = explanation(found.status, found.progress, request, lattice, rules);
+    result.counters = counters(found.progress, lattice, rules);
+  }
   result.budget_hit = found.budget_hit;
-  result.message = explanation(found.status, found.progress, request, lattice, rules);
-  result.counters = counters(found.progress, lattice, rules);
+  result.counters.insert(result.counters.end(), found.more.begin(), found.more.end());
   return result;
 }
 }  // namespace
@@ -61,17 +61,17 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
   }
   result.proved = looks_everywhere() && !legs_differ(request);
   const bool again = params_.angle_rule == AnyAngleParams::Angles::complete && !result.proved;
-  return again ? by_heading(request, result) : result;
+  return again ? by_heading(request, lattice.size(), result) : result;
 }
 
-PlanResult AnyAnglePlanner::by_heading(const Request& request, const PlanResult& found) const {
+PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells,
+                                       const PlanResult& found) const {
   SearchSettings settings;
   settings.cell_m = params_.cell_m;
-  settings.corner = CornerRule::free_box;
+  settings.corner = CornerRule::any;  // a step that touches edges keeps the rules too
   settings.moves = MoveCheck::cells;
   settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
   constexpr std::size_t kBytes = sizeof(HeadingCell) + 1;
-  const auto cells = std::size_t(found.counters.back().value);
   if (cells * kBytes > settings.max_bytes) {
     PlanResult result = found;
     result.message += "; the memory allowed is too little for a search by cell and heading";

@@ -73,6 +73,7 @@ class ALTIPLAN_API AnyAngleSearch {
     bool at_goal = false;  ///< not only within its tolerance
     bool budget_hit = false;
     Progress progress;  ///< of the searches before too
+    Counters more;      ///< of who makes several searches
   };
   Result run();
 

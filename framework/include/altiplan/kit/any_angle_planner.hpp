@@ -28,7 +28,7 @@ struct AnyAngleParams {
             "limits on turns and climb while nodes are generated: tested for the step, not for the "
             "leg that is taken (printed, paper 003), for that leg, and again when its end is "
             "expanded (route_consistent), or so and, where that finds nothing, by an A* search "
-            "over cell and heading (complete)");
+            "over cell and heading, whose steps may touch edges (complete)");
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
@@ -64,7 +64,7 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
   virtual bool looks_everywhere() const = 0;
 
   PlanResult do_plan(const Request& request) const final;
-  PlanResult by_heading(const Request& request, const PlanResult& found) const;
+  PlanResult by_heading(const Request& request, std::size_t cells, const PlanResult& found) const;
 
   AnyAngleParams params_;
   std::size_t bytes_per_cell_;

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stratified Lazy Theta*: a route on a coarse level of the space, refined level by level.
+//
+// Citation: paper 003, spatial stratification in cities (SS-LT*). The search of a level: A. Nash,
+//   S. Koenig, C. Tovey: Lazy Theta*. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
+// Guarantees: every leg keeps every rule. Not complete, but for angle_rule: complete.
+// Complexity: O(n) for the share of certain blocks in the n cells of the space, a level; then
+//   O(k log k) in the nodes k of a level's set.
+// Deviations: the set of a level holds the chain of nodes along the route, not its bends alone;
+// where
+//   a whole level has no route the next one is planned on whole; where a refined one has none the
+//   route stays; angles are held against the leg that is flown (angle_rule: route_consistent).
+// Symbols: l_min least level, p_max share that has to be certain, d_limit length of a way that is
+//   tried straight, h heuristic 1.1^(level - l_min) d, eq. (6).
+#include <cmath>
+#include <optional>
+
+#include "altiplan/kit/any_angle_planner.hpp"
+#include "altiplan/plugin.hpp"
+#include "corridor.hpp"
+#include "levels.hpp"
+
+namespace {
+
+using namespace altiplan;
+using kit::AnyAngleSearch;
+using stratified::Blocks;
+using stratified::Level;
+using Found = AnyAngleSearch::Result;
+
+enum class Refine { successors, corridor };
+
+struct Params : kit::AnyAngleParams {
+  Params() { angle_rule = Angles::route_consistent; }
+
+  double p_max = 0.25;
+  double d_limit_m = 140;
+  int start_levels = 1;
+  Refine refine = Refine::successors;
+
+  void describe(Fields& f) {
+    AnyAngleParams::describe(f);
+    f("p_max", p_max)
+        .range(0, 1)
+        .doc(
+            "the first level planned on is the least of which more than this share of blocks is "
+            "free or blocked altogether, eq. (5)");
+    f("d_limit_m", d_limit_m)
+        .unit("m")
+        .at_least(0)
+        .doc("a goal that is no farther is tried straight first");
+    f("start_levels", start_levels)
+        .range(1, 30)
+        .doc("how many levels from that one on are started from; the shortest route is kept");
+    f("refine", refine, {{"successors", Refine::successors}, {"corridor", Refine::corridor}})
+        .doc(
+            "how a route is refined: level by level in the nodes along it and their neighbours, "
+            "or at once in the cells around a way over blocks of 8 cells, which needs no levels");
+  }
+};
+
+class StratifiedTheta final : public kit::AnyAnglePlanner {
+ public:
+  explicit StratifiedTheta(const Params& params)
+      : AnyAnglePlanner(params, kBytesPerCell), params_(params) {}
+
+ private:
+  /// Of the sets' bits; what searches of them keep is counted as they go.
+  static constexpr std::size_t kBytesPerCell = 1;
+
+  Found search(Task& task) const override {
+    if (auto found = straight(task)) {
+      return *std::move(found);
+    }
+    if (params_.refine == Refine::corridor) {
+      return in_corridor(task);
+    }
+    const VoxelGrid& occupancy = *task.rules.grid();
+    const int least = stratified::least_level(occupancy, params_.p_max);
+    const int finest = stratified::finest_level(occupancy.spec().counts);
+    Found best;
+    for (int level = least; level <= std::min(finest, least + params_.start_levels - 1); ++level) {
+      Found found = from_level(task, level, finest);
+      task.settings.before = found.progress;
+      if (best.status != Status::solved ||
+          (found.status == Status::solved && length(found.route) < length(best.route))) {
+        best = std::move(found);
+      }
+    }
+    best.progress = task.settings.before;
+    best.more = {{"start_level", least}};
+    return best;
+  }
+
+  std::optional<Found> straight(Task& task) const {
+    const Vec3& start = task.request.start.position;
+    const Vec3& goal = task.request.goal.position;
+    const double d = (goal - start).norm();
+    if (d == 0 || d > std::min(params_.d_limit_m, task.request.limits.max_route_length) ||
+        !task.rules.any_leg_ok(task.request.before_start(), start, goal)) {
+      return std::nullopt;
+    }
+    Found found;
+    found.status = Status::solved;
+    found.route = {start, goal};
+    found.at_goal = true;
+    return found;
+  }
+
+  /// The main loop: a route on the first level that has one, then on each finer level among the
+  /// nodes around it.
+  static Found from_level(Task& task, int first, int finest) {
+    const VoxelGrid& occupancy = *task.rules.grid();
+    Found found;
+    found.progress = task.settings.before;
+    for (int number = first; number <= finest; ++number) {
+      Level level(number, occupancy);
+      if (found.status == Status::solved) {
+        const Level coarse(number - 1, occupancy);
+        for (const Cell& key : chain(coarse, found.route, occupancy.spec())) {
+          level.add_around(coarse.place(key));
+        }
+      } else {
+        level.add_all();
+      }
+      task.settings.weight_h = std::pow(1.1, number - first);
+      task.settings.before = found.progress;
+      Found finer = run(task, level.nodes());
+      found.progress = finer.progress;
+      const bool cut_short = finer.budget_hit || finer.status == Status::cancelled;
+      if (finer.status == Status::solved || found.status != Status::solved) {
+        found = std::move(finer);
+      }
+      if (cut_short) {
+        found.budget_hit = true;
+        break;
+      }
+    }
+    return found;
+  }
+
+  /// The cells around a way over blocks; wider where they hold no route.
+  static Found in_corridor(Task& task) {
+    const VoxelGrid& occupancy = *task.rules.grid();
+    const Blocks blocks(occupancy);
+    const std::vector<Cell> way = blocks.way(task.lattice.nearest(task.request.start.position).cell,
+                                             task.lattice.nearest(task.request.goal.position).cell);
+    for (int around = 1; !way.empty(); around *= 4) {
+      const VoxelGrid cells = blocks.corridor(way, around);
+      Found found = run(task, kit::AnyAngleNodes::every_cell(cells));
+      if (found.status != Status::no_route || around >= blocks.longest_axis()) {
+        return found;
+      }
+      task.settings.before = found.progress;
+    }
+    return {};
+  }
+
+  static Found run(Task& task, const kit::AnyAngleNodes& nodes) {
+    return AnyAngleSearch(task.request, task.lattice, task.rules, nodes, task.settings, task.memory)
+        .run();
+  }
+
+  bool looks_everywhere() const override { return false; }
+  Traits do_traits() const override {
+    return {.complete = params_.angle_rule == kit::AnyAngleParams::Angles::complete};
+  }
+
+  Params params_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Planner, "stratified_theta", StratifiedTheta, Params,
+                "Lazy Theta* on levels of the space, from a coarse route to a fine one (SS-LT*)")

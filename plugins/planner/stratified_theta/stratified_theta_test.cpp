@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "reference/any_angle_planners.hpp"
+#include "reference/paper_cities.hpp"
+
+namespace altiplan {
+namespace {
+
+using testing::expect_sound;
+using testing::in_city;
+using testing::make_planner;
+
+/// How many of the first cities have a route; each is judged.
+int solved_of(int cities, bool complex, bool limits, const std::string& yaml) {
+  const auto planner = make_planner("stratified_theta", yaml);
+  int solved = 0;
+  for (int seed = 0; seed < cities; ++seed) {
+    Request request = in_city(complex, std::uint64_t(seed));
+    if (limits) {
+      request = testing::with_paper_limits(std::move(request));
+    }
+    const PlanResult result = planner->plan(request);
+    solved += result.status == Status::solved;
+    if (result.status == Status::solved) {
+      expect_sound(result, request);
+      EXPECT_EQ(result.route.back(), request.goal.position);
+    }
+  }
+  return solved;
+}
+
+TEST(StratifiedTheta, RouteConsistentAnglesLeadToMostGoals) {
+  EXPECT_EQ(solved_of(20, false, true, "{}"), 20);
+  EXPECT_GE(solved_of(60, true, true, "{}"), 51);
+}
+TEST(StratifiedTheta, CompleteAnglesLeadToEveryGoal) {
+  EXPECT_EQ(solved_of(25, true, true, "{angle_rule: complete}"), 25);
+}
+TEST(StratifiedTheta, WithoutLimitsLevelsAndCorridorsLeadToEveryGoal) {
+  EXPECT_EQ(solved_of(25, true, false, "{}"), 25);
+  EXPECT_EQ(solved_of(25, true, false, "{refine: corridor}"), 25);
+}
+TEST(StratifiedTheta, KeepsTurnAndClimbLimitsInOpenSpace) {
+  testing::expect_limits_kept("stratified_theta");
+}
+TEST(StratifiedTheta, JoinsTheEndsWhereverTheyAre) {
+  testing::expect_the_ends_joined_wherever_they_are("stratified_theta");
+}
+
+TEST(StratifiedTheta, MoreStartingLevelsAreNeverLonger) {
+  const auto one = make_planner("stratified_theta");
+  const auto three = make_planner("stratified_theta", "{start_levels: 3}");
+  for (std::uint64_t seed = 0; seed < 15; ++seed) {
+    const Request request = in_city(true, seed);
+    EXPECT_LE(length(three->plan(request).route), length(one->plan(request).route)) << seed;
+  }
+}
+
+TEST(StratifiedTheta, ANearGoalIsTriedStraight) {
+  Request request = in_city(false, 0);
+  request.goal.position = request.start.position + Vec3(0, 0, 130);
+  const PlanResult near = make_planner("stratified_theta")->plan(request);
+  ASSERT_EQ(near.status, Status::solved);
+  EXPECT_EQ(near.route.size(), 2u);
+  EXPECT_EQ(near.counters.front().value, 0);
+  const PlanResult limited = make_planner("stratified_theta", "{d_limit_m: 100}")->plan(request);
+  EXPECT_GT(limited.counters.front().value, 0);
+}
+
+TEST(StratifiedTheta, BudgetsAreKept) {
+  const auto planner = make_planner("stratified_theta");
+  Request request = in_city(true, 2);
+  request.budget.max_iterations = 1;
+  const PlanResult cut = planner->plan(request);
+  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_TRUE(cut.budget_hit);
+  // Once a level has a route, what is left of the budget refines it.
+  request.budget = {};
+  const PlanResult whole = planner->plan(request);
+  request.budget.max_iterations = std::uint64_t(whole.counters.front().value) - 1;
+  const PlanResult rough = planner->plan(request);
+  ASSERT_EQ(rough.status, Status::solved) << rough.message;
+  EXPECT_TRUE(rough.budget_hit);
+  EXPECT_LE(rough.counters.front().value, whole.counters.front().value);
+  expect_sound(rough, request);
+}
+}  // namespace
+}  // namespace altiplan
