@@ -18,6 +18,17 @@ bool cells_alone_decide(const Request& request) {
          limits.max_leg == kInfinity;
 }
 
+/// By direction: the offset on each axis, from 0 on.
+constexpr auto kOffsets = [] {
+  std::array<std::array<std::uint8_t, 3>, kDirections> offsets{};
+  for (int d = 0; d < kDirections; ++d) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      offsets[std::size_t(d)][axis] = std::uint8_t(offset(d)[axis] + 1);
+    }
+  }
+  return offsets;
+}();
+
 std::uint32_t rounded(double cost) { return std::uint32_t(cost + 0.5); }
 }  // namespace
 
@@ -192,13 +203,15 @@ void AnyAngleSearch::expand(Node s) {
     }
   }
   const auto sum = [](const std::array<std::array<double, 3>, 3>& squares, int d) {
-    return squares[0][std::size_t(d % 3)] + squares[1][std::size_t(d / 3 % 3)] +
-           squares[2][std::size_t(d / 9)];
+    const auto& [x, y, z] = kOffsets[std::size_t(d)];
+    return squares[0][x] + squares[1][y] + squares[2][z];
   };
   const DirectionMask closed = bits_around(*nodes_.grid, closed_.data(), nodes_.grid->bit(key));
   const bool untested = cells_decide_ && settings_.sight == Sight::lazy;
   const DirectionMask free = steps(key);
-  rules_.count_blocked(__builtin_popcount(lattice_steps_ & ~free));
+  if (free != lattice_steps_) {
+    rules_.count_blocked(__builtin_popcount(lattice_steps_ & ~free));
+  }
   for (DirectionMask open = free & ~closed; open != 0; open &= open - 1) {
     const int d = std::countr_zero(open);
     const Node v = Node(s + strides_[std::size_t(d)]);

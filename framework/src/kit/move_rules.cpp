@@ -2,6 +2,7 @@
 #include "altiplan/kit/move_rules.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/line_of_sight.hpp"
@@ -23,6 +24,14 @@ bool length_kept(double length, const Limits& limits) {
 
 bool climb_kept(const Vec3& leg, const Limits& limits) {
   return climb_angle(leg) <= limits.max_climb + kAngleTolerance;
+}
+
+/// What the cosine of an angle tells of it and a limit: a product of two vectors, and of their
+/// lengths, against the limit's cosine.
+enum class Told { kept, broken, nothing };
+Told by_cosine(double dot, double lengths, double limit_cosine) {
+  const double over = dot - limit_cosine * lengths;
+  return std::abs(over) <= 1e-9 * lengths ? Told::nothing : over > 0 ? Told::kept : Told::broken;
 }
 
 bool has_ground_rules(const Request& request) {
@@ -60,6 +69,9 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       spare_(needed_ + request.world->slack() + kLengthTolerance),
       asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
+  const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
+  cosines_ = {cosine(limits.max_climb), cosine(limits.max_turn_horizontal),
+              cosine(limits.max_turn_space)};
   if (check == MoveCheck::cells) {
     grid_ = occupancy(request, lattice);
   }
@@ -293,15 +305,40 @@ bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, c
     ++refused_[by_leg_length];
     return false;
   }
-  if (limits.max_climb < kPi / 2 && !climb_kept(b - a, limits)) {
-    ++refused_[by_climb];
-    return false;
+  const Vec3 leg = b - a;
+  if (limits.max_climb < kPi / 2) {
+    const Told told = by_cosine(leg.head<2>().norm(), length, cosines_.climb);
+    if (told == Told::broken || (told == Told::nothing && !climb_kept(leg, limits))) {
+      ++refused_[by_climb];
+      return false;
+    }
   }
-  if (before && limits.turns() && !turn_kept(a - *before, b - a, limits)) {
+  if (before && limits.turns() && !keeps_turn(a - *before, leg)) {
     ++refused_[by_turn];
     return false;
   }
   return true;
+}
+
+bool MoveRules::keeps_turn(const Vec3& incoming, const Vec3& outgoing) const {
+  const Limits& limits = request_.limits;
+  const double runs = incoming.head<2>().squaredNorm() * outgoing.head<2>().squaredNorm();
+  constexpr double kUpright = 1e-9;  // of the squares: beyond it a leg has a heading
+  const double all = incoming.squaredNorm() * outgoing.squaredNorm();
+  if (limits.min_turn_radius > 0 || runs < kUpright * all) {
+    return turn_kept(incoming, outgoing, limits);
+  }
+  const Told flat =
+      limits.max_turn_horizontal >= kPi
+          ? Told::kept
+          : by_cosine(incoming.head<2>().dot(outgoing.head<2>()), std::sqrt(runs), cosines_.turn);
+  const Told space = limits.max_turn_space >= kPi
+                         ? Told::kept
+                         : by_cosine(incoming.dot(outgoing), std::sqrt(all), cosines_.turn_space);
+  return flat == Told::kept && space == Told::kept
+             ? true
+             : flat != Told::broken && space != Told::broken &&
+                   turn_kept(incoming, outgoing, limits);
 }
 
 bool MoveRules::any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {

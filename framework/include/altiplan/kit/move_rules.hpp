@@ -147,6 +147,7 @@ class ALTIPLAN_API MoveRules {
   };
   DirectionMask directions_kept();
   bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length);
+  bool keeps_turn(const Vec3& incoming, const Vec3& outgoing) const;
   bool keeps_ground(const Vec3& a, const Vec3& b);
   bool keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b);
   bool keeps_off(const World& layers, const Vec3& a, const Vec3& b);
@@ -163,6 +164,11 @@ class ALTIPLAN_API MoveRules {
   double needed_;
   double spare_;  ///< clearance beyond half a leg that makes it free for certain
   bool asks_world_;
+  struct {
+    double climb = 0;
+    double turn = 0;
+    double turn_space = 0;
+  } cosines_;  ///< of the limits on angles
   bool wants_clearance_ = false;
   bool has_ground_rules_ = false;
   std::vector<NamedConstraint> constraints_;
