@@ -7,44 +7,12 @@
 #include <set>
 
 #include "altiplan/random.hpp"
+#include "framework/sight_oracle.hpp"
 
 namespace altiplan::kit {
 namespace {
 
-/// Whether the closed box of cell c meets the segment between the centres of a and b: the
-/// parameters at which it is within each slab, as fractions of whole numbers, compared crosswise.
-bool meets(const Cell& a, const Cell& b, const Cell& c) {
-  std::int64_t low_n = 0;
-  std::int64_t low_d = 1;
-  std::int64_t high_n = 1;
-  std::int64_t high_d = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::int64_t d = 2 * (std::int64_t(b[axis]) - a[axis]);
-    std::int64_t enter = 2 * (std::int64_t(c[axis]) - a[axis]) - 1;
-    std::int64_t leave = enter + 2;
-    if (d == 0) {
-      if (enter > 0 || leave < 0) {
-        return false;
-      }
-      continue;
-    }
-    if (d < 0) {
-      d = -d;
-      std::swap(enter, leave);
-      enter = -enter;
-      leave = -leave;
-    }
-    if (enter * low_d > low_n * d) {
-      low_n = enter;
-      low_d = d;
-    }
-    if (leave * high_d < high_n * d) {
-      high_n = leave;
-      high_d = d;
-    }
-  }
-  return low_n * high_d <= high_n * low_d;
-}
+using oracle::meets;
 
 std::set<Cell> walked(const Cell& a, const Cell& b) {
   std::set<Cell> cells;
@@ -74,6 +42,38 @@ TEST(LineOfSight, WalksExactlyTheCellsThatTheSegmentMeets) {
   }
 }
 
+TEST(LineOfSight, IsSymmetricAndMeetsNoClosedBoxOfABlockedCell) {
+  SplitMix64 random(12);
+  int free = 0;
+  for (int world = 0; world < 100; ++world) {
+    GridSpec spec;
+    for (int& count : spec.counts) {
+      count = random.integer(1, 16);
+    }
+    VoxelGrid grid(spec);
+    const auto draw = [&] {
+      const int i = random.integer(0, spec.counts[0] - 1);
+      const int j = random.integer(0, spec.counts[1] - 1);
+      const int k = random.integer(0, spec.counts[2] - 1);
+      return Cell{i, j, k};
+    };
+    const std::size_t blocked = spec.cell_count() / std::size_t(random.integer(10, 100));
+    for (std::size_t n = 0; n < blocked; ++n) {
+      grid.set(draw(), true);
+    }
+    for (int n = 0; n < 100; ++n) {
+      const Cell a = draw();
+      const Cell b = draw();
+      const bool seen = oracle::sees(grid, a, b);
+      ASSERT_EQ(line_of_sight(grid, a, b), seen);
+      ASSERT_EQ(line_of_sight(grid, b, a), seen);
+      free += seen;
+    }
+  }
+  EXPECT_GT(free, 2000);
+  EXPECT_LT(free, 8000);
+}
+
 TEST(LineOfSight, TouchingACornerIsEnoughToBlock) {
   GridSpec spec;
   spec.counts = {4, 4, 4};
@@ -85,6 +85,7 @@ TEST(LineOfSight, TouchingACornerIsEnoughToBlock) {
   EXPECT_TRUE(line_of_sight(grid, {0, 0, 0}, {0, 0, 0}));
   EXPECT_FALSE(line_of_sight(grid, {2, 1, 1}, {2, 1, 1}));
 }
+
 TEST(LineOfSight, SeesWhatTheWalkSees) {
   SplitMix64 random(9);
   int free = 0;
