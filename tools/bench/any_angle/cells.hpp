@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "altiplan/request.hpp"
+#include "host/registry/registry.hpp"
+
+namespace altiplan::bench {
+
+/// From cell to cell, as the map's file counts them.
+struct Way {
+  std::array<double, 3> start;
+  std::array<double, 3> goal;
+};
+
+/// A world of one layer that has cells.
+class Cells {
+ public:
+  Cells(host::Registry& registry, const std::string& plugin, const std::string& yaml,
+        const Site& site = {});
+
+  const GridSpec& spec() const { return spec_; }
+  double build_ms() const { return build_ms_; }          ///< of the layer
+  double occupancy_ms() const { return occupancy_ms_; }  ///< of the grid that planners ask for
+  std::size_t blocked() const { return world_->voxels(spec_)->blocked_count(); }
+  Request request(const Way& way) const;
+
+ private:
+  GridSpec spec_;
+  std::shared_ptr<const World> world_;
+  double build_ms_;
+  double occupancy_ms_;
+};
+
+struct CityKind {
+  bool complex = true;
+  Cell counts{80, 80, 100};
+  int buildings = 60;
+
+  /// The way of paper 003, section 4, in its 80 x 80 x 100 cells; in others as far from the sides.
+  Way way() const;
+};
+Cells make_city(host::Registry& registry, const CityKind& kind, int seed);
+
+/// A Warframe .3dmap.
+Cells load_map(host::Registry& registry, const std::string& file);
+
+/// The next line's way: start x y z, goal x y z, and what follows is passed over, as are the two
+/// first lines of a .3dscen file. Nothing at the end; throws Error with `name` and the line.
+class Ways {
+ public:
+  Ways(std::istream& in, std::string name) : in_(in), name_(std::move(name)) {}
+  std::optional<Way> next();
+
+ private:
+  std::istream& in_;
+  std::string name_;
+  int line_ = 0;
+  bool is_scenario_ = false;
+};
+
+/// `count` of those at least `least` cells long, from the shortest to the longest, evenly; in the
+/// order given.
+std::vector<Way> spread(std::vector<Way> ways, double least, std::size_t count);
+}  // namespace altiplan::bench

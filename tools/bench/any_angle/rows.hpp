@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "altiplan/planner.hpp"
+#include "cells.hpp"
+
+namespace altiplan::bench {
+
+/// One planner, and what became of its plans.
+class Row {
+ public:
+  /// `text`: the plugin's name and, after a space, its parameters in YAML.
+  Row(host::Registry& registry, const std::string& text);
+
+  struct Plan {
+    double ms;
+    double length;  ///< cells; infinite without a route
+    double expanded;
+  };
+  /// Throws Error where the judge refuses the route.
+  Plan plan(const Cells& cells, const Way& way);
+  /// As many plans of each way as passes.
+  void add(const std::vector<Plan>& passes);
+
+  const std::string& name() const { return name_; }
+  void print(const Row& first, std::size_t cells) const;
+
+ private:
+  std::string name_;
+  std::shared_ptr<const Planner> planner_;
+  std::vector<double> first_ms_;  ///< of each way, as are the next
+  std::vector<double> ms_;
+  std::vector<double> lengths_;
+  double expanded_ = 0;
+  double resident_ = 0;  ///< bytes that came while planning
+};
+
+/// Plans every way by every row, in turn, so that what else the machine does meets all of them.
+void plan_all(std::vector<Row>& rows, const Cells& cells, const std::vector<Way>& ways, int passes);
+void print(const std::vector<Row>& rows, std::size_t cells);
+double peak_mb();
+}  // namespace altiplan::bench
