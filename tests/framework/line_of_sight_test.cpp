@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "altiplan/kit/free_blocks.hpp"
 #include "altiplan/random.hpp"
 #include "framework/sight_oracle.hpp"
 
@@ -139,6 +140,39 @@ TEST(LineOfSight, EveryCellOfALegCounts) {
       return true;
     });
   }
+}
+
+TEST(LineOfSight, ThroughFreeBlocksIsTheSame) {
+  SplitMix64 random(13);
+  int seen = 0;
+  for (int world = 0; world < 60; ++world) {
+    GridSpec spec;
+    for (int& count : spec.counts) {
+      count = random.integer(1, 90);
+    }
+    const auto grid = std::make_shared<VoxelGrid>(spec);
+    const auto draw = [&] {
+      const int i = random.integer(0, spec.counts[0] - 1);
+      const int j = random.integer(0, spec.counts[1] - 1);
+      const int k = random.integer(0, spec.counts[2] - 1);
+      return Cell{i, j, k};
+    };
+    for (int n = random.integer(0, 60); n > 0; --n) {
+      const Cell c = draw();
+      grid->block_run(c[0], c[0] + random.integer(0, 4), c[1], c[2]);
+    }
+    FreeBlocks blocks;
+    blocks.prepare(grid);
+    for (int n = 0; n < 1000; ++n) {
+      const Cell a = draw();
+      const Cell b = draw();
+      const bool sees = line_of_sight(*grid, a, b);
+      ASSERT_EQ(blocks.line_of_sight(a, b), sees) << world;
+      seen += sees;
+    }
+  }
+  EXPECT_GT(seen, 20000);
+  EXPECT_LT(seen, 55000);
 }
 }  // namespace
 }  // namespace altiplan::kit

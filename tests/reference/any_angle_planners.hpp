@@ -9,6 +9,7 @@
 
 #include "altiplan/measures.hpp"
 #include "reference/random_levels.hpp"
+#include "reference/visible_cells.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::testing {
@@ -181,5 +182,24 @@ inline void expect_long_ways_found(const std::string& planner) {
   const PlanResult result = make_planner(planner)->plan(drawn.request);
   ASSERT_EQ(result.status, Status::solved) << result.message;
   EXPECT_NEAR(length(result.route), (kEdge + 1) / 2 * kEdge + kEdge / 2 - 1, 1e-6);
+}
+
+/// Beside the shortest route of all that bend at centres of cells.
+inline void expect_nearly_the_shortest(const std::string& planner, double most_over) {
+  const auto any_angle = make_planner(planner);
+  double sum = 0;
+  double shortest_sum = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const reference::SmallCity city = reference::small_city(seed);
+    const auto shortest = reference::shortest_visible(city.grid, city.start, city.goal);
+    const PlanResult result = any_angle->plan(city.request());
+    ASSERT_EQ(result.status == Status::solved, shortest.has_value()) << seed;
+    if (shortest) {
+      EXPECT_GE(length(result.route), *shortest * (1 - 1e-9)) << seed;
+      sum += length(result.route);
+      shortest_sum += *shortest;
+    }
+  }
+  EXPECT_LT(sum, (1 + most_over) * shortest_sum);
 }
 }  // namespace altiplan::testing

@@ -29,6 +29,9 @@ constexpr auto kOffsets = [] {
   return offsets;
 }();
 
+/// Cost of the longest way, so that the sum of two and an estimate keeps a bit free.
+constexpr std::uint32_t kMost = 900'000'000;
+
 std::uint32_t rounded(double cost) { return std::uint32_t(cost + 0.5); }
 }  // namespace
 
@@ -51,16 +54,13 @@ AnyAngleSearch::AnyAngleSearch(const Request& request, const Lattice& lattice, M
       settings_(settings),
       memory_(memory),
       reached_(memory.reached),
-      closed_(memory.closed),
       open_(memory.open),
       watch_(request.budget),
       numbers_(nodes.grid->spec().counts),
       cells_decide_(cells_alone_decide(request)),
       steps_are_free_(cells_decide_ && nodes.corner == CornerRule::free_box),
       lattice_steps_(lattice.steps()) {
-  for (int d = 0; d < kDirections; ++d) {
-    strides_[std::size_t(d)] = numbers_.stride(d);
-  }
+  memory_.sight.prepare(rules_.shared_grid());
 }
 
 AnyAngleSearch::Result AnyAngleSearch::run() {
@@ -122,7 +122,7 @@ AnyAngleSearch::End AnyAngleSearch::end_at(const Vec3& p, Node beyond) const {
 }
 
 void AnyAngleSearch::begin(double longest_m) {
-  per_metre_ = StepCosts::kMost / longest_m;
+  per_metre_ = kMost / longest_m;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     unit_[axis] = lattice_.spec().cell[int(axis)] * per_metre_;
   }
@@ -138,7 +138,6 @@ void AnyAngleSearch::begin(double longest_m) {
     most_link_ = std::max(most_link_, link);
   }
   reached_.reset(std::size_t(count) + 2);
-  closed_.reset(nodes_.grid->words().size());
   open_.clear();
   fallback_ = kNone;
   nearest_ = kNone;
@@ -150,8 +149,7 @@ void AnyAngleSearch::begin(double longest_m) {
 std::optional<Status> AnyAngleSearch::search() {
   while (!open_.empty()) {
     const Node s = open_.pop().node;
-    const std::size_t bit = bit_of(s);
-    if ((closed_[bit / 64] >> bit % 64 & 1) != 0 || reached_[s] == 0) {
+    if (is_closed(s) || reached_[s] == 0) {
       continue;
     }
     if (watch_.spent(progress_.expanded) || memory_full()) {
@@ -161,10 +159,10 @@ std::optional<Status> AnyAngleSearch::search() {
     if (settings_.sight == Sight::lazy && !set_vertex(s)) {
       continue;
     }
-    if (g(s) > StepCosts::kMost) {
+    if (g(s) > kMost) {
       return std::nullopt;
     }
-    closed_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
+    reached_.at(s) |= std::uint64_t{kClosed} << 32;
     if (request_.trace != nullptr) {
       add_to_trace(s);
     }
@@ -193,6 +191,7 @@ void AnyAngleSearch::expand(Node s) {
   // Squares of how far the neighbours are from the parent and from the goal, by axis and offset.
   std::array<std::array<double, 3>, 3> to_parent;
   std::array<std::array<double, 3>, 3> to_goal;
+  std::array<std::array<Node, 3>, 3> part;  // of their numbers
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<int>& rows = nodes_.cell[axis];
     for (int o = 0; o < 3; ++o) {
@@ -200,23 +199,23 @@ void AnyAngleSearch::expand(Node s) {
       const double at = unit_[axis] * rows[std::size_t(row)];
       to_parent[axis][std::size_t(o)] = (at - from[axis]) * (at - from[axis]);
       to_goal[axis][std::size_t(o)] = (at - goal_.place[axis]) * (at - goal_.place[axis]);
+      part[axis][std::size_t(o)] = numbers_.part(axis, row);
     }
   }
-  const auto sum = [](const std::array<std::array<double, 3>, 3>& squares, int d) {
+  const auto sum = [](const auto& parts, int d) {
     const auto& [x, y, z] = kOffsets[std::size_t(d)];
-    return squares[0][x] + squares[1][y] + squares[2][z];
+    return parts[0][x] + parts[1][y] + parts[2][z];
   };
-  const DirectionMask closed = bits_around(*nodes_.grid, closed_.data(), nodes_.grid->bit(key));
   const bool untested = cells_decide_ && settings_.sight == Sight::lazy;
   const DirectionMask free = steps(key);
   if (free != lattice_steps_) {
     rules_.count_blocked(__builtin_popcount(lattice_steps_ & ~free));
   }
-  for (DirectionMask open = free & ~closed; open != 0; open &= open - 1) {
+  for (DirectionMask open = free; open != 0; open &= open - 1) {
     const int d = std::countr_zero(open);
-    const Node v = Node(s + strides_[std::size_t(d)]);
+    const Node v = sum(part, d);
     const std::uint32_t through_parent = g_parent + rounded(std::sqrt(sum(to_parent, d)));
-    if (through_parent >= g(v)) {
+    if (!is_shorter(through_parent, v)) {
       continue;  // by way of s it is no shorter
     }
     const std::uint32_t h = rounded(settings_.weight_h * std::sqrt(sum(to_goal, d)));
@@ -234,7 +233,7 @@ void AnyAngleSearch::expand(Node s) {
 
 /// Reaches v straight from the parent of s, or else from s.
 void AnyAngleSearch::update_vertex(Node s, Node v, std::uint32_t through_parent, std::uint32_t h) {
-  if (through_parent >= g(v)) {
+  if (!is_shorter(through_parent, v)) {
     return;
   }
   const Node p = parent(s);
@@ -244,7 +243,7 @@ void AnyAngleSearch::update_vertex(Node s, Node v, std::uint32_t through_parent,
   if (may_take(p, v)) {
     take(v, p, through_parent, h);
   } else if (const std::uint32_t through_s = g(s) + distance(s, v);
-             s != p && through_s < g(v) && may_take(s, v)) {
+             s != p && is_shorter(through_s, v) && may_take(s, v)) {
     take(v, s, through_s, h);
   }
 }
@@ -267,16 +266,18 @@ bool AnyAngleSearch::set_vertex(Node s) {
   };
   if (is_end(s)) {
     for (const Node link : goal_.links) {
-      const std::size_t bit = bit_of(link);
-      if ((closed_[bit / 64] >> bit % 64 & 1) != 0) {
+      if (is_closed(link)) {
         consider(link, false);
       }
     }
   } else {
     const Cell key = numbers_.cell(s);
-    const DirectionMask closed = bits_around(*nodes_.grid, closed_.data(), nodes_.grid->bit(key));
-    for (DirectionMask from = closed & steps(key); from != 0; from &= from - 1) {
-      consider(Node(s + strides_[std::size_t(std::countr_zero(from))]), steps_are_free_);
+    for (DirectionMask from = steps(key); from != 0; from &= from - 1) {
+      const Cell o = offset(std::countr_zero(from));
+      const Node n = numbers_.index({key[0] + o[0], key[1] + o[1], key[2] + o[2]});
+      if (is_closed(n)) {
+        consider(n, steps_are_free_);
+      }
     }
     if (std::find(start_.links.begin(), start_.links.end(), s) != start_.links.end()) {
       consider(start_.node, false);
@@ -308,12 +309,12 @@ bool AnyAngleSearch::sees(Node a, Node b) {
   if (!by_cells) {
     return rules_.any_leg_ok(printed ? std::nullopt : before(a), position(a), position(b));
   }
-  return cells_decide_ || printed ? line_of_sight(cell_of(a), cell_of(b))
-                                  : rules_.sees(before(a), cell_of(a), cell_of(b));
+  return line_of_sight(cell_of(a), cell_of(b)) &&
+         (cells_decide_ || printed || rules_.keeps_rules(before(a), position(a), position(b)));
 }
 
 bool AnyAngleSearch::line_of_sight(const Cell& a, const Cell& b) {
-  const bool is_free = kit::line_of_sight(*rules_.grid(), a, b);
+  const bool is_free = memory_.sight.line_of_sight(a, b);
   rules_.count_blocked(is_free ? 0 : 1);
   return is_free;
 }
@@ -323,7 +324,7 @@ void AnyAngleSearch::take(Node v, Node parent, std::uint32_t g, std::uint32_t h)
     progress_.too_long = true;
     return;
   }
-  reached_.at(v) = std::uint64_t{~g} << 32 | parent;
+  reached_.at(v) = std::uint64_t{kLongest - g} << 32 | parent;
   ++progress_.generated;
   open_.push(g + h, v, 0);
   if (h < nearest_) {
@@ -361,7 +362,7 @@ std::uint32_t AnyAngleSearch::heuristic(Node n) const {
 }
 
 bool AnyAngleSearch::memory_full() const {
-  return memory_.bytes() + open_.bytes() > settings_.max_bytes;
+  return reached_.written_bytes() + open_.bytes() > settings_.max_bytes;
 }
 
 void AnyAngleSearch::add_to_trace(Node s) const {

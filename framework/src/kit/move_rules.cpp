@@ -290,12 +290,13 @@ bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cel
     ++refused_[by_cells];
     return false;
   }
-  const Vec3 from = lattice_.position(a);
-  const Vec3 to = lattice_.position(b);
-  const double length = (to - from).norm();
-  return keeps_limits(before, from, to, length) && (!has_ground_rules_ || keeps_ground(from, to)) &&
-         (constraints_.empty() || admitted(before, from, to)) &&
-         (!asks_world_ || keeps_off(*request_.world, from, to));
+  return keeps_rules(before, lattice_.position(a), lattice_.position(b));
+}
+
+bool MoveRules::keeps_rules(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+  return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
+         (constraints_.empty() || admitted(before, a, b)) &&
+         (!asks_world_ || keeps_off(*request_.world, a, b));
 }
 
 bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,

@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 
 #include "reference/any_angle_planners.hpp"
+#include "reference/paper_cities.hpp"
 
 namespace altiplan {
 namespace {
 
 TEST(LazyThetaStar, IsNeverLongerThanTheGrid) {
   testing::expect_never_longer_than_the_grid("lazy_theta_star", 400);
+}
+TEST(LazyThetaStar, IsNearlyTheShortestOfAll) {
+  testing::expect_nearly_the_shortest("lazy_theta_star", 0.005);
 }
 TEST(LazyThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("lazy_theta_star"); }
 TEST(LazyThetaStar, JoinsTheEndsWhereverTheyAre) {
@@ -18,6 +22,18 @@ TEST(LazyThetaStar, BudgetAndRefusalsAreTold) {
 }
 TEST(LazyThetaStar, WaysFarLongerThanTheMapIsWide) {
   testing::expect_long_ways_found("lazy_theta_star");
+}
+
+TEST(NightlyLazyThetaStar, IsNeverLongerThanTheGridInThePapersCities) {
+  const auto grid = testing::make_planner("astar", "{corner: free_box}");
+  const auto any_angle = testing::make_planner("lazy_theta_star");
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Request request = testing::in_city(seed % 2 == 0, seed);
+    const PlanResult result = any_angle->plan(request);
+    ASSERT_EQ(result.status, Status::solved) << seed;
+    testing::expect_sound(result, request);
+    EXPECT_LE(length(result.route), length(grid->plan(request).route) * (1 + 1e-9)) << seed;
+  }
 }
 }  // namespace
 }  // namespace altiplan

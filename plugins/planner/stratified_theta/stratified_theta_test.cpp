@@ -85,5 +85,13 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   EXPECT_LE(rough.counters.front().value, whole.counters.front().value);
   expect_sound(rough, request);
 }
+
+TEST(NightlyStratifiedTheta, SharesOfGoalsReachedUnderThePapersLimits) {
+  EXPECT_EQ(solved_of(400, false, true, "{}"), 400);
+  EXPECT_GE(solved_of(400, true, true, "{}"), 340);
+  EXPECT_GE(solved_of(400, true, true, "{angle_rule: complete}"), 398);
+  EXPECT_EQ(solved_of(400, true, false, "{}"), 400);
+  EXPECT_EQ(solved_of(400, true, false, "{refine: corridor}"), 400);
+}
 }  // namespace
 }  // namespace altiplan

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/free_blocks.hpp"
 #include "altiplan/kit/lattice_search.hpp"
 #include "altiplan/kit/scratch.hpp"
 
@@ -44,13 +45,41 @@ struct ALTIPLAN_API AnyAngleNodes {
 };
 
 struct AnyAngleMemory {
-  ScratchArray<std::uint64_t> reached;  ///< by node: ~g above the number of its parent; 0: not yet
-  ScratchArray<std::uint64_t> closed;   ///< a bit a node, laid out like the grid of the nodes
+  /// By node: whether it is closed, how much shorter than the longest way to it is, and the number
+  /// of its parent; 0: not reached. Nodes lie in bricks of 4 x 4 x 4, so that neighbours are near.
+  ScratchArray<std::uint64_t, 512> reached;
   BucketQueue open;
+  FreeBlocks sight;
 
-  /// Without the open list, rounded up.
-  static constexpr std::size_t kBytesPerNode = 9;
-  std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
+  /// Without the open list.
+  static constexpr std::size_t kBytesPerNode = 8;
+};
+
+/// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them.
+class BrickIndex {
+ public:
+  explicit BrickIndex(const Cell& counts)
+      : bricks_({(counts[0] + 3) / 4, (counts[1] + 3) / 4, (counts[2] + 3) / 4}),
+        of_brick_(bricks_) {}
+
+  std::size_t size() const { return 64 * of_brick_.size(); }
+  /// The number of a cell is the sum of what its place on each axis adds.
+  std::uint32_t part(std::size_t axis, int k) const {
+    const std::uint32_t per_brick = axis == 0   ? 1
+                                    : axis == 1 ? std::uint32_t(bricks_[0])
+                                                : std::uint32_t(bricks_[0] * bricks_[1]);
+    return 64 * per_brick * std::uint32_t(k >> 2) + (std::uint32_t(k & 3) << (2 * axis));
+  }
+  std::uint32_t index(const Cell& c) const { return part(0, c[0]) + part(1, c[1]) + part(2, c[2]); }
+  Cell cell(std::uint32_t index) const {
+    const Cell brick = of_brick_.cell(index / 64);
+    return {4 * brick[0] + int(index & 3), 4 * brick[1] + int(index >> 2 & 3),
+            4 * brick[2] + int(index >> 4 & 3)};
+  }
+
+ private:
+  Cell bricks_;
+  CellIndex of_brick_;
 };
 
 /// One search from request.start to request.goal. A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*:
@@ -104,7 +133,14 @@ class ALTIPLAN_API AnyAngleSearch {
   void take(Node v, Node parent, std::uint32_t g, std::uint32_t h);
   Result with(Node last, bool at_goal) const;
 
-  std::uint32_t g(Node n) const { return ~std::uint32_t(reached_[n] >> 32); }
+  static constexpr std::uint32_t kClosed = 1U << 31;
+  static constexpr std::uint32_t kLongest = kClosed - 1;  ///< no way is longer
+  /// What is known of a node, the greater the shorter its way is; greatest where it is closed.
+  std::uint32_t known(Node n) const { return std::uint32_t(reached_[n] >> 32); }
+  std::uint32_t g(Node n) const { return kLongest - (known(n) & ~kClosed); }
+  bool is_closed(Node n) const { return known(n) >= kClosed; }
+  /// Whether a way of that length is of use.
+  bool is_shorter(std::uint32_t g, Node n) const { return kLongest - g > known(n); }
   Node parent(Node n) const { return Node(reached_[n]); }
   const End* end(Node n) const {
     return n == goal_.node ? &goal_ : n == start_.node ? &start_ : nullptr;
@@ -136,10 +172,6 @@ class ALTIPLAN_API AnyAngleSearch {
     return n == start_.node ? request_.before_start() : position(parent(n));
   }
   bool is_end(Node n) const { return n >= numbers_.size(); }
-  /// Of the node in `closed_`; an end that is no node has one in the border.
-  std::size_t bit_of(Node n) const {
-    return is_end(n) ? n - numbers_.size() : nodes_.grid->bit(numbers_.cell(n));
-  }
   bool memory_full() const;
   DirectionMask steps(const Cell& key) const {
     return lattice_steps_ & free_steps(blocked_around(*nodes_.grid, key), nodes_.corner);
@@ -152,12 +184,10 @@ class ALTIPLAN_API AnyAngleSearch {
   const AnyAngleNodes& nodes_;
   AnyAngleSettings settings_;
   AnyAngleMemory& memory_;
-  ScratchArray<std::uint64_t>& reached_;
-  ScratchArray<std::uint64_t>& closed_;
+  ScratchArray<std::uint64_t, 512>& reached_;
   BucketQueue& open_;
   BudgetWatch watch_;
-  CellIndex numbers_;
-  std::array<std::int64_t, kDirections> strides_{};
+  BrickIndex numbers_;
   bool cells_decide_;    ///< a leg is free if its cells are
   bool steps_are_free_;  ///< and so are the cells of a step
   DirectionMask lattice_steps_;

@@ -103,6 +103,8 @@ class ALTIPLAN_API MoveRules {
   /// never for obstacles: none reaches into free cells.
   bool sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b);
 
+  /// What `sees` asks for beside the cells.
+  bool keeps_rules(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
   /// Whether the leg keeps the limits on length, climb and the turn before it.
   bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
     return keeps_limits(before, a, b, (b - a).norm());
@@ -112,6 +114,7 @@ class ALTIPLAN_API MoveRules {
   DirectionMask steps() const { return steps_; }
   /// The occupancy, with moves by cells; else null.
   const VoxelGrid* grid() const { return grid_.get(); }
+  const std::shared_ptr<const VoxelGrid>& shared_grid() const { return grid_; }
 
   /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
   /// that has a heading), counted by rule.
