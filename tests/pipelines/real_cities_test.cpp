@@ -20,7 +20,7 @@ struct City {
   const char* name;
   const char* file;
   const char* more;    ///< parameters of city beside the file
-  const char* volume;  ///< its two corners
+  const char* volume;  ///< its two corners, the ceiling below many roofs
   Vec3 start;          ///< with a building in the way to the goal
   Vec3 goal;
 };
@@ -30,19 +30,19 @@ struct City {
 const City kCities[] = {{"san_francisco",
                          "city/sf_colliders.csv",
                          "",
-                         "{min_m: [-440, -310, 0], max_m: [470, 600, 150]}",
+                         "{min_m: [-440, -310, 0], max_m: [470, 600, 60]}",
                          {-300, 400, 25},
                          {350, -150, 20}},
                         {"berlin",
                          "city/berlin_buildings.geojson",
                          ", levels_property: levels, default_height_m: 15",
-                         "{min_m: [-20, -20, 0], max_m: [920, 880, 40]}",
+                         "{min_m: [-20, -20, 0], max_m: [920, 880, 14]}",
                          {5, 860, 5},
                          {880, 20, 5}},
                         {"brussels",
                          "city/brussels_place_saint_jean.geojson",
                          "",
-                         "{min_m: [-20, -20, 0], max_m: [300, 280, 60]}",
+                         "{min_m: [-20, -20, 0], max_m: [300, 280, 30]}",
                          {-10, 270, 10},
                          {290, -10, 10}}};
 
@@ -52,7 +52,9 @@ struct Plan {
 };
 
 const Plan kPlans[] = {{"astar", "{cell_m: [5, 5, 5], moves: cells, corner: free_box}"},
-                       {"spatial_slicing", "{cell_m: [5, 5, 5], axis: auto}"}};
+                       {"theta_star", "{cell_m: [5, 5, 5]}"},
+                       {"lazy_theta_star", "{cell_m: [5, 5, 5]}"},
+                       {"stratified_theta", "{cell_m: [5, 5, 5]}"}};
 
 struct Case {
   City city;
