@@ -104,6 +104,21 @@ inline std::optional<double> shortest_visible(const VoxelGrid& grid, const Cell&
   return length < kInfinity ? std::optional(length) : std::nullopt;
 }
 
+/// One level of the cells as a grid of its own. Where all that blocks it goes from the ground up to
+/// some height, and nothing else is below that, no way between two of its cells that stays below is
+/// shorter in space than on the level. So cities far too large for all pairs of cells do, where a
+/// way over their roofs is longer than the answer.
+inline VoxelGrid level_of(const VoxelGrid& grid, int k) {
+  GridSpec spec = grid.spec();
+  spec.origin.z() += k * spec.cell.z();
+  spec.counts[2] = 1;
+  VoxelGrid level(spec);
+  for (int j = 0; j < spec.counts[1]; ++j) {
+    grid.for_each_run(j, k, [&](int first, int last) { level.block_run(first, last, j, 0); });
+  }
+  return level;
+}
+
 /// Buildings anywhere on the ground, some as high as the volume, and a low way across, from one
 /// side to the other. The class of paper 003's complex city, small enough for all pairs of cells.
 struct SmallCity {

@@ -127,5 +127,32 @@ TEST(VisibleCells, AreTheSameBothWaysAndNoLongerThanSteps) {
   EXPECT_GE(solved, 9);
   EXPECT_LT(shares / solved, 0.97);
 }
+
+TEST(VisibleCells, OfOneLevelDoWhereBuildingsReachTheTop) {
+  int bent = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SmallCity city = small_city(seed, {16, 16, 5});
+    const int k = city.start[2];
+    city.goal[2] = k;
+    for (int j = 0; j < 16; ++j) {
+      for (int level = 0; level < 5; ++level) {
+        if (level != k) {
+          city.grid.free_run(0, 15, j, level);
+          city.grid.for_each_run(
+              j, k, [&](int first, int last) { city.grid.block_run(first, last, j, level); });
+        }
+      }
+    }
+    const auto in_space = shortest_visible(city.grid, city.start, city.goal);
+    const auto on_level = shortest_visible(
+        level_of(city.grid, k), {city.start[0], city.start[1], 0}, {city.goal[0], city.goal[1], 0});
+    ASSERT_EQ(in_space.has_value(), on_level.has_value()) << seed;
+    if (in_space) {
+      EXPECT_NEAR(*in_space, *on_level, 1e-9) << seed;
+      bent += *in_space > city.straight() + 1;
+    }
+  }
+  EXPECT_GT(bent, 4);
+}
 }  // namespace
 }  // namespace altiplan::reference
