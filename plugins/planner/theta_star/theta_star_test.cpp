@@ -9,9 +9,6 @@ namespace {
 TEST(ThetaStar, IsNeverLongerThanTheGrid) {
   testing::expect_never_longer_than_the_grid("theta_star", 400);
 }
-TEST(ThetaStar, IsNearlyTheShortestOfAll) {
-  testing::expect_nearly_the_shortest("theta_star", 0.01);
-}
 TEST(ThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("theta_star"); }
 TEST(ThetaStar, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("theta_star");
