@@ -54,6 +54,7 @@ AnyAngleSearch::AnyAngleSearch(const Request& request, const Lattice& lattice, M
       settings_(settings),
       memory_(memory),
       reached_(memory.reached),
+      closed_(memory.closed),
       open_(memory.open),
       watch_(request.budget),
       numbers_(nodes.grid->spec().counts),
@@ -138,6 +139,7 @@ void AnyAngleSearch::begin(double longest_m) {
     most_link_ = std::max(most_link_, link);
   }
   reached_.reset(std::size_t(count) + 2);
+  closed_.reset(nodes_.grid->words().size());
   open_.clear();
   fallback_ = kNone;
   nearest_ = kNone;
@@ -162,7 +164,7 @@ std::optional<Status> AnyAngleSearch::search() {
     if (g(s) > kMost) {
       return std::nullopt;
     }
-    reached_.at(s) |= std::uint64_t{kClosed} << 32;
+    close(s);
     if (request_.trace != nullptr) {
       add_to_trace(s);
     }
@@ -172,6 +174,14 @@ std::optional<Status> AnyAngleSearch::search() {
     expand(s);
   }
   return Status::no_route;
+}
+
+void AnyAngleSearch::close(Node n) {
+  reached_.at(n) |= std::uint64_t{kClosed} << 32;
+  if (!is_end(n)) {
+    const std::size_t bit = nodes_.grid->bit(numbers_.cell(n));
+    closed_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
+  }
 }
 
 void AnyAngleSearch::expand(Node s) {
@@ -211,7 +221,7 @@ void AnyAngleSearch::expand(Node s) {
   if (free != lattice_steps_) {
     rules_.count_blocked(__builtin_popcount(lattice_steps_ & ~free));
   }
-  for (DirectionMask open = free; open != 0; open &= open - 1) {
+  for (DirectionMask open = free & ~closed_around(key); open != 0; open &= open - 1) {
     const int d = std::countr_zero(open);
     const Node v = sum(part, d);
     const std::uint32_t through_parent = g_parent + rounded(std::sqrt(sum(to_parent, d)));
@@ -272,12 +282,9 @@ bool AnyAngleSearch::set_vertex(Node s) {
     }
   } else {
     const Cell key = numbers_.cell(s);
-    for (DirectionMask from = steps(key); from != 0; from &= from - 1) {
+    for (DirectionMask from = closed_around(key) & steps(key); from != 0; from &= from - 1) {
       const Cell o = offset(std::countr_zero(from));
-      const Node n = numbers_.index({key[0] + o[0], key[1] + o[1], key[2] + o[2]});
-      if (is_closed(n)) {
-        consider(n, steps_are_free_);
-      }
+      consider(numbers_.index({key[0] + o[0], key[1] + o[1], key[2] + o[2]}), steps_are_free_);
     }
     if (std::find(start_.links.begin(), start_.links.end(), s) != start_.links.end()) {
       consider(start_.node, false);
@@ -362,7 +369,7 @@ std::uint32_t AnyAngleSearch::heuristic(Node n) const {
 }
 
 bool AnyAngleSearch::memory_full() const {
-  return reached_.written_bytes() + open_.bytes() > settings_.max_bytes;
+  return memory_.bytes() + open_.bytes() > settings_.max_bytes;
 }
 
 void AnyAngleSearch::add_to_trace(Node s) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -37,6 +38,11 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
                         {params_.max_bytes(), bytes_per_cell_});
   if (auto refused = beyond_budget(lattice, bytes_per_cell_, request.budget)) {
     return *std::move(refused);
+  }
+  if (!BrickIndex(lattice.spec().counts).fits()) {
+    throw ParameterError("cell_m",
+                         "the axes of the lattice, each rounded up to a power of two, come "
+                         "to more than 2^31 cells: choose larger cells or a smaller volume");
   }
   MoveRules rules(request, lattice, MoveCheck::cells, CornerRule::free_box);
   PlanResult result;

@@ -11,7 +11,7 @@ namespace altiplan::kit {
 namespace {
 
 constexpr int kEdge = 8;
-constexpr int kShort = 24;           // steps, below which every cell is looked at
+constexpr int kShort = 96;           // steps, below which every cell is looked at
 constexpr int kMostSteps = 1 << 20;  // their products stay whole numbers
 }  // namespace
 

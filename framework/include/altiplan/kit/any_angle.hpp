@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -45,41 +47,68 @@ struct ALTIPLAN_API AnyAngleNodes {
 };
 
 struct AnyAngleMemory {
-  /// By node: whether it is closed, how much shorter than the longest way to it is, and the number
-  /// of its parent; 0: not reached. Nodes lie in bricks of 4 x 4 x 4, so that neighbours are near.
+  /// By node: whether it is closed, how much shorter than the longest the way to it is, and the
+  /// number of its parent; 0: not reached. Nodes lie in bricks, so that neighbours are near.
   ScratchArray<std::uint64_t, 512> reached;
+  ScratchArray<std::uint64_t> closed;  ///< a bit a node, laid out like the grid of the nodes
   BucketQueue open;
   FreeBlocks sight;
 
-  /// Without the open list.
-  static constexpr std::size_t kBytesPerNode = 8;
+  /// Without the open list, rounded up.
+  static constexpr std::size_t kBytesPerNode = 9;
+  std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
 };
 
-/// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them.
+/// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them (4 x 4 on a level). The number of
+/// a cell has bits of its own for each axis, so that both are quick to tell from each other; as
+/// many numbers as the axes have, rounded up to powers of two.
 class BrickIndex {
  public:
-  explicit BrickIndex(const Cell& counts)
-      : bricks_({(counts[0] + 3) / 4, (counts[1] + 3) / 4, (counts[2] + 3) / 4}),
-        of_brick_(bricks_) {}
+  explicit BrickIndex(const Cell& counts) {
+    int shift = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bits_[axis] = std::bit_width(std::uint32_t(counts[axis] - 1));
+      low_[axis] = {shift, std::min(bits_[axis], 2)};
+      shift += low_[axis].bits;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      high_[axis] = {shift, bits_[axis] - low_[axis].bits};
+      shift += high_[axis].bits;
+    }
+    all_bits_ = shift;
+  }
 
-  std::size_t size() const { return 64 * of_brick_.size(); }
+  /// Whether four bytes hold all numbers, and two more.
+  bool fits() const { return all_bits_ < 32; }
+  std::size_t size() const { return std::size_t{1} << all_bits_; }
   /// The number of a cell is the sum of what its place on each axis adds.
   std::uint32_t part(std::size_t axis, int k) const {
-    const std::uint32_t per_brick = axis == 0   ? 1
-                                    : axis == 1 ? std::uint32_t(bricks_[0])
-                                                : std::uint32_t(bricks_[0] * bricks_[1]);
-    return 64 * per_brick * std::uint32_t(k >> 2) + (std::uint32_t(k & 3) << (2 * axis));
+    const auto place = std::uint32_t(k);
+    const Field& low = low_[axis];
+    return (place & low.mask()) << low.shift | place >> low.bits << high_[axis].shift;
   }
   std::uint32_t index(const Cell& c) const { return part(0, c[0]) + part(1, c[1]) + part(2, c[2]); }
   Cell cell(std::uint32_t index) const {
-    const Cell brick = of_brick_.cell(index / 64);
-    return {4 * brick[0] + int(index & 3), 4 * brick[1] + int(index >> 2 & 3),
-            4 * brick[2] + int(index >> 4 & 3)};
+    Cell c;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Field& low = low_[axis];
+      const Field& high = high_[axis];
+      c[axis] =
+          int((index >> low.shift & low.mask()) | (index >> high.shift & high.mask()) << low.bits);
+    }
+    return c;
   }
 
  private:
-  Cell bricks_;
-  CellIndex of_brick_;
+  struct Field {
+    int shift = 0;
+    int bits = 0;
+    std::uint32_t mask() const { return (1U << bits) - 1; }
+  };
+  std::array<int, 3> bits_{};
+  std::array<Field, 3> low_;   ///< within a brick
+  std::array<Field, 3> high_;  ///< of the brick
+  int all_bits_ = 0;
 };
 
 /// One search from request.start to request.goal. A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*:
@@ -173,6 +202,10 @@ class ALTIPLAN_API AnyAngleSearch {
   }
   bool is_end(Node n) const { return n >= numbers_.size(); }
   bool memory_full() const;
+  void close(Node n);
+  DirectionMask closed_around(const Cell& key) const {
+    return bits_around(*nodes_.grid, closed_.data(), nodes_.grid->bit(key));
+  }
   DirectionMask steps(const Cell& key) const {
     return lattice_steps_ & free_steps(blocked_around(*nodes_.grid, key), nodes_.corner);
   }
@@ -185,6 +218,7 @@ class ALTIPLAN_API AnyAngleSearch {
   AnyAngleSettings settings_;
   AnyAngleMemory& memory_;
   ScratchArray<std::uint64_t, 512>& reached_;
+  ScratchArray<std::uint64_t>& closed_;
   BucketQueue& open_;
   BudgetWatch watch_;
   BrickIndex numbers_;
