@@ -150,9 +150,10 @@ void AnyAngleSearch::begin(double longest_m) {
 /// Nothing where a way is too long for costs as fine as these.
 std::optional<Status> AnyAngleSearch::search() {
   while (!open_.empty()) {
-    const Node s = open_.pop().node;
-    if (is_closed(s) || reached_[s] == 0) {
-      continue;
+    const BucketQueue::Entry entry = open_.pop();
+    const Node s = entry.node;
+    if (is_closed(s) || entry.from != g(s)) {
+      continue;  // it waits in another place: a leg was refused, and its way is longer than that
     }
     if (watch_.spent(progress_.expanded) || memory_full()) {
       return watch_.cancelled() ? Status::cancelled : Status::timed_out;
@@ -333,7 +334,7 @@ void AnyAngleSearch::take(Node v, Node parent, std::uint32_t g, std::uint32_t h)
   }
   reached_.at(v) = std::uint64_t{kLongest - g} << 32 | parent;
   ++progress_.generated;
-  open_.push(g + h, v, 0);
+  open_.push(g + h, v, g);
   if (h < nearest_) {
     nearest_ = h;
     progress_.nearest = position(v);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "reference/any_angle_planners.hpp"
 
 namespace altiplan {
@@ -21,6 +23,22 @@ TEST(LazyThetaStar, BudgetAndRefusalsAreTold) {
 }
 TEST(LazyThetaStar, WaysFarLongerThanTheMapIsWide) {
   testing::expect_long_ways_found("lazy_theta_star");
+}
+
+/// A cell that got a longer way than it waited for must not take its turn at a place where it had
+/// waited before that.
+TEST(LazyThetaStar, ACellWhoseLegIsRefusedWaitsForTheLengthItHas) {
+  const testing::Drawn drawn =
+      testing::draw({"....\n....\n....\n....\n..S.\n#.##", "...#\n....\n.#..\n....\n.#..\n#...",
+                     "....\n..#.\n....\n.#..\n.##.\n....", "....\n....\n....\n....\n..#.\n....",
+                     "....\n....\n..#.\n..#.\n#...\n....", "..#.\n....\n.G..\n....\n..#.\n....",
+                     "....\n...#\n....\n.#..\n..#.\n...."});
+  const auto length_by = [&](const char* planner, const char* parameters) {
+    return length(testing::make_planner(planner, parameters)->plan(drawn.request).route);
+  };
+  const double on_the_grid = length_by("astar", "{corner: free_box}");
+  EXPECT_NEAR(on_the_grid, 2 + 3 * std::sqrt(2.0), 1e-9);
+  EXPECT_LE(length_by("lazy_theta_star", "{}"), on_the_grid * (1 + 1e-9));
 }
 
 TEST(NightlyLazyThetaStar, IsNeverLongerThanTheGridInThePapersCities) {
