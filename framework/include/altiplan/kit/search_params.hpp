@@ -18,24 +18,7 @@ struct SearchParams {
   int max_memory_mb = 4096;
 
   void describe(Fields& f) {
-    f("cell_m", search.cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
-    f("neighbours", neighbours)
-        .doc("26 (8 in level flight) or 6 (4 in level flight) neighbours of a cell")
-        .range(6, 26);
-    f.check(neighbours == 6 || neighbours == 26, "neighbours must be 6 or 26");
-    f("corner", search.corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
-        .doc(
-            "with moves by cells: a step needs its two cells free (any), or every cell of the box "
-            "that it spans (free_box)");
-    f("moves", moves,
-      {{"auto", Moves::automatic}, {"exact", Moves::exact}, {"cells", Moves::cells}})
-        .doc(
-            "how a move is held to the obstacles: the straight leg against the exact world, or "
-            "the cells it leads through; auto: cells where every layer has cells of its own and "
-            "the vehicle needs no clearance, else exact");
+    describe_lattice(f);
     f("heuristic", search.heuristic,
       {{"octile", Heuristic::octile},
        {"euclidean", Heuristic::euclidean},
@@ -62,6 +45,31 @@ struct SearchParams {
     describe_costs(f);
     f("anytime", search.anytime)
         .doc("a quick route first, then better ones, the last as good as without this");
+    describe_memory(f);
+  }
+
+  void describe_lattice(Fields& f) {
+    f("cell_m", search.cell_m)
+        .unit("m")
+        .at_least(0.001)
+        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+    f("neighbours", neighbours)
+        .doc("26 (8 in level flight) or 6 (4 in level flight) neighbours of a cell")
+        .range(6, 26);
+    f.check(neighbours == 6 || neighbours == 26, "neighbours must be 6 or 26");
+    f("corner", search.corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
+        .doc(
+            "with moves by cells: a step needs its two cells free (any), or every cell of the box "
+            "that it spans (free_box)");
+    f("moves", moves,
+      {{"auto", Moves::automatic}, {"exact", Moves::exact}, {"cells", Moves::cells}})
+        .doc(
+            "how a move is held to the obstacles: the straight leg against the exact world, or "
+            "the cells it leads through; auto: cells where every layer has cells of its own and "
+            "the vehicle needs no clearance, else exact");
+  }
+
+  void describe_memory(Fields& f) {
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
