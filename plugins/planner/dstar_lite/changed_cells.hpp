@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "altiplan/world.hpp"
+#include "cell_graph.hpp"
+
+namespace altiplan::dstar_lite {
+
+/// Calls visit(n) for the words, from `first` to `end`, in which two occupancies differ.
+template <class Visit>
+void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::size_t first,
+                           std::size_t end, const Visit& visit) {
+  constexpr std::size_t kAtOnce = 8;
+  const std::uint64_t* a = before.words().data();
+  const std::uint64_t* b = now.words().data();
+  for (std::size_t n = first; n < end;) {
+    const std::size_t stop = std::min(n + kAtOnce, end);
+    std::uint64_t changed = 0;
+    if (stop - n == kAtOnce) {
+      for (std::size_t w = 0; w < kAtOnce; ++w) {  // without a branch: many words, few changes
+        changed |= a[n + w] ^ b[n + w];
+      }
+    } else {
+      changed = 1;
+    }
+    for (; n < stop; ++n) {
+      if (changed != 0 && a[n] != b[n]) {
+        visit(n);
+      }
+    }
+  }
+}
+
+/// The cells in which two occupancies of one layout differ, looked for inside the changes' boxes
+/// alone, each grown by what grows obstacles. Where boxes overlap, more than once.
+inline std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
+                                       std::span<const Change> changes,
+                                       const kit::Lattice& lattice) {
+  std::vector<Cell> cells;
+  const std::size_t width = now.words_per_row();
+  for (const Change& change : changes) {
+    const auto [low, high] = cells_in(change.box.grown(now.spec().inflation), lattice);
+    const std::size_t first = std::size_t(low[0] + 1) / 64;
+    const std::size_t last = std::size_t(high[0] + 1) / 64;
+    const bool whole_rows = first == 0 && last + 1 == width;
+    for (int k = low[2]; k <= high[2] && low[0] <= high[0]; ++k) {
+      const auto look = [&](int j0, int j1) {  // rows j0 to j1 are one piece of memory
+        const std::size_t base = now.bit(-1, j0, k) / 64;
+        const std::size_t end = now.bit(-1, j1, k) / 64 + last + 1;
+        for_each_changed_word(before, now, base + first, end, [&](std::size_t n) {
+          std::uint64_t bits = before.words()[n] ^ now.words()[n];
+          for (; bits != 0; bits &= bits - 1) {
+            cells.push_back({int(64 * ((n - base) % width)) + std::countr_zero(bits) - 1,
+                             j0 + int((n - base) / width), k});
+          }
+        });
+      };
+      if (whole_rows && low[1] <= high[1]) {
+        look(low[1], high[1]);
+      } else {
+        for (int j = low[1]; j <= high[1]; ++j) {
+          look(j, j);
+        }
+      }
+    }
+  }
+  return cells;
+}
+}  // namespace altiplan::dstar_lite

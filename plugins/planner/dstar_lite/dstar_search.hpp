@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/kit/lattice_search.hpp"
+#include "altiplan/kit/scratch.hpp"
+#include "cell_graph.hpp"
+#include "open_queue.hpp"
+
+namespace altiplan::dstar_lite {
+
+struct Memory {
+  kit::ScratchArray<std::uint64_t> nodes;    ///< g and rhs by node, complements: 0 is never
+  kit::ScratchArray<std::uint64_t> reached;  ///< a bit a cell, laid out like an occupancy
+  OpenQueue open;
+  Heap raised;
+
+  /// Rounded up, without the lists and for one vertex a cell.
+  static constexpr std::size_t kBytesPerCell = 9;
+};
+
+/// The incremental search, from the goal to the start, on a graph whose legs come and go.
+///
+/// rhs(s) is what g of the vertices after s says of s: the least of c(s, n) + g(n). Vertices whose
+/// g is not rhs are inconsistent. One with g > rhs is on the open list, under a key that is never
+/// above min(g, rhs) + h(start, s) + k_m, and taking it from there lowers g to rhs. One with g <
+/// rhs (what came after it was blocked) is harmless unless a route leads over it: the route found
+/// is walked, and where it comes to such a vertex, g is raised.
+template <class Graph>
+class Search {
+ public:
+  /// All of it must outlive the search. `bits` lays out what is known by cell.
+  Search(const Problem& problem, Graph& graph, ToStart& to_start, const VoxelGrid& bits,
+         Memory& memory)
+      : problem_(problem),
+        graph_(graph),
+        to_start_(to_start),
+        bits_(bits),
+        nodes_(memory.nodes),
+        reached_(memory.reached),
+        open_(memory.open),
+        raised_(memory.raised) {
+    nodes_.reset(problem.lattice.size() * Graph::kPerCell);
+    reached_.reset(bits.words().size());
+    open_.clear();
+    raised_.clear();
+  }
+
+  /// procedure Initialize: what is one leg away from the goal; again where these legs may have
+  /// changed.
+  void initialize() {
+    graph_.for_each_at_goal([&](std::uint32_t s) { touch(s); });
+  }
+
+  /// The start has moved: `links` join its new place to the lattice. All keys on the open list stay
+  /// lower bounds, as k_m grows by what the heuristic may have fallen anywhere. Whether keys are
+  /// still far from what 32 bits hold.
+  bool move_start(const std::vector<kit::Lattice::Link>& links) {
+    std::uint32_t fall = 0;
+    for (const kit::Lattice::Link& link : moved_ ? links : std::vector<kit::Lattice::Link>()) {
+      const std::uint32_t before = to_start_(link.cell);
+      const std::uint32_t now = problem_.link_cost(link);
+      fall = std::max(fall, before > now ? before - now : 0);
+    }
+    moved_ = true;
+    to_start_.move(links, problem_);
+    k_m_ += fall;
+    return k_m_ < kMostKm;
+  }
+
+  /// A vertex that cannot be any more.
+  void remove(std::uint32_t s) {
+    const Values old = values(s);
+    if (old.g != kNever || old.rhs != kNever) {
+      set(s, {kNever, kNever});
+      graph_.around(s, [&](std::uint32_t n, std::uint32_t cost, const Cell& c) {
+        update_if_relied(n, c, old.g, cost, false);
+      });
+    }
+  }
+  /// The legs from the vertex may have changed.
+  void touch(std::uint32_t s) { update_rhs(s, graph_.cell(s), false); }
+  bool reached(const Cell& c) const {
+    return (reached_[bits_.bit(c) / 64] >> bits_.bit(c) % 64 & 1) != 0;
+  }
+  /// Whether anything is known of a cell around this one.
+  bool reached_around(const Cell& c) const {
+    return kit::bits_around(bits_, reached_.data(), bits_.bit(c)) != 0;
+  }
+
+  /// procedure Main, one round: the cheapest way from the start's place to the goal's.
+  Status plan(BudgetWatch& watch, std::size_t max_list_bytes) {
+    watch_ = &watch;
+    max_list_bytes_ = max_list_bytes;
+    ended_ = false;
+    progress_ = {};
+    nearest_ = kNever;
+    forget_stale_entries();
+    do {
+      compute_shortest_path();
+    } while (!ended_ && !too_long_ && best_ != kNever && !walk());
+    if (ended_ || too_long_) {
+      progress_.memory_full = memory_full();
+      return watch.cancelled() ? Status::cancelled : Status::timed_out;
+    }
+    return best_ == kNever ? Status::no_route : Status::solved;
+  }
+  /// Whether a way is longer than whole numbers hold.
+  bool too_long() const { return too_long_; }
+  /// The vertices of the route, from the start's neighbour to the goal's.
+  const std::vector<std::uint32_t>& way() const { return way_; }
+  const kit::Progress& progress() const { return progress_; }
+
+ private:
+  static constexpr std::uint32_t kMostKm = 1'500'000'000;
+  static constexpr std::size_t kFewEntries = 1 << 16;
+
+  struct Values {
+    std::uint32_t g;
+    std::uint32_t rhs;
+  };
+  Values values(std::uint32_t s) const {
+    const std::uint64_t word = nodes_[s];
+    return {~std::uint32_t(word), ~std::uint32_t(word >> 32)};
+  }
+  void set(std::uint32_t s, const Values& values) {
+    nodes_.at(s) = std::uint64_t{~values.rhs} << 32 | std::uint32_t(~values.g);
+  }
+  /// The first value of a vertex at the cell.
+  void note_reached(const Cell& c) {
+    const std::size_t bit = bits_.bit(c);
+    reached_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
+  }
+  std::uint32_t key(std::uint32_t cost, const Cell& c) const {
+    return cost + graph_.estimate(c) + k_m_;
+  }
+
+  /// procedure UpdateVertex. A vertex whose g is to be raised waits on a list only if it comes of a
+  /// raise (`rising`): no vertex after it is lowered before, on account of values that will not do.
+  void update_vertex(std::uint32_t s, const Values& now, const Cell& c, bool rising) {
+    if (now.rhs < now.g) {
+      ++progress_.generated;
+      open_.push(key(now.rhs, c), s);
+    } else if (now.g < now.rhs && rising) {
+      raised_.push({key(now.g, c), s});
+    }
+  }
+
+  void update_rhs(std::uint32_t s, const Cell& c, bool rising) {
+    const Values old = values(s);
+    std::uint32_t rhs = graph_.goal_cost(s);
+    graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
+      const std::uint32_t g = values(n).g;
+      if (g != kNever && g + cost < rhs && is_free()) {
+        rhs = g + cost;
+      }
+    });
+    if (rhs != old.rhs) {
+      if (nodes_[s] == 0) {
+        note_reached(c);
+      }
+      set(s, {old.g, rhs});
+      update_vertex(s, {old.g, rhs}, c, rising);
+    }
+  }
+
+  /// procedure ComputeShortestPath: until no vertex may lie on a cheaper way than the start's.
+  void compute_shortest_path() {
+    find_best();
+    while (!open_.empty()) {
+      const Heap::Entry first = open_.top();
+      if (best_ != kNever && first.key >= best_ + k_m_) {
+        return;
+      }
+      if (!raised_.empty() && raised_.top().key <= first.key) {
+        const std::uint32_t s = raised_.top().node;
+        if (const Values old = values(s); old.g < old.rhs) {
+          if (spent()) {
+            return;
+          }
+          raise(s, old);
+        }
+        raised_.pop();
+        continue;
+      }
+      open_.pop();
+      const Values old = values(first.node);
+      if (old.rhs >= old.g) {
+        continue;  // lowered since
+      }
+      const std::uint32_t h = graph_.estimate(graph_.cell(first.node));
+      if (const std::uint32_t now = old.rhs + h + k_m_; first.key < now) {
+        open_.push(now, first.node);
+      } else if (spent() || old.rhs > kit::StepCosts::kMost) {
+        too_long_ = !ended_;
+        open_.push(now, first.node);
+        return;
+      } else {
+        remember_nearest(first.node, h);
+        lower(first.node, old);
+      }
+    }
+  }
+
+  /// Sets g of an overconsistent vertex to rhs.
+  void lower(std::uint32_t u, const Values& old) {
+    ++progress_.expanded;
+    const std::uint32_t g = old.rhs;
+    set(u, {g, g});
+    trace(u, g);
+    graph_.predecessors(u, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
+      const std::uint32_t rhs = g + cost;
+      const Values of_s = values(s);
+      if (rhs < of_s.rhs) {
+        if (nodes_[s] == 0) {
+          note_reached(c);
+        }
+        set(s, {of_s.g, rhs});
+        update_vertex(s, {of_s.g, rhs}, c, false);
+      }
+    });
+    if (graph_.start().may_hold(u)) {
+      find_best();
+    }
+  }
+
+  /// Sets g of an underconsistent vertex to infinity.
+  void raise(std::uint32_t u, const Values& old) {
+    ++progress_.expanded;
+    set(u, {kNever, old.rhs});
+    trace(u, old.rhs);
+    update_vertex(u, {kNever, old.rhs}, graph_.cell(u), true);
+    graph_.predecessors(u, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
+      update_if_relied(s, c, old.g, cost, true);
+    });
+    if (graph_.start().may_hold(u)) {
+      find_best();
+    }
+  }
+  /// Finds rhs of s anew if it was that of a leg to a vertex whose g has been.
+  void update_if_relied(std::uint32_t s, const Cell& c, std::uint32_t g, std::uint32_t cost,
+                        bool rising) {
+    if (g != kNever && values(s).rhs == g + cost) {
+      update_rhs(s, c, rising);
+    }
+  }
+
+  /// rhs of the start.
+  void find_best() {
+    best_ = kNever;
+    for (const Link& link : graph_.start().all()) {
+      if (const std::uint32_t g = values(link.node).g; g != kNever) {
+        best_ = std::min(best_, g + link.cost);
+      }
+    }
+  }
+
+  /// Follows the route from the start. A vertex on it whose g is not rhs is raised, and so is what
+  /// came before it for as long as its g relied on that. Whether all of the route was consistent.
+  bool walk() {
+    way_.clear();
+    bool sound = true;
+    while (true) {
+      const std::uint32_t next = way_.empty() ? first_vertex() : next_vertex(way_.back());
+      if (next == kNever) {  // at the goal
+        return sound;
+      }
+      way_.push_back(next);
+      for (Values last = values(next); last.g != last.rhs; last = values(way_.back())) {
+        if (spent()) {
+          return false;
+        }
+        sound = false;
+        if (last.rhs < last.g) {
+          lower(way_.back(), last);
+        } else {
+          raise(way_.back(), last);
+        }
+        way_.pop_back();
+        if (way_.empty()) {
+          return false;
+        }
+      }
+    }
+  }
+  std::uint32_t first_vertex() const {
+    for (const Link& link : graph_.start().all()) {
+      if (const std::uint32_t g = values(link.node).g; g != kNever && g + link.cost == best_) {
+        return link.node;
+      }
+    }
+    return kNever;
+  }
+  std::uint32_t next_vertex(std::uint32_t s) {
+    const std::uint32_t rhs = values(s).rhs;
+    if (graph_.goal_cost(s) == rhs) {
+      return kNever;
+    }
+    std::uint32_t next = kNever;
+    graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
+      const std::uint32_t g = values(n).g;
+      if (next == kNever && g != kNever && g + cost == rhs && is_free()) {
+        next = n;
+      }
+    });
+    return next;
+  }
+
+  bool spent() {
+    ended_ = ended_ || watch_->spent(progress_.expanded) || memory_full();
+    return ended_;
+  }
+  bool memory_full() const { return open_.bytes() + raised_.bytes() > max_list_bytes_; }
+
+  /// Drops entries of vertices that have been pushed again or are consistent, once there are many.
+  void forget_stale_entries() {
+    if (open_.size() + raised_.size() <= most_entries_) {
+      return;
+    }
+    std::vector<std::uint32_t> waiting;
+    for (; !open_.empty(); waiting.push_back(open_.pop().node)) {
+    }
+    for (; !raised_.empty(); waiting.push_back(raised_.pop().node)) {
+    }
+    open_.clear();
+    std::sort(waiting.begin(), waiting.end());
+    waiting.erase(std::unique(waiting.begin(), waiting.end()), waiting.end());
+    for (const std::uint32_t s : waiting) {
+      update_vertex(s, values(s), graph_.cell(s), true);
+    }
+    most_entries_ = std::max(kFewEntries, 2 * waiting.size());
+  }
+
+  void remember_nearest(std::uint32_t s, std::uint32_t h) {
+    if (h < nearest_) {
+      nearest_ = h;
+      progress_.nearest = problem_.lattice.position(graph_.cell(s));
+    }
+  }
+  void trace(std::uint32_t s, std::uint32_t cost) const {
+    if (Trace* const trace = problem_.request.trace) {
+      const Cell c = graph_.cell(s);
+      const double f = problem_.costs.metres(cost == kNever ? cost : cost + graph_.estimate(c));
+      trace->add(
+          {TraceEvent::Kind::expanded, std::int64_t(s), -1, problem_.lattice.position(c), f});
+    }
+  }
+
+  const Problem& problem_;
+  Graph& graph_;
+  ToStart& to_start_;
+  const VoxelGrid& bits_;
+  kit::ScratchArray<std::uint64_t>& nodes_;
+  kit::ScratchArray<std::uint64_t>& reached_;
+  OpenQueue& open_;
+  Heap& raised_;
+  std::uint32_t k_m_ = 0;
+  std::uint32_t best_ = kNever;
+  bool moved_ = false;  ///< the start has a place
+  bool ended_ = false;
+  bool too_long_ = false;
+  BudgetWatch* watch_ = nullptr;
+  kit::Progress progress_;
+  std::uint32_t nearest_ = kNever;
+  std::size_t max_list_bytes_ = 0;
+  std::size_t most_entries_ = kFewEntries;
+  std::vector<std::uint32_t> way_;
+};
+}  // namespace altiplan::dstar_lite

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/search_params.hpp"
+#include "altiplan/planner.hpp"
+#include "plan.hpp"
+
+namespace altiplan::dstar_lite {
+
+/// Plans, and repairs the plan for as long as lattice and goal stay.
+class Replanner {
+ public:
+  /// Parameters and pools must outlive it.
+  Replanner(const kit::SearchParams& params, const Request& request, Pools& pools)
+      : params_(params), request_(request), pools_(pools) {}
+  Replanner(const Replanner&) = delete;
+  Replanner& operator=(const Replanner&) = delete;
+
+  PlanResult plan() {
+    if (auto answer = settled()) {
+      return *std::move(answer);
+    }
+    return plan_afresh();
+  }
+
+  PlanResult update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
+                    std::span<const Change> changes, const Budget& budget) {
+    const bool same_world = world == request_.world;
+    const bool same_start =
+        state.position == request_.start.position && state.velocity == request_.start.velocity;
+    bool goes_on = plan_ && goal.position == request_.goal.position &&
+                   goal.tolerance_m == request_.goal.tolerance_m &&
+                   world->native_grid() == request_.world->native_grid();
+    request_.start = state;
+    request_.goal = goal;
+    request_.world = std::move(world);
+    request_.budget = budget;
+    const kit::MoveCheck moves = settings_.moves;
+    settings_ = params_.settings(request_);
+    goes_on = goes_on && moves == settings_.moves;
+    if (goes_on && !same_world) {
+      goes_on = !plan_->within() && plan_->take(changes);
+    }
+    if (goes_on && !(same_world && same_start)) {
+      goes_on = plan_->find_start();
+    }
+    if (!goes_on) {
+      plan_.reset();
+    }
+    if (auto answer = settled()) {
+      return *std::move(answer);
+    }
+    return plan_ ? finish(plan_->run()) : plan_afresh();
+  }
+
+ private:
+  static constexpr double kGreatestError = 1e-4;  ///< of a step's cost
+
+  /// What needs no search.
+  std::optional<PlanResult> settled() const {
+    PlanResult result;
+    for (const auto& [what, p] :
+         {std::pair("start", request_.start.position), std::pair("goal", request_.goal.position)}) {
+      if (const std::string problem = point_problem(p, request_); !problem.empty()) {
+        result.status = Status::invalid_problem;
+        result.message = std::string("the ") + what + " " + problem;
+        return result;
+      }
+    }
+    if (!request_.goal.reached_at(request_.start.position)) {
+      return std::nullopt;
+    }
+    result.status = Status::solved;
+    result.message = "the start is at the goal";
+    result.route = {request_.start.position};
+    result.counters = {{"expanded", 0}};
+    return result;
+  }
+
+  PlanResult plan_afresh() {
+    settings_ = params_.settings(request_);
+    const kit::Lattice lattice(request_, settings_.cell_m, settings_.neighbours,
+                               {params_.max_bytes(), Memory::kBytesPerCell});
+    if (auto refused = kit::beyond_budget(lattice, Memory::kBytesPerCell, request_.budget)) {
+      return *std::move(refused);
+    }
+    const Box box = lattice.spec().box();
+    // Few ways are longer than four times this, but in a maze they are.
+    return plan_on(lattice, 4 * (box.max - box.min).sum(), false, {});
+  }
+
+  /// A new plan for ways up to that length, after another one that has used up a part of the
+  /// budget.
+  PlanResult plan_on(const kit::Lattice& lattice, double longest_m, bool within,
+                     const Counters& spent) {
+    const auto scale = kit::StepCosts::between(settings_.costs, lattice, request_.start.position,
+                                               request_.goal.position);
+    const kit::StepCosts costs(lattice, scale, longest_m);
+    if (costs.error() > kGreatestError) {
+      PlanResult result;
+      result.status = Status::invalid_problem;
+      result.message = "dstar_lite cannot tell the lengths of ways up to " +
+                       std::to_string(longest_m) + " m apart on such cells: use astar";
+      result.counters = spent;
+      return result;
+    }
+    request_.budget = kit::after(request_, spent).budget;
+    plan_.reset();  // its memory serves again
+    plan_ = std::make_unique<Plan>(request_, settings_, lattice, costs, within, pools_);
+    PlanResult result = finish(plan_->run());
+    if (!spent.empty()) {
+      kit::add(result.counters, spent);
+    }
+    return result;
+  }
+
+  /// The result, or that of a new plan: with coarser lengths, or to the cells within the goal's
+  /// tolerance where no leg leads to the goal itself.
+  PlanResult finish(PlanResult result) {
+    if (plan_->too_long()) {
+      const kit::Lattice lattice = plan_->lattice();
+      return plan_on(lattice, 4 * plan_->costs().longest_m(), plan_->within(), result.counters);
+    }
+    if (result.status == Status::no_route && !plan_->within() && request_.goal.tolerance_m > 0) {
+      const kit::Lattice lattice = plan_->lattice();
+      const double longest_m = plan_->costs().longest_m();
+      return plan_on(lattice, longest_m, true, result.counters);
+    }
+    return result;
+  }
+
+  const kit::SearchParams& params_;
+  Request request_;
+  kit::SearchSettings settings_;
+  Pools& pools_;
+  std::unique_ptr<Plan> plan_;
+};
+
+class DStarSession final : public Session {
+ public:
+  DStarSession(const kit::SearchParams& params, const Request& request, Pools& pools)
+      : replanner_(params, request, pools), result_(replanner_.plan()) {}
+
+ private:
+  const PlanResult& do_result() const override { return result_; }
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change> changes,
+                              const Budget& budget) override {
+    result_ = replanner_.update(state, goal, std::move(world), changes, budget);
+    return result_;
+  }
+
+  Replanner replanner_;
+  PlanResult result_;
+};
+}  // namespace altiplan::dstar_lite

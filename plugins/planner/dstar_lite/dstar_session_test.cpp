@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions of dstar_lite: a repaired plan is as long as one made afresh.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "dstar_worlds_test.hpp"
+
+namespace altiplan {
+namespace {
+
+using testing::expanded;
+using testing::Flown;
+using testing::make_planner;
+using testing::random_cell;
+using testing::random_cells;
+using testing::spec_of;
+
+/// What is random about a sequence of edits.
+struct Setting {
+  Cell counts{12, 10, 6};
+  Vec3 cell{10, 10, 10};
+  bool level = false;
+  const char* with = "{moves: cells}";
+};
+
+/// The repaired plan is as good as astar's, or both find none.
+void expect_as_afresh(Flown& flown, const Planner& afresh, const std::string& what) {
+  const PlanResult& repaired = flown.result();
+  const PlanResult fresh = afresh.plan(flown.request());
+  ASSERT_EQ(repaired.status, fresh.status)
+      << what << ": " << repaired.message << "; afresh: " << fresh.message;
+  if (fresh.status == Status::solved) {
+    // Links off the centres are whole numbers of small lengths.
+    const double edge = flown.cells().spec().cell.minCoeff();
+    ASSERT_NEAR(length(repaired.route), length(fresh.route), 2e-5 * edge) << what;
+    ASSERT_TRUE(check(repaired.route, flown.request()).ok()) << what;
+  } else if (fresh.status == Status::no_route) {
+    ASSERT_TRUE(repaired.proved) << what;
+  }
+}
+
+void run_sequence(const Setting& setting, std::uint64_t seed) {
+  SplitMix64 random(seed);
+  const GridSpec spec = spec_of(setting.counts, setting.cell);
+  const double densities[] = {0.05, 0.2, 0.35, 0.45};
+  VoxelGrid cells = random_cells(spec, densities[seed % 4], random);
+  const Cell start = random_cell(spec, random);
+  Cell goal = random_cell(spec, random);
+  goal[2] = setting.level ? start[2] : goal[2];
+  if (start == goal) {
+    return;
+  }
+  cells.set(start, false);
+  cells.set(goal, false);
+  const auto afresh = make_planner("astar", setting.with);
+  Flown flown(setting.with, cells, start, goal, setting.level);
+  flown.begin();
+  ASSERT_NO_FATAL_FAILURE(
+      expect_as_afresh(flown, *afresh, "first plan of " + std::to_string(seed)));
+  for (int round = 0; round < 8; ++round) {
+    if (random.uniform() < 0.4) {
+      flown.move_on(0.5 * random.uniform());
+    }
+    const int edits = random.uniform() < 0.2 ? 0 : random.integer(1, 20);
+    for (int n = 0; n < edits; ++n) {
+      const Cell c = random_cell(spec, random);
+      const Cell here = spec.cell_of(flown.request().start.position);
+      if (c != here && c != goal) {
+        flown.flip(c);
+      }
+    }
+    flown.update();
+    ASSERT_NO_FATAL_FAILURE(expect_as_afresh(
+        flown, *afresh, "seed " + std::to_string(seed) + ", round " + std::to_string(round)));
+  }
+}
+
+TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
+  const Setting settings[] = {
+      {},
+      {.with = "{moves: cells, corner: free_box}"},
+      {.with = "{moves: cells, neighbours: 6}"},
+      {.cell = {30, 20, 7}},
+      {.counts = {20, 18, 1}, .cell = {10, 10, 10}, .level = true},
+      {.counts = {20, 18, 1},
+       .cell = {10, 25, 4},
+       .level = true,
+       .with = "{moves: cells, corner: free_box}"},
+      {.with = "{moves: exact}"},
+  };
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    ASSERT_NO_FATAL_FAILURE(run_sequence(settings[seed % std::size(settings)], seed)) << seed;
+  }
+}
+
+TEST(DStarLiteSession, NoChangeExpandsNothing) {
+  SplitMix64 random(1);
+  const GridSpec spec = spec_of({30, 30, 20}, Vec3::Constant(5));
+  for (const char* with : {"{moves: cells}", "{moves: exact}"}) {
+    VoxelGrid cells = random_cells(spec, 0.2, random);
+    cells.set({1, 1, 1}, false);
+    cells.set({28, 27, 18}, false);
+    Flown flown(with, cells, {1, 1, 1}, {28, 27, 18});
+    flown.begin();
+    const Route route = flown.result().route;
+    ASSERT_GT(expanded(flown.result()), 20);
+    EXPECT_EQ(expanded(flown.update()), 0);
+    EXPECT_EQ(flown.result().route, route);
+  }
+}
+
+TEST(DStarLiteSession, OneFarOffCellCostsLessThanAHundredthOfTheFirstPlan) {
+  for (int seed = 0; seed < 5; ++seed) {
+    const Request request = testing::city_request("complex", seed);
+    GridSpec spec = *request.world->native_grid();
+    spec.rule = GridSpec::Rule::native;
+    Flown flown("{moves: cells}", *request.world->voxels(spec), {1, 2, 4}, {67, 64, 4});
+    flown.begin();
+    ASSERT_EQ(flown.result().status, Status::solved);
+    const std::int64_t first = expanded(flown.result());
+    flown.flip({75, 5, 90});
+    EXPECT_LT(double(expanded(flown.update())), 0.01 * double(first)) << seed;
+  }
+}
+
+TEST(DStarLiteSession, ABudgetThatEndsInARepairIsMadeUpForByTheNext) {
+  SplitMix64 random(7);
+  const auto afresh = make_planner("astar", "{moves: cells}");
+  int cut_short = 0;
+  for (int n = 0; n < 40; ++n) {
+    const GridSpec spec = spec_of({16, 14, 8}, Vec3::Constant(10));
+    VoxelGrid cells = random_cells(spec, 0.3, random);
+    cells.set({0, 0, 0}, false);
+    cells.set({15, 13, 7}, false);
+    Flown flown("{moves: cells}", cells, {0, 0, 0}, {15, 13, 7});
+    flown.request().budget.max_iterations = std::uint64_t(random.integer(0, 100));
+    flown.begin();
+    for (int round = 0; round < 6; ++round) {
+      for (int edit = 0; edit < 30; ++edit) {
+        const Cell c = random_cell(spec, random);
+        if (c != Cell{0, 0, 0} && c != Cell{15, 13, 7}) {
+          flown.flip(c);
+        }
+      }
+      const std::uint64_t most = std::uint64_t(random.integer(0, 60));
+      flown.request().budget.max_iterations = most;
+      const PlanResult& cut = flown.update();
+      ASSERT_LE(std::uint64_t(expanded(cut)), most);
+      cut_short += cut.status == Status::timed_out && cut.budget_hit;
+    }
+    flown.request().budget = {};
+    flown.update();
+    ASSERT_NO_FATAL_FAILURE(expect_as_afresh(flown, *afresh, std::to_string(n)));
+  }
+  EXPECT_GT(cut_short, 20);
+}
+
+TEST(DStarLiteSession, AWayThatCloses) {
+  // A wall with one gap, which is shut and opened again.
+  const GridSpec spec = spec_of({15, 9, 5}, Vec3::Constant(10));
+  VoxelGrid cells(spec);
+  for (int k = 0; k < 5; ++k) {
+    for (int j = 0; j < 9; ++j) {
+      cells.set({7, j, k}, !(j == 6 && k == 3));
+    }
+  }
+  Flown flown("{moves: cells}", cells, {1, 1, 1}, {13, 1, 1});
+  flown.begin();
+  const double way = length(flown.result().route);
+  for (int n = 0; n < 3; ++n) {
+    flown.flip({7, 6, 3});
+    flown.update();
+    EXPECT_EQ(flown.result().status, Status::no_route);
+    EXPECT_TRUE(flown.result().proved);
+    flown.flip({7, 6, 3});
+    flown.update();
+    ASSERT_EQ(flown.result().status, Status::solved) << flown.result().message;
+    EXPECT_NEAR(length(flown.result().route), way, 1e-6);
+  }
+}
+
+TEST(DStarLiteSession, AnotherGoalOrLatticeIsPlannedAfresh) {
+  const GridSpec spec = spec_of({15, 9, 5}, Vec3::Constant(10));
+  Flown flown("{moves: cells}", VoxelGrid(spec), {1, 1, 1}, {13, 1, 1});
+  flown.begin();
+  flown.request().goal.position = spec.centre({13, 7, 4});
+  EXPECT_EQ(flown.update().status, Status::solved);
+  EXPECT_EQ(flown.result().route.back(), spec.centre({13, 7, 4}));
+  const Request before = flown.request();
+  const auto planner = make_planner("dstar_lite", "{moves: cells, cell_m: [10, 10, 10]}");
+  const auto session = planner->begin(before);
+  const auto empty = std::make_shared<const World>(before.world->without("cells"));
+  const Change gone{Change::Kind::remove, "cells", spec.box()};
+  const PlanResult result = session->update(before.start, before.goal, empty, {&gone, 1}, {});
+  EXPECT_EQ(result.status, Status::solved) << result.message;
+}
+}  // namespace
+}  // namespace altiplan

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "altiplan/check.hpp"
+#include "changed_cells.hpp"
+#include "dstar_search.hpp"
+#include "heading_graph.hpp"
+
+namespace altiplan::dstar_lite {
+
+/// Work memory that outlives a session.
+struct Pools {
+  kit::ScratchPool<Memory> searches;
+  kit::ScratchPool<LegMemory> legs;
+};
+
+/// A search, and the graph that it runs on.
+template <class Graph>
+struct Incremental {
+  Incremental(const Problem& problem, Legs& legs, const VoxelGrid& bits, Pools& pools)
+      : memory(pools.searches.take()),
+        to_start(problem),
+        graph(problem, legs, to_start),
+        search(problem, graph, to_start, bits, *memory) {}
+
+  kit::ScratchPool<Memory>::Lease memory;
+  ToStart to_start;
+  Graph graph;
+  Search<Graph> search;
+};
+
+/// The searches for one goal on one lattice: over cells, and where the route that this gives breaks
+/// a rule that looks at two legs, over cells with headings.
+class Plan {
+ public:
+  /// `request` and `settings` are the session's own and change under the plan; `within`: routes end
+  /// at any cell within the goal's tolerance.
+  Plan(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
+       const kit::StepCosts& costs, bool within, Pools& pools)
+      : lattice_(lattice),
+        costs_(costs),
+        problem_{request, settings, lattice_, costs_},
+        pools_(pools),
+        leg_memory_(pools.legs.take()),
+        legs_(problem_, *leg_memory_),
+        grid_(legs_.rules().grid() != nullptr ? kit::occupancy(request, lattice_)
+                                              : std::make_shared<VoxelGrid>(lattice_.spec())),
+        bits_(grid_),
+        within_(within) {
+    begin(by_cell_);
+  }
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+
+  const kit::Lattice& lattice() const { return lattice_; }
+  const kit::StepCosts& costs() const { return costs_; }
+  bool within() const { return within_; }
+  /// Whether a way was longer than whole numbers hold: coarser ones are needed.
+  bool too_long() const {
+    return by_cell_->search.too_long() || (by_heading_ && by_heading_->search.too_long());
+  }
+
+  /// Takes in that the request's world is another one; whether the plan can go on.
+  bool take(std::span<const Change> changes) {
+    const auto before = grid_;
+    legs_.renew();
+    if (legs_.rules().grid() != nullptr) {
+      grid_ = kit::occupancy(problem_.request, lattice_);
+    }
+    if (!(before->spec() == grid_->spec())) {
+      return false;
+    }
+    if (legs_.judges()) {
+      for (const Change& change : changes) {
+        take_legs(change.box);
+      }
+    }
+    const std::vector<Cell> changed =
+        before == grid_ ? std::vector<Cell>() : changed_cells(*before, *grid_, changes, lattice_);
+    for_each_search([&](auto& at) {
+      at.graph.find_goal(within_);
+      for (const Change& change : changes) {
+        if (legs_.judges()) {
+          touch_legs(at, change.box);
+        }
+      }
+      if (!legs_.judges()) {
+        for (const Cell& c : changed) {
+          take_cell(at, c);
+        }
+      }
+      at.search.initialize();
+    });
+    return true;
+  }
+
+  /// Takes in where the vehicle is; whether the plan can go on.
+  bool find_start() {
+    bool goes_on = true;
+    for_each_search([&](auto& at) { goes_on = find_start(at) && goes_on; });
+    return goes_on;
+  }
+
+  PlanResult run() {
+    BudgetWatch watch(problem_.request.budget);
+    const kit::SearchState state = problem_.settings.state;
+    const bool looks_back =
+        problem_.request.limits.turns() || !problem_.request.constraints.empty();
+    if (state == kit::SearchState::cell_and_heading && looks_back) {
+      return run_by_heading({});
+    }
+    const Status status = by_cell_->search.plan(watch, max_list_bytes(*by_cell_, 0));
+    if (status != Status::solved) {
+      return without_route(by_cell_->search, status);
+    }
+    Route route = route_over(*by_cell_);
+    const std::string broken = looks_back || legs_.judges() ? first_broken(route) : "";
+    if (broken.empty()) {
+      return with_route(by_cell_->search, std::move(route));
+    }
+    PlanResult result = without_route(by_cell_->search, Status::no_route);
+    result.proved = false;
+    result.message = "the shortest route over cells does not keep " + broken;
+    return state == kit::SearchState::parent ? result : run_by_heading(result);
+  }
+
+ private:
+  template <class Visit>
+  void for_each_search(const Visit& visit) {
+    visit(*by_cell_);
+    if (by_heading_) {
+      visit(*by_heading_);
+    }
+  }
+
+  template <class Graph>
+  void begin(std::optional<Incremental<Graph>>& at) {
+    at.emplace(problem_, legs_, *bits_, pools_);
+    find_start(*at);
+    at->graph.find_goal(within_);
+    at->search.initialize();
+  }
+
+  template <class Graph>
+  bool find_start(Incremental<Graph>& at) {
+    const auto links = lattice_.links(problem_.request.start.position);
+    const bool goes_on = at.search.move_start(links);
+    if constexpr (Graph::kPerCell > 1) {
+      const Links before = at.graph.start();
+      at.graph.find_start({});
+      for (const Link& link : before.all()) {
+        at.search.remove(link.node);
+      }
+    }
+    at.graph.find_start(links);
+    if constexpr (Graph::kPerCell > 1) {
+      for (const Link& link : at.graph.start().all()) {
+        at.search.touch(link.node);
+      }
+    }
+    return goes_on;
+  }
+
+  template <class Graph>
+  void touch(Incremental<Graph>& at, const Cell& c) {
+    at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.touch(s); });
+  }
+
+  /// A cell that has become blocked, or free.
+  template <class Graph>
+  void take_cell(Incremental<Graph>& at, const Cell& c) {
+    if (!at.search.reached_around(c)) {
+      return;
+    }
+    if (grid_->blocked(c)) {
+      at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.remove(s); });
+    }
+    if (problem_.settings.corner == kit::CornerRule::free_box) {  // legs past its corners
+      Cell low = c;
+      Cell high = c;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::max(c[axis] - 1, 0);
+        high[axis] = std::min(c[axis] + 1, lattice_.spec().counts[axis] - 1);
+      }
+      for_each_cell(low, high, [&](const Cell& s) { touch(at, s); });
+    } else if (!grid_->blocked(c)) {
+      touch(at, c);
+    }
+  }
+
+  /// The cells at both ends of the legs that what is in the box may block.
+  std::pair<Cell, Cell> cells_near(const Box& box) const {
+    const Request& request = problem_.request;
+    const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) +
+                        request.world->slack() + kLengthTolerance;
+    Box grown = box.grown(near);
+    if (request.world->has_ground()) {  // what is above has another ground below it
+      grown.min.z() = -kInfinity;
+      grown.max.z() = kInfinity;
+    }
+    return cells_in(grown, lattice_);
+  }
+  void take_legs(const Box& box) {
+    const auto [low, high] = cells_near(box);
+    for_each_cell(low, high, [&](const Cell& c) { legs_.forget(lattice_.index(c)); });
+  }
+  template <class Graph>
+  void touch_legs(Incremental<Graph>& at, const Box& box) {
+    const auto [low, high] = cells_near(box);
+    for_each_cell(low, high, [&](const Cell& c) {
+      if (at.search.reached_around(c)) {
+        touch(at, c);
+      }
+    });
+  }
+
+  /// What is left for the lists of a search, beside what others hold.
+  template <class Graph>
+  std::size_t max_list_bytes(const Incremental<Graph>&, std::size_t others) const {
+    const std::size_t fixed = others + bytes_of<Graph>();
+    return problem_.settings.max_bytes - std::min(problem_.settings.max_bytes, fixed);
+  }
+  template <class Graph>
+  std::size_t bytes_of() const {
+    return lattice_.size() * (Graph::kPerCell * sizeof(std::uint64_t) + 1 + legs_.bytes_per_cell());
+  }
+
+  PlanResult run_by_heading(PlanResult by_cell) {
+    const std::size_t others = by_cell.counters.empty() ? 0 : bytes_of<CellGraph>();
+    if (others + bytes_of<HeadingGraph>() > problem_.settings.max_bytes ||
+        lattice_.size() > (kNever - 1) / HeadingGraph::kPerCell) {
+      by_cell.status = Status::no_route;
+      by_cell.message += "; the memory allowed is too little for a search by cell and heading";
+      return by_cell;
+    }
+    if (!by_heading_) {
+      begin(by_heading_);
+    }
+    Budget rest = problem_.request.budget;
+    if (rest.max_iterations != ~std::uint64_t{0} && !by_cell.counters.empty()) {
+      rest.max_iterations -= std::uint64_t(by_cell.counters.front().value);
+    }
+    BudgetWatch watch(rest);
+    const Status status = by_heading_->search.plan(watch, max_list_bytes(*by_heading_, others));
+    PlanResult result = status == Status::solved
+                            ? with_route(by_heading_->search, route_over(*by_heading_))
+                            : without_route(by_heading_->search, status);
+    result.message += "; searched by cell and heading";
+    if (!by_cell.counters.empty()) {
+      kit::add(result.counters, by_cell.counters);
+    }
+    return result;
+  }
+
+  template <class Graph>
+  Route route_over(const Incremental<Graph>& at) const {
+    const Request& request = problem_.request;
+    Route route = {request.start.position};
+    bool at_start = lattice_.nearest(request.start.position).length == 0;
+    for (const std::uint32_t node : at.search.way()) {
+      if (!at_start) {
+        route.push_back(lattice_.position(at.graph.cell(node)));
+      }
+      at_start = false;
+    }
+    if (!within_) {
+      kit::end_at_goal(route, request.goal.position,
+                       lattice_.nearest(request.goal.position).length == 0);
+    }
+    return route;
+  }
+
+  /// The rule that a leg of the route does not keep, or "".
+  std::string first_broken(const Route& route) const {
+    const Request& request = problem_.request;
+    std::optional<Vec3> before = request.before_start();
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+      if (!leg_ok(before, route[i], route[i + 1], request)) {
+        return leg_violations(before, route[i], route[i + 1], request, i).front().constraint;
+      }
+      before = route[i];
+    }
+    return "";
+  }
+
+  template <class Graph>
+  PlanResult with_route(const Search<Graph>& search, Route route) {
+    const double allowed = problem_.request.limits.max_route_length;
+    if (const double shortest = length(route); shortest > allowed + kLengthTolerance) {
+      PlanResult result = without_route(search, Status::no_route);
+      result.message = "no route: the shortest has " + std::to_string(shortest) +
+                       " m, route_length allows " + std::to_string(allowed) + " m";
+      return result;
+    }
+    return kit::solved(std::move(route), search.progress(), lattice_, legs_.rules());
+  }
+
+  template <class Graph>
+  PlanResult without_route(const Search<Graph>& search, Status status) {
+    if (status == Status::no_route) {  // counts what refused the moves
+      for_each_cell({0, 0, 0},
+                    {lattice_.spec().counts[0] - 1, lattice_.spec().counts[1] - 1,
+                     lattice_.spec().counts[2] - 1},
+                    [&](const Cell& c) {
+                      if (search.reached(c)) {
+                        legs_.rules().out_of(c);
+                      }
+                    });
+    }
+    PlanResult result;
+    result.status = status;
+    result.budget_hit = status != Status::no_route;
+    result.proved = status == Status::no_route;
+    result.message = explanation(status, search.progress());
+    result.counters = kit::counters(search.progress(), lattice_, legs_.rules());
+    return result;
+  }
+
+  std::string explanation(Status status, const kit::Progress& progress) const {
+    std::string text = status == Status::no_route    ? "no route"
+                       : status == Status::cancelled ? "cancelled"
+                       : progress.memory_full        ? "the memory allowed was used up"
+                                                     : "the budget was used up";
+    text += ": " + std::to_string(progress.expanded) + " vertices expanded on " +
+            std::to_string(lattice_.size()) + " cells";
+    if (progress.expanded > 0) {
+      const Vec3& at = progress.nearest;
+      const auto whole = [](double value) { return std::to_string(std::llround(value)); };
+      text += ", from the goal, the nearest to the start at (" + whole(at.x()) + ", " +
+              whole(at.y()) + ", " + whole(at.z()) + "), " +
+              whole((at - problem_.request.start.position).norm()) + " m from it";
+    }
+    const std::string refusals = legs_.rules().refusals();
+    return refusals.empty() ? text : text + "; refused moves: " + refusals;
+  }
+
+  kit::Lattice lattice_;
+  kit::StepCosts costs_;
+  Problem problem_;
+  Pools& pools_;
+  kit::ScratchPool<LegMemory>::Lease leg_memory_;
+  Legs legs_;
+  std::shared_ptr<const VoxelGrid> grid_;  ///< with moves by cells, what is blocked
+  std::shared_ptr<const VoxelGrid> bits_;  ///< for its layout
+  bool within_;
+  std::optional<Incremental<CellGraph>> by_cell_;
+  std::optional<Incremental<HeadingGraph>> by_heading_;
+};
+}  // namespace altiplan::dstar_lite
