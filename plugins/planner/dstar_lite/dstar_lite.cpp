@@ -4,7 +4,7 @@
 // Citation: S. Koenig, M. Likhachev: D* Lite. AAAI 2002; Fast Replanning for Navigation in Unknown
 //   Terrain. IEEE Transactions on Robotics 21(3), 2005, doi:10.1109/TRO.2004.838026 (the optimized
 //   version). Raises that wait for a route: D. Ferguson, A. Stentz: The Delayed D* Algorithm for
-//   Efficient Path Replanning. ICRA 2005, doi:10.1109/ROBOT.2005.1570414.
+//   Efficient Path Replanning. ICRA 2005.
 // Guarantees: complete and optimal on its lattice, after every update too; under rules that look at
 //   two legs by (cell, heading).
 // Complexity: O(n log n) time, O(n) memory in the cells of the lattice for a plan; a repair takes

@@ -23,6 +23,8 @@ struct Setting {
   Vec3 cell{10, 10, 10};
   bool level = false;
   const char* with = "{moves: cells}";
+  double max_turn = kPi;  ///< in space
+  const char* afresh = "{moves: cells}";
 };
 
 /// The repaired plan is as good as astar's, or both find none.
@@ -54,14 +56,20 @@ void run_sequence(const Setting& setting, std::uint64_t seed) {
   }
   cells.set(start, false);
   cells.set(goal, false);
-  const auto afresh = make_planner("astar", setting.with);
+  const bool turns = setting.max_turn < kPi;
+  const auto afresh = make_planner("astar", turns ? setting.afresh : setting.with);
   Flown flown(setting.with, cells, start, goal, setting.level);
+  flown.request().limits.max_turn_space = setting.max_turn;
   flown.begin();
   ASSERT_NO_FATAL_FAILURE(
       expect_as_afresh(flown, *afresh, "first plan of " + std::to_string(seed)));
   for (int round = 0; round < 8; ++round) {
     if (random.uniform() < 0.4) {
       flown.move_on(0.5 * random.uniform());
+      const Route& route = flown.result().route;
+      if (turns && route.size() >= 2) {  // it cannot turn at once any more
+        flown.request().start.velocity = (route[1] - route[0]).normalized();
+      }
     }
     const int edits = random.uniform() < 0.2 ? 0 : random.integer(1, 20);
     for (int n = 0; n < edits; ++n) {
@@ -91,6 +99,23 @@ TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
       {.with = "{moves: exact}"},
   };
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    ASSERT_NO_FATAL_FAILURE(run_sequence(settings[seed % std::size(settings)], seed)) << seed;
+  }
+}
+
+TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
+  const char* kHeadings = "{moves: cells, state: cell_and_heading}";
+  const Setting settings[] = {
+      {.counts = {9, 8, 5}, .max_turn = 0.9, .afresh = kHeadings},
+      {.counts = {9, 8, 5}, .with = kHeadings, .max_turn = 0.7, .afresh = kHeadings},
+      {.counts = {14, 14, 1}, .level = true, .max_turn = 0.8, .afresh = kHeadings},
+      {.counts = {9, 8, 5},
+       .cell = {30, 20, 12},
+       .with = "{moves: exact}",
+       .max_turn = 1.0,
+       .afresh = "{moves: exact, state: cell_and_heading}"},
+  };
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
     ASSERT_NO_FATAL_FAILURE(run_sequence(settings[seed % std::size(settings)], seed)) << seed;
   }
 }
