@@ -278,8 +278,9 @@ class CellGraph {
   CellGraph(const Problem& problem, Legs& legs, const ToStart& to_start)
       : problem_(problem), lattice_(problem.lattice), legs_(legs), to_start_(to_start) {
     for (int d = 0; d < kit::kDirections; ++d) {
-      strides_[std::size_t(d)] = std::uint32_t(lattice_.stride(d));
-      costs_[std::size_t(d)] = problem.costs[d];
+      const Cell o = kit::offset(d);
+      moves_[std::size_t(d)] = {std::uint32_t(lattice_.stride(d)), problem.costs[d], o[0], o[1],
+                                o[2]};
     }
   }
 
@@ -291,11 +292,13 @@ class CellGraph {
   template <class Visit>
   void predecessors(std::uint32_t u, const Visit& visit) {
     const Cell c = lattice_.cell(u);
-    for (kit::DirectionMask open = legs_.into(u, c); open != 0; open &= open - 1) {
-      const int d = std::countr_zero(open);
-      const Cell o = kit::offset(d);
-      visit(u + strides_[std::size_t(d)], costs_[std::size_t(d)],
-            Cell{c[0] + o[0], c[1] + o[1], c[2] + o[2]});
+    const kit::DirectionMask free = legs_.into(u, c);
+    // Of equals the last one is taken first: the step along most axes.
+    for (const kit::DirectionMask along : {0x0415410U, 0x2AA8AAAU, 0x5140145U}) {
+      for (kit::DirectionMask open = free & along; open != 0; open &= open - 1) {
+        const Move& move = moves_[std::size_t(std::countr_zero(open))];
+        visit(u + move.stride, move.cost, Cell{c[0] + move.x, c[1] + move.y, c[2] + move.z});
+      }
     }
   }
   /// The same for all that may have had a leg to u before its cell was blocked.
@@ -303,14 +306,12 @@ class CellGraph {
   void around(std::uint32_t u, const Visit& visit) {
     const Cell c = lattice_.cell(u);
     for (kit::DirectionMask on = legs_.steps() & lattice_.inside(c); on != 0; on &= on - 1) {
-      const int d = std::countr_zero(on);
-      const Cell o = kit::offset(d);
-      visit(u + strides_[std::size_t(d)], costs_[std::size_t(d)],
-            Cell{c[0] + o[0], c[1] + o[1], c[2] + o[2]});
+      const Move& move = moves_[std::size_t(std::countr_zero(on))];
+      visit(u + move.stride, move.cost, Cell{c[0] + move.x, c[1] + move.y, c[2] + move.z});
     }
   }
   /// Calls visit(n, c(s, n), is_free) for the vertices that a leg from s may lead to; is_free()
-  /// says whether it does.
+  /// says whether it does. Ends when a visit returns false.
   template <class Visit>
   void successors(std::uint32_t s, const Visit& visit) {
     const Cell c = lattice_.cell(s);
@@ -318,8 +319,10 @@ class CellGraph {
     for (kit::DirectionMask open = judges ? legs_.steps() & lattice_.inside(c) : legs_.into(s, c);
          open != 0; open &= open - 1) {
       const int d = std::countr_zero(open);
-      visit(s + strides_[std::size_t(d)], costs_[std::size_t(d)],
-            [&, d] { return !judges || legs_.leads(s, c, d); });
+      const Move& move = moves_[std::size_t(d)];
+      if (!visit(s + move.stride, move.cost, [&, d] { return !judges || legs_.leads(s, c, d); })) {
+        return;
+      }
     }
   }
   /// Of the leg from a vertex to the goal, kNever where there is none.
@@ -361,12 +364,17 @@ class CellGraph {
   }
 
  private:
+  struct Move {
+    std::uint32_t stride;  ///< difference of index, modulo 2^32
+    std::uint32_t cost;
+    int x, y, z;
+  };
+
   const Problem& problem_;
   const kit::Lattice& lattice_;
   Legs& legs_;
   const ToStart& to_start_;
-  std::array<std::uint32_t, kit::kDirections> strides_{};
-  std::array<std::uint32_t, kit::kDirections> costs_{};
+  std::array<Move, kit::kDirections> moves_{};
   Links goal_;
   Links start_;
 };

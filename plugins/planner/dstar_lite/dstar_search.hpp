@@ -82,7 +82,7 @@ class Search {
     }
   }
   /// The legs from the vertex may have changed.
-  void touch(std::uint32_t s) { update_rhs(s, graph_.cell(s), false); }
+  void touch(std::uint32_t s) { update_rhs(s, graph_.cell(s), 0, false); }
   bool reached(const Cell& c) const {
     return (reached_[bits_.bit(c) / 64] >> bits_.bit(c) % 64 & 1) != 0;
   }
@@ -104,6 +104,11 @@ class Search {
     } while (!ended_ && !too_long_ && best_ != kNever && !walk());
     if (ended_ || too_long_) {
       progress_.memory_full = memory_full();
+    }
+    if (nearest_ != kNever) {
+      progress_.nearest = problem_.lattice.position(graph_.cell(nearest_vertex_));
+    }
+    if (ended_ || too_long_) {
       return watch.cancelled() ? Status::cancelled : Status::timed_out;
     }
     return best_ == kNever ? Status::no_route : Status::solved;
@@ -134,8 +139,10 @@ class Search {
     const std::size_t bit = bits_.bit(c);
     reached_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
-  std::uint32_t key(std::uint32_t cost, const Cell& c) const {
-    return cost + graph_.estimate(c) + k_m_;
+  /// procedure CalculateKey, of a vertex at the cell whose lesser value is `cost`.
+  Heap::Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
+    const std::uint32_t h = graph_.estimate(c);
+    return {cost + h + k_m_, h, s};
   }
 
   /// procedure UpdateVertex. A vertex whose g is to be raised waits on a list only if it comes of a
@@ -143,13 +150,14 @@ class Search {
   void update_vertex(std::uint32_t s, const Values& now, const Cell& c, bool rising) {
     if (now.rhs < now.g) {
       ++progress_.generated;
-      open_.push(key(now.rhs, c), s);
+      open_.push(entry(s, now.rhs, c));
     } else if (now.g < now.rhs && rising) {
-      raised_.push({key(now.g, c), s});
+      raised_.push(entry(s, now.g, c));
     }
   }
 
-  void update_rhs(std::uint32_t s, const Cell& c, bool rising) {
+  /// Finds rhs anew, which is known not to be below `least`.
+  void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t least, bool rising) {
     const Values old = values(s);
     std::uint32_t rhs = graph_.goal_cost(s);
     graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
@@ -157,6 +165,7 @@ class Search {
       if (g != kNever && g + cost < rhs && is_free()) {
         rhs = g + cost;
       }
+      return rhs > least;
     });
     if (rhs != old.rhs) {
       if (nodes_[s] == 0) {
@@ -191,15 +200,15 @@ class Search {
       if (old.rhs >= old.g) {
         continue;  // lowered since
       }
-      const std::uint32_t h = graph_.estimate(graph_.cell(first.node));
-      if (const std::uint32_t now = old.rhs + h + k_m_; first.key < now) {
-        open_.push(now, first.node);
+      const Heap::Entry now = entry(first.node, old.rhs, graph_.cell(first.node));
+      if (first.key < now.key) {
+        open_.push(now);
       } else if (spent() || old.rhs > kit::StepCosts::kMost) {
         too_long_ = !ended_;
-        open_.push(now, first.node);
+        open_.push(now);
         return;
       } else {
-        remember_nearest(first.node, h);
+        remember_nearest(now);
         lower(first.node, old);
       }
     }
@@ -244,7 +253,7 @@ class Search {
   void update_if_relied(std::uint32_t s, const Cell& c, std::uint32_t g, std::uint32_t cost,
                         bool rising) {
     if (g != kNever && values(s).rhs == g + cost) {
-      update_rhs(s, c, rising);
+      update_rhs(s, c, g + cost, rising);
     }
   }
 
@@ -302,9 +311,10 @@ class Search {
     std::uint32_t next = kNever;
     graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
       const std::uint32_t g = values(n).g;
-      if (next == kNever && g != kNever && g + cost == rhs && is_free()) {
+      if (g != kNever && g + cost == rhs && is_free()) {
         next = n;
       }
+      return next == kNever;
     });
     return next;
   }
@@ -334,10 +344,10 @@ class Search {
     most_entries_ = std::max(kFewEntries, 2 * waiting.size());
   }
 
-  void remember_nearest(std::uint32_t s, std::uint32_t h) {
-    if (h < nearest_) {
-      nearest_ = h;
-      progress_.nearest = problem_.lattice.position(graph_.cell(s));
+  void remember_nearest(const Heap::Entry& entry) {
+    if (entry.h < nearest_) {
+      nearest_ = entry.h;
+      nearest_vertex_ = entry.node;
     }
   }
   void trace(std::uint32_t s, std::uint32_t cost) const {
@@ -364,7 +374,8 @@ class Search {
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;
   kit::Progress progress_;
-  std::uint32_t nearest_ = kNever;
+  std::uint32_t nearest_ = kNever;  ///< estimate of the expanded vertex nearest to the start
+  std::uint32_t nearest_vertex_ = 0;
   std::size_t max_list_bytes_ = 0;
   std::size_t most_entries_ = kFewEntries;
   std::vector<std::uint32_t> way_;

@@ -52,9 +52,13 @@ class HeadingGraph {
     open &= legs_.judges() ? ~kit::DirectionMask{0} : legs_.into(s / kPerCell, c);
     for (; open != 0; open &= open - 1) {
       const int d = std::countr_zero(open);
-      visit(node(std::uint32_t(s / kPerCell + lattice_.stride(d)), d), problem_.costs[d], [&, d] {
+      const auto is_free = [&, d] {
         return (!legs_.judges() || legs_.leads(s / kPerCell, c, d)) && follows(c, in, d);
-      });
+      };
+      const auto next = std::uint32_t(s / kPerCell + lattice_.stride(d));
+      if (!visit(node(next, d), problem_.costs[d], is_free)) {
+        return;
+      }
     }
   }
 

@@ -10,17 +10,20 @@
 
 namespace altiplan::dstar_lite {
 
-/// A heap of (key, node), the least first; the node whose key changed is pushed again.
+/// A heap of entries, the least key first, among equals the one nearest to the start; an entry
+/// whose key has changed is pushed again.
 class Heap {
  public:
   struct Entry {
     std::uint32_t key;
+    std::uint32_t h;  ///< the estimate that is a part of the key
     std::uint32_t node;
 
     /// Of heaps of the standard library, which have the greatest on top.
-    friend bool operator<(const Entry& a, const Entry& b) {
-      return a.key != b.key ? a.key > b.key : a.node > b.node;
-    }
+    friend bool operator<(const Entry& a, const Entry& b) { return a.rank() > b.rank(); }
+
+   private:
+    std::uint64_t rank() const { return std::uint64_t{key} << 32 | h; }
   };
   void clear() { entries_.clear(); }
   bool empty() const { return entries_.empty(); }
@@ -57,11 +60,11 @@ class OpenQueue {
   bool empty() const { return below_.empty() && !next_ && buckets_.empty(); }
   std::size_t size() const { return below_.size() + buckets_.size() + (next_ ? 1 : 0); }
   std::size_t bytes() const { return below_.bytes() + buckets_.bytes(); }
-  void push(std::uint32_t key, std::uint32_t node) {
-    if (key < least_) {
-      below_.push({key, node});
+  void push(const Entry& entry) {
+    if (entry.key < least_) {
+      below_.push(entry);
     } else {
-      buckets_.push(key, node, 0);
+      buckets_.push(entry.key, entry.node, entry.h);
     }
   }
   /// Neither is to be called on an empty queue.
@@ -72,7 +75,7 @@ class OpenQueue {
     if (!next_) {
       const kit::BucketQueue::Entry entry = buckets_.pop();
       least_ = entry.key;
-      next_ = Entry{entry.key, entry.node};
+      next_ = Entry{entry.key, entry.from, entry.node};
     }
     return *next_;
   }
