@@ -140,7 +140,7 @@ class Search {
     reached_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
   /// procedure CalculateKey, of a vertex at the cell whose lesser value is `cost`.
-  Heap::Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
+  Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
     const std::uint32_t h = graph_.estimate(c);
     return {cost + h + k_m_, h, s};
   }
@@ -180,7 +180,7 @@ class Search {
   void compute_shortest_path() {
     find_best();
     while (!open_.empty()) {
-      const Heap::Entry first = open_.top();
+      const Entry first = open_.top();
       if (best_ != kNever && first.key >= best_ + k_m_) {
         return;
       }
@@ -200,7 +200,7 @@ class Search {
       if (old.rhs >= old.g) {
         continue;  // lowered since
       }
-      const Heap::Entry now = entry(first.node, old.rhs, graph_.cell(first.node));
+      const Entry now = entry(first.node, old.rhs, graph_.cell(first.node));
       if (first.key < now.key) {
         open_.push(now);
       } else if (spent() || old.rhs > kit::StepCosts::kMost) {
@@ -239,9 +239,9 @@ class Search {
   /// Sets g of an underconsistent vertex to infinity.
   void raise(std::uint32_t u, const Values& old) {
     ++progress_.expanded;
-    set(u, {kNever, old.rhs});
-    trace(u, old.rhs);
-    update_vertex(u, {kNever, old.rhs}, graph_.cell(u), true);
+    set(u, {kNever, kNever});
+    update_rhs(u, graph_.cell(u), 0, true);
+    trace(u, values(u).rhs);
     graph_.predecessors(u, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
       update_if_relied(s, c, old.g, cost, true);
     });
@@ -249,11 +249,13 @@ class Search {
       find_best();
     }
   }
-  /// Finds rhs of s anew if it was that of a leg to a vertex whose g has been.
+  /// Finds rhs of s anew if it was that of a leg to a vertex whose g has been. Where s is to be
+  /// raised anyway it need not be exact until then, only not too high.
   void update_if_relied(std::uint32_t s, const Cell& c, std::uint32_t g, std::uint32_t cost,
                         bool rising) {
-    if (g != kNever && values(s).rhs == g + cost) {
-      update_rhs(s, c, g + cost, rising);
+    const Values now = values(s);
+    if (g != kNever && now.rhs == g + cost && now.g >= now.rhs) {
+      update_rhs(s, c, now.rhs, rising);
     }
   }
 
@@ -344,7 +346,7 @@ class Search {
     most_entries_ = std::max(kFewEntries, 2 * waiting.size());
   }
 
-  void remember_nearest(const Heap::Entry& entry) {
+  void remember_nearest(const Entry& entry) {
     if (entry.h < nearest_) {
       nearest_ = entry.h;
       nearest_vertex_ = entry.node;

@@ -1,56 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/open_list.hpp"
 
 namespace altiplan::dstar_lite {
 
-/// A heap of entries, the least key first, among equals the one nearest to the start; an entry
-/// whose key has changed is pushed again.
+/// A vertex on a list.
+struct Entry {
+  std::uint32_t key;
+  std::uint32_t h;  ///< the estimate that is a part of the key
+  std::uint32_t node;
+};
+
+/// Entries in a heap, the least key first, among equals the one nearest to the start; one whose key
+/// has changed is pushed again.
 class Heap {
  public:
-  struct Entry {
-    std::uint32_t key;
-    std::uint32_t h;  ///< the estimate that is a part of the key
-    std::uint32_t node;
-
-    /// Of heaps of the standard library, which have the greatest on top.
-    friend bool operator<(const Entry& a, const Entry& b) { return a.rank() > b.rank(); }
-
-   private:
-    std::uint64_t rank() const { return std::uint64_t{key} << 32 | h; }
-  };
-  void clear() { entries_.clear(); }
-  bool empty() const { return entries_.empty(); }
-  std::size_t size() const { return entries_.size(); }
-  std::size_t bytes() const { return entries_.size() * sizeof(Entry); }
-  const Entry& top() const { return entries_.front(); }
-  void push(const Entry& entry) {
-    entries_.push_back(entry);
-    std::push_heap(entries_.begin(), entries_.end());
-  }
-  Entry pop() {
-    std::pop_heap(entries_.begin(), entries_.end());
-    const Entry entry = entries_.back();
-    entries_.pop_back();
-    return entry;
-  }
+  void clear() { list_.clear(1); }
+  bool empty() const { return list_.empty(); }
+  std::size_t size() const { return list_.size(); }
+  std::size_t bytes() const { return list_.size() * sizeof(kit::OpenList::Entry); }
+  Entry top() const { return entry(list_.top()); }
+  void push(const Entry& entry) { list_.push(entry.key, -double(entry.h), entry.node); }
+  Entry pop() { return entry(list_.pop()); }
 
  private:
-  std::vector<Entry> entries_;
+  static Entry entry(const kit::OpenList::Entry& kept) {
+    return {std::uint32_t(kept.f), std::uint32_t(-kept.g), kept.node};
+  }
+  kit::OpenList list_;
 };
 
 /// The open list. A first search takes keys that never fall, from buckets; a repair puts keys below
 /// the last one taken, few of them, into a heap, and leaves the buckets as they are.
 class OpenQueue {
  public:
-  using Entry = Heap::Entry;
-
   void clear() {
     buckets_.clear();
     below_.clear();
