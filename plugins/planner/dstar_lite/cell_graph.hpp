@@ -66,15 +66,18 @@ class ToStart {
  public:
   explicit ToStart(const Problem& problem) : costs_(problem.costs) {}
 
+  /// Not to be called without any link.
   void move(const std::vector<kit::Lattice::Link>& links, const Problem& problem) {
-    ends_.clear();
+    others_.clear();
     for (const kit::Lattice::Link& link : links) {
-      ends_.push_back({link.cell, problem.link_cost(link)});
+      others_.push_back({link.cell, problem.link_cost(link)});
     }
+    first_ = others_.back();  // most often the only one
+    others_.pop_back();
   }
   std::uint32_t operator()(const Cell& c) const {
-    std::uint32_t least = kNever;
-    for (const End& end : ends_) {
+    std::uint32_t least = costs_.between(c, first_.cell) + first_.cost;
+    for (const End& end : others_) {
       least = std::min(least, costs_.between(c, end.cell) + end.cost);
     }
     return least;
@@ -86,7 +89,8 @@ class ToStart {
     std::uint32_t cost;
   };
   const kit::StepCosts& costs_;
-  std::vector<End> ends_;
+  End first_{};
+  std::vector<End> others_;
 };
 
 /// What is known of legs beside what the occupancy says.
@@ -288,26 +292,18 @@ class CellGraph {
   /// h(start, node).
   std::uint32_t estimate(const Cell& c) const { return to_start_(c); }
 
-  /// Calls visit(s, c(s, u), cell of s) for the vertices from which a leg leads to u.
+  /// Calls visit(s, c(s, u), cell of s) for the vertices from which a leg leads to u, at cell c,
+  /// but for those in the directions `without`.
   template <class Visit>
-  void predecessors(std::uint32_t u, const Visit& visit) {
-    const Cell c = lattice_.cell(u);
-    const kit::DirectionMask free = legs_.into(u, c);
+  void predecessors(std::uint32_t u, const Cell& c, kit::DirectionMask without,
+                    const Visit& visit) {
+    const kit::DirectionMask free = legs_.into(u, c) & ~without;
     // Of equals the last one is taken first: the step along most axes.
     for (const kit::DirectionMask along : {0x0415410U, 0x2AA8AAAU, 0x5140145U}) {
       for (kit::DirectionMask open = free & along; open != 0; open &= open - 1) {
         const Move& move = moves_[std::size_t(std::countr_zero(open))];
         visit(u + move.stride, move.cost, Cell{c[0] + move.x, c[1] + move.y, c[2] + move.z});
       }
-    }
-  }
-  /// The same for all that may have had a leg to u before its cell was blocked.
-  template <class Visit>
-  void around(std::uint32_t u, const Visit& visit) {
-    const Cell c = lattice_.cell(u);
-    for (kit::DirectionMask on = legs_.steps() & lattice_.inside(c); on != 0; on &= on - 1) {
-      const Move& move = moves_[std::size_t(std::countr_zero(on))];
-      visit(u + move.stride, move.cost, Cell{c[0] + move.x, c[1] + move.y, c[2] + move.z});
     }
   }
   /// Calls visit(n, c(s, n), is_free) for the vertices that a leg from s may lead to; is_free()

@@ -13,8 +13,8 @@
 namespace altiplan::dstar_lite {
 
 struct Memory {
-  kit::ScratchArray<std::uint64_t> nodes;    ///< g and rhs by node, complements: 0 is never
-  kit::ScratchArray<std::uint64_t> reached;  ///< a bit a cell, laid out like an occupancy
+  kit::ScratchArray<std::uint64_t> nodes;   ///< g and rhs by node, complements: 0 is never
+  kit::ScratchArray<std::uint64_t> opened;  ///< a bit a cell, laid out like an occupancy
   OpenQueue open;
   Heap raised;
 
@@ -40,11 +40,11 @@ class Search {
         to_start_(to_start),
         bits_(bits),
         nodes_(memory.nodes),
-        reached_(memory.reached),
+        opened_(memory.opened),
         open_(memory.open),
         raised_(memory.raised) {
     nodes_.reset(problem.lattice.size() * Graph::kPerCell);
-    reached_.reset(bits.words().size());
+    opened_.reset(bits.words().size());
     open_.clear();
     raised_.clear();
   }
@@ -52,7 +52,8 @@ class Search {
   /// procedure Initialize: what is one leg away from the goal; again where these legs may have
   /// changed.
   void initialize() {
-    graph_.for_each_at_goal([&](std::uint32_t s) { touch(s); });
+    fresh_ = most_entries_ == 0;
+    graph_.for_each_at_goal([&](std::uint32_t s) { update_rhs(s, graph_.cell(s), 0, false); });
   }
 
   /// The start has moved: `links` join its new place to the lattice. All keys on the open list stay
@@ -71,25 +72,24 @@ class Search {
     return k_m_ < kMostKm;
   }
 
-  /// A vertex that cannot be any more.
+  /// A vertex that cannot be any more. What relied on it is found by the walk, where it matters.
   void remove(std::uint32_t s) {
-    const Values old = values(s);
-    if (old.g != kNever || old.rhs != kNever) {
+    fresh_ = false;
+    if (nodes_[s] != 0) {
       set(s, {kNever, kNever});
-      graph_.around(s, [&](std::uint32_t n, std::uint32_t cost, const Cell& c) {
-        update_if_relied(n, c, old.g, cost, false);
-      });
     }
   }
   /// The legs from the vertex may have changed.
-  void touch(std::uint32_t s) { update_rhs(s, graph_.cell(s), 0, false); }
-  bool reached(const Cell& c) const {
-    return (reached_[bits_.bit(c) / 64] >> bits_.bit(c) % 64 & 1) != 0;
+  void touch(std::uint32_t s) {
+    fresh_ = false;
+    update_rhs(s, graph_.cell(s), 0, false);
   }
-  /// Whether anything is known of a cell around this one.
-  bool reached_around(const Cell& c) const {
-    return kit::bits_around(bits_, reached_.data(), bits_.bit(c)) != 0;
+  /// Whether the search has come to the cell, or to one of those around it.
+  bool opened(const Cell& c) const {
+    const std::size_t bit = bits_.bit(c);
+    return (opened_[bit / 64] >> bit % 64 & 1) != 0;
   }
+  bool opened_around(const Cell& c) const { return around(c) != 0; }
 
   /// procedure Main, one round: the cheapest way from the start's place to the goal's.
   Status plan(BudgetWatch& watch, std::size_t max_list_bytes) {
@@ -104,6 +104,9 @@ class Search {
     } while (!ended_ && !too_long_ && best_ != kNever && !walk());
     if (ended_ || too_long_) {
       progress_.memory_full = memory_full();
+    }
+    if (most_entries_ == 0) {
+      most_entries_ = std::max(kFewEntries, 2 * (open_.size() + raised_.size()));
     }
     if (nearest_ != kNever) {
       progress_.nearest = problem_.lattice.position(graph_.cell(nearest_vertex_));
@@ -134,10 +137,12 @@ class Search {
   void set(std::uint32_t s, const Values& values) {
     nodes_.at(s) = std::uint64_t{~values.rhs} << 32 | std::uint32_t(~values.g);
   }
-  /// The first value of a vertex at the cell.
-  void note_reached(const Cell& c) {
+  kit::DirectionMask around(const Cell& c) const {
+    return kit::bits_around(bits_, opened_.data(), bits_.bit(c));
+  }
+  void note_opened(const Cell& c) {
     const std::size_t bit = bits_.bit(c);
-    reached_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
+    opened_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
   /// procedure CalculateKey, of a vertex at the cell whose lesser value is `cost`.
   Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
@@ -168,9 +173,6 @@ class Search {
       return rhs > least;
     });
     if (rhs != old.rhs) {
-      if (nodes_[s] == 0) {
-        note_reached(c);
-      }
       set(s, {old.g, rhs});
       update_vertex(s, {old.g, rhs}, c, rising);
     }
@@ -218,15 +220,16 @@ class Search {
   void lower(std::uint32_t u, const Values& old) {
     ++progress_.expanded;
     const std::uint32_t g = old.rhs;
+    const Cell at = graph_.cell(u);
+    // What was opened before is not improved, while no leg has come or gone.
+    const kit::DirectionMask closed = fresh_ && Graph::kPerCell == 1 ? around(at) : 0;
+    note_opened(at);
     set(u, {g, g});
     trace(u, g);
-    graph_.predecessors(u, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
+    graph_.predecessors(u, at, closed, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
       const std::uint32_t rhs = g + cost;
       const Values of_s = values(s);
       if (rhs < of_s.rhs) {
-        if (nodes_[s] == 0) {
-          note_reached(c);
-        }
         set(s, {of_s.g, rhs});
         update_vertex(s, {of_s.g, rhs}, c, false);
       }
@@ -242,9 +245,10 @@ class Search {
     set(u, {kNever, kNever});
     update_rhs(u, graph_.cell(u), 0, true);
     trace(u, values(u).rhs);
-    graph_.predecessors(u, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
-      update_if_relied(s, c, old.g, cost, true);
-    });
+    graph_.predecessors(u, graph_.cell(u), 0,
+                        [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
+                          update_if_relied(s, c, old.g, cost, true);
+                        });
     if (graph_.start().may_hold(u)) {
       find_best();
     }
@@ -269,18 +273,20 @@ class Search {
     }
   }
 
-  /// Follows the route from the start. A vertex on it whose g is not rhs is raised, and so is what
-  /// came before it for as long as its g relied on that. Whether all of the route was consistent.
+  /// Follows the route from the start. A vertex on it whose g is not rhs, or whose rhs is that of a
+  /// leg which is no more, is raised, and so is what came before it for as long as its g relied on
+  /// that. Whether all of the route was consistent.
   bool walk() {
     way_.clear();
     bool sound = true;
-    while (true) {
+    while (way_.empty() || graph_.goal_cost(way_.back()) != values(way_.back()).rhs) {
       const std::uint32_t next = way_.empty() ? first_vertex() : next_vertex(way_.back());
-      if (next == kNever) {  // at the goal
-        return sound;
+      if (next != kNever) {
+        way_.push_back(next);
+      } else {
+        update_rhs(way_.back(), graph_.cell(way_.back()), 0, false);
       }
-      way_.push_back(next);
-      for (Values last = values(next); last.g != last.rhs; last = values(way_.back())) {
+      for (Values last = values(way_.back()); last.g != last.rhs; last = values(way_.back())) {
         if (spent()) {
           return false;
         }
@@ -296,6 +302,7 @@ class Search {
         }
       }
     }
+    return sound;
   }
   std::uint32_t first_vertex() const {
     for (const Link& link : graph_.start().all()) {
@@ -307,9 +314,6 @@ class Search {
   }
   std::uint32_t next_vertex(std::uint32_t s) {
     const std::uint32_t rhs = values(s).rhs;
-    if (graph_.goal_cost(s) == rhs) {
-      return kNever;
-    }
     std::uint32_t next = kNever;
     graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
       const std::uint32_t g = values(n).g;
@@ -329,7 +333,7 @@ class Search {
 
   /// Drops entries of vertices that have been pushed again or are consistent, once there are many.
   void forget_stale_entries() {
-    if (open_.size() + raised_.size() <= most_entries_) {
+    if (most_entries_ == 0 || open_.size() + raised_.size() <= most_entries_) {
       return;
     }
     std::vector<std::uint32_t> waiting;
@@ -366,12 +370,13 @@ class Search {
   ToStart& to_start_;
   const VoxelGrid& bits_;
   kit::ScratchArray<std::uint64_t>& nodes_;
-  kit::ScratchArray<std::uint64_t>& reached_;
+  kit::ScratchArray<std::uint64_t>& opened_;
   OpenQueue& open_;
   Heap& raised_;
   std::uint32_t k_m_ = 0;
   std::uint32_t best_ = kNever;
   bool moved_ = false;  ///< the start has a place
+  bool fresh_ = true;   ///< all legs are as they were at first
   bool ended_ = false;
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;
@@ -379,7 +384,7 @@ class Search {
   std::uint32_t nearest_ = kNever;  ///< estimate of the expanded vertex nearest to the start
   std::uint32_t nearest_vertex_ = 0;
   std::size_t max_list_bytes_ = 0;
-  std::size_t most_entries_ = kFewEntries;
+  std::size_t most_entries_ = 0;  ///< before stale ones are dropped; 0: not yet planned
   std::vector<std::uint32_t> way_;
 };
 }  // namespace altiplan::dstar_lite

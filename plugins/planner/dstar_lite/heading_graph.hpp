@@ -23,24 +23,13 @@ class HeadingGraph {
   std::uint32_t estimate(const Cell& c) const { return to_start_(c); }
 
   template <class Visit>
-  void predecessors(std::uint32_t u, const Visit& visit) {
+  void predecessors(std::uint32_t u, const Cell& c, kit::DirectionMask, const Visit& visit) {
     const int in = heading(u);
-    const Cell c = cell(u);
     if (in != kit::kHere && (legs_.into(u / kPerCell, c) >> kit::opposite(in) & 1) != 0) {
       visit_before(c, in, [&](std::uint32_t s, const Cell& from, int d) {
         if (follows(from, d, in)) {
           visit(s, problem_.costs[in], from);
         }
-      });
-    }
-  }
-  template <class Visit>
-  void around(std::uint32_t u, const Visit& visit) {
-    const int in = heading(u);
-    const Cell c = cell(u);
-    if (in != kit::kHere && (lattice_.inside(c) >> kit::opposite(in) & 1) != 0) {
-      visit_before(c, in, [&](std::uint32_t s, const Cell& from, int) {
-        visit(s, problem_.costs[in], from);
       });
     }
   }

@@ -150,8 +150,10 @@ class Plan {
 
   template <class Graph>
   bool find_start(Incremental<Graph>& at) {
-    const auto links = lattice_.links(problem_.request.start.position);
-    const bool goes_on = at.search.move_start(links);
+    const Vec3& start = problem_.request.start.position;
+    const std::vector<kit::Lattice::Link> links = lattice_.links(start);
+    const bool goes_on = at.search.move_start(
+        links.empty() ? std::vector<kit::Lattice::Link>{lattice_.nearest(start)} : links);
     if constexpr (Graph::kPerCell > 1) {
       const Links before = at.graph.start();
       at.graph.find_start({});
@@ -176,11 +178,11 @@ class Plan {
   /// A cell that has become blocked, or free.
   template <class Graph>
   void take_cell(Incremental<Graph>& at, const Cell& c) {
-    if (!at.search.reached_around(c)) {
-      return;
-    }
     if (grid_->blocked(c)) {
       at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.remove(s); });
+    }
+    if (!at.search.opened_around(c)) {
+      return;
     }
     if (problem_.settings.corner == kit::CornerRule::free_box) {  // legs past its corners
       Cell low = c;
@@ -215,7 +217,7 @@ class Plan {
   void touch_legs(Incremental<Graph>& at, const Box& box) {
     const auto [low, high] = cells_near(box);
     for_each_cell(low, high, [&](const Cell& c) {
-      if (at.search.reached_around(c)) {
+      if (at.search.opened_around(c)) {
         touch(at, c);
       }
     });
@@ -309,7 +311,7 @@ class Plan {
                     {lattice_.spec().counts[0] - 1, lattice_.spec().counts[1] - 1,
                      lattice_.spec().counts[2] - 1},
                     [&](const Cell& c) {
-                      if (search.reached(c)) {
+                      if (search.opened(c)) {
                         legs_.rules().out_of(c);
                       }
                     });
