@@ -198,6 +198,13 @@ class Legs {
   kit::DirectionMask steps_ = 0;
 };
 
+/// Takes a direction from a mask that has some, the likely one if it can.
+inline int take_direction(kit::DirectionMask& mask, int likely) {
+  const int d = (mask >> likely & 1) != 0 ? likely : std::countr_zero(mask);
+  mask &= ~(kit::DirectionMask{1} << d);
+  return d;
+}
+
 /// A way to or from the lattice: a node, and what the leg there costs.
 struct Link {
   std::uint32_t node;
@@ -307,19 +314,27 @@ class CellGraph {
     }
   }
   /// Calls visit(n, c(s, n), is_free) for the vertices that a leg from s may lead to; is_free()
-  /// says whether it does. Ends when a visit returns false.
+  /// says whether it does. That in direction `likely` comes first; ends when a visit returns false.
   template <class Visit>
-  void successors(std::uint32_t s, const Visit& visit) {
+  void successors(std::uint32_t s, int likely, const Visit& visit) {
     const Cell c = lattice_.cell(s);
     const bool judges = legs_.judges();
-    for (kit::DirectionMask open = judges ? legs_.steps() & lattice_.inside(c) : legs_.into(s, c);
-         open != 0; open &= open - 1) {
-      const int d = std::countr_zero(open);
+    kit::DirectionMask open = judges ? legs_.steps() & lattice_.inside(c) : legs_.into(s, c);
+    while (open != 0) {
+      const int d = take_direction(open, likely);
       const Move& move = moves_[std::size_t(d)];
       if (!visit(s + move.stride, move.cost, [&, d] { return !judges || legs_.leads(s, c, d); })) {
         return;
       }
     }
+  }
+  /// Of the leg from s to its successor n.
+  int direction(std::uint32_t s, std::uint32_t n) const {
+    int d = 0;
+    while (moves_[std::size_t(d)].stride != n - s) {
+      ++d;
+    }
+    return d;
   }
   /// Of the leg from a vertex to the goal, kNever where there is none.
   std::uint32_t goal_cost(std::uint32_t s) const { return goal_.cost(s); }

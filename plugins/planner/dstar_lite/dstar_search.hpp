@@ -165,7 +165,7 @@ class Search {
   void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t least, bool rising) {
     const Values old = values(s);
     std::uint32_t rhs = graph_.goal_cost(s);
-    graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
+    graph_.successors(s, kit::kHere, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
       const std::uint32_t g = values(n).g;
       if (g != kNever && g + cost < rhs && is_free()) {
         rhs = g + cost;
@@ -280,7 +280,7 @@ class Search {
     way_.clear();
     bool sound = true;
     while (way_.empty() || graph_.goal_cost(way_.back()) != values(way_.back()).rhs) {
-      const std::uint32_t next = way_.empty() ? first_vertex() : next_vertex(way_.back());
+      const std::uint32_t next = way_.empty() ? first_vertex() : next_vertex();
       if (next != kNever) {
         way_.push_back(next);
       } else {
@@ -312,10 +312,14 @@ class Search {
     }
     return kNever;
   }
-  std::uint32_t next_vertex(std::uint32_t s) {
+  /// Straight on where that will do: little memory is looked at then.
+  std::uint32_t next_vertex() {
+    const std::uint32_t s = way_.back();
+    const int likely =
+        way_.size() > 1 ? graph_.direction(way_[way_.size() - 2], s) : int(kit::kHere);
     const std::uint32_t rhs = values(s).rhs;
     std::uint32_t next = kNever;
-    graph_.successors(s, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
+    graph_.successors(s, likely, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
       const std::uint32_t g = values(n).g;
       if (g != kNever && g + cost == rhs && is_free()) {
         next = n;

@@ -34,13 +34,13 @@ class HeadingGraph {
     }
   }
   template <class Visit>
-  void successors(std::uint32_t s, const Visit& visit) {
+  void successors(std::uint32_t s, int likely, const Visit& visit) {
     const int in = heading(s);
     const Cell c = cell(s);
     kit::DirectionMask open = legs_.steps() & legs_.rules().after(in) & lattice_.inside(c);
     open &= legs_.judges() ? ~kit::DirectionMask{0} : legs_.into(s / kPerCell, c);
-    for (; open != 0; open &= open - 1) {
-      const int d = std::countr_zero(open);
+    while (open != 0) {
+      const int d = take_direction(open, likely);
       const auto is_free = [&, d] {
         return (!legs_.judges() || legs_.leads(s / kPerCell, c, d)) && follows(c, in, d);
       };
@@ -50,6 +50,8 @@ class HeadingGraph {
       }
     }
   }
+
+  static int direction(std::uint32_t, std::uint32_t n) { return heading(n); }
 
   std::uint32_t goal_cost(std::uint32_t s) const {
     const std::uint32_t cost = goal_.cost(s / kPerCell);
