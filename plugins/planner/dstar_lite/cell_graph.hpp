@@ -24,15 +24,16 @@ struct Problem {
   std::uint32_t link_cost(const kit::Lattice::Link& link) const {
     return link.length > 0 ? std::max(costs.of(link.length), 1U) : 0;
   }
-  /// Whether the cells that a step leads through, and its direction, say if it is free.
-  bool by_cells_alone() const {
-    Request each_leg = request;  // what whole routes have to keep is asked in the end
-    each_leg.limits.max_turn_horizontal = each_leg.limits.max_turn_space = kPi;
-    each_leg.limits.min_turn_radius = 0;
-    each_leg.limits.max_route_length = kInfinity;
-    return settings.moves == kit::MoveCheck::cells && kit::MoveRules::cells_decide(each_leg);
-  }
 };
+
+/// Whether the cells that a step leads through, and its direction, say if it is free.
+inline bool cells_decide(const Request& request, const kit::SearchSettings& settings) {
+  Request each_leg = request;  // what whole routes have to keep is asked in the end
+  each_leg.limits.max_turn_horizontal = each_leg.limits.max_turn_space = kPi;
+  each_leg.limits.min_turn_radius = 0;
+  each_leg.limits.max_route_length = kInfinity;
+  return settings.moves == kit::MoveCheck::cells && kit::MoveRules::cells_decide(each_leg);
+}
 
 /// The cells that a box reaches into, or touches, clipped to the lattice; none: high below low.
 inline std::pair<Cell, Cell> cells_in(const Box& box, const kit::Lattice& lattice) {
@@ -101,6 +102,8 @@ struct LegMemory {
   };
   kit::ScratchArray<std::uint32_t> judged;  ///< by cell: directions with a free leg to it, kJudged
   kit::NodeStore<Near> near;
+
+  static constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(Near);
 };
 
 /// Which legs between neighbouring cells a vehicle may fly, whatever was before.
@@ -110,16 +113,13 @@ class Legs {
       : problem_(problem),
         lattice_(problem.lattice),
         memory_(memory),
-        judges_(!problem.by_cells_alone()),
+        judges_(!cells_decide(problem.request, problem.settings)),
         level_(lattice_.spec().counts[2] == 1) {
     if (judges_) {
       memory.judged.reset(lattice_.size());
     }
     renew();
   }
-  static constexpr std::size_t kJudgedBytes = sizeof(std::uint32_t) + sizeof(LegMemory::Near);
-  std::size_t bytes_per_cell() const { return judges_ ? kJudgedBytes : 0; }
-
   /// Takes in the request's world; what legs within a box were said to be has to be forgotten.
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);

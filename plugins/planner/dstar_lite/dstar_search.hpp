@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -84,12 +85,22 @@ class Search {
     fresh_ = false;
     update_rhs(s, graph_.cell(s), 0, false);
   }
-  /// Whether the search has come to the cell, or to one of those around it.
-  bool opened(const Cell& c) const {
-    const std::size_t bit = bits_.bit(c);
-    return (opened_[bit / 64] >> bit % 64 & 1) != 0;
-  }
+  /// Whether the search has come to the cell or one of those around it.
   bool opened_around(const Cell& c) const { return around(c) != 0; }
+  template <class Visit>
+  void for_each_opened(const Visit& visit) const {
+    const Cell& counts = bits_.spec().counts;
+    for (int k = 0; k < counts[2]; ++k) {
+      for (int j = 0; j < counts[1]; ++j) {
+        const std::size_t row = bits_.bit(-1, j, k) / 64;
+        for (std::size_t word = 0; word < bits_.words_per_row(); ++word) {
+          for (std::uint64_t bits = opened_[row + word]; bits != 0; bits &= bits - 1) {
+            visit(Cell{int(64 * word) + std::countr_zero(bits) - 1, j, k});
+          }
+        }
+      }
+    }
+  }
 
   /// procedure Main, one round: the cheapest way from the start's place to the goal's.
   Status plan(BudgetWatch& watch, std::size_t max_list_bytes) {
@@ -124,7 +135,7 @@ class Search {
 
  private:
   static constexpr std::uint32_t kMostKm = 1'500'000'000;
-  static constexpr std::size_t kFewEntries = 1 << 16;
+  static constexpr std::size_t kFewEntries = 1 << 14;
 
   struct Values {
     std::uint32_t g;
@@ -337,7 +348,7 @@ class Search {
 
   /// Drops entries of vertices that have been pushed again or are consistent, once there are many.
   void forget_stale_entries() {
-    if (most_entries_ == 0 || open_.size() + raised_.size() <= most_entries_) {
+    if (most_entries_ == 0 || (open_.size() + raised_.size() <= most_entries_ && !memory_full())) {
       return;
     }
     std::vector<std::uint32_t> waiting;

@@ -182,6 +182,30 @@ TEST(DStarLiteSession, ABudgetThatEndsInARepairIsMadeUpForByTheNext) {
   EXPECT_GT(cut_short, 20);
 }
 
+TEST(DStarLiteSession, GoesOnForAsLongAsOneLikes) {
+  // Many moves, after which keys have to start low again; many edits, in little memory for lists.
+  SplitMix64 random(11);
+  const GridSpec spec = spec_of({12, 10, 6}, Vec3::Constant(10));
+  const auto afresh = make_planner("astar", "{moves: cells}");
+  Flown flown("{moves: cells, max_memory_mb: 1}", random_cells(spec, 0, random), {0, 0, 0},
+              {6, 9, 5});
+  flown.begin();
+  for (int n = 0; n < 6000; ++n) {
+    const Cell at = n % 2 == 0 ? Cell{11, 0, 0} : Cell{0, 0, 0};
+    flown.request().start.position = spec.centre(at);
+    for (int edit = 0; edit < (n % 10 == 0 ? 20 : 0); ++edit) {
+      const Cell c = random_cell(spec, random);
+      if (c[0] != 0 && c[0] != 11 && c != Cell{6, 9, 5}) {
+        flown.flip(c);
+      }
+    }
+    flown.update();
+    if (n % 100 == 0) {
+      ASSERT_NO_FATAL_FAILURE(expect_as_afresh(flown, *afresh, std::to_string(n)));
+    }
+  }
+}
+
 TEST(DStarLiteSession, AWayThatCloses) {
   // A wall with one gap, which is shut and opened again.
   const GridSpec spec = spec_of({15, 9, 5}, Vec3::Constant(10));

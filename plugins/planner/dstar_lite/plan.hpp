@@ -77,28 +77,8 @@ class Plan {
     if (!(before->spec() == grid_->spec())) {
       return false;
     }
-    if (legs_.judges()) {
-      for (const Change& change : changes) {
-        take_legs(change.box);
-      }
-    }
-    const std::vector<Cell> changed =
-        before == grid_ ? std::vector<Cell>() : changed_cells(*before, *grid_, changes, lattice_);
-    for_each_search([&](auto& at) {
-      at.graph.find_goal(within_);
-      for (const Change& change : changes) {
-        if (legs_.judges()) {
-          touch_legs(at, change.box);
-        }
-      }
-      if (!legs_.judges()) {
-        for (const Cell& c : changed) {
-          take_cell(at, c);
-        }
-      }
-      at.search.initialize();
-    });
-    return true;
+    return legs_.judges() ? take_legs(changes)
+                          : take_cells(changed_cells(*before, *grid_, changes, lattice_));
   }
 
   /// Takes in where the vehicle is; whether the plan can go on.
@@ -116,7 +96,7 @@ class Plan {
     if (state == kit::SearchState::cell_and_heading && looks_back) {
       return run_by_heading({});
     }
-    const Status status = by_cell_->search.plan(watch, max_list_bytes(*by_cell_, 0));
+    const Status status = by_cell_->search.plan(watch, max_list_bytes<CellGraph>(0));
     if (status != Status::solved) {
       return without_route(by_cell_->search, status);
     }
@@ -175,6 +155,24 @@ class Plan {
     at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.touch(s); });
   }
 
+  bool take_cells(const std::vector<Cell>& changed) {
+    if (too_many(changed.size())) {
+      return false;
+    }
+    for_each_search([&](auto& at) {
+      at.graph.find_goal(within_);
+      for (const Cell& c : changed) {
+        take_cell(at, c);
+      }
+      at.search.initialize();
+    });
+    return true;
+  }
+  /// Whether it is better to plan afresh, which keeps the budget, than to look at as many cells.
+  bool too_many(std::size_t cells) const {
+    return cells > (1 << 18) && cells > lattice_.size() / 8;
+  }
+
   /// A cell that has become blocked, or free.
   template <class Graph>
   void take_cell(Incremental<Graph>& at, const Cell& c) {
@@ -209,29 +207,48 @@ class Plan {
     }
     return cells_in(grown, lattice_);
   }
-  void take_legs(const Box& box) {
-    const auto [low, high] = cells_near(box);
-    for_each_cell(low, high, [&](const Cell& c) { legs_.forget(lattice_.index(c)); });
-  }
-  template <class Graph>
-  void touch_legs(Incremental<Graph>& at, const Box& box) {
-    const auto [low, high] = cells_near(box);
-    for_each_cell(low, high, [&](const Cell& c) {
-      if (at.search.opened_around(c)) {
-        touch(at, c);
+  bool take_legs(std::span<const Change> changes) {
+    std::size_t cells = 0;
+    for (const Change& change : changes) {
+      const auto [low, high] = cells_near(change.box);
+      std::size_t count = 1;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        count *= std::size_t(std::max(high[axis] - low[axis] + 1, 0));
       }
+      cells += count;
+    }
+    if (too_many(cells)) {
+      return false;
+    }
+    for (const Change& change : changes) {
+      const auto [low, high] = cells_near(change.box);
+      for_each_cell(low, high, [&](const Cell& c) { legs_.forget(lattice_.index(c)); });
+    }
+    for_each_search([&](auto& at) {
+      at.graph.find_goal(within_);
+      for (const Change& change : changes) {
+        const auto [low, high] = cells_near(change.box);
+        for_each_cell(low, high, [&](const Cell& c) {
+          if (at.search.opened_around(c)) {
+            touch(at, c);
+          }
+        });
+      }
+      at.search.initialize();
     });
+    return true;
   }
 
   /// What is left for the lists of a search, beside what others hold.
   template <class Graph>
-  std::size_t max_list_bytes(const Incremental<Graph>&, std::size_t others) const {
+  std::size_t max_list_bytes(std::size_t others) const {
     const std::size_t fixed = others + bytes_of<Graph>();
     return problem_.settings.max_bytes - std::min(problem_.settings.max_bytes, fixed);
   }
   template <class Graph>
   std::size_t bytes_of() const {
-    return lattice_.size() * (Graph::kPerCell * sizeof(std::uint64_t) + 1 + legs_.bytes_per_cell());
+    return lattice_.size() * (Graph::kPerCell * sizeof(std::uint64_t) + 1 +
+                              (legs_.judges() ? LegMemory::kBytesPerCell : 0));
   }
 
   PlanResult run_by_heading(PlanResult by_cell) {
@@ -250,7 +267,7 @@ class Plan {
       rest.max_iterations -= std::uint64_t(by_cell.counters.front().value);
     }
     BudgetWatch watch(rest);
-    const Status status = by_heading_->search.plan(watch, max_list_bytes(*by_heading_, others));
+    const Status status = by_heading_->search.plan(watch, max_list_bytes<HeadingGraph>(others));
     PlanResult result = status == Status::solved
                             ? with_route(by_heading_->search, route_over(*by_heading_))
                             : without_route(by_heading_->search, status);
@@ -307,14 +324,7 @@ class Plan {
   template <class Graph>
   PlanResult without_route(const Search<Graph>& search, Status status) {
     if (status == Status::no_route) {  // counts what refused the moves
-      for_each_cell({0, 0, 0},
-                    {lattice_.spec().counts[0] - 1, lattice_.spec().counts[1] - 1,
-                     lattice_.spec().counts[2] - 1},
-                    [&](const Cell& c) {
-                      if (search.opened(c)) {
-                        legs_.rules().out_of(c);
-                      }
-                    });
+      search.for_each_opened([&](const Cell& c) { legs_.rules().out_of(c); });
     }
     PlanResult result;
     result.status = status;
