@@ -35,31 +35,61 @@ inline bool cells_decide(const Request& request, const kit::SearchSettings& sett
   return settings.moves == kit::MoveCheck::cells && kit::MoveRules::cells_decide(each_leg);
 }
 
-/// The cells that a box reaches into, or touches, clipped to the lattice; none: high below low.
-inline std::pair<Cell, Cell> cells_in(const Box& box, const kit::Lattice& lattice) {
+/// Cells from low to high, both included.
+struct CellRange {
+  Cell low{1, 1, 1};
+  Cell high{0, 0, 0};  ///< below low on an axis: no cells
+
+  std::size_t count() const {
+    std::size_t cells = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cells *= std::size_t(std::max(high[axis] - low[axis] + 1, 0));
+    }
+    return cells;
+  }
+  void add(const CellRange& other) {
+    const bool empty = count() == 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = empty ? other.low[axis] : std::min(low[axis], other.low[axis]);
+      high[axis] = empty ? other.high[axis] : std::max(high[axis], other.high[axis]);
+    }
+  }
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int k = low[2]; k <= high[2]; ++k) {
+      for (int j = low[1]; j <= high[1]; ++j) {
+        for (int i = low[0]; i <= high[0]; ++i) {
+          visit(Cell{i, j, k});
+        }
+      }
+    }
+  }
+};
+
+/// A cell and those around it.
+inline CellRange around(const Cell& c, const kit::Lattice& lattice) {
+  CellRange range{c, c};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    range.low[axis] = std::max(c[axis] - 1, 0);
+    range.high[axis] = std::min(c[axis] + 1, lattice.spec().counts[axis] - 1);
+  }
+  return range;
+}
+
+/// The cells that a box reaches into, and those beside them.
+inline CellRange cells_in(const Box& box, const kit::Lattice& lattice) {
   const GridSpec& spec = lattice.spec();
-  std::pair<Cell, Cell> range;
+  CellRange range;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = std::size_t(axis);
     const auto cell = [&](double at, double more) {
       const double index = std::floor((at - spec.origin[axis]) / spec.cell[axis]) + more;
       return int(std::clamp(index, -1.0, double(spec.counts[a])));
     };
-    range.first[a] = std::max(cell(box.min[axis], -1), 0);
-    range.second[a] = std::min(cell(box.max[axis], 1), spec.counts[a] - 1);
+    range.low[a] = std::max(cell(box.min[axis], -1), 0);
+    range.high[a] = std::min(cell(box.max[axis], 1), spec.counts[a] - 1);
   }
   return range;
-}
-
-template <class Visit>
-void for_each_cell(const Cell& low, const Cell& high, const Visit& visit) {
-  for (int k = low[2]; k <= high[2]; ++k) {
-    for (int j = low[1]; j <= high[1]; ++j) {
-      for (int i = low[0]; i <= high[0]; ++i) {
-        visit(Cell{i, j, k});
-      }
-    }
-  }
 }
 
 /// The heuristic: the least cost between the start and a cell, were none blocked.
@@ -259,8 +289,8 @@ void for_each_goal_link(const Problem& problem, Legs& legs, bool within, const V
     return;
   }
   const Vec3 reach = Vec3::Constant(goal.tolerance_m);
-  const auto [low, high] = cells_in({goal.position - reach, goal.position + reach}, lattice);
-  for_each_cell(low, high, [&](const Cell& c) {
+  const Box box{goal.position - reach, goal.position + reach};
+  cells_in(box, lattice).for_each([&](const Cell& c) {
     if (goal.reached_at(lattice.position(c)) && !legs.rules().cell_blocked(c)) {
       visit(kit::Lattice::Link{c, 0});
     }

@@ -37,14 +37,19 @@ void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::s
 }
 
 /// The cells in which two occupancies of one layout differ, looked for inside the changes' boxes
-/// alone, each grown by what grows obstacles. Where boxes overlap, more than once.
+/// alone, each grown by what grows obstacles, and of these where cells are known. Where boxes
+/// overlap, more than once.
 inline std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
-                                       std::span<const Change> changes,
+                                       std::span<const Change> changes, const CellRange& known,
                                        const kit::Lattice& lattice) {
   std::vector<Cell> cells;
   const std::size_t width = now.words_per_row();
   for (const Change& change : changes) {
-    const auto [low, high] = cells_in(change.box.grown(now.spec().inflation), lattice);
+    auto [low, high] = cells_in(change.box.grown(now.spec().inflation), lattice);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::max(low[axis], known.low[axis]);
+      high[axis] = std::min(high[axis], known.high[axis]);
+    }
     const std::size_t first = std::size_t(low[0] + 1) / 64;
     const std::size_t last = std::size_t(high[0] + 1) / 64;
     const bool whole_rows = first == 0 && last + 1 == width;

@@ -54,7 +54,11 @@ class Search {
   /// changed.
   void initialize() {
     fresh_ = most_entries_ == 0;
-    graph_.for_each_at_goal([&](std::uint32_t s) { update_rhs(s, graph_.cell(s), 0, false); });
+    graph_.for_each_at_goal([&](std::uint32_t s) {
+      const Cell c = graph_.cell(s);
+      known_.add({c, c});
+      update_rhs(s, c, 0, false);
+    });
   }
 
   /// The start has moved: `links` join its new place to the lattice. All keys on the open list stay
@@ -87,6 +91,8 @@ class Search {
   }
   /// Whether the search has come to the cell or one of those around it.
   bool opened_around(const Cell& c) const { return around(c) != 0; }
+  /// No vertex of another cell has any values.
+  const CellRange& known() const { return known_; }
   template <class Visit>
   void for_each_opened(const Visit& visit) const {
     const Cell& counts = bits_.spec().counts;
@@ -152,6 +158,10 @@ class Search {
     return kit::bits_around(bits_, opened_.data(), bits_.bit(c));
   }
   void note_opened(const Cell& c) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      known_.low[axis] = std::min(known_.low[axis], c[axis] - 1);
+      known_.high[axis] = std::max(known_.high[axis], c[axis] + 1);
+    }
     const std::size_t bit = bits_.bit(c);
     opened_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
@@ -388,6 +398,7 @@ class Search {
   kit::ScratchArray<std::uint64_t>& opened_;
   OpenQueue& open_;
   Heap& raised_;
+  CellRange known_;
   std::uint32_t k_m_ = 0;
   std::uint32_t best_ = kNever;
   bool moved_ = false;  ///< the start has a place

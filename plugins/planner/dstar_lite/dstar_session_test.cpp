@@ -104,11 +104,11 @@ TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
 }
 
 TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
-  const char* kHeadings = "{moves: cells, state: cell_and_heading}";
+  const char* by_heading = "{moves: cells, state: cell_and_heading}";
   const Setting settings[] = {
-      {.counts = {9, 8, 5}, .max_turn = 0.9, .afresh = kHeadings},
-      {.counts = {9, 8, 5}, .with = kHeadings, .max_turn = 0.7, .afresh = kHeadings},
-      {.counts = {14, 14, 1}, .level = true, .max_turn = 0.8, .afresh = kHeadings},
+      {.counts = {9, 8, 5}, .max_turn = 0.9, .afresh = by_heading},
+      {.counts = {9, 8, 5}, .with = by_heading, .max_turn = 0.7, .afresh = by_heading},
+      {.counts = {14, 14, 1}, .level = true, .max_turn = 0.8, .afresh = by_heading},
       {.counts = {9, 8, 5},
        .cell = {30, 20, 12},
        .with = "{moves: exact}",

@@ -77,8 +77,12 @@ class Plan {
     if (!(before->spec() == grid_->spec())) {
       return false;
     }
-    return legs_.judges() ? take_legs(changes)
-                          : take_cells(changed_cells(*before, *grid_, changes, lattice_));
+    if (legs_.judges()) {
+      return take_legs(changes);
+    }
+    CellRange known;  // what changes elsewhere nobody has looked at
+    for_each_search([&](const auto& at) { known.add(at.search.known()); });
+    return take_cells(changed_cells(*before, *grid_, changes, known, lattice_));
   }
 
   /// Takes in where the vehicle is; whether the plan can go on.
@@ -100,10 +104,10 @@ class Plan {
     if (status != Status::solved) {
       return without_route(by_cell_->search, status);
     }
-    Route route = route_over(*by_cell_);
+    const Route route = route_over(*by_cell_);
     const std::string broken = looks_back || legs_.judges() ? first_broken(route) : "";
     if (broken.empty()) {
-      return with_route(by_cell_->search, std::move(route));
+      return with_route(by_cell_->search, route);
     }
     PlanResult result = without_route(by_cell_->search, Status::no_route);
     result.proved = false;
@@ -176,27 +180,21 @@ class Plan {
   /// A cell that has become blocked, or free.
   template <class Graph>
   void take_cell(Incremental<Graph>& at, const Cell& c) {
-    if (grid_->blocked(c)) {
-      at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.remove(s); });
-    }
     if (!at.search.opened_around(c)) {
       return;
     }
+    if (grid_->blocked(c)) {
+      at.graph.for_each_at(c, [&](std::uint32_t s) { at.search.remove(s); });
+    }
     if (problem_.settings.corner == kit::CornerRule::free_box) {  // legs past its corners
-      Cell low = c;
-      Cell high = c;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::max(c[axis] - 1, 0);
-        high[axis] = std::min(c[axis] + 1, lattice_.spec().counts[axis] - 1);
-      }
-      for_each_cell(low, high, [&](const Cell& s) { touch(at, s); });
+      around(c, lattice_).for_each([&](const Cell& s) { touch(at, s); });
     } else if (!grid_->blocked(c)) {
       touch(at, c);
     }
   }
 
   /// The cells at both ends of the legs that what is in the box may block.
-  std::pair<Cell, Cell> cells_near(const Box& box) const {
+  CellRange cells_near(const Box& box) const {
     const Request& request = problem_.request;
     const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) +
                         request.world->slack() + kLengthTolerance;
@@ -210,25 +208,18 @@ class Plan {
   bool take_legs(std::span<const Change> changes) {
     std::size_t cells = 0;
     for (const Change& change : changes) {
-      const auto [low, high] = cells_near(change.box);
-      std::size_t count = 1;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        count *= std::size_t(std::max(high[axis] - low[axis] + 1, 0));
-      }
-      cells += count;
+      cells += cells_near(change.box).count();
     }
     if (too_many(cells)) {
       return false;
     }
     for (const Change& change : changes) {
-      const auto [low, high] = cells_near(change.box);
-      for_each_cell(low, high, [&](const Cell& c) { legs_.forget(lattice_.index(c)); });
+      cells_near(change.box).for_each([&](const Cell& c) { legs_.forget(lattice_.index(c)); });
     }
     for_each_search([&](auto& at) {
       at.graph.find_goal(within_);
       for (const Change& change : changes) {
-        const auto [low, high] = cells_near(change.box);
-        for_each_cell(low, high, [&](const Cell& c) {
+        cells_near(change.box).for_each([&](const Cell& c) {
           if (at.search.opened_around(c)) {
             touch(at, c);
           }
@@ -310,7 +301,7 @@ class Plan {
   }
 
   template <class Graph>
-  PlanResult with_route(const Search<Graph>& search, Route route) {
+  PlanResult with_route(const Search<Graph>& search, const Route& route) {
     const double allowed = problem_.request.limits.max_route_length;
     if (const double shortest = length(route); shortest > allowed + kLengthTolerance) {
       PlanResult result = without_route(search, Status::no_route);
@@ -318,7 +309,7 @@ class Plan {
                        " m, route_length allows " + std::to_string(allowed) + " m";
       return result;
     }
-    return kit::solved(std::move(route), search.progress(), lattice_, legs_.rules());
+    return kit::solved(route, search.progress(), lattice_, legs_.rules());
   }
 
   template <class Graph>
