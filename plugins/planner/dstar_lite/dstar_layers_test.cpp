@@ -162,6 +162,33 @@ TEST(DStarLiteLayers, EqualPlansMadeAfreshOverTerrain) {
   EXPECT_GT(solved, 20);
 }
 
+TEST(DStarLiteLayers, AGroundComesAndGoes) {
+  Site site;
+  static const World kEmpty;
+  site.before = &kEmpty;
+  const Layer hills{"hills", "hills", testing::make_environment("hills", "{seed: 5}", site), true};
+  Request request = request_in(World(), {4000, 6000, 1200}, {92000, 88000, 1500},
+                               {{0, 0, 0}, {100000, 100000, 3000}});
+  request.limits.min_ground_clearance = 100;
+  for (const char* with :
+       {"{cell_m: [4000, 4000, 200]}", "{cell_m: [4000, 4000, 200], moves: cells}"}) {
+    const auto dstar = make_planner("dstar_lite", with);
+    const auto astar = make_planner("astar", with);
+    const auto session = dstar->begin(request);
+    World world = *request.world;
+    for (const auto kind : {Change::Kind::add, Change::Kind::remove}) {
+      world = kind == Change::Kind::add ? world.with(hills) : world.without("hills");
+      Request now = request;
+      now.world = std::make_shared<const World>(world);
+      const Change change{kind, "hills", hills.environment->bounds()};
+      const PlanResult result = session->update(now.start, now.goal, now.world, {&change, 1}, {});
+      const PlanResult fresh = astar->plan(now);
+      ASSERT_EQ(result.status, fresh.status) << with << ": " << result.message;
+      EXPECT_NEAR(length(result.route), length(fresh.route), 1e-6 * length(fresh.route)) << with;
+    }
+  }
+}
+
 /// No legs to the east in the north, and no turns to the left in the south.
 class OneWay final : public Constraint {
   bool do_admits(const Leg& leg) const override {

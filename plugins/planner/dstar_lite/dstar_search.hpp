@@ -209,13 +209,14 @@ class Search {
       }
       if (!raised_.empty() && raised_.top().key <= first.key) {
         const std::uint32_t s = raised_.top().node;
-        if (const Values old = values(s); old.g < old.rhs) {
-          if (spent()) {
-            return;
-          }
-          raise(s, old);
+        const Values old = values(s);
+        if (old.g < old.rhs && spent()) {
+          return;
         }
         raised_.pop();
+        if (old.g < old.rhs) {
+          raise(s, old);
+        }
         continue;
       }
       open_.pop();

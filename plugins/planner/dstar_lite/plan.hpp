@@ -53,6 +53,8 @@ class Plan {
         grid_(legs_.rules().grid() != nullptr ? kit::occupancy(request, lattice_)
                                               : std::make_shared<VoxelGrid>(lattice_.spec())),
         bits_(grid_),
+        has_ground_(request.world->has_ground()),
+        last_slack_(request.world->slack()),
         within_(within) {
     begin(by_cell_);
   }
@@ -69,7 +71,13 @@ class Plan {
 
   /// Takes in that the request's world is another one; whether the plan can go on.
   bool take(std::span<const Change> changes) {
+    const World& world = *problem_.request.world;
+    if (world.has_ground() != has_ground_ ||
+        legs_.judges() == cells_decide(problem_.request, problem_.settings)) {
+      return false;
+    }
     const auto before = grid_;
+    slack_ = std::max(std::exchange(last_slack_, world.slack()), world.slack());
     legs_.renew();
     if (legs_.rules().grid() != nullptr) {
       grid_ = kit::occupancy(problem_.request, lattice_);
@@ -196,10 +204,10 @@ class Plan {
   /// The cells at both ends of the legs that what is in the box may block.
   CellRange cells_near(const Box& box) const {
     const Request& request = problem_.request;
-    const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) +
-                        request.world->slack() + kLengthTolerance;
+    const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) + slack_ +
+                        kLengthTolerance;
     Box grown = box.grown(near);
-    if (request.world->has_ground()) {  // what is above has another ground below it
+    if (has_ground_) {  // what is above has another ground below it
       grown.min.z() = -kInfinity;
       grown.max.z() = kInfinity;
     }
@@ -352,6 +360,9 @@ class Plan {
   Legs legs_;
   std::shared_ptr<const VoxelGrid> grid_;  ///< with moves by cells, what is blocked
   std::shared_ptr<const VoxelGrid> bits_;  ///< for its layout
+  bool has_ground_;
+  double last_slack_;  ///< of the world
+  double slack_ = 0;   ///< of that and the one before
   bool within_;
   std::optional<Incremental<CellGraph>> by_cell_;
   std::optional<Incremental<HeadingGraph>> by_heading_;
