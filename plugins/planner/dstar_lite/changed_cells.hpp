@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "altiplan/world.hpp"
-#include "cell_graph.hpp"
+#include "problem.hpp"
 
 namespace altiplan::dstar_lite {
 

@@ -2,25 +2,20 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "altiplan/kit/lattice_search.hpp"
-#include "altiplan/kit/scratch.hpp"
 #include "cell_graph.hpp"
 #include "open_queue.hpp"
+#include "vertices.hpp"
 
 namespace altiplan::dstar_lite {
 
 struct Memory {
-  kit::ScratchArray<std::uint64_t> nodes;   ///< g and rhs by node, complements: 0 is never
-  kit::ScratchArray<std::uint64_t> opened;  ///< a bit a cell, laid out like an occupancy
+  VertexMemory vertices;
   OpenQueue open;
   Heap raised;
-
-  /// Rounded up, without the lists and for one vertex a cell.
-  static constexpr std::size_t kBytesPerCell = 9;
 };
 
 /// The incremental search, from the goal to the start, on a graph whose legs come and go.
@@ -28,24 +23,21 @@ struct Memory {
 /// rhs(s) is what g of the vertices after s says of s: the least of c(s, n) + g(n). Vertices whose
 /// g is not rhs are inconsistent. One with g > rhs is on the open list, under a key that is never
 /// above min(g, rhs) + h(start, s) + k_m, and taking it from there lowers g to rhs. One with g <
-/// rhs (what came after it was blocked) is harmless unless a route leads over it: the route found
-/// is walked, and where it comes to such a vertex, g is raised.
+/// rhs (what came after it was blocked) is harmless unless a route leads over it, as values that
+/// are too low hide no better way. So where something is blocked, no rhs is found anew: the route
+/// found is walked, and where it comes to such a vertex, g is raised.
 template <class Graph>
 class Search {
  public:
-  /// All of it must outlive the search. `bits` lays out what is known by cell.
-  Search(const Problem& problem, Graph& graph, ToStart& to_start, const VoxelGrid& bits,
+  /// All of it must outlive the search.
+  Search(const Problem& problem, Graph& graph, ToStart& to_start, const VoxelGrid& layout,
          Memory& memory)
       : problem_(problem),
         graph_(graph),
         to_start_(to_start),
-        bits_(bits),
-        nodes_(memory.nodes),
-        opened_(memory.opened),
+        vertices_(problem.lattice.size() * Graph::kPerCell, layout, memory.vertices),
         open_(memory.open),
         raised_(memory.raised) {
-    nodes_.reset(problem.lattice.size() * Graph::kPerCell);
-    opened_.reset(bits.words().size());
     open_.clear();
     raised_.clear();
   }
@@ -56,7 +48,7 @@ class Search {
     fresh_ = most_entries_ == 0;
     graph_.for_each_at_goal([&](std::uint32_t s) {
       const Cell c = graph_.cell(s);
-      known_.add({c, c});
+      vertices_.know(c);
       update_rhs(s, c, 0, false);
     });
   }
@@ -80,33 +72,14 @@ class Search {
   /// A vertex that cannot be any more. What relied on it is found by the walk, where it matters.
   void remove(std::uint32_t s) {
     fresh_ = false;
-    if (nodes_[s] != 0) {
-      set(s, {kNever, kNever});
-    }
+    vertices_.forget(s);
   }
   /// The legs from the vertex may have changed.
   void touch(std::uint32_t s) {
     fresh_ = false;
     update_rhs(s, graph_.cell(s), 0, false);
   }
-  /// Whether the search has come to the cell or one of those around it.
-  bool opened_around(const Cell& c) const { return around(c) != 0; }
-  /// No vertex of another cell has any values.
-  const CellRange& known() const { return known_; }
-  template <class Visit>
-  void for_each_opened(const Visit& visit) const {
-    const Cell& counts = bits_.spec().counts;
-    for (int k = 0; k < counts[2]; ++k) {
-      for (int j = 0; j < counts[1]; ++j) {
-        const std::size_t row = bits_.bit(-1, j, k) / 64;
-        for (std::size_t word = 0; word < bits_.words_per_row(); ++word) {
-          for (std::uint64_t bits = opened_[row + word]; bits != 0; bits &= bits - 1) {
-            visit(Cell{int(64 * word) + std::countr_zero(bits) - 1, j, k});
-          }
-        }
-      }
-    }
-  }
+  const Vertices& vertices() const { return vertices_; }
 
   /// procedure Main, one round: the cheapest way from the start's place to the goal's.
   Status plan(BudgetWatch& watch, std::size_t max_list_bytes) {
@@ -143,28 +116,8 @@ class Search {
   static constexpr std::uint32_t kMostKm = 1'500'000'000;
   static constexpr std::size_t kFewEntries = 1 << 14;
 
-  struct Values {
-    std::uint32_t g;
-    std::uint32_t rhs;
-  };
-  Values values(std::uint32_t s) const {
-    const std::uint64_t word = nodes_[s];
-    return {~std::uint32_t(word), ~std::uint32_t(word >> 32)};
-  }
-  void set(std::uint32_t s, const Values& values) {
-    nodes_.at(s) = std::uint64_t{~values.rhs} << 32 | std::uint32_t(~values.g);
-  }
-  kit::DirectionMask around(const Cell& c) const {
-    return kit::bits_around(bits_, opened_.data(), bits_.bit(c));
-  }
-  void note_opened(const Cell& c) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      known_.low[axis] = std::min(known_.low[axis], c[axis] - 1);
-      known_.high[axis] = std::max(known_.high[axis], c[axis] + 1);
-    }
-    const std::size_t bit = bits_.bit(c);
-    opened_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
-  }
+  using Values = Vertices::Values;
+
   /// procedure CalculateKey, of a vertex at the cell whose lesser value is `cost`.
   Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
     const std::uint32_t h = graph_.estimate(c);
@@ -184,17 +137,17 @@ class Search {
 
   /// Finds rhs anew, which is known not to be below `least`.
   void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t least, bool rising) {
-    const Values old = values(s);
+    const Values old = vertices_[s];
     std::uint32_t rhs = graph_.goal_cost(s);
     graph_.successors(s, kit::kHere, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
-      const std::uint32_t g = values(n).g;
+      const std::uint32_t g = vertices_.g(n);
       if (g != kNever && g + cost < rhs && is_free()) {
         rhs = g + cost;
       }
       return rhs > least;
     });
     if (rhs != old.rhs) {
-      set(s, {old.g, rhs});
+      vertices_.set(s, {old.g, rhs});
       update_vertex(s, {old.g, rhs}, c, rising);
     }
   }
@@ -209,7 +162,7 @@ class Search {
       }
       if (!raised_.empty() && raised_.top().key <= first.key) {
         const std::uint32_t s = raised_.top().node;
-        const Values old = values(s);
+        const Values old = vertices_[s];
         if (old.g < old.rhs && spent()) {
           return;
         }
@@ -220,7 +173,7 @@ class Search {
         continue;
       }
       open_.pop();
-      const Values old = values(first.node);
+      const Values old = vertices_[first.node];
       if (old.rhs >= old.g) {
         continue;  // lowered since
       }
@@ -244,15 +197,16 @@ class Search {
     const std::uint32_t g = old.rhs;
     const Cell at = graph_.cell(u);
     // What was opened before is not improved, while no leg has come or gone.
-    const kit::DirectionMask closed = fresh_ && Graph::kPerCell == 1 ? around(at) : 0;
-    note_opened(at);
-    set(u, {g, g});
+    const kit::DirectionMask closed =
+        fresh_ && Graph::kPerCell == 1 ? vertices_.opened_around(at) : 0;
+    vertices_.open(at);
+    vertices_.set(u, {g, g});
     trace(u, g);
     graph_.predecessors(u, at, closed, [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
       const std::uint32_t rhs = g + cost;
-      const Values of_s = values(s);
+      const Values of_s = vertices_[s];
       if (rhs < of_s.rhs) {
-        set(s, {of_s.g, rhs});
+        vertices_.set(s, {of_s.g, rhs});
         update_vertex(s, {of_s.g, rhs}, c, false);
       }
     });
@@ -264,9 +218,9 @@ class Search {
   /// Sets g of an underconsistent vertex to infinity.
   void raise(std::uint32_t u, const Values& old) {
     ++progress_.expanded;
-    set(u, {kNever, kNever});
+    vertices_.set(u, {kNever, kNever});
     update_rhs(u, graph_.cell(u), 0, true);
-    trace(u, values(u).rhs);
+    trace(u, vertices_[u].rhs);
     graph_.predecessors(u, graph_.cell(u), 0,
                         [&](std::uint32_t s, std::uint32_t cost, const Cell& c) {
                           update_if_relied(s, c, old.g, cost, true);
@@ -279,7 +233,7 @@ class Search {
   /// raised anyway it need not be exact until then, only not too high.
   void update_if_relied(std::uint32_t s, const Cell& c, std::uint32_t g, std::uint32_t cost,
                         bool rising) {
-    const Values now = values(s);
+    const Values now = vertices_[s];
     if (g != kNever && now.rhs == g + cost && now.g >= now.rhs) {
       update_rhs(s, c, now.rhs, rising);
     }
@@ -289,7 +243,7 @@ class Search {
   void find_best() {
     best_ = kNever;
     for (const Link& link : graph_.start().all()) {
-      if (const std::uint32_t g = values(link.node).g; g != kNever) {
+      if (const std::uint32_t g = vertices_.g(link.node); g != kNever) {
         best_ = std::min(best_, g + link.cost);
       }
     }
@@ -301,14 +255,15 @@ class Search {
   bool walk() {
     way_.clear();
     bool sound = true;
-    while (way_.empty() || graph_.goal_cost(way_.back()) != values(way_.back()).rhs) {
+    while (way_.empty() || graph_.goal_cost(way_.back()) != vertices_[way_.back()].rhs) {
       const std::uint32_t next = way_.empty() ? first_vertex() : next_vertex();
       if (next != kNever) {
         way_.push_back(next);
       } else {
         update_rhs(way_.back(), graph_.cell(way_.back()), 0, false);
       }
-      for (Values last = values(way_.back()); last.g != last.rhs; last = values(way_.back())) {
+      for (Values last = vertices_[way_.back()]; last.g != last.rhs;
+           last = vertices_[way_.back()]) {
         if (spent()) {
           return false;
         }
@@ -328,7 +283,7 @@ class Search {
   }
   std::uint32_t first_vertex() const {
     for (const Link& link : graph_.start().all()) {
-      if (const std::uint32_t g = values(link.node).g; g != kNever && g + link.cost == best_) {
+      if (const std::uint32_t g = vertices_.g(link.node); g != kNever && g + link.cost == best_) {
         return link.node;
       }
     }
@@ -339,10 +294,10 @@ class Search {
     const std::uint32_t s = way_.back();
     const int likely =
         way_.size() > 1 ? graph_.direction(way_[way_.size() - 2], s) : int(kit::kHere);
-    const std::uint32_t rhs = values(s).rhs;
+    const std::uint32_t rhs = vertices_[s].rhs;
     std::uint32_t next = kNever;
     graph_.successors(s, likely, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
-      const std::uint32_t g = values(n).g;
+      const std::uint32_t g = vertices_.g(n);
       if (g != kNever && g + cost == rhs && is_free()) {
         next = n;
       }
@@ -371,7 +326,7 @@ class Search {
     std::sort(waiting.begin(), waiting.end());
     waiting.erase(std::unique(waiting.begin(), waiting.end()), waiting.end());
     for (const std::uint32_t s : waiting) {
-      update_vertex(s, values(s), graph_.cell(s), true);
+      update_vertex(s, vertices_[s], graph_.cell(s), true);
     }
     most_entries_ = std::max(kFewEntries, 2 * waiting.size());
   }
@@ -394,12 +349,9 @@ class Search {
   const Problem& problem_;
   Graph& graph_;
   ToStart& to_start_;
-  const VoxelGrid& bits_;
-  kit::ScratchArray<std::uint64_t>& nodes_;
-  kit::ScratchArray<std::uint64_t>& opened_;
+  Vertices vertices_;
   OpenQueue& open_;
   Heap& raised_;
-  CellRange known_;
   std::uint32_t k_m_ = 0;
   std::uint32_t best_ = kNever;
   bool moved_ = false;  ///< the start has a place

@@ -87,8 +87,8 @@ class Replanner {
 
   PlanResult plan_afresh() {
     settings_ = params_.settings(request_);
-    const std::size_t bytes =
-        Memory::kBytesPerCell + (cells_decide(request_, settings_) ? 0 : LegMemory::kBytesPerCell);
+    const std::size_t bytes = VertexMemory::kBytesPerCell +
+                              (cells_decide(request_, settings_) ? 0 : LegMemory::kBytesPerCell);
     const kit::Lattice lattice(request_, settings_.cell_m, settings_.neighbours,
                                {params_.max_bytes(), bytes});
     if (auto refused = kit::beyond_budget(lattice, bytes, request_.budget)) {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/check.hpp"
+#include "answers.hpp"
 #include "changed_cells.hpp"
 #include "dstar_search.hpp"
 #include "heading_graph.hpp"
@@ -89,7 +89,7 @@ class Plan {
       return take_legs(changes);
     }
     CellRange known;  // what changes elsewhere nobody has looked at
-    for_each_search([&](const auto& at) { known.add(at.search.known()); });
+    for_each_search([&](const auto& at) { known.add(at.search.vertices().known()); });
     return take_cells(changed_cells(*before, *grid_, changes, known, lattice_));
   }
 
@@ -113,7 +113,8 @@ class Plan {
       return without_route(by_cell_->search, status);
     }
     const Route route = route_over(*by_cell_);
-    const std::string broken = looks_back || legs_.judges() ? first_broken(route) : "";
+    const std::string broken =
+        looks_back || legs_.judges() ? first_broken(route, problem_.request) : "";
     if (broken.empty()) {
       return with_route(by_cell_->search, route);
     }
@@ -188,7 +189,7 @@ class Plan {
   /// A cell that has become blocked, or free.
   template <class Graph>
   void take_cell(Incremental<Graph>& at, const Cell& c) {
-    if (!at.search.opened_around(c)) {
+    if (at.search.vertices().opened_around(c) == 0) {
       return;
     }
     if (grid_->blocked(c)) {
@@ -228,7 +229,7 @@ class Plan {
       at.graph.find_goal(within_);
       for (const Change& change : changes) {
         cells_near(change.box).for_each([&](const Cell& c) {
-          if (at.search.opened_around(c)) {
+          if (at.search.vertices().opened_around(c) != 0) {
             touch(at, c);
           }
         });
@@ -295,19 +296,6 @@ class Plan {
     return route;
   }
 
-  /// The rule that a leg of the route does not keep, or "".
-  std::string first_broken(const Route& route) const {
-    const Request& request = problem_.request;
-    std::optional<Vec3> before = request.before_start();
-    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-      if (!leg_ok(before, route[i], route[i + 1], request)) {
-        return leg_violations(before, route[i], route[i + 1], request, i).front().constraint;
-      }
-      before = route[i];
-    }
-    return "";
-  }
-
   template <class Graph>
   PlanResult with_route(const Search<Graph>& search, const Route& route) {
     const double allowed = problem_.request.limits.max_route_length;
@@ -323,33 +311,15 @@ class Plan {
   template <class Graph>
   PlanResult without_route(const Search<Graph>& search, Status status) {
     if (status == Status::no_route) {  // counts what refused the moves
-      search.for_each_opened([&](const Cell& c) { legs_.rules().out_of(c); });
+      search.vertices().for_each_opened([&](const Cell& c) { legs_.rules().out_of(c); });
     }
     PlanResult result;
     result.status = status;
     result.budget_hit = status != Status::no_route;
     result.proved = status == Status::no_route;
-    result.message = explanation(status, search.progress());
+    result.message = explanation(status, search.progress(), problem_, legs_.rules());
     result.counters = kit::counters(search.progress(), lattice_, legs_.rules());
     return result;
-  }
-
-  std::string explanation(Status status, const kit::Progress& progress) const {
-    std::string text = status == Status::no_route    ? "no route"
-                       : status == Status::cancelled ? "cancelled"
-                       : progress.memory_full        ? "the memory allowed was used up"
-                                                     : "the budget was used up";
-    text += ": " + std::to_string(progress.expanded) + " vertices expanded on " +
-            std::to_string(lattice_.size()) + " cells";
-    if (progress.expanded > 0) {
-      const Vec3& at = progress.nearest;
-      const auto whole = [](double value) { return std::to_string(std::llround(value)); };
-      text += ", from the goal, the nearest to the start at (" + whole(at.x()) + ", " +
-              whole(at.y()) + ", " + whole(at.z()) + "), " +
-              whole((at - problem_.request.start.position).norm()) + " m from it";
-    }
-    const std::string refusals = legs_.rules().refusals();
-    return refusals.empty() ? text : text + "; refused moves: " + refusals;
   }
 
   kit::Lattice lattice_;

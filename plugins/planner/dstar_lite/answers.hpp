@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "altiplan/check.hpp"
+#include "problem.hpp"
+
+namespace altiplan::dstar_lite {
+
+/// The rule that a leg of the route does not keep, or "".
+inline std::string first_broken(const Route& route, const Request& request) {
+  std::optional<Vec3> before = request.before_start();
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    if (!leg_ok(before, route[i], route[i + 1], request)) {
+      return leg_violations(before, route[i], route[i + 1], request, i).front().constraint;
+    }
+    before = route[i];
+  }
+  return "";
+}
+
+/// Says why there is no route: how far the search came, and what stopped it.
+inline std::string explanation(Status status, const kit::Progress& progress, const Problem& problem,
+                               const kit::MoveRules& rules) {
+  std::string text = status == Status::no_route    ? "no route"
+                     : status == Status::cancelled ? "cancelled"
+                     : progress.memory_full        ? "the memory allowed was used up"
+                                                   : "the budget was used up";
+  text += ": " + std::to_string(progress.expanded) + " vertices expanded on " +
+          std::to_string(problem.lattice.size()) + " cells";
+  if (progress.expanded > 0) {
+    const Vec3& at = progress.nearest;
+    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
+    text += ", from the goal, the nearest to the start at (" + whole(at.x()) + ", " +
+            whole(at.y()) + ", " + whole(at.z()) + "), " +
+            whole((at - problem.request.start.position).norm()) + " m from it";
+  }
+  const std::string refusals = rules.refusals();
+  return refusals.empty() ? text : text + "; refused moves: " + refusals;
+}
+}  // namespace altiplan::dstar_lite

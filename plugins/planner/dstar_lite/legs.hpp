@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <optional>
+
+#include "altiplan/kit/scratch.hpp"
+#include "problem.hpp"
+
+namespace altiplan::dstar_lite {
+
+/// What is known of legs beside what the occupancy says.
+struct LegMemory {
+  struct Near {
+    kit::MoveRules::KnownClearance clearance;
+    std::uint16_t stamp;
+  };
+  kit::ScratchArray<std::uint32_t> judged;  ///< by cell: directions with a free leg to it, kJudged
+  kit::NodeStore<Near> near;
+
+  static constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(Near);
+};
+
+/// Which legs between neighbouring cells a vehicle may fly, whatever was before.
+class Legs {
+ public:
+  Legs(const Problem& problem, LegMemory& memory)
+      : problem_(problem),
+        lattice_(problem.lattice),
+        memory_(memory),
+        judges_(!cells_decide(problem.request, problem.settings)),
+        level_(lattice_.spec().counts[2] == 1) {
+    if (judges_) {
+      memory.judged.reset(lattice_.size());
+    }
+    renew();
+  }
+  /// Takes in the request's world; what legs within a box were said to be has to be forgotten.
+  void renew() {
+    rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
+    steps_ = rules_->steps() & (level_ ? kLevelSteps : ~kit::DirectionMask{0});
+    if (judges_) {
+      memory_.near.reset(lattice_.size());
+    }
+  }
+  void forget(std::uint32_t index) {
+    if (judges_ && memory_.judged[index] != 0) {
+      memory_.judged.at(index) = 0;
+    }
+  }
+  /// Whether the legs to a cell are asked for one by one, and one way only.
+  bool judges() const { return judges_; }
+  kit::DirectionMask steps() const { return steps_; }
+  kit::MoveRules& rules() { return *rules_; }
+  const kit::MoveRules& rules() const { return *rules_; }
+
+  /// Directions from a cell to those from which a leg leads to it.
+  kit::DirectionMask into(std::uint32_t index, const Cell& c) {
+    return judges_ ? judged(index, c) : by_cells(c);
+  }
+  /// Whether the leg from the cell in that direction is free; there has to be a cell.
+  bool leads(std::uint32_t index, const Cell& c, int d) {
+    const Cell o = kit::offset(d);
+    return (into(std::uint32_t(index + lattice_.stride(d)),
+                 {c[0] + o[0], c[1] + o[1], c[2] + o[2]}) >>
+                kit::opposite(d) &
+            1) != 0;
+  }
+
+ private:
+  static constexpr kit::DirectionMask kLevelSteps = 0x3FE00;
+  static constexpr std::uint32_t kJudged = std::uint32_t{1} << kit::kDirections;
+
+  kit::DirectionMask by_cells(const Cell& c) const {
+    const VoxelGrid& grid = *rules_->grid();
+    const std::uint64_t* words = grid.words().data();
+    const kit::DirectionMask blocked = level_ ? kit::bits_around<true>(grid, words, grid.bit(c))
+                                              : kit::bits_around(grid, words, grid.bit(c));
+    return steps_ & kit::free_steps(blocked, problem_.settings.corner);
+  }
+
+  kit::DirectionMask judged(std::uint32_t index, const Cell& c) {
+    const std::uint32_t known = memory_.judged[index];
+    if (known != 0) {
+      return known & (kJudged - 1);
+    }
+    const Vec3 here = lattice_.position(c);
+    kit::DirectionMask free = 0;
+    for (kit::DirectionMask open = rules_->out_of(c); open != 0; open &= open - 1) {
+      const int d = std::countr_zero(open);
+      const Cell o = kit::offset(d);
+      const Cell from = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
+      const Vec3 there = lattice_.position(from);
+      const bool is_free =
+          rules_->place_free(from, kit::opposite(d), there, here,
+                             near(std::uint32_t(index + lattice_.stride(d))), near(index)) &&
+          rules_->admits(std::nullopt, there, here);
+      free |= kit::DirectionMask(is_free) << d;
+    }
+    memory_.judged.at(index) = free | kJudged;
+    return free;
+  }
+  kit::MoveRules::KnownClearance& near(std::uint32_t index) {
+    return memory_.near.at(index, {}).clearance;
+  }
+
+  const Problem& problem_;
+  const kit::Lattice& lattice_;
+  LegMemory& memory_;
+  bool judges_;
+  bool level_;
+  std::optional<kit::MoveRules> rules_;
+  kit::DirectionMask steps_ = 0;
+};
+
+/// Takes a direction from a mask that has some, the likely one if it can.
+inline int take_direction(kit::DirectionMask& mask, int likely) {
+  const int d = (mask >> likely & 1) != 0 ? likely : std::countr_zero(mask);
+  mask &= ~(kit::DirectionMask{1} << d);
+  return d;
+}
+}  // namespace altiplan::dstar_lite
