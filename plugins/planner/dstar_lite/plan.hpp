@@ -174,12 +174,29 @@ class Plan {
     }
     for_each_search([&](auto& at) {
       at.graph.find_goal(within_);
-      for (const Cell& c : changed) {
-        take_cell(at, c);
+      constexpr std::size_t kAhead = 8;
+      for (std::size_t n = 0; n < changed.size(); ++n) {
+        if (n + kAhead < changed.size()) {
+          fetch(at, changed[n + kAhead]);
+        }
+        take_cell(at, changed[n]);
       }
       at.search.initialize();
     });
     return true;
+  }
+  /// Asks the memory for what a changed cell will need: cells change anywhere.
+  template <class Graph>
+  void fetch(const Incremental<Graph>& at, const Cell& c) const {
+    if (at.search.vertices().opened_around(c) != 0) {
+      const std::uint32_t s = lattice_.index(c);
+      for (int row = 0; row < 9; ++row) {
+        const auto beside = std::uint32_t(s + lattice_.stride(3 * row + 1));
+        if (beside < lattice_.size()) {
+          at.search.vertices().fetch(beside * Graph::kPerCell);
+        }
+      }
+    }
   }
   /// Whether it is better to plan afresh, which keeps the budget, than to look at as many cells.
   bool too_many(std::size_t cells) const {
