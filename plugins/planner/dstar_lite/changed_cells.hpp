@@ -38,23 +38,27 @@ void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::s
 }
 
 /// The cells in which two occupancies of one layout differ, looked for inside the changes' boxes
-/// alone, each grown by what grows obstacles, and of these where cells are known. Where boxes
+/// alone, each grown by what grows obstacles, and of these inside known(level). Where boxes
 /// overlap, more than once.
-inline std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
-                                       std::span<const Change> changes, const CellRange& known,
-                                       const kit::Lattice& lattice) {
+template <class Known>
+std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
+                                std::span<const Change> changes, const Known& known,
+                                const kit::Lattice& lattice) {
   std::vector<Cell> cells;
   const std::size_t width = now.words_per_row();
   for (const Change& change : changes) {
-    auto [low, high] = cells_in(change.box.grown(now.spec().inflation), lattice);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::max(low[axis], known.low[axis]);
-      high[axis] = std::min(high[axis], known.high[axis]);
-    }
-    const std::size_t first = std::size_t(low[0] + 1) / 64;
-    const std::size_t last = std::size_t(high[0] + 1) / 64;
-    const bool whole_rows = first == 0 && last + 1 == width;
-    for (int k = low[2]; k <= high[2] && low[0] <= high[0]; ++k) {
+    const CellRange box = cells_in(change.box.grown(now.spec().inflation), lattice);
+    for (int k = box.low[2]; k <= box.high[2]; ++k) {
+      auto [low, high] = known(k);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        low[axis] = std::max(low[axis], box.low[axis]);
+        high[axis] = std::min(high[axis], box.high[axis]);
+      }
+      if (low[0] > high[0] || low[1] > high[1]) {
+        continue;
+      }
+      const std::size_t first = std::size_t(low[0] + 1) / 64;
+      const std::size_t last = std::size_t(high[0] + 1) / 64;
       const auto look = [&](int j0, int j1) {  // rows j0 to j1 are one piece of memory
         const std::size_t base = now.bit(-1, j0, k) / 64;
         const std::size_t end = now.bit(-1, j1, k) / 64 + last + 1;
@@ -66,7 +70,7 @@ inline std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid&
           }
         });
       };
-      if (whole_rows && low[1] <= high[1]) {
+      if (first == 0 && last + 1 == width) {
         look(low[1], high[1]);
       } else {
         for (int j = low[1]; j <= high[1]; ++j) {

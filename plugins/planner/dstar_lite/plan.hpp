@@ -88,8 +88,11 @@ class Plan {
     if (legs_.judges()) {
       return take_legs(changes);
     }
-    CellRange known;  // what changes elsewhere nobody has looked at
-    for_each_search([&](const auto& at) { known.add(at.search.vertices().known()); });
+    const auto known = [&](int level) {  // what changes elsewhere nobody has looked at
+      CellRange range;
+      for_each_search([&](const auto& at) { range.add(at.search.vertices().known(level)); });
+      return range;
+    };
     return take_cells(changed_cells(*before, *grid_, changes, known, lattice_));
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "altiplan/kit/scratch.hpp"
 #include "problem.hpp"
@@ -31,6 +32,7 @@ class Vertices {
       : values_(memory.values), opened_(memory.opened), layout_(layout) {
     values_.reset(count);
     opened_.reset(layout.words().size());
+    known_.assign(std::size_t(layout.spec().counts[2]), {layout.spec().counts, {-1, -1, -1}});
   }
 
   Values operator[](std::uint32_t s) const {
@@ -49,19 +51,33 @@ class Vertices {
     }
   }
 
+  /// Notes that vertices of the cell have values.
+  void know(const Cell& c) {
+    CellRange& range = known_[std::size_t(c[2])];
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      range.low[axis] = std::min(range.low[axis], c[axis]);
+      range.high[axis] = std::max(range.high[axis], c[axis]);
+    }
+  }
   /// Notes that a vertex of the cell was opened.
   void open(const Cell& c) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      known_.low[axis] = std::min(known_.low[axis], c[axis] - 1);
-      known_.high[axis] = std::max(known_.high[axis], c[axis] + 1);
-    }
+    know(c);
     const std::size_t bit = layout_.bit(c);
     opened_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
-  /// Notes that vertices of the cell have values without that.
-  void know(const Cell& c) { known_.add({c, c}); }
-  /// No vertex of another cell has any values.
-  const CellRange& known() const { return known_; }
+  /// No vertex of another cell on that level has any values.
+  CellRange known(int level) const {
+    CellRange range{layout_.spec().counts, {-1, -1, -1}};
+    const int top = int(known_.size()) - 1;
+    for (int k = std::max(level - 1, 0); k <= std::min(level + 1, top); ++k) {
+      for (std::size_t axis = 0; axis < 2; ++axis) {  // what was opened has given values around it
+        range.low[axis] = std::min(range.low[axis], known_[std::size_t(k)].low[axis] - 1);
+        range.high[axis] = std::max(range.high[axis], known_[std::size_t(k)].high[axis] + 1);
+      }
+    }
+    range.low[2] = range.high[2] = level;
+    return range;
+  }
   /// The cells that were opened, among one and those around it.
   kit::DirectionMask opened_around(const Cell& c) const {
     return kit::bits_around(layout_, opened_.data(), layout_.bit(c));
@@ -85,6 +101,6 @@ class Vertices {
   kit::ScratchArray<std::uint64_t>& values_;
   kit::ScratchArray<std::uint64_t>& opened_;
   const VoxelGrid& layout_;
-  CellRange known_;
+  std::vector<CellRange> known_;  ///< by level, but for the cells around those that were opened
 };
 }  // namespace altiplan::dstar_lite
