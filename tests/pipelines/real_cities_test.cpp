@@ -54,7 +54,8 @@ struct Plan {
 const Plan kPlans[] = {{"astar", "{cell_m: [5, 5, 5], moves: cells, corner: free_box}"},
                        {"theta_star", "{cell_m: [5, 5, 5]}"},
                        {"lazy_theta_star", "{cell_m: [5, 5, 5]}"},
-                       {"stratified_theta", "{cell_m: [5, 5, 5]}"}};
+                       {"stratified_theta", "{cell_m: [5, 5, 5]}"},
+                       {"dstar_lite", "{cell_m: [5, 5, 5], moves: cells, corner: free_box}"}};
 
 struct Case {
   City city;
