@@ -130,6 +130,7 @@ void AnyAngleSearch::begin(double longest_m) {
   const double allowed_m = request_.limits.max_route_length + kLengthTolerance;
   longest_ = allowed_m < longest_m ? std::uint32_t(allowed_m * per_metre_) : kNone;
   const Node count = Node(numbers_.size());
+  memory_.reset(*nodes_.grid);
   goal_ = end_at(request_.goal.position, count);
   start_ = end_at(request_.start.position, count + 1);
   least_link_ = kNone;
@@ -138,8 +139,6 @@ void AnyAngleSearch::begin(double longest_m) {
     least_link_ = std::min(least_link_, link);
     most_link_ = std::max(most_link_, link);
   }
-  reached_.reset(std::size_t(count) + 2);
-  closed_.reset(nodes_.grid->words().size());
   open_.clear();
   fallback_ = kNone;
   nearest_ = kNone;

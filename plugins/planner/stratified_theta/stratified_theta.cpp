@@ -78,6 +78,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     const VoxelGrid& occupancy = *task.rules.grid();
     const int least = stratified::least_level(occupancy, params_.p_max);
     const int finest = stratified::finest_level(occupancy.spec().counts);
+    task.memory.reset(*Level(finest, occupancy).nodes().grid);
     Found best;
     for (int level = least; level <= std::min(finest, least + params_.start_levels - 1); ++level) {
       Found found = from_level(task, level, finest);

@@ -46,19 +46,6 @@ struct ALTIPLAN_API AnyAngleNodes {
   std::array<std::vector<int>, 3> cell;  ///< number of the cell on each axis, rising
 };
 
-struct AnyAngleMemory {
-  /// By node: whether it is closed, how much shorter than the longest the way to it is, and the
-  /// number of its parent; 0: not reached. Nodes lie in bricks, so that neighbours are near.
-  ScratchArray<std::uint64_t, 512> reached;
-  ScratchArray<std::uint64_t> closed;  ///< a bit a node, laid out like the grid of the nodes
-  BucketQueue open;
-  FreeBlocks sight;
-
-  /// Without the open list, rounded up.
-  static constexpr std::size_t kBytesPerNode = 9;
-  std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
-};
-
 /// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them (4 x 4 on a level). The number of
 /// a cell has bits of its own for each axis, so that both are quick to tell from each other; as
 /// many numbers as the axes have, rounded up to powers of two.
@@ -111,11 +98,30 @@ class BrickIndex {
   int all_bits_ = 0;
 };
 
+struct AnyAngleMemory {
+  /// By node: whether it is closed, how much shorter than the longest the way to it is, and the
+  /// number of its parent; 0: not reached. Nodes lie in bricks, so that neighbours are near.
+  ScratchArray<std::uint64_t, 512> reached;
+  ScratchArray<std::uint64_t> closed;  ///< a bit a node, laid out like the grid of the nodes
+  BucketQueue open;
+  FreeBlocks sight;
+
+  /// Without the open list, rounded up.
+  static constexpr std::size_t kBytesPerNode = 9;
+  std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
+  /// Starts anew for the nodes of a grid. Room once made is kept: the largest grid comes best
+  /// first.
+  void reset(const VoxelGrid& nodes) {
+    reached.reset(BrickIndex(nodes.spec().counts).size() + 2);
+    closed.reset(nodes.words().size());
+  }
+};
+
 /// One search from request.start to request.goal. A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*:
 /// Any-Angle Path Planning on Grids. AAAI 2007; A. Nash, S. Koenig, C. Tovey: Lazy Theta*:
 /// Any-Angle Path Planning and Path Length Analysis in 3D. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
 ///
-/// Ways are sums of legs as whole numbers of one small length, a 2e9th of what ways are allowed:
+/// Ways are sums of legs as whole numbers of one small length, a 1e9th of what ways are allowed:
 /// the open list is one of buckets, and a node does with 8 bytes and a bit. An end of the route
 /// that is no node is one more: the nodes up to the next row on each axis are its neighbours.
 class ALTIPLAN_API AnyAngleSearch {
