@@ -56,7 +56,8 @@ class Search {
         ++moved_;
       }
       if (!p_i) {
-        return request_.goal.reached_at(route_.back()) && !spent_ ? solved() : given_up(i);
+        const bool at_an_end = request_.goal.reached_at(route_.back()) && !is_too_long(length_);
+        return at_an_end && !spent_ ? solved() : given_up(i);
       }
       length_ += (*p_i - route_.back()).norm();
       parent_ = node_;
@@ -94,24 +95,30 @@ class Search {
     }
     node_ = looked_at_++;
     const Vec3& from = route_.back();
-    const double way = length_ + (p - from).norm() + (goal_ - p).norm();
+    const double length = length_ + (p - from).norm();
+    const double way = length + (goal_ - p).norm();
     if (request_.trace != nullptr) {
       request_.trace->add({TraceEvent::Kind::expanded, node_, parent_, p, way});
     }
-    if (way - request_.goal.tolerance_m > request_.limits.max_route_length + kLengthTolerance) {
-      too_long_ = true;
+    if (is_too_long(way - request_.goal.tolerance_m) || !leg_free(before(), from, p)) {
       return false;
     }
-    if (!leg_free(before(), from, p)) {
-      return false;
-    }
-    if (!is_last(plane) || p == goal_ || leg_free(from, p, goal_)) {
+    if (!is_last(plane)) {
       return true;
     }
-    if (!within_tolerance_ && request_.goal.reached_at(p)) {
+    if (!is_too_long(way) && (p == goal_ || leg_free(from, p, goal_))) {
+      return true;
+    }
+    if (!within_tolerance_ && request_.goal.reached_at(p) && !is_too_long(length)) {
       within_tolerance_ = p;
     }
     return false;
+  }
+
+  bool is_too_long(double length) {
+    const bool is = length > request_.limits.max_route_length + kLengthTolerance;
+    too_long_ = too_long_ || is;
+    return is;
   }
 
   /// Whether a leg keeps every rule, and where it joins the centres of two cells meets no blocked

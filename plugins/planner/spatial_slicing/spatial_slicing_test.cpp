@@ -49,6 +49,20 @@ TEST(SpatialSlicing, MovesAPointOnItsPlaneAndAimsAtTheGoalAgain) {
   EXPECT_TRUE(check(result.route, wall.request).ok());
 }
 
+TEST(SpatialSlicing, ARouteIsNoLongerThanAllowedEvenIfOneThatEndsShortOfTheGoalIsNot) {
+  Drawn open = level("S.........G");
+  open.request.goal.tolerance_m = 2.5;
+  open.request.limits.max_route_length = 9.5;
+  const PlanResult shorter = plan(open.request);
+  ASSERT_EQ(shorter.status, Status::solved) << shorter.message;
+  EXPECT_EQ(length(shorter.route), 9);
+  EXPECT_TRUE(check(shorter.route, open.request).ok());
+  open.request.limits.max_route_length = 7;
+  const PlanResult none = plan(open.request);
+  EXPECT_EQ(none.status, Status::no_route);
+  EXPECT_NE(none.message.find("route_length"), std::string::npos) << none.message;
+}
+
 TEST(SpatialSlicing, SaysOnWhichPlaneItEndsAndWhy) {
   const PlanResult shut = plan(level("...#...\nS..#..G\n...#...").request);
   EXPECT_EQ(shut.status, Status::no_route);
