@@ -83,9 +83,14 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     for (int level = least; level <= std::min(finest, least + params_.start_levels - 1); ++level) {
       Found found = from_level(task, level, finest);
       task.settings.before = found.progress;
+      const bool cut_short = found.budget_hit;
       if (best.status != Status::solved ||
           (found.status == Status::solved && length(found.route) < length(best.route))) {
         best = std::move(found);
+      }
+      if (cut_short) {
+        best.budget_hit = true;
+        break;
       }
     }
     best.progress = task.settings.before;
@@ -128,7 +133,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       task.settings.before = found.progress;
       Found finer = run(task, level.nodes());
       found.progress = finer.progress;
-      const bool cut_short = finer.budget_hit || finer.status == Status::cancelled;
+      const bool cut_short = finer.budget_hit;
       if (finer.status == Status::solved || found.status != Status::solved) {
         found = std::move(finer);
       }

@@ -86,6 +86,17 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   expect_sound(rough, request);
 }
 
+TEST(StratifiedTheta, AStartLevelThatTheBudgetEndsIsTold) {
+  const auto planner = make_planner("stratified_theta", "{start_levels: 3}");
+  Request request = in_city(true, 2);
+  const PlanResult whole = planner->plan(request);
+  EXPECT_FALSE(whole.budget_hit);
+  request.budget.max_iterations = std::uint64_t(whole.counters.front().value) - 1;
+  const PlanResult cut = planner->plan(request);
+  ASSERT_EQ(cut.status, Status::solved) << cut.message;
+  EXPECT_TRUE(cut.budget_hit);
+}
+
 TEST(NightlyStratifiedTheta, SharesOfGoalsReachedUnderThePapersLimits) {
   EXPECT_EQ(solved_of(400, false, true, "{}"), 400);
   EXPECT_GE(solved_of(400, true, true, "{}"), 340);
