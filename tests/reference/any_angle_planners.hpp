@@ -101,6 +101,24 @@ inline void expect_limits_kept(const std::string& planner) {
   EXPECT_GT(refused, 0);
 }
 
+/// A route by the rule as printed that breaks another rule proves nothing.
+inline void expect_no_proof_by_the_printed_rule(const std::string& planner) {
+  Request request =
+      request_in(world_of(make_environment("hills",
+                                           "{base_m: 0, peaks: "
+                                           "[{at_m: [100, 55], height_m: 40, sigma_m: [20, 20]}]}"),
+                          "hills"),
+                 {5, 55, 25}, {195, 55, 25}, {{0, 0, 0}, {200, 100, 100}});
+  request.limits.min_ground_clearance = 15;
+  const PlanResult sound = make_planner(planner, "{cell_m: [10, 10, 10]}")->plan(request);
+  ASSERT_EQ(sound.status, Status::solved) << sound.message;
+  const PlanResult printed =
+      make_planner(planner, "{cell_m: [10, 10, 10], angle_rule: printed}")->plan(request);
+  EXPECT_EQ(printed.status, Status::no_route);
+  EXPECT_NE(printed.message.find("ground"), std::string::npos) << printed.message;
+  EXPECT_FALSE(printed.proved);
+}
+
 inline void expect_the_ends_joined_wherever_they_are(const std::string& planner) {
   SplitMix64 random(13);
   const auto cells = make_planner(planner, "{cell_m: [10, 10, 10]}");

@@ -55,12 +55,13 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
   }
   if (result.status == Status::solved && params_.angle_rule == AnyAngleParams::Angles::printed) {
     if (const CheckResult judged = check(result.route, request); !judged.ok()) {
-      result.status = Status::no_route;
+      result.status = result.budget_hit ? Status::timed_out : Status::no_route;
       result.route.clear();
       result.message =
           "the rule as printed gave a route that breaks one: " + judged.violations.front().message;
       result.counters.push_back({"routes_refused", 1});
     }
+    return result;
   }
   if (result.status != Status::no_route) {
     return result;

@@ -15,6 +15,9 @@ TEST(LazyThetaStar, IsNearlyTheShortestOfAll) {
   testing::expect_nearly_the_shortest("lazy_theta_star");
 }
 TEST(LazyThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("lazy_theta_star"); }
+TEST(LazyThetaStar, TheRuleAsPrintedProvesNothing) {
+  testing::expect_no_proof_by_the_printed_rule("lazy_theta_star");
+}
 TEST(LazyThetaStar, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("lazy_theta_star");
 }

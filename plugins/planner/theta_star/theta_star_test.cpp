@@ -10,6 +10,9 @@ TEST(ThetaStar, IsNeverLongerThanTheGrid) {
   testing::expect_never_longer_than_the_grid("theta_star", 400);
 }
 TEST(ThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("theta_star"); }
+TEST(ThetaStar, TheRuleAsPrintedProvesNothing) {
+  testing::expect_no_proof_by_the_printed_rule("theta_star");
+}
 TEST(ThetaStar, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("theta_star");
 }
