@@ -113,12 +113,30 @@ TEST(DStarLite, TurnsAreHeldByHeadingOrGivenUp) {
   EXPECT_EQ(given_up.status, Status::no_route);
   EXPECT_FALSE(given_up.proved);
   EXPECT_NE(given_up.message.find("turn"), std::string::npos) << given_up.message;
+  Drawn near = drawn;  // and where a search for ends near the goal follows
+  near.request.goal.position += Vec3(0.3, 0, 0);
+  near.request.goal.tolerance_m = 0.2;
+  const PlanResult still = make_planner("dstar_lite", "{state: parent}")->plan(near.request);
+  EXPECT_EQ(still.status, Status::no_route);
+  EXPECT_FALSE(still.proved);
+  EXPECT_EQ(still.message, given_up.message);
   const PlanResult searched = make_planner("dstar_lite")->plan(drawn.request);
   const PlanResult expected =
       make_planner("astar", "{state: cell_and_heading}")->plan(drawn.request);
   EXPECT_EQ(searched.status, expected.status) << searched.message;
   EXPECT_NEAR(length(searched.route), length(expected.route), 1e-6);
   EXPECT_NE(searched.message.find("by cell and heading"), std::string::npos) << searched.message;
+}
+
+TEST(DStarLite, TooLittleMemoryForHeadingsIsABudgetThatEnds) {
+  Drawn drawn = draw({"S.......\n........\n.......G"});
+  drawn.request.limits.max_turn_horizontal = 0.8;
+  drawn.request.budget.max_memory_bytes = 24 * 100;
+  const PlanResult cut =
+      make_planner("dstar_lite", "{state: cell_and_heading}")->plan(drawn.request);
+  EXPECT_EQ(cut.status, Status::timed_out) << cut.message;
+  EXPECT_TRUE(cut.budget_hit);
+  EXPECT_EQ(expanded(cut), 0);
 }
 
 TEST(DStarLite, MemoryIsCheckedBeforeItIsTaken) {

@@ -46,11 +46,9 @@ class Replanner {
     const kit::MoveCheck moves = settings_.moves;
     settings_ = params_.settings(request_);
     goes_on = goes_on && moves == settings_.moves;
-    if (goes_on && !same_world) {
-      goes_on = !plan_->within() && plan_->take(changes);
-    }
     if (goes_on && !(same_world && same_start)) {
-      goes_on = plan_->find_start();
+      // From elsewhere, or in another world, a leg may lead to the goal itself.
+      goes_on = !plan_->within() && (same_world || plan_->take(changes)) && plan_->find_start();
     }
     if (!goes_on) {
       plan_.reset();
@@ -131,11 +129,17 @@ class Replanner {
       const kit::Lattice lattice = plan_->lattice();
       return plan_on(lattice, 4 * plan_->costs().longest_m(), plan_->within(), result.counters);
     }
-    if (result.status == Status::no_route && !plan_->within() && request_.goal.tolerance_m > 0) {
+    if (result.status != Status::no_route || request_.goal.tolerance_m == 0) {
+      return result;
+    }
+    if (!plan_->within()) {
+      to_goal_ = result;
       const kit::Lattice lattice = plan_->lattice();
       const double longest_m = plan_->costs().longest_m();
       return plan_on(lattice, longest_m, true, result.counters);
     }
+    result.proved = result.proved && to_goal_.proved;
+    result.message = to_goal_.message;
     return result;
   }
 
@@ -144,6 +148,7 @@ class Replanner {
   kit::SearchSettings settings_;
   Pools& pools_;
   std::unique_ptr<Plan> plan_;
+  PlanResult to_goal_;  ///< why no leg leads to the goal itself, of a plan within its tolerance
 };
 
 class DStarSession final : public Session {

@@ -230,6 +230,23 @@ TEST(DStarLiteSession, AWayThatCloses) {
   }
 }
 
+TEST(DStarLiteSession, FromAnotherPlaceALegMayLeadToTheGoalItself) {
+  testing::Drawn drawn = testing::draw({"S#..G"});
+  Request& request = drawn.request;
+  request.level_m = 0.5;
+  request.goal.position += Vec3(0.3, 0, 0);
+  request.goal.tolerance_m = 0.2;  // holds no cell's centre
+  const auto planner = testing::make_planner("dstar_lite");
+  const auto session = planner->begin(request);
+  EXPECT_EQ(session->result().status, Status::no_route);
+  EXPECT_TRUE(session->result().proved);
+  request.start.position = {2.5, 0.5, 0.5};
+  const PlanResult& result =
+      session->update(request.start, request.goal, request.world, {}, request.budget);
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.route.back(), request.goal.position);
+}
+
 TEST(DStarLiteSession, AnotherGoalOrLatticeIsPlannedAfresh) {
   const GridSpec spec = spec_of({15, 9, 5}, Vec3::Constant(10));
   Flown flown("{moves: cells}", VoxelGrid(spec), {1, 1, 1}, {13, 1, 1});

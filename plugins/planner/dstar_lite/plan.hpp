@@ -275,8 +275,15 @@ class Plan {
     const std::size_t others = by_cell.counters.empty() ? 0 : bytes_of<CellGraph>();
     if (others + bytes_of<HeadingGraph>() > problem_.settings.max_bytes ||
         lattice_.size() > (kNever - 1) / HeadingGraph::kPerCell) {
-      by_cell.status = Status::no_route;
-      by_cell.message += "; the memory allowed is too little for a search by cell and heading";
+      const std::string why = "the memory allowed is too little for a search by cell and heading";
+      if (by_cell.counters.empty()) {  // nothing was searched
+        by_cell.status = Status::timed_out;
+        by_cell.budget_hit = true;
+        by_cell.message = why;
+        by_cell.counters = {{"expanded", 0}};
+      } else {
+        by_cell.message += "; " + why;
+      }
       return by_cell;
     }
     if (!by_heading_) {
