@@ -63,9 +63,12 @@ class Blocks {
         }
         const std::uint32_t there = index_.index(next);
         const double share = double(blocked_[there]) / volume(next);
+        if (share == 1) {
+          continue;
+        }
         const float way = float(
-            g_here + std::sqrt(double(o[0] * o[0] + o[1] * o[1] + o[2] * o[2])) * (1 + share));
-        if (share < 1 && way < g[there]) {
+            g_here + std::sqrt(double(o[0] * o[0] + o[1] * o[1] + o[2] * o[2])) / (1 - share));
+        if (way < g[there]) {
           g[there] = way;
           in[there] = std::uint8_t(d);
           open.push(way + apart(next, goal), way, there);
