@@ -101,6 +101,26 @@ inline void expect_limits_kept(const std::string& planner) {
   EXPECT_GT(refused, 0);
 }
 
+/// Sums of rounded costs do not decide whether a route is too long.
+inline void expect_a_limit_on_length_kept(const std::string& planner) {
+  SplitMix64 random(14);
+  const auto any_angle = make_planner(planner);
+  int solved = 0;
+  for (int map = 0; map < 50; ++map) {
+    Request request = draw(random_levels(random, 20, 16, 4, 0.2), 1000).request;
+    const double whole = length(any_angle->plan(request).route);
+    for (const double less : {0.0, 1e-5, 3e-5, 1e-4, 3e-4}) {
+      request.limits.max_route_length = whole - less;
+      const PlanResult result = any_angle->plan(request);
+      if (result.status == Status::solved) {
+        ++solved;
+        expect_sound(result, request);
+      }
+    }
+  }
+  EXPECT_GT(solved, 0);
+}
+
 /// A route by the rule as printed that breaks another rule proves nothing.
 inline void expect_no_proof_by_the_printed_rule(const std::string& planner) {
   Request request =

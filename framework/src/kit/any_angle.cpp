@@ -32,6 +32,9 @@ constexpr auto kOffsets = [] {
 /// Cost of the longest way, so that the sum of two and an estimate keeps a bit free.
 constexpr std::uint32_t kMost = 900'000'000;
 
+/// What roundings may add to a way, more than most have legs: routes are measured in the end.
+constexpr std::uint32_t kRoundings = 1000;
+
 std::uint32_t rounded(double cost) { return std::uint32_t(cost + 0.5); }
 }  // namespace
 
@@ -71,16 +74,24 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
   for (;; longest_m *= 4) {
     begin(longest_m);
     if (const auto status = search()) {
-      if (*status == Status::solved) {
-        return with(goal_.node, true);
+      const bool at_goal = *status == Status::solved;
+      const bool cut_short = !at_goal && *status != Status::no_route;
+      progress_.memory_full = cut_short && memory_full();
+      Result result{*status, {}, false, cut_short, progress_, {}};
+      if (const Node last = at_goal ? goal_.node : fallback_; last != kNone) {
+        result.route = route_to(last);
+        const bool fits =
+            length(result.route) <= request_.limits.max_route_length + kLengthTolerance;
+        if (fits) {
+          result.status = Status::solved;
+          result.at_goal = at_goal;
+        } else {  // by less than costs tell
+          result.status = at_goal ? Status::no_route : *status;
+          result.route.clear();
+          result.progress.too_long = true;
+        }
       }
-      if (fallback_ != kNone) {
-        Result result = with(fallback_, false);
-        result.budget_hit = *status != Status::no_route;
-        return result;
-      }
-      progress_.memory_full = memory_full();
-      return {*status, {}, false, *status != Status::no_route, progress_, {}};
+      return result;
     }
   }
 }
@@ -128,7 +139,7 @@ void AnyAngleSearch::begin(double longest_m) {
     unit_[axis] = lattice_.spec().cell[int(axis)] * per_metre_;
   }
   const double allowed_m = request_.limits.max_route_length + kLengthTolerance;
-  longest_ = allowed_m < longest_m ? std::uint32_t(allowed_m * per_metre_) : kNone;
+  longest_ = allowed_m < longest_m ? std::uint32_t(allowed_m * per_metre_) + kRoundings : kNone;
   const Node count = Node(numbers_.size());
   memory_.reset(*nodes_.grid);
   goal_ = end_at(request_.goal.position, count);
@@ -346,14 +357,14 @@ void AnyAngleSearch::remember_fallback(Node s) {
   }
 }
 
-AnyAngleSearch::Result AnyAngleSearch::with(Node last, bool at_goal) const {
-  Result result{Status::solved, {}, at_goal, false, progress_, {}};
+Route AnyAngleSearch::route_to(Node last) const {
+  Route route;
   for (Node n = last; n != start_.node; n = parent(n)) {
-    result.route.push_back(position(n));
+    route.push_back(position(n));
   }
-  result.route.push_back(start_.position);
-  std::reverse(result.route.begin(), result.route.end());
-  return result;
+  route.push_back(start_.position);
+  std::reverse(route.begin(), route.end());
+  return route;
 }
 
 std::uint32_t AnyAngleSearch::apart(const Place& a, const Place& b) const {

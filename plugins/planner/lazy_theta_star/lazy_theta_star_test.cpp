@@ -18,6 +18,9 @@ TEST(LazyThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("lazy
 TEST(LazyThetaStar, TheRuleAsPrintedProvesNothing) {
   testing::expect_no_proof_by_the_printed_rule("lazy_theta_star");
 }
+TEST(LazyThetaStar, KeepsALimitOnLength) {
+  testing::expect_a_limit_on_length_kept("lazy_theta_star");
+}
 TEST(LazyThetaStar, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("lazy_theta_star");
 }

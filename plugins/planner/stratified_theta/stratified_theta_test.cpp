@@ -44,6 +44,9 @@ TEST(StratifiedTheta, WithoutLimitsLevelsAndCorridorsLeadToEveryGoal) {
 TEST(StratifiedTheta, KeepsTurnAndClimbLimitsInOpenSpace) {
   testing::expect_limits_kept("stratified_theta");
 }
+TEST(StratifiedTheta, KeepsALimitOnLength) {
+  testing::expect_a_limit_on_length_kept("stratified_theta");
+}
 TEST(StratifiedTheta, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("stratified_theta");
 }

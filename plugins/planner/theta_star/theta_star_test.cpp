@@ -13,6 +13,7 @@ TEST(ThetaStar, KeepsTurnAndClimbLimits) { testing::expect_limits_kept("theta_st
 TEST(ThetaStar, TheRuleAsPrintedProvesNothing) {
   testing::expect_no_proof_by_the_printed_rule("theta_star");
 }
+TEST(ThetaStar, KeepsALimitOnLength) { testing::expect_a_limit_on_length_kept("theta_star"); }
 TEST(ThetaStar, JoinsTheEndsWhereverTheyAre) {
   testing::expect_the_ends_joined_wherever_they_are("theta_star");
 }

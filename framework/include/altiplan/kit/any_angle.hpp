@@ -166,7 +166,7 @@ class ALTIPLAN_API AnyAngleSearch {
   bool sees(Node a, Node b);
   bool keeps_limits(Node a, Node b);
   void take(Node v, Node parent, std::uint32_t g, std::uint32_t h);
-  Result with(Node last, bool at_goal) const;
+  Route route_to(Node last) const;
 
   static constexpr std::uint32_t kClosed = 1U << 31;
   static constexpr std::uint32_t kLongest = kClosed - 1;  ///< no way is longer
