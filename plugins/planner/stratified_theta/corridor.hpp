@@ -35,8 +35,8 @@ class Blocks {
     }
   }
 
-  /// The blocks of a cheapest way between two cells: A* over blocks with a free cell, the dearer
-  /// the more of one is blocked. Empty where there is none.
+  /// The blocks of a cheapest way between two cells: A* over blocks with a free cell, a step
+  /// the dearer the less of its block is free. Empty where there is none.
   std::vector<Cell> way(const Cell& from, const Cell& to) const {
     const std::uint32_t start = index_.index(block_of(from));
     const Cell goal = block_of(to);
