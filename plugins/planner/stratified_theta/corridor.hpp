@@ -37,6 +37,7 @@ class Blocks {
 
   /// The blocks of a cheapest way between two cells: A* over blocks with a free cell, a step
   /// the dearer the less of its block is free. Empty where there is none.
+  /// The two may be blocked altogether: ends of a route are joined from cells beside theirs.
   std::vector<Cell> way(const Cell& from, const Cell& to) const {
     const std::uint32_t start = index_.index(block_of(from));
     const Cell goal = block_of(to);
@@ -62,12 +63,13 @@ class Blocks {
           continue;
         }
         const std::uint32_t there = index_.index(next);
-        const double share = double(blocked_[there]) / volume(next);
-        if (share == 1) {
+        const double cells = volume(next);
+        const double free = std::max(1 - blocked_[there] / cells, next == goal ? 1 / cells : 0);
+        if (free == 0) {
           continue;
         }
-        const float way = float(
-            g_here + std::sqrt(double(o[0] * o[0] + o[1] * o[1] + o[2] * o[2])) / (1 - share));
+        const float way =
+            float(g_here + std::sqrt(double(o[0] * o[0] + o[1] * o[1] + o[2] * o[2])) / free);
         if (way < g[there]) {
           g[there] = way;
           in[there] = std::uint8_t(d);

@@ -151,7 +151,10 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     const Blocks blocks(occupancy);
     const std::vector<Cell> way = blocks.way(task.lattice.nearest(task.request.start.position).cell,
                                              task.lattice.nearest(task.request.goal.position).cell);
-    for (int around = 1; !way.empty(); around *= 2) {
+    if (way.empty()) {  // only another end within the tolerance may be left
+      return run(task, kit::AnyAngleNodes::every_cell(occupancy));
+    }
+    for (int around = 1;; around *= 2) {
       const VoxelGrid cells = blocks.corridor(way, around);
       Found found = run(task, kit::AnyAngleNodes::every_cell(cells));
       if (found.status != Status::no_route || around >= blocks.longest_axis()) {
@@ -159,7 +162,6 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       }
       task.settings.before = found.progress;
     }
-    return {};
   }
 
   static Found run(Task& task, const kit::AnyAngleNodes& nodes) {

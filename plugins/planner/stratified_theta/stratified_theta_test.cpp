@@ -71,6 +71,34 @@ TEST(StratifiedTheta, ANearGoalIsTriedStraight) {
   EXPECT_GT(limited.counters.front().value, 0);
 }
 
+TEST(StratifiedTheta, ACorridorLeadsToAGoalWhoseBlockIsClosed) {
+  // The goal is free, but beside a house whose cells fill its block.
+  Request request =
+      testing::request_in(testing::world_of({BoxShape{{{405, 105, -1}, {795, 495, 395}}}}),
+                          {5, 305, 105}, {403, 305, 105}, {{0, 0, 0}, {1000, 600, 400}});
+  const auto planner =
+      make_planner("stratified_theta", "{cell_m: [10, 10, 10], refine: corridor, d_limit_m: 0}");
+  const PlanResult result = planner->plan(request);
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.route.size(), 2u);
+  expect_sound(result, request);
+}
+
+TEST(StratifiedTheta, ACorridorThatLeadsNowhereLeavesTheTolerance) {
+  // A wall of more than a block; the goal is behind it, ends within the tolerance are not.
+  Request request =
+      testing::request_in(testing::world_of({BoxShape{{{200, -1, -1}, {400, 101, 101}}}}),
+                          {5, 55, 55}, {455, 55, 55}, {{0, 0, 0}, {600, 100, 100}});
+  const auto planner = make_planner("stratified_theta", "{cell_m: [10, 10, 10], refine: corridor}");
+  const PlanResult none = planner->plan(request);
+  EXPECT_EQ(none.status, Status::no_route);
+  EXPECT_GT(none.counters.front().value, 0) << none.message;
+  request.goal.tolerance_m = 300;
+  const PlanResult near = planner->plan(request);
+  ASSERT_EQ(near.status, Status::solved) << near.message;
+  expect_sound(near, request);
+}
+
 TEST(StratifiedTheta, BudgetsAreKept) {
   const auto planner = make_planner("stratified_theta");
   Request request = in_city(true, 2);
