@@ -203,7 +203,12 @@ inline void expect_budget_and_refusals_told(const std::string& planner) {
   EXPECT_NE(long_way.message.find("route_length"), std::string::npos) << long_way.message;
 }
 
-/// A corridor too long for the finest costs.
+struct CountedTrace final : Trace {
+  void add(const TraceEvent&) override { ++events; }
+  std::int64_t events = 0;
+};
+
+/// A corridor too long for the finest costs: the search that finds this out counts too.
 inline void expect_long_ways_found(const std::string& planner) {
   std::string text;
   constexpr int kEdge = 601;
@@ -221,6 +226,11 @@ inline void expect_long_ways_found(const std::string& planner) {
   const PlanResult result = make_planner(planner)->plan(drawn.request);
   ASSERT_EQ(result.status, Status::solved) << result.message;
   EXPECT_NEAR(length(result.route), (kEdge + 1) / 2 * kEdge + kEdge / 2 - 1, 1e-6);
+  CountedTrace trace;
+  drawn.request.trace = &trace;
+  drawn.request.budget.max_iterations = std::uint64_t(result.counters.front().value) - 1;
+  EXPECT_EQ(make_planner(planner)->plan(drawn.request).status, Status::timed_out);
+  EXPECT_LE(trace.events, result.counters.front().value);
 }
 
 /// Beside the shortest route of all that bend at centres of cells, on 20 of the paper's complex

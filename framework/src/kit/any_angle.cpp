@@ -64,6 +64,7 @@ AnyAngleSearch::AnyAngleSearch(const Request& request, const Lattice& lattice, M
       cells_decide_(cells_alone_decide(request)),
       steps_are_free_(cells_decide_ && nodes.corner == CornerRule::free_box),
       lattice_steps_(lattice.steps()) {
+  progress_ = settings.before;
   memory_.sight.prepare(rules_.shared_grid());
 }
 
@@ -153,7 +154,7 @@ void AnyAngleSearch::begin(double longest_m) {
   open_.clear();
   fallback_ = kNone;
   nearest_ = kNone;
-  progress_ = settings_.before;
+  progress_.too_long = false;
   take(start_.node, start_.node, 0, heuristic(start_.node));
 }
 
