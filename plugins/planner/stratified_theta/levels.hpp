@@ -44,8 +44,9 @@ inline std::vector<int> block_edges(int level, int cells) {
   return edges;
 }
 
-/// Share of a level's blocks that are free or blocked altogether, eq. (5).
-inline double certain_share(int level, const VoxelGrid& occupancy) {
+/// Share of a level's blocks that are free or blocked altogether, eq. (5); once `watch` is spent,
+/// no share.
+inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* watch = nullptr) {
   const Cell& counts = occupancy.spec().counts;
   std::array<std::vector<int>, 3> edges;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -57,6 +58,9 @@ inline double certain_share(int level, const VoxelGrid& occupancy) {
   std::size_t certain = 0;
   std::vector<int> blocked(across);
   for (std::size_t z = 0; z < high; ++z) {
+    if (watch != nullptr && watch->spent(0)) {
+      return 0;
+    }
     for (std::size_t y = 0; y < deep; ++y) {
       std::fill(blocked.begin(), blocked.end(), 0);
       for (int k = edges[2][z]; k < edges[2][z + 1]; ++k) {
@@ -81,11 +85,12 @@ inline double certain_share(int level, const VoxelGrid& occupancy) {
   return double(certain) / double(across * deep * high);
 }
 
-/// The least level of which more is certain than p_max; the finest where none is.
-inline int least_level(const VoxelGrid& occupancy, double p_max) {
+/// The least level of which more is certain than p_max; the finest where none is. Once `watch` is
+/// spent, any.
+inline int least_level(const VoxelGrid& occupancy, double p_max, BudgetWatch* watch = nullptr) {
   const int finest = finest_level(occupancy.spec().counts);
   int level = 1;
-  while (level < finest && certain_share(level, occupancy) <= p_max) {
+  while (level < finest && certain_share(level, occupancy, watch) <= p_max) {
     ++level;
   }
   return level;

@@ -76,7 +76,14 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       return in_corridor(task);
     }
     const VoxelGrid& occupancy = *task.rules.grid();
-    const int least = stratified::least_level(occupancy, params_.p_max);
+    BudgetWatch watch(task.request.budget);
+    const int least = stratified::least_level(occupancy, params_.p_max, &watch);
+    if (watch.spent(task.settings.before.expanded)) {
+      Found none;
+      none.status = watch.cancelled() ? Status::cancelled : Status::timed_out;
+      none.budget_hit = true;
+      return none;
+    }
     const int finest = stratified::finest_level(occupancy.spec().counts);
     task.memory.reset(*Level(finest, occupancy).nodes().grid);
     Found best;

@@ -106,6 +106,16 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   const PlanResult cut = planner->plan(request);
   EXPECT_EQ(cut.status, Status::timed_out);
   EXPECT_TRUE(cut.budget_hit);
+  // Levels are not looked at any more.
+  request.budget.max_iterations = 0;
+  const PlanResult none = planner->plan(request);
+  EXPECT_EQ(none.status, Status::timed_out);
+  EXPECT_EQ(none.counters.front().value, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  request.budget = {};
+  request.budget.stop = stop.get_token();
+  EXPECT_EQ(planner->plan(request).status, Status::cancelled);
   // Once a level has a route, what is left of the budget refines it.
   request.budget = {};
   const PlanResult whole = planner->plan(request);
