@@ -21,7 +21,7 @@ NEIGHBOURS = {
     "smoothed": "{plan: told, with: {does: past, past_m: [500, 700, 600]}}, {smooth: rogue_smoother}",
 }
 # The CPU time is enough to write the 1 GB at which a file is too large.
-MORE = "repetitions: %d\nbudget: {wall_s: 6, cpu_s: 1, memory_mb: 200}\n"
+MORE = "repetitions: %d\nbudget: {wall_s: 6, cpu_s: 2, memory_mb: 200}\n"
 REPETITIONS = 2  # of each row; in another order among the others
 
 
