@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "altiplan/check.hpp"
 #include "altiplan/kit/line_of_sight.hpp"
 #include "reference/random_problem.hpp"
 
@@ -90,6 +92,62 @@ TEST(Sees, IsTheJudgesAnswerOverFreeCells) {
   EXPECT_GT(by_cells.blocked, 1000);
   EXPECT_GT(with_ground, 50);
   EXPECT_GT(without_limits, 20);
+}
+
+/// The kit compares cosines where the judge compares angles.
+TEST(KeepsLimits, IsTheJudgesAnswerNearTheLimits) {
+  oracle::Draw draw(5);
+  const Box everywhere{Vec3::Constant(-1e9), Vec3::Constant(1e9)};
+  const Lattice lattice(
+      testing::request_in(World(), {0, 0, 0}, {1, 1, 1}, {{-5, -5, -5}, {5, 5, 5}}), {1, 1, 1},
+      Neighbourhood::all, {});
+  const double offs[] = {0, 1e-12, 1e-9, 0.99999e-8, 1e-8, 1.00001e-8, 1e-7, 1e-4};
+  const auto off = [&] {
+    const double by = offs[draw.below(8)];
+    return draw.below(2) == 0 ? by : -by;
+  };
+  int kept = 0;
+  for (int n = 0; n < 30'000; ++n) {
+    const double scale = std::pow(10, draw(-3, 5));
+    const Vec3 a = Vec3(draw.below(2) * 5e6, draw.below(2) * 1e6, 100) + draw.point(scale);
+    Vec3 in = draw.point(scale);
+    Vec3 out = draw.point(scale);
+    const int kind = draw.below(6);
+    if (kind == 0) {  // nearly upright
+      in.head<2>() *= std::pow(10, draw(-9, 0));
+      out.head<2>() *= std::pow(10, draw(-9, 0));
+    } else if (kind == 1) {
+      in.z() = out.z() = 0;
+    } else if (kind == 2) {  // straight on
+      out = in * draw(0.1, 2);
+    }
+    const Vec3 before = a - in;
+    const Vec3 b = a + out;
+    in = a - before;
+    out = b - a;
+    Request request = testing::request_in(World(), a, b, everywhere);
+    Limits& limits = request.limits;
+    const int which = draw.below(16);
+    const double radius = radius_through(before, a, b);
+    if ((which & 1) != 0) {
+      limits.max_turn_horizontal = std::clamp(turn_angle_horizontal(in, out) + off(), 0.0, kPi);
+    }
+    if ((which & 2) != 0) {
+      limits.max_turn_space = std::clamp(turn_angle_in_space(in, out) + off(), 0.0, kPi);
+    }
+    if ((which & 4) != 0) {
+      limits.max_climb = std::clamp(climb_angle(out) + off(), 0.0, kPi / 2);
+    }
+    if (which > 12 && radius < 1e6) {
+      limits.min_turn_radius = std::max(0.0, radius + 1000 * off());
+    }
+    MoveRules rules(request, lattice, MoveCheck::exact, CornerRule::any);
+    ASSERT_EQ(rules.keeps_limits(before, a, b), leg_ok(before, a, b, request))
+        << n << ": in " << in.transpose() << ", out " << out.transpose();
+    kept += leg_ok(before, a, b, request);
+  }
+  EXPECT_GT(kept, 10'000);
+  EXPECT_LT(kept, 25'000);
 }
 
 TEST(Sees, OverALayersOwnCells) {
