@@ -225,7 +225,8 @@ inline void expect_long_ways_found(const std::string& planner) {
   drawn.request.level_m = 0.5;
   const PlanResult result = make_planner(planner)->plan(drawn.request);
   ASSERT_EQ(result.status, Status::solved) << result.message;
-  EXPECT_NEAR(length(result.route), (kEdge + 1) / 2 * kEdge + kEdge / 2 - 1, 1e-6);
+  constexpr int kCells = (kEdge + 1) / 2 * kEdge + kEdge / 2;
+  EXPECT_NEAR(length(result.route), kCells - 1, 1e-6);
   CountedTrace trace;
   drawn.request.trace = &trace;
   drawn.request.budget.max_iterations = std::uint64_t(result.counters.front().value) - 1;

@@ -35,7 +35,10 @@ constexpr std::uint32_t kMost = 900'000'000;
 /// What roundings may add to a way, more than most have legs: routes are measured in the end.
 constexpr std::uint32_t kRoundings = 1000;
 
-std::uint32_t rounded(double cost) { return std::uint32_t(cost + 0.5); }
+/// As lround, which is a call, but for the last number below a half.
+std::uint32_t rounded(double cost) {
+  return std::uint32_t(cost + 0.5);  // NOLINT(bugprone-incorrect-roundings)
+}
 }  // namespace
 
 AnyAngleNodes AnyAngleNodes::every_cell(const VoxelGrid& occupancy) {
