@@ -92,4 +92,11 @@ PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells
   second.message += ", after straight legs between cells led nowhere";
   return second;
 }
+
+AnyAngleSearch::Result EveryCellPlanner::search(Task& task) const {
+  task.settings.sight = sight_;
+  const AnyAngleNodes nodes = AnyAngleNodes::every_cell(*task.rules.grid());
+  return AnyAngleSearch(task.request, task.lattice, task.rules, nodes, task.settings, task.memory)
+      .run();
+}
 }  // namespace altiplan::kit

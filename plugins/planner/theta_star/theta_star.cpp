@@ -4,7 +4,8 @@
 // Citation: A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*: Any-Angle Path Planning on Grids.
 //   AAAI 2007, pp. 1177-1183.
 // Guarantees: every leg keeps every rule; a route over free cells is found where there is one
-//   (angle_rule: complete: under limits on turns and climb too).
+//   (angle_rule: complete: under limits on turns and climb too), and where cells alone decide it is
+//   never longer than the shortest over the grid.
 // Complexity: O(n log n) time, O(n) memory in the cells, and for each way that may be shorter one
 //   or two lines of sight, over as many cells as the leg meets.
 // Deviations: a leg is held to every rule of the judge, not to obstacles alone; where it breaks one
@@ -17,27 +18,11 @@
 namespace {
 
 using namespace altiplan;
-using kit::AnyAngleMemory;
-using kit::AnyAngleNodes;
-using kit::AnyAngleSearch;
 
-class ThetaStar final : public kit::AnyAnglePlanner {
+class ThetaStar final : public kit::EveryCellPlanner {
  public:
   explicit ThetaStar(const kit::AnyAngleParams& params)
-      : AnyAnglePlanner(params, AnyAngleMemory::kBytesPerNode) {}
-
- private:
-  AnyAngleSearch::Result search(Task& task) const override {
-    task.settings.sight = kit::Sight::eager;
-    const AnyAngleNodes nodes = AnyAngleNodes::every_cell(*task.rules.grid());
-    return AnyAngleSearch(task.request, task.lattice, task.rules, nodes, task.settings, task.memory)
-        .run();
-  }
-  bool looks_everywhere() const override { return true; }
-  Traits do_traits() const override {
-    return {.complete = params().angle_rule == kit::AnyAngleParams::Angles::complete,
-            .any_angle = true};
-  }
+      : EveryCellPlanner(params, kit::Sight::eager) {}
 };
 }  // namespace
 

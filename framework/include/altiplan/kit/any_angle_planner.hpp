@@ -71,4 +71,20 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
   mutable ScratchPool<AnyAngleMemory> memory_;
   mutable ScratchPool<HeadingMemory> heading_memory_;
 };
+
+/// The planner whose nodes are all free cells.
+class ALTIPLAN_API EveryCellPlanner : public AnyAnglePlanner {
+ protected:
+  EveryCellPlanner(const AnyAngleParams& params, Sight sight)
+      : AnyAnglePlanner(params, AnyAngleMemory::kBytesPerNode), sight_(sight) {}
+
+ private:
+  AnyAngleSearch::Result search(Task& task) const final;
+  bool looks_everywhere() const final { return true; }
+  Traits do_traits() const final {
+    return {.complete = params().angle_rule == AnyAngleParams::Angles::complete, .any_angle = true};
+  }
+
+  Sight sight_;
+};
 }  // namespace altiplan::kit

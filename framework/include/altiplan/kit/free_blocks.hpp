@@ -21,7 +21,6 @@ class ALTIPLAN_API FreeBlocks {
   bool line_of_sight(const Cell& a, const Cell& b) const;
 
  private:
-  static constexpr int kEdgeBits = 3;
   bool is_free(const Cell& block) const {
     return free_[(std::size_t(block[2]) * std::size_t(counts_[1]) + std::size_t(block[1])) *
                      std::size_t(counts_[0]) +
