@@ -142,7 +142,7 @@ void AnyAngleSearch::begin(double longest_m) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     unit_[axis] = lattice_.spec().cell[int(axis)] * per_metre_;
   }
-  const double allowed_m = request_.limits.max_route_length + kLengthTolerance;
+  const double allowed_m = std::max(request_.limits.max_route_length, 0.0) + kLengthTolerance;
   longest_ = allowed_m < longest_m ? std::uint32_t(allowed_m * per_metre_) + kRoundings : kNone;
   const Node count = Node(numbers_.size());
   memory_.reset(*nodes_.grid);
