@@ -80,7 +80,6 @@ struct Params {
        {"InformedRRTstar", make_planner<og::InformedRRTstar>},
        {"KPIECE1", make_planner<og::KPIECE1>},
        {"LBKPIECE1", make_planner<og::LBKPIECE1>},
-       {"LBTRRT", make_planner<og::LBTRRT>},
        {"LazyPRM", make_planner<og::LazyPRM>},
        {"LazyRRT", make_planner<og::LazyRRT>},
        {"PDST", make_planner<og::PDST>},

@@ -13,10 +13,10 @@ using testing::make_planner;
 using testing::parameter_problems;
 
 const std::vector<std::string> kPlanners = {
-    "ABITstar",   "AITstar", "BFMT",       "BITstar",  "BKPIECE1",        "BiEST",     "BiTRRT",
-    "EST",        "FMT",     "KPIECE1",    "LBTRRT",   "InformedRRTstar", "LBKPIECE1", "LazyPRM",
-    "LazyRRT",    "PDST",    "PRM",        "PRMstar",  "ProjEST",         "RRT",       "RRTstar",
-    "RRTConnect", "SBL",     "RRTXstatic", "RRTsharp", "STRIDE",          "TRRT",      "SORRTstar"};
+    "ABITstar", "AITstar",    "BFMT",     "BITstar",         "BKPIECE1",  "BiEST",    "BiTRRT",
+    "EST",      "FMT",        "KPIECE1",  "InformedRRTstar", "LBKPIECE1", "LazyPRM",  "LazyRRT",
+    "PDST",     "PRM",        "PRMstar",  "ProjEST",         "RRT",       "RRTstar",  "RRTConnect",
+    "SBL",      "RRTXstatic", "RRTsharp", "STRIDE",          "TRRT",      "SORRTstar"};
 
 /// A wall with a window in it.
 Request through_a_window() {
