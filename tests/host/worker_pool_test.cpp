@@ -2,6 +2,7 @@
 // Jobs of a pool that throw, crash, exit, and leave others behind.
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -96,7 +97,8 @@ TEST_P(Faults, LeavesChildrenBehind) {
   for (const bool hides : {false, true}) {
     const Ended ended = among_others([&](const Job&) {
       for (int i = 0; i < 3; ++i) {
-        if (::fork() == 0) {
+        const pid_t child = ::fork();
+        if (child == 0) {
           if (hides) {
             ::setsid();
             const rlimit unmarked{RLIM_INFINITY, RLIM_INFINITY};
@@ -106,9 +108,10 @@ TEST_P(Faults, LeavesChildrenBehind) {
             }
           }
           sleep_s(1000);
+        } else if (hides) {
+          ::waitpid(child, nullptr, 0);  // it is gone; its child is not
         }
       }
-      sleep_s(0.05);
     });
     EXPECT_EQ(ended.how, Ending::done);
     EXPECT_EQ(ended.left_behind, 3);
