@@ -62,6 +62,11 @@ void TraceFile::add(const TraceEvent& event) {
   }
   line += "], \"value\": ";
   append(line, event.value);
+  if (event.alive >= 0) {
+    line += ", \"mean\": ";
+    append(line, event.mean);
+    line += ", \"alive\": " + std::to_string(event.alive);
+  }
   line += "}\n";
   std::fputs(line.c_str(), file_);
 }
