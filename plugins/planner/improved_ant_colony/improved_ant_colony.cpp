@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The improved ant colony: wide steps over fine cells, pheromone of regions, trimmed routes.
+//
+// Citation: Li Rongsheng, Yang Xiaolong, Yan Xijun, Ren Tianzhu: Path planning for flight vehicles
+//   based on improved ACO (paper 004).
+// Guarantees: every leg keeps every rule; more budget never gives a longer route; one result for
+//   any number of threads. Neither complete nor optimal.
+// Complexity: O(k) a step for k candidates, whatever has evaporated; O(r^2) a place of pheromone.
+//   32 bytes a cell, and 8 more for the legs that are remembered.
+// Deviations: eta_min and eta_max are taken over the candidates that are allowed, not over all of
+//   them (with which most ants die); an ant that sees the goal within its neighbourhood goes there;
+//   free legs are remembered from the first time on; pheromone is laid every l_c along the trimmed
+//   legs (`deposit`: on every cell, or on nodes alone, is worse); `heuristic: geodesic` is ours.
+//   The paper's last part, smoothing, is a step of its own: hermite.
+// Symbols: l_c the reach of a step and l_s the spacing of candidates in cells, C the tilt of the
+//   roulette, r and mu radius and decay of the region, tau^equ its pheromone; alpha, beta, rho, Q
+//   as in ant_colony.
+#include "altiplan/error.hpp"
+#include "altiplan/kit/scratch.hpp"
+#include "altiplan/plugin.hpp"
+#include "region_colony.hpp"
+
+namespace {
+
+using namespace altiplan;
+using improved_ant_colony::Deposit;
+using improved_ant_colony::Heuristic;
+using improved_ant_colony::LegTest;
+using improved_ant_colony::RegionColony;
+using improved_ant_colony::Settings;
+
+bool has_room(int reach, int spacing) {
+  return improved_ant_colony::candidates(reach, spacing) <=
+         std::int64_t(RegionColony::kMostCandidates);
+}
+
+struct Params : kit::ColonyParams {
+  Settings settings;
+  std::optional<int> least_steps;
+
+  void describe(Fields& f) {
+    ColonyParams::describe(f);
+    f("reach_cells", settings.reach)
+        .range(1, 1000)
+        .doc("l_c: a step leads to the border of the square of this half side around the ant");
+    f("least_steps", least_steps)
+        .range(1, 1'000'000)
+        .doc("N_c of eq. (6): steps from start to goal in the open, in place of reach_cells");
+    f("spacing_cells", settings.spacing)
+        .range(0, 1000)
+        .doc("l_s: cells left out between candidates, from each corner to the middle of a side");
+    f("leg_test", settings.leg_test,
+      {{"remembered", LegTest::remembered},
+       {"guard_zone", LegTest::guard_zone},
+       {"always", LegTest::always}})
+        .doc(
+            "when a leg is held to the cells: always; near blocked ones alone (guard_zone); there, "
+            "once a plan (remembered). The route is the same");
+    f("tilt", settings.tilt)
+        .range(0, 0.999)
+        .doc("C of eq. (8): candidates below that share of the range of eta do not enter; 0: all");
+    f("region_radius", settings.region_radius)
+        .range(0, 20)
+        .doc("r of eq. (10): rings of cells whose pheromone counts; 0: a cell's own alone");
+    f("region_decay", settings.region_decay).range(0, 1).doc("mu of eq. (10), from ring to ring");
+    f("heuristic", settings.heuristic,
+      {{"euclidean", Heuristic::euclidean}, {"geodesic", Heuristic::geodesic}})
+        .doc(
+            "eta is 1 over the distance to the goal: straight, eq. (9), or over the free cells "
+            "(geodesic)");
+    f("trim", settings.trims).doc("routes are trimmed before pheromone is laid, eq. (11)");
+    settings.trim.describe(f);
+    f("deposit", settings.deposit,
+      {{"resampled", Deposit::resampled}, {"cells", Deposit::cells}, {"nodes", Deposit::nodes}})
+        .doc(
+            "where pheromone is laid: every reach_cells along the legs, on every cell of them, or "
+            "on the nodes alone");
+    f.check(has_room(settings.reach, settings.spacing),
+            "reach_cells and spacing_cells together make more than 56 candidates");
+  }
+};
+
+class ImprovedAntColony final : public Planner {
+ public:
+  explicit ImprovedAntColony(const Params& params) : params_(params) {}
+
+ private:
+  PlanResult do_plan(const Request& request) const override {
+    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
+                               {params_.max_bytes(), RegionColony::kBytesPerCell});
+    if (auto over = kit::beyond_budget(lattice, RegionColony::kBytesPerCell, request.budget)) {
+      return *std::move(over);
+    }
+    if (auto refused = kit::Colony::refused("improved_ant_colony", lattice)) {
+      return *std::move(refused);
+    }
+    Settings settings = params_.settings;
+    if (params_.least_steps) {
+      settings.reach = reach_for(*params_.least_steps, request, lattice);
+    }
+    const auto memory = memory_.take();
+    return RegionColony(request, params_, settings, lattice, *memory).run();
+  }
+
+  /// Eq. (6).
+  int reach_for(int least_steps, const Request& request, const kit::Lattice& lattice) const {
+    const double cells = (request.goal.position - request.start.position).norm() /
+                         (least_steps * lattice.spec().cell.x());
+    const int reach = std::max(1, int(std::min(std::ceil(cells), 1e6)));
+    if (!has_room(reach, params_.settings.spacing)) {
+      throw ParameterError("least_steps", "comes to a reach of " + std::to_string(reach) +
+                                              " cells, and with spacing_cells to more than 56 "
+                                              "candidates: choose more steps or wider spacing");
+    }
+    return reach;
+  }
+
+  Traits do_traits() const override {
+    Traits traits;
+    traits.anytime = true;
+    traits.space = false;
+    return traits;
+  }
+
+  Params params_;
+  mutable kit::ScratchPool<RegionColony::Memory> memory_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Planner, "improved_ant_colony", ImprovedAntColony, Params,
+                "ants with wide steps, pheromone of regions and trimmed routes, paper 004")
