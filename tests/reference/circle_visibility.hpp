@@ -6,12 +6,12 @@
 #include <map>
 
 #include "framework/shape_oracle.hpp"
-#include "reference/graph.hpp"
+#include "reference/visibility_graph.hpp"
 
-// The exact shortest route of a point among discs in the plane: straight legs that touch discs
-// at both ends, and arcs of rims between them (the visibility graph of convex curves). Discs are
-// open sets that may be touched and may overlap. Every common tangent of every pair is looked at,
-// O(discs³).
+// The exact shortest route of a point among discs and polygons in the plane: straight legs that
+// touch discs, or end at corners, and arcs of rims between them (the visibility graph of convex
+// curves, a corner being a disc of radius 0). Zones may be touched and may overlap. Every common
+// tangent of every pair is looked at, O((discs + corners)³).
 namespace altiplan::reference {
 
 using oracle::Point2;
@@ -23,9 +23,13 @@ struct Circle {
 
 class CircleVisibility {
  public:
-  explicit CircleVisibility(std::vector<Circle> circles) : circles_(std::move(circles)) {}
+  explicit CircleVisibility(std::vector<Circle> circles, std::vector<Polygon> polygons = {})
+      : circles_(std::move(circles)), polygons_(std::move(polygons)) {}
 
   bool is_inside_one(const Point2& p) const {
+    if (polygons_.is_inside_one(p)) {
+      return true;
+    }
     for (const Circle& circle : circles_) {
       if (std::hypot(p[0] - circle.centre[0], p[1] - circle.centre[1]) <
           circle.radius - kTiny * (1 + circle.radius)) {
@@ -35,7 +39,7 @@ class CircleVisibility {
     return false;
   }
 
-  /// Whether the leg enters no disc.
+  /// Whether the leg enters no disc and no polygon.
   bool sees(const Point2& a, const Point2& b) const {
     const Point2 ab = {b[0] - a[0], b[1] - a[1]};
     const double square = ab[0] * ab[0] + ab[1] * ab[1];
@@ -48,7 +52,7 @@ class CircleVisibility {
         return false;
       }
     }
-    return true;
+    return polygons_.sees(a, b);
   }
 
   /// Length of the shortest route; infinite where there is none.
@@ -57,12 +61,17 @@ class CircleVisibility {
       return kInfinity;
     }
     std::vector<Circle> all = circles_;
-    all.push_back({start, 0});
-    all.push_back({goal, 0});
-    Rims rims(all.size());
     Graph graph;
-    graph.add({start[0], start[1], 0});
-    graph.add({goal[0], goal[1], 0});
+    const auto add_point = [&](const Point2& p) {
+      all.push_back({p, 0});
+      graph.add({p[0], p[1], 0});
+    };
+    add_point(start);
+    add_point(goal);
+    for (const Polygon& polygon : polygons_.polygons()) {
+      std::for_each(polygon.begin(), polygon.end(), add_point);
+    }
+    Rims rims(all.size());
     for (std::size_t b = 0; b < all.size(); ++b) {
       for (std::size_t a = 0; a < b; ++a) {
         join_tangents(all, a, b, graph, rims);
@@ -70,6 +79,7 @@ class CircleVisibility {
       }
     }
     for (std::size_t n = 0; n < circles_.size(); ++n) {
+      note_edges(n, graph, rims);
       join_arcs(circles_[n], rims[n], graph);
     }
     return dijkstra(graph, 0)[1];
@@ -141,7 +151,34 @@ class CircleVisibility {
     }
   }
 
-  /// Between two nodes that follow each other all of an arc is inside a disc or none of it, so its
+  /// The same where an edge of a polygon crosses a rim.
+  void note_edges(std::size_t n, Graph& graph, Rims& rims) const {
+    const Circle& circle = circles_[n];
+    for (const Polygon& polygon : polygons_.polygons()) {
+      for (std::size_t e = 0; e < polygon.size(); ++e) {
+        const Point2& c = polygon[e];
+        const Point2& d = polygon[(e + 1) % polygon.size()];
+        const double length = std::hypot(d[0] - c[0], d[1] - c[1]);
+        const double x = (d[0] - c[0]) / length;
+        const double y = (d[1] - c[1]) / length;
+        const double along = x * (circle.centre[0] - c[0]) + y * (circle.centre[1] - c[1]);
+        const double beside = x * (circle.centre[1] - c[1]) - y * (circle.centre[0] - c[0]);
+        if (std::abs(beside) >= circle.radius) {
+          continue;
+        }
+        const double half = std::sqrt(circle.radius * circle.radius - beside * beside);
+        for (const double at : {along - half, along + half}) {
+          if (at >= 0 && at <= length) {
+            node(circles_, n,
+                 std::atan2(c[1] + at * y - circle.centre[1], c[0] + at * x - circle.centre[0]),
+                 graph, rims);
+          }
+        }
+      }
+    }
+  }
+
+  /// Between two nodes that follow each other all of an arc is inside a zone or none of it, so its
   /// middle decides.
   void join_arcs(const Circle& circle, const std::multimap<double, std::size_t>& rim,
                  Graph& graph) const {
@@ -162,5 +199,6 @@ class CircleVisibility {
   }
 
   std::vector<Circle> circles_;
+  VisibilityGraph polygons_;
 };
 }  // namespace altiplan::reference

@@ -66,24 +66,63 @@ Polygon regular(const Circle& circle, double reach, int corners) {
   return polygon;
 }
 
-/// Polygons inside the discs leave a way that is not longer, polygons around them one not shorter.
+/// Polygons inside the discs leave a way that is not longer, polygons around them one not shorter,
+/// among other polygons too, which overlap discs and each other and may be concave.
 TEST(CircleVisibility, LiesBetweenThoseOfPolygons) {
   constexpr int kCorners = 14;
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const std::vector<Circle> circles = random_circles(seed, 4);
-    std::vector<Polygon> inner;
-    std::vector<Polygon> outer;
+    std::vector<Polygon> polygons;
+    oracle::Draw draw(seed);
+    while (polygons.size() < seed / 2) {
+      const double x = draw(10, 90);
+      const double y = draw(10, 90);
+      const oracle::Solid star = oracle::star(draw, x, y, 25, 5, false, 0, 1);
+      const Polygon& outline = std::get<Prism>(star.shape).outline;
+      if (!VisibilityGraph({outline}).is_inside_one({0, 0}) &&
+          !VisibilityGraph({outline}).is_inside_one({100, 100})) {
+        polygons.push_back(outline);
+      }
+    }
+    std::vector<Polygon> inner = polygons;
+    std::vector<Polygon> outer = polygons;
     for (const Circle& circle : circles) {
       inner.push_back(regular(circle, circle.radius, kCorners));
       outer.push_back(regular(circle, circle.radius / std::cos(kPi / kCorners), kCorners));
     }
-    const double exact = CircleVisibility(circles).shortest({0, 0}, {100, 100});
+    const double exact = CircleVisibility(circles, polygons).shortest({0, 0}, {100, 100});
     const double least = VisibilityGraph(inner).shortest({0, 0}, {100, 100});
     const double most = VisibilityGraph(outer).shortest({0, 0}, {100, 100});
     EXPECT_GE(exact, least - 1e-9) << seed;
     EXPECT_LE(exact, most + 1e-9) << seed;
     EXPECT_LT(most - least, 4) << seed << ": these say little";
   }
+}
+
+/// Without discs it is the other reference.
+TEST(CircleVisibility, IsThatOfPolygonsAmongPolygons) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    oracle::Draw draw(seed);
+    std::vector<Polygon> polygons;
+    for (int n = 0; n < 6; ++n) {
+      const double x = draw(10, 90);
+      const double y = draw(10, 90);
+      polygons.push_back(
+          std::get<Prism>(oracle::star(draw, x, y, 20, 6, false, 0, 1).shape).outline);
+    }
+    EXPECT_EQ(CircleVisibility({}, polygons).shortest({-20, 30}, {120, 60}),
+              VisibilityGraph(polygons).shortest({-20, 30}, {120, 60}))
+        << seed;
+  }
+}
+
+TEST(CircleVisibility, AroundACornerAndADisc) {
+  // Under a box's corners, then over a disc that stands against another box.
+  const CircleVisibility both({{{8, 1}, 1}}, {rectangle(2, -1, 4, 5), rectangle(7, -6, 9, 1)});
+  const double to_rim = std::sqrt(std::pow(8 - 4, 2) + std::pow(1 + 1, 2) - 1);
+  const double angle = std::atan2(-2, -4) - std::acos(1 / std::hypot(4, 2));
+  const double away = kPi / 2;  // the goal is level with the disc's top
+  EXPECT_NEAR(both.shortest({0, -1}, {12, 2}), 4 + to_rim + (angle + 2 * kPi - away) + 4, 1e-9);
 }
 
 /// Turned, mirrored and from the other end the length is the same; one more disc, not shorter.

@@ -58,15 +58,19 @@ class VisibilityGraph {
         continue;
       }
       const double t = (cuts[n] + cuts[n + 1]) / 2;
-      const Point2 middle = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
-      for (const Polygon& polygon : polygons_) {
-        if (strictly_inside(polygon, middle)) {
-          return false;
-        }
+      if (is_inside_one({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])})) {
+        return false;
       }
     }
     return true;
   }
+
+  bool is_inside_one(const Point2& p) const {
+    return std::any_of(polygons_.begin(), polygons_.end(),
+                       [&](const Polygon& polygon) { return strictly_inside(polygon, p); });
+  }
+
+  const std::vector<Polygon>& polygons() const { return polygons_; }
 
  private:
   static constexpr double kTiny = 1e-9;
