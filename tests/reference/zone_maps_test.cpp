@@ -66,5 +66,26 @@ TEST(ZoneMaps, PlannersComeNear) {
     EXPECT_LE(length(straight.route), 1.01 * shortest) << seed;
   }
 }
+/// What the study takes for the shortest, on the paper's map and two where Theta* or smaller trees
+/// take another way: within 0.05 %.
+TEST(ZoneMaps, ThePipelineOfReferenceComesNear) {
+  const auto excess = [](const host::Overrides& overrides, double shortest) {
+    const testing::Ran ran = testing::run_file(
+        testing::configs() / "pipelines" / "ant_colony_reference.yaml", overrides);
+    EXPECT_EQ(ran.exit_code, 0) << ran.json.at("message");
+    return ran.json.at("metrics").at("length_m").get<double>() / shortest - 1;
+  };
+  const double on_paper = excess({}, 1207.1436);
+  EXPECT_GE(on_paper, -1e-7);
+  EXPECT_LE(on_paper, 0.0005);
+  for (const int seed : {3, 19}) {
+    host::Overrides overrides;
+    overrides.scenario = testing::configs() / "scenarios" / "ant_colony_random.yaml";
+    overrides.set = {"scenario.environment.0.random_zones.seed=" + std::to_string(seed)};
+    const double here = excess(overrides, kShortest[seed - 1]);
+    EXPECT_GE(here, -1e-7) << seed;
+    EXPECT_LE(here, 0.0005) << seed;
+  }
+}
 }  // namespace
 }  // namespace altiplan::reference
