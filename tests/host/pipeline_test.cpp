@@ -276,7 +276,9 @@ TEST_F(PipelineTest, TheTraceHoldsWhatTheStepsDid) {
             "{\"step\": \"say \\\"x\\\"\", \"kind\": \"expanded\", \"node\": 1, \"parent\": -1, "
             "\"at\": [100, 500, 500], \"value\": 2.5}\n"
             "{\"step\": \"say \\\"x\\\"\", \"kind\": \"rewired\", \"node\": 2, \"parent\": 1, "
-            "\"at\": [900, 500, 500], \"value\": null}\n");
+            "\"at\": [900, 500, 500], \"value\": null}\n"
+            "{\"step\": \"say \\\"x\\\"\", \"kind\": \"iteration\", \"node\": 1, \"parent\": -1, "
+            "\"at\": [900, 500, 500], \"value\": 800, \"mean\": 900, \"alive\": 3}\n");
   options.trace = folder_ / "nowhere/trace.jsonl";
   EXPECT_THROW(run("steps: [{plan: told}]\n", options), Error);
 }

@@ -41,6 +41,7 @@ class Told final : public Planner {
       request.trace->add({TraceEvent::Kind::expanded, 1, -1, request.start.position, 2.5});
       request.trace->add({TraceEvent::Kind::rewired, 2, 1, request.goal.position,
                           std::numeric_limits<double>::infinity()});
+      request.trace->add({TraceEvent::Kind::iteration, 1, -1, request.goal.position, 800, 900, 3});
     }
     return result;
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <unordered_map>
 
 #include "host/output/base64.hpp"
@@ -29,20 +30,28 @@ struct Event {
   Point at{};
   Point parent{};
   float value = 0;
+  // Of an iteration.
+  float number = 0;
+  float mean = 0;
+  float alive = -1;
 };
 
 /// Keeps every n-th event of each step, n the least power of two for which no more than `most` are
-/// kept.
+/// kept; of events that go on with the one before, all or none.
 class Thinned {
  public:
   explicit Thinned(std::size_t most) : most_(most) {}
 
-  void add(Event event) {
-    event.nth = counts_[event.step]++;
+  void add(Event event, bool goes_on) {
+    std::size_t& count = counts_[event.step];
+    count += goes_on && count > 0 ? 0 : 1;
+    event.nth = count - 1;
+    greatest_ = std::max(greatest_, event.nth);
     if (event.nth % every_ == 0) {
       kept_.push_back(event);
     }
-    while (kept_.size() > most_) {
+    // Nothing but the first is left where n is above all: that stays, however long it is.
+    while (kept_.size() > most_ && every_ <= greatest_) {
       every_ *= 2;
       kept_.erase(std::remove_if(kept_.begin(), kept_.end(),
                                  [&](const Event& old) { return old.nth % every_ != 0; }),
@@ -54,6 +63,7 @@ class Thinned {
  private:
   std::size_t most_;
   std::size_t every_ = 1;
+  std::size_t greatest_ = 0;
   std::array<std::size_t, kMostSteps> counts_{};
   std::vector<Event> kept_;
 };
@@ -73,12 +83,22 @@ class Reader {
       const Json& coordinate = json.at("at").at(axis);
       event.at[axis] = coordinate.is_null() ? 0 : coordinate.get<float>();
     }
-    event.value = json.at("value").is_null() ? 0 : json.at("value").get<float>();
-    const auto parent = nodes_.find(json.at("parent").get<std::int64_t>());
-    event.parent = parent == nodes_.end() ? event.at : parent->second;
-    nodes_[json.at("node").get<std::int64_t>()] = event.at;
+    event.value = number_or_none(json.at("value"));
+    const auto node = json.at("node").get<std::int64_t>();
     // Iterations are few, and they alone tell how the best length came down.
-    (event.kind == kIteration ? iterations_ : others_).add(event);
+    if (event.kind == kIteration) {
+      event.number = float(node);
+      event.alive = json.value("alive", -1.0F);
+      event.mean = number_or_none(json.value("mean", Json()));
+      is_population_ = event.alive >= 0;
+      event.parent = event.at;
+      iterations_.add(event, false);
+    } else {
+      const auto parent = nodes_.find(json.at("parent").get<std::int64_t>());
+      event.parent = parent == nodes_.end() ? event.at : parent->second;
+      nodes_[node] = event.at;
+      others_.add(event, is_population_ && parent != nodes_.end());
+    }
     ++count_;
   }
 
@@ -92,22 +112,33 @@ class Reader {
     std::vector<Point> places;
     std::vector<Point> parents;
     std::vector<float> values;
+    std::vector<float> numbers;
+    std::vector<float> means;
+    std::vector<float> alive;
     for (const Event& event : kept) {
       steps.push_back(event.step);
       kinds.push_back(event.kind);
       places.push_back(event.at);
       parents.push_back(event.parent);
       values.push_back(event.value);
+      if (event.kind == kIteration) {
+        numbers.push_back(event.number);
+        means.push_back(event.mean);
+        alive.push_back(event.alive);
+      }
     }
-    return {{"events", count_},
-            {"kept", kept.size()},
-            {"steps", steps_},
-            {"step", base64_of(steps)},
-            {"kind", base64_of(kinds)},
-            {"at", base64_of(places)},
-            {"parent", base64_of(parents)},
-            {"value", base64_of(values)},
-            {"order", nullptr}};
+    return {
+        {"events", count_},
+        {"kept", kept.size()},
+        {"steps", steps_},
+        {"step", base64_of(steps)},
+        {"kind", base64_of(kinds)},
+        {"at", base64_of(places)},
+        {"parent", base64_of(parents)},
+        {"value", base64_of(values)},
+        {"iterations",
+         {{"number", base64_of(numbers)}, {"mean", base64_of(means)}, {"alive", base64_of(alive)}}},
+        {"order", nullptr}};
   }
 
  private:
@@ -121,8 +152,12 @@ class Reader {
         steps_.push_back(id);
       }
       nodes_.clear();  // a search numbers its own
+      is_population_ = false;
     }
     return std::uint8_t(step_);
+  }
+  static float number_or_none(const Json& json) {
+    return json.is_null() ? std::numeric_limits<float>::quiet_NaN() : json.get<float>();
   }
   static std::uint8_t kind_number(std::string_view kind) {
     const auto found = std::find(kKinds.begin(), kKinds.end(), kind);
@@ -136,6 +171,7 @@ class Reader {
   std::size_t step_ = 0;
   std::vector<std::string> steps_;
   std::unordered_map<std::int64_t, Point> nodes_;
+  bool is_population_ = false;  // the search: what it adds is routes
   Thinned iterations_{kMostIterations};
   Thinned others_{kMostEvents - kMostIterations};
 };

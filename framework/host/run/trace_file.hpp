@@ -10,8 +10,8 @@
 namespace altiplan::host {
 
 /// Writes a run's search events as lines of JSON: first {"altiplan_trace": 1}, then for each event
-/// {"step", "kind", "node", "parent", "at": [x, y, z], "value"}. Throws Error when the file cannot
-/// be written.
+/// {"step", "kind", "node", "parent", "at": [x, y, z], "value"}, of an iteration of a population
+/// with "mean" and "alive" (docs/result.md). Throws Error when the file cannot be written.
 class TraceFile final : public Trace {
  public:
   explicit TraceFile(std::filesystem::path file);
