@@ -23,6 +23,7 @@ import scenes
 from both import Both
 from browser import NO_GL
 from case import TEMPLATE, Case
+from colony import Colony
 from cut import Cut, CutIn3
 from signs import Signs
 
@@ -44,7 +45,7 @@ class File(unittest.TestCase):
             self.assertIn(holder, TEMPLATE)
 
 
-class Page(Both, Cut, CutIn3, Signs, Case):
+class Page(Both, Colony, Cut, CutIn3, Signs, Case):
     def test_camera_of_the_still(self):
         self.run_js("altiplan.still()")
         eye = self.run_js("return altiplan.camera()")
@@ -186,7 +187,7 @@ class Page(Both, Cut, CutIn3, Signs, Case):
         self.assertLessEqual(min(times), 6000)
 
 
-class Flat(Both, Cut, Signs, Case):
+class Flat(Both, Colony, Cut, Signs, Case):
     """Without WebGL: the same from above."""
     graphics = NO_GL
     view = "2d"

@@ -6,6 +6,7 @@ import json
 import math
 
 PLACE = "/*SCENE*/"
+ADDED, ITERATION = 1, 4  # kinds of events
 
 
 def packed(kind, values):
@@ -114,7 +115,54 @@ def trace(count, box, events):
     parents = [value for k in range(count) for value in points[k // 2]]
     return {"events": events, "kept": count, "steps": ["search"], "step": packed("B", [0] * count),
             "kind": packed("B", kinds), "at": packed("f", flat), "parent": packed("f", parents),
-            "value": packed("f", [0.0] * count), "order": None}
+            "value": packed("f", [0.0] * count), "iterations": iterations([]), "order": None}
+
+
+def iterations(rows):
+    """Of each its number, mean and how many are alive, -1 where it is of no population."""
+    numbers, means, alive = zip(*rows) if rows else ([], [], [])
+    return {"number": packed("f", numbers), "mean": packed("f", means),
+            "alive": packed("f", alive)}
+
+
+def with_iterations(events, rows, kept_of=1, steps=("search",)):
+    """A trace of events (kind, at, parent, value)."""
+    flat = [value for event in events for value in event[1]]
+    parents = [value for event in events for value in event[2]]
+    return {"events": len(events) * kept_of, "kept": len(events), "steps": list(steps),
+            "step": packed("B", [0] * len(events)), "kind": packed("B", [e[0] for e in events]),
+            "at": packed("f", flat), "parent": packed("f", parents),
+            "value": packed("f", [e[3] for e in events]), "iterations": iterations(rows),
+            "order": None}
+
+
+def colony(start, goal, kept_of=1):
+    """Five iterations of three ants, who all die in the first; each next route is straighter."""
+    events, rows = [], []
+    ants = 3
+    for number in range(1, 6):
+        alive = 0 if number == 1 else ants
+        best = math.nan if number == 1 else 13000.0 - 500 * number
+        rows.append((number, best + 250, alive))
+        events.append((ITERATION, goal, goal, best))
+        for ant in range(alive):
+            aside = 400.0 * (6 - number) * (ant + 1)
+            nodes = [start, [start[0] + 3000 - aside, start[1] + 2000 + aside, start[2]], goal]
+            for before, node in zip([nodes[0], *nodes], nodes):
+                events.append((ADDED, node, before, 0.0))
+    return with_iterations(events, rows, kept_of)
+
+
+def improvements(start, goal):
+    """A tree of twelve nodes, found to be shorter twice."""
+    events, rows = [], []
+    for node in range(12):
+        at = [start[0] + 600.0 * node, start[1] + 400.0 * node, start[2]]
+        events.append((ADDED, at, start, 0.0))
+        if node in (4, 9):
+            rows.append((100 * node, math.nan, -1))
+            events.append((ITERATION, goal, goal, 12000.0 - 100 * node))
+    return with_iterations(events, rows)
 
 
 def empty(box, title="Test scene"):

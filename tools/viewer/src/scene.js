@@ -54,3 +54,11 @@ export function read_trace(trace) {
   };
   return trace.decoded;
 }
+
+/** Of its iterations, in order; few beside all events. */
+export function read_iterations(trace) {
+  const decode = (text) => new Float32Array(bytes(text).buffer);
+  trace.decoded_iterations ??= Object.fromEntries(Object.entries(trace.iterations)
+    .map(([key, text]) => [key, decode(text)]));
+  return trace.decoded_iterations;
+}

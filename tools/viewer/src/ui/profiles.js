@@ -4,6 +4,7 @@ import {route_color, style_of} from '../colors.js';
 import {element} from '../dom.js';
 import {metres, number} from '../units.js';
 import {last_before} from '../world.js';
+import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
 import {profile_cursor, profile_of} from './cursor.js';
 
 // Where values differ by less than `span`, that much is shown: a level line should look level.
@@ -29,13 +30,7 @@ export function build_profiles(world, store) {
     charts.replaceChildren();
     drawn = profile ? kCharts.map((chart) => draw(chart, profile, charts, world, store)) : [];
     reflect_when_drawn();
-    fit();
-  };
-  const fit = () => {
-    for (const {plot, cell} of drawn) {
-      const {clientWidth: width, clientHeight: height} = cell;
-      if (width > 0) plot.setSize({width, height: Math.max(70, height - 18)});
-    }
+    fit(drawn);
   };
   const reflect = () => {
     const profile = profile_of(world, store.state);
@@ -45,7 +40,7 @@ export function build_profiles(world, store) {
   const reflect_when_drawn = () => {
     for (const chart of drawn) chart.redrawn = reflect;
   };
-  new ResizeObserver(fit).observe(charts);
+  new ResizeObserver(() => fit(drawn)).observe(charts);
   store.on(['selected', 'source', 'theme'], rebuild);
   store.on(['cursor', 'time'], reflect);
   rebuild();
@@ -70,24 +65,19 @@ function sources(world, store, profile) {
 
 function draw(chart, profile, charts, world, store) {
   const value = element('span', {});
-  const cell = element('div', {className: `chart ${chart.key}`},
-    element('div', {className: 'caption'},
-      element('b', {}, `${chart.title}, ${chart.unit}`), value));
+  const cell = new_cell(chart, value);
   charts.append(cell);
   const result = world.scene.results[store.state.selected];
   const limit = chart.limit ? result.limits?.[chart.limit] ?? null : null;
   const color = route_color(store.state.selected, store.state.theme);
   const {data, series} = curves(chart, profile, limit, color, result.limits);
-  // Set while the cursor comes from elsewhere: it must not go back there as if it were new.
   const link = {silent: false};
   const made = {};
-  const plot = new uPlot({width: 200, height: 100, padding: [6, 10, 0, 0], legend: {show: false},
-    cursor: {y: false, drag: {setScale: false, x: false}, points: {show: dot_on(color)}},
-    scales: {x: {time: false}, y: {range: range_of(chart, data)}},
-    axes: axes(), series,
-    hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
-      if (!link.silent && self.cursor.event) follow(self, profile, store);
-    }]}}, data, cell);
+  // The cursor's dot is for the curve itself, not for ground and limits beside it.
+  const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range: range_of(chart,
+    data)}}, hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
+    if (!link.silent && self.cursor.event) follow(self, profile, store);
+  }]}});
   plot.over.addEventListener('click', () => {
     const index = plot.cursor.idx;
     if (profile.kind === 'flight' && index !== null && index !== undefined) {
@@ -128,40 +118,6 @@ function curves(chart, profile, limit, color, limits) {
 const limit_line = () => ({stroke: style_of('--limit'), width: 1.2, dash: [5, 4],
   points: {show: false}});
 
-/** From the least to the greatest of what is drawn, with room; from 0 where 0 means something. */
-function range_of(chart, [, ...columns]) {
-  const values = columns.flat().filter((value) => value !== null && Number.isFinite(value));
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of values) {
-    low = Math.min(low, value);
-    high = Math.max(high, value);
-  }
-  if (low > high) return [0, 1];
-  if (chart.zero) low = Math.min(0, low);
-  const missing = Math.max(0, chart.span - (high - low));
-  // Around the curve; from 0 only upwards.
-  const [under, over] = chart.zero && low === 0 ? [0, missing] : [missing / 2, missing / 2];
-  [low, high] = [low - under, high + over];
-  const room = (high - low) * 0.08;
-  return [chart.zero && low === 0 ? 0 : low - room, high + room];
-}
-
-/** The cursor's dot is for the curve itself, not for ground and limits beside it. */
-function dot_on(color) {
-  return (plot, index) => {
-    if (plot.series[index].stroke?.() !== color) return undefined;
-    const dot = element('div', {className: 'u-cursor-pt dot'});
-    dot.style.background = color;
-    return dot;
-  };
-}
-
-function axes() {
-  const look = {stroke: style_of('--quiet'), font: '11px system-ui, sans-serif',
-    grid: {stroke: style_of('--hair'), width: 1}, ticks: {show: false}};
-  return [{...look, size: 22, gap: 3, space: 60}, {...look, size: 46, gap: 4, space: 26}];
-}
-
 function follow(plot, profile, store) {
   const index = plot.cursor.idx;
   if (index !== null && index !== undefined && plot.cursor.left >= 0) {
@@ -172,9 +128,7 @@ function follow(plot, profile, store) {
 /** The cursor, or else the flight's time, as a line and a number on every chart. */
 function show_cursor({plot, value, chart, link}, profile, {cursor, time}) {
   const x = cursor?.x ?? (profile.kind === 'flight' ? time : null);
-  link.silent = true;
-  plot.setCursor(x === null ? {left: -10, top: -10} : {left: plot.valToPos(x, 'x'), top: 4}, false);
-  link.silent = false;
+  put_cursor(plot, link, x);
   if (x === null) {
     value.textContent = '';
     return;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {kKindNames, kKinds} from '../colors.js';
 import {checkbox, element, swatch} from '../dom.js';
-import {playback_of, thinning} from '../playback.js';
+import {iteration_at, iterations_around, playback_of, thinning, told_of} from '../playback.js';
+import {build_convergence} from './convergence.js';
 
 const kSeconds = 12;
 
@@ -20,7 +21,9 @@ export function build_search(world, store) {
   const slider = element('input', {type: 'range', id: 'searched', min: 0, step: 1,
     ariaLabel: 'Events shown', oninput: () => {
       playing = false;
-      store.set({searched: Number(slider.value)});
+      const wanted = Number(slider.value);
+      if (!store.state.search) show(true);
+      stop_at(wanted);
     }});
   const told = element('output', {id: 'search_text'});
   const play = element('button', {id: 'search_play', textContent: '▶', title: 'Play the search',
@@ -28,9 +31,15 @@ export function build_search(world, store) {
       playing = !playing;
       if (playing) run();
     }});
+  const convergence = build_convergence(store, (iteration) => {
+    playing = false;
+    if (!store.state.search) show(true);
+    store.set({searched: iteration.end});
+  });
   let playing = false;
 
   const trace = () => world.scene.results[Number(choice.value)].trace;
+  const stop_at = (nth) => store.set({searched: store.state.search.stops[nth - 1] ?? 0});
   function show(on) {
     visible.input.checked = on;
     if (!on) {
@@ -39,21 +48,28 @@ export function build_search(world, store) {
       return;
     }
     const search = playback_of(trace());
-    slider.max = search.count;
+    slider.max = search.stops.length;
+    convergence.show(search);
     store.set({search, searched: search.count});
+  }
+  /** How many stops of the playback have been passed. */
+  function passed({search, searched}) {
+    const next = search.stops.findIndex((stop) => stop > searched);
+    return next < 0 ? search.stops.length : next;
   }
   function run() {
     if (!store.state.search) show(true);
-    const {count} = store.state.search;
+    const {count, stops} = store.state.search;
     if (store.state.searched >= count) store.set({searched: 0});
     let before = performance.now();
-    let exact = store.state.searched;
+    let exact = passed(store.state);
     const step = (now) => {
       if (!playing || !store.state.search) return;
-      exact = Math.min(count, exact + Math.max(0, now - before) / 1000 * count / kSeconds);
+      exact = Math.min(stops.length, exact + Math.max(0, now - before) / 1000 * stops.length /
+        kSeconds);
       before = now;
-      store.set({searched: Math.floor(exact)});
-      if (exact < count) requestAnimationFrame(step);
+      stop_at(Math.floor(exact));
+      if (exact < stops.length) requestAnimationFrame(step);
       else playing = false;
       reflect();
     };
@@ -61,18 +77,28 @@ export function build_search(world, store) {
   }
   const reflect = () => {
     const {search, searched} = store.state;
-    slider.value = searched;
     play.textContent = playing ? '❚❚' : '▶';
-    const step = search && searched > 0 ? trace().steps[search.step[searched - 1]] : null;
-    told.textContent = search ? `${searched} of ${search.count}${step ? `, step ${step}` : ''}. ` +
-      thinning(trace()) : thinning(trace());
+    if (!search) {
+      told.textContent = thinning(trace());
+      return;
+    }
+    slider.value = passed(store.state);
+    const step = searched > 0 ? `, step ${trace().steps[search.step[searched - 1]]}` : '';
+    const now = iteration_at(search, searched);
+    const iteration = now ? told_of(now, iterations_around(search, searched).at(-1)) + ' ' : '';
+    told.textContent = `${iteration}${searched} of ${search.count}${step}. ${thinning(trace())}`;
   };
   store.on(['search', 'searched'], reflect);
+  // A trace takes time to decode: its figure is made when the pane is looked at.
+  store.on(['tab'], ({tab}) => {
+    if (tab === 'search') convergence.show(playback_of(trace()));
+  });
   reflect();
-  return element('div', {},
+  return element('div', {}, element('div', {className: 'controls'},
     element('div', {className: 'row'}, traced.length > 1 ? choice : null, visible.row),
     element('div', {className: 'row'}, play, slider),
     element('div', {className: 'row'}, told),
     element('div', {className: 'row kinds'}, kKindNames.slice(0, 4).flatMap((name, kind) =>
-      element('span', {}, swatch(kKinds[kind]), name))));
+      element('span', {}, swatch(kKinds[kind]), name)))),
+  convergence.pane);
 }
