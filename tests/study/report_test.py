@@ -7,7 +7,7 @@ import os
 import sys
 import unittest
 
-from case import RUNS, StudyCase
+from case import GREEDY, RUNS, StudyCase
 
 
 class Report(StudyCase):
@@ -46,6 +46,23 @@ class Report(StudyCase):
         self.assert_same(whole, self.report("all", self.path("all.db"), "--no-times"))
         for content in whole.values():
             self.assertNotIn(b"whole.db", content)
+
+    def test_traces_with_iterations_are_drawn(self):
+        self.write("astar.yaml", "altiplan: 1\nscenario: city.yaml\nsteps:\n  - plan: rrt_star\n"
+                                 "    within_iterations: 3000\n")
+        self.write("study.yaml", self.read("study.yaml").replace(GREEDY, ""))
+        without = self.report("without", self.store("without.db", "--reuse", "6"), "--no-times")
+        self.assertFalse(any("convergence" in name for name in without))
+        with_traces = self.report("with", self.store("with.db", "--reuse", "6", "--traces"),
+                                  "--no-times")
+        self.assertEqual(set(with_traces) - set(without),
+                         {"figures/convergence-octile.csv", "figures/convergence-octile.svg",
+                          "tables/convergence.md", "tables/convergence.tex"})
+        rows = list(csv.DictReader(with_traces["figures/convergence-octile.csv"].decode()
+                                   .splitlines()))
+        self.assertEqual([float(rows[-1][f"best_{part}"]) for part in ("p10", "median", "p90")],
+                         [1, 1, 1])
+        self.assertGreater(len(rows), 6)
 
     def test_rows_are_the_stores(self):
         store = self.store("study.db")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "host/study/report/text.hpp"
 #include "host/tune/tune_report.hpp"
@@ -48,21 +49,6 @@ Curves curves_of(const Tuning& tuning) {
   return curves;
 }
 
-void draw(Canvas& canvas, const std::vector<double>& curve, const Axis& along, const Axis& up,
-          std::size_t series) {
-  std::string d;
-  bool is_drawn = false;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    if (std::isfinite(curve[i])) {
-      d += (is_drawn ? "L" : "M") + pixels(along(double(i + 1))) + " " + pixels(up(curve[i]));
-    }
-    is_drawn = std::isfinite(curve[i]);
-  }
-  if (!d.empty()) {
-    canvas.path(d, report::series_line(series));
-  }
-}
-
 /// "Length, m" of a value, an expression as it is: its names carry their units.
 std::string score_label(const TunePlan& plan, const Axis& up) {
   constexpr std::size_t kMostCharacters = 60;
@@ -71,16 +57,6 @@ std::string score_label(const TunePlan& plan, const Axis& up) {
   const bool is_value = values.size() == 1 && values.front().name == metric;
   return report::axis_label(
       report::shortened(is_value ? report::metric_label(metric) : metric, kMostCharacters), up);
-}
-
-void draw_left(Canvas& canvas, const Axis& up, const std::string& label) {
-  canvas.text(6, kTop - 14, label);
-  for (const Axis::Tick& tick : up.ticks_upwards()) {
-    canvas.line(kLeft, up(tick.value), kRight, up(tick.value), "hair");
-    if (!tick.label.empty()) {
-      canvas.text(kLeft - 6, up(tick.value) + 4, tick.label, "quiet", Anchor::end);
-    }
-  }
 }
 }  // namespace
 
@@ -92,22 +68,19 @@ report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning) {
   const Axis up = Axis::around(all, kBottom, kTop);
   const Axis along(1, std::max(2.0, double(curves.best.size())), false, kLeft, kRight);
   Canvas canvas;
-  draw_left(canvas, up, score_label(plan, up));
+  report::draw_left(canvas, up, kLeft, kRight, kTop, score_label(plan, up));
   report::draw_bottom(canvas, along, kTop, kBottom, "Iteration, number");
   if (std::isfinite(tuning.as_it_is().score)) {
     const double y = up(tuning.as_it_is().score);
     canvas.line(kLeft, y, kRight, y, "reference");
   }
-  draw(canvas, curves.mean, along, up, 1);
-  draw(canvas, curves.best, along, up, 0);
+  std::vector<double> iterations(curves.best.size());
+  std::iota(iterations.begin(), iterations.end(), 1);
+  draw_curve(canvas, iterations, curves.mean, along, up, report::series_line(1));
+  draw_curve(canvas, iterations, curves.best, along, up, report::series_line(0));
   double y = kBottom + report::kAxisHeight + 20;
-  for (const auto& [series, words] :
-       {std::pair(0, "best so far"), std::pair(1, "mean of the iteration, failures left out")}) {
-    canvas.path("M" + pixels(kLeft) + " " + pixels(y - 4) + "h26",
-                report::series_line(std::size_t(series)));
-    canvas.text(kLeft + 34, y, words);
-    y += 18;
-  }
+  y = draw_key(canvas, kLeft, y, 0, "best so far");
+  y = draw_key(canvas, kLeft, y, 1, "mean of the iteration, failures left out");
   canvas.line(kLeft, y - 4, kLeft + 26, y - 4, "reference");
   canvas.text(kLeft + 34, y, "the pipeline as it is");
   const std::string metric = report::printable(plan.request.metric);

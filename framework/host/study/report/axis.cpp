@@ -146,6 +146,38 @@ void draw_bottom(Canvas& canvas, const Axis& axis, double top, double y, const s
   canvas.text((from + to) / 2, y + 32, label, "ink", Anchor::middle);
 }
 
+void draw_left(Canvas& canvas, const Axis& axis, double left, double right, double top,
+               const std::string& label) {
+  canvas.text(6, top - 14, label);
+  for (const Axis::Tick& tick : axis.ticks_upwards()) {
+    canvas.line(left, axis(tick.value), right, axis(tick.value), "hair");
+    if (!tick.label.empty()) {
+      canvas.text(left - 6, axis(tick.value) + 4, tick.label, "quiet", Anchor::end);
+    }
+  }
+}
+
+void draw_curve(Canvas& canvas, const std::vector<double>& x, const std::vector<double>& y,
+                const Axis& along, const Axis& up, const std::string& paint) {
+  std::string d;
+  bool is_drawn = false;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (std::isfinite(y[i])) {
+      d += (is_drawn ? "L" : "M") + pixels(along(x[i])) + " " + pixels(up(y[i]));
+    }
+    is_drawn = std::isfinite(y[i]);
+  }
+  if (!d.empty()) {
+    canvas.path(d, paint);
+  }
+}
+
+double draw_key(Canvas& canvas, double x, double y, std::size_t series, std::string_view words) {
+  canvas.path("M" + pixels(x) + " " + pixels(y - 4) + "h26", series_line(series));
+  canvas.text(x + 34, y, words);
+  return y + 18;
+}
+
 void draw_shares(Canvas& canvas, double left, double right, double top, double bottom) {
   for (int share = 0; share <= 100; share += 25) {
     const double y = bottom - (bottom - top) * share / 100;

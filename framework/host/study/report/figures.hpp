@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "host/study/report/analysis.hpp"
+#include "host/study/report/convergence.hpp"
 #include "host/study/report/svg.hpp"
 
 namespace altiplan::host::report {
@@ -23,6 +24,8 @@ std::optional<Figure> effort_figure(const StudyData& data, const std::string& me
 /// Dolan and Moré's performance profile; nothing where the metric is no cost, or no pair has all
 /// that it takes.
 std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis& metric);
+/// Best and mean length by iteration, and how many of a population found a route.
+Figure convergence_figure(const StudyData& data, const Convergence& convergence);
 
 /// The pipeline's short name, of at most so many characters.
 std::string pipeline_label(const StudyData& data, std::size_t pipeline, std::size_t most = 40);

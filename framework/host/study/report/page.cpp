@@ -148,6 +148,13 @@ std::string metric_html(const Content& content, std::size_t at) {
   return out;
 }
 
+std::string convergence_html(const Content& content) {
+  const std::size_t more = content.convergence.size() - content.convergence_figures.size();
+  return figures_html(content.convergence_figures) +
+         (more == 0 ? "" : paragraph(counted(more, "more figure") + " left out.", "quiet")) +
+         table_html(convergence_table(content), 30);
+}
+
 std::string scenarios_html(const Table& table) {
   std::string out = html_text(table, kRowsShown);
   if (table.rows.size() > kRowsShown) {
@@ -207,6 +214,7 @@ std::string contents_html(const Content& content) {
            "</a>";
   }
   out += content.effort_figures.empty() ? "" : "<a href=\"#effort\">Effort</a>";
+  out += content.convergence.empty() ? "" : "<a href=\"#convergence\">Convergence</a>";
   return out +
          "<a href=\"#scenarios\">Scenarios</a><a href=\"#method\">Method</a><a "
          "href=\"#origin\">Origin</a></nav>\n";
@@ -264,6 +272,9 @@ std::string page_text(const Content& content) {
   body += section("metrics", "Metrics", metrics);
   if (!content.effort_figures.empty()) {
     body += section("effort", "Solved by effort", figures_html(content.effort_figures));
+  }
+  if (!content.convergence.empty()) {
+    body += section("convergence", "Convergence", convergence_html(content));
   }
   body += section("scenarios", "Scenarios", scenarios_html(scenarios));
   body += section("method", "Method", method_html(content));

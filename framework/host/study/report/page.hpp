@@ -41,6 +41,8 @@ struct Content {
   std::vector<Figure> success_figures;
   std::vector<std::vector<Figure>> metric_figures;  ///< one list per metric of the analysis
   std::vector<Figure> effort_figures;
+  std::vector<Convergence> convergence;
+  std::vector<Figure> convergence_figures;  ///< of the first kMostConvergence
   Builds builds;
   Scenes scenes;
 };
@@ -52,6 +54,8 @@ Table success_table(const Content& content);
 Table success_comparison_table(const Content& content);
 Table metric_table(const Content& content);
 Table comparison_table(const Content& content, const MetricAnalysis& metric);
+/// When the searches of each pipeline had come near to their last length.
+Table convergence_table(const Content& content);
 /// One row per scenario: of each pipeline how many runs solved, and the median of the first metric.
 Table scenario_table(const Content& content);
 Table pipeline_table(const Content& content);
@@ -74,6 +78,8 @@ std::string page_data(const Content& content, const Table& scenarios);
 /// index.html.
 std::string page_text(const Content& content);
 
+/// Figures of convergence that the page carries.
+constexpr std::size_t kMostConvergence = 48;
 /// Rows of the scenario table that stand in the page; the script adds the others.
 constexpr std::size_t kRowsShown = 50;
 }  // namespace altiplan::host::report

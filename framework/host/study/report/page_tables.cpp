@@ -10,6 +10,11 @@ namespace {
 
 Cell number(double value, int digits = 4) { return {readable(value, digits), value}; }
 Cell count(std::size_t value) { return {grouped(value), double(value)}; }
+/// "12 [9, 20]".
+Cell spread(const Spread& over) {
+  return {readable(over.median) + " [" + readable(over.low) + ", " + readable(over.high) + "]",
+          over.median};
+}
 Cell p_value(double p) { return {p_text(p), p}; }
 Cell units(const Units& units) {
   return {counted(units.count, units.of_scenarios ? "scenario" : "repetition"),
@@ -54,6 +59,29 @@ std::string winner(const Content& content, const MetricAnalysis& metric, const C
 std::string replay_command(const Content& content, const RunRow& row) {
   const std::string store = content.times ? content.data.stores.at(row.store) : "DB";
   return "altiplan replay " + shell(store) + " " + shell(run_name(content.data, row));
+}
+
+Table convergence_table(const Content& content) {
+  Table table{"convergence",
+              "The first iteration with a best length within 1 % of the last best, and with a mean "
+              "within 3 % of it; how many of a population found a route in the last iteration: "
+              "median [10th, 90th percentile] over runs",
+              {{"pipeline"},
+               {"step"},
+               {"runs", true},
+               {"best within 1 %", true},
+               {"mean within 3 %", true},
+               {"alive at the end", true}},
+              {}};
+  for (const Convergence& made : content.convergence) {
+    const auto of_population = [&](const Spread& over) {
+      return made.is_population ? spread(over) : Cell("–");
+    };
+    table.rows.push_back({name(content, made.pipeline), printable(made.step), count(made.runs),
+                          spread(made.best_from), of_population(made.mean_from),
+                          of_population(made.alive_at_end)});
+  }
+  return table;
 }
 
 Table failure_table(const Content& content) {

@@ -102,6 +102,16 @@ void draw(Content& content) {
       content.effort_figures.push_back(std::move(*figure));
     }
   }
+  std::set<std::string> names;
+  for (const Convergence& convergence : content.convergence) {
+    if (names.size() < kMostConvergence) {
+      content.convergence_figures.push_back(convergence_figure(data, convergence));
+      std::string& name = content.convergence_figures.back().name;
+      while (!names.insert(name).second) {
+        name += "-2";
+      }
+    }
+  }
 }
 
 Content content_of(const Source& source, const Options& options) {
@@ -116,6 +126,7 @@ Content content_of(const Source& source, const Options& options) {
   content.analysis = analyse(content.data, options.times);
   judge_claims(content);
   content.failures = failures_of(content.data);
+  content.convergence = convergence_of(content.data, source.traces);
   draw(content);
   content.builds = builds_of(content.data, source.results);
   SceneOptions scenes = options.scenes;
@@ -130,6 +141,7 @@ std::vector<Figure> all_figures(const Content& content) {
     all.insert(all.end(), figures.begin(), figures.end());
   }
   all.insert(all.end(), content.effort_figures.begin(), content.effort_figures.end());
+  all.insert(all.end(), content.convergence_figures.begin(), content.convergence_figures.end());
   return all;
 }
 
@@ -140,6 +152,9 @@ void write_tables(const Content& content, const fs::path& folder) {
     for (const MetricAnalysis& metric : content.analysis.metrics) {
       tables.push_back(comparison_table(content, metric));
     }
+  }
+  if (!content.convergence.empty()) {
+    tables.push_back(convergence_table(content));
   }
   for (Table& table : tables) {
     table.note = incomplete(content.data);
@@ -226,6 +241,7 @@ Source load_source(const std::vector<std::string>& stores) {
     const auto run = open->at(row.store)->run(row.id);
     return run ? run->result : std::string();
   };
+  source.traces = [open](const RunRow& row) { return open->at(row.store)->trace(row.id); };
   return source;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/study/report/convergence.hpp"
 #include "host/study/report/scenes.hpp"
 #include "host/study/store/study_data.hpp"
 
@@ -15,6 +16,7 @@ struct Source {
   StudyData data;
   std::string study_text;  ///< the study's file
   ResultSource results;
+  TraceSource traces = [](const RunRow&) { return std::string(); };
 };
 
 struct Options {

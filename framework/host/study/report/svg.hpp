@@ -94,6 +94,14 @@ class Axis {
 /// A horizontal axis with lines up through the plot, its numbers and its label: from y down 34.
 constexpr double kAxisHeight = 36;
 void draw_bottom(Canvas& canvas, const Axis& axis, double top, double y, const std::string& label);
+/// A vertical axis with lines across the plot, and its label above.
+void draw_left(Canvas& canvas, const Axis& axis, double left, double right, double top,
+               const std::string& label);
+/// A line through points, broken where one is not finite.
+void draw_curve(Canvas& canvas, const std::vector<double>& x, const std::vector<double>& y,
+                const Axis& along, const Axis& up, const std::string& paint);
+/// What the line of a series stands for; where the next such line goes.
+double draw_key(Canvas& canvas, double x, double y, std::size_t series, std::string_view words);
 /// Shares from 0 to 100 % as a vertical axis.
 void draw_shares(Canvas& canvas, double left, double right, double top, double bottom);
 /// "Length, m (logarithmic)".

@@ -155,6 +155,14 @@ std::optional<StoredRun> Store::run(std::string_view key) const {
   return database_->whole_run(row);
 }
 
+std::string Store::trace(std::int64_t id) const {
+  // Most stores have none: that is found without unpacking a result.
+  Statement row = database_->sqlite.prepare("SELECT length(trace) FROM results WHERE run = ?");
+  row.bind(1, id);
+  const auto whole = row.step() && row.integer(0) > 0 ? run(id) : std::nullopt;
+  return whole ? whole->trace : "";
+}
+
 void Store::remove(const std::vector<std::string>& keys) {
   Transaction transaction(database_->sqlite);
   Statement statement = database_->sqlite.prepare("DELETE FROM runs WHERE key = ?");

@@ -99,6 +99,8 @@ class Store {
   /// One run with its result and trace.
   std::optional<StoredRun> run(std::int64_t id) const;
   std::optional<StoredRun> run(std::string_view key) const;
+  /// The trace of a run, "" where there is none.
+  std::string trace(std::int64_t id) const;
   /// Removes the runs with these keys.
   void remove(const std::vector<std::string>& keys);
 
