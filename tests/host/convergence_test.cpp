@@ -167,9 +167,11 @@ TEST(Convergence, TheReportDrawsIt) {
   });
   EXPECT_NE(with[0].find("<section id=\"convergence\">"), std::string::npos);
   EXPECT_NE(with[0].find("Convergence of p1, step plan"), std::string::npos);
-  EXPECT_NE(with[1].find(R"(| p0 | plan | 2 | 4 \[4, 4\] | 4 \[4, 4\] | 8 \[8, 8\] |)"), std::string::npos)
+  EXPECT_NE(with[1].find(R"(| p0 | plan | 2 | 4 \[4, 4\] | 4 \[4, 4\] | 8 \[8, 8\] |)"),
+            std::string::npos)
       << with[1];
-  EXPECT_NE(with[1].find(R"(| p1 | b | 2 | 30 \[30, 30\] | – | – |)"), std::string::npos) << with[1];
+  EXPECT_NE(with[1].find(R"(| p1 | b | 2 | 30 \[30, 30\] | – | – |)"), std::string::npos)
+      << with[1];
   EXPECT_EQ(with[2],
             "iteration,best_p10,best_median,best_p90,mean_p10,mean_median,mean_p90,alive_p10,"
             "alive_median,alive_p90\r\n1,,,,,,,0,0,0\r\n2,1.2,1.2,1.2,1.32,1.32,1.32,4,4,4\r\n"

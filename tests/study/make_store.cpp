@@ -2,7 +2,7 @@
 // make_store FILE: a store of the runs that JSON on stdin says, for tests of what reads stores:
 // {"study": {…}, "scenarios": [{"name", "of"}…], "pipelines": […], "sessions": n,
 //  "runs": [{"key", "scenario", "pipeline", "repetition", "seed", "outcome", "message", "result",
-//            "values": {…}}…]}
+//            "trace", "values": {…}}…]}
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -32,6 +32,7 @@ StoredRun run_of(const Json& json, std::int64_t session) {
   run.outcome = json.value("outcome", "solved");
   run.message = json.value("message", "");
   run.result = json.value("result", "");
+  run.trace = json.value("trace", "");
   run.session = session;
   if (json.contains("values")) {
     for (const auto& [name, value] : json.at("values").items()) {

@@ -409,6 +409,29 @@ class Variants(Reports):
         self.assert_text_lies_within()
 
 
+class Convergence(Reports):
+    """Runs with traces, of a colony and of a tree."""
+    @classmethod
+    def content(cls):
+        return studies.colonies(20)
+
+    def test_figures(self):
+        figures = {name for name, *_ in self.assert_figures_are_drawn()}
+        self.assertLessEqual({"convergence-ants", "convergence-tree"}, figures)
+        self.assert_text_lies_within()
+        for name, labels in (("ants", 2), ("tree", 1)):
+            self.assertEqual(len(self.js("return [...document.querySelectorAll(arguments[0])]"
+                                         ".filter((text) => text.getAttribute('x') === '6')",
+                                         f"#convergence-{name} text.ink")), labels)
+        self.assertTrue(self.js("return document.querySelector('nav a[href=\"#convergence\"]')"
+                                ".textContent === 'Convergence'"))
+        self.assertIn("ants", self.text("#table-convergence"))
+        self.picture("convergence")
+        self.browser.size(360, 800)
+        self.open()
+        self.assert_text_lies_within()
+
+
 class Large(Reports):
     """10,000 runs, with as many values each as studies have."""
     @classmethod

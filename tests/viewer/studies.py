@@ -3,6 +3,7 @@
 made up, many of them and with hostile names."""
 import hashlib
 import json
+import math
 import os
 import random
 import subprocess
@@ -175,3 +176,27 @@ def renamed(content, entry, names):
     content["pipelines"] = [{"name": name, "of": entry, "file": "p.yaml"} for name in names]
     content["study"]["text"] = content["study"]["text"].split("claims:")[0]
     return content
+
+
+def colonies(repetitions):
+    """Runs of a colony of 100 in one scenario, beside those of a tree, with traces."""
+    draw = random.Random(3)
+    runs = []
+    for repetition in range(repetitions):
+        for pipeline in ("ants", "tree"):
+            best, lines = math.inf, []
+            for number in range(1, 51) if pipeline == "ants" else (40, 90, 400, 2500):
+                shrink = 5 * number if pipeline == "ants" else number / 10
+                mean = 1700 - shrink + 100 * draw.random()
+                best = min(best, mean - 100 * draw.random())
+                lines.append({"step": "plan", "kind": "iteration", "node": number, "parent": -1,
+                              "at": [0, 0, 0], "value": best})
+                if pipeline == "ants":
+                    alive = min(100, 2 * number + draw.randint(0, 9)) if number > 3 else 0
+                    lines[-1].update({"mean": mean if alive else None, "alive": alive})
+                    best = best if alive else math.inf
+                    lines[-1]["value"] = best if alive else None
+            trace = "\n".join(json.dumps(line) for line in [{"altiplan_trace": 1}, *lines]) + "\n"
+            runs.append(run_of("pocket", pipeline, repetition, outcome="solved", trace=trace,
+                               values={"solved": 1.0, "length_m": best}))
+    return content_of("Colonies", ["ants", "tree"], ["pocket"], repetitions, runs)

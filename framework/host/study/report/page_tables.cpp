@@ -12,6 +12,9 @@ Cell number(double value, int digits = 4) { return {readable(value, digits), val
 Cell count(std::size_t value) { return {grouped(value), double(value)}; }
 /// "12 [9, 20]".
 Cell spread(const Spread& over) {
+  if (!std::isfinite(over.low)) {
+    return "–";
+  }
   return {readable(over.median) + " [" + readable(over.low) + ", " + readable(over.high) + "]",
           over.median};
 }

@@ -2,6 +2,7 @@
 import {kKindNames, kKinds} from '../colors.js';
 import {checkbox, element, swatch} from '../dom.js';
 import {iteration_at, iterations_around, playback_of, thinning, told_of} from '../playback.js';
+import {number} from '../units.js';
 import {build_convergence} from './convergence.js';
 
 const kSeconds = 12;
@@ -86,7 +87,8 @@ export function build_search(world, store) {
     const step = searched > 0 ? `, step ${trace().steps[search.step[searched - 1]]}` : '';
     const now = iteration_at(search, searched);
     const iteration = now ? told_of(now, iterations_around(search, searched).at(-1)) + ' ' : '';
-    told.textContent = `${iteration}${searched} of ${search.count}${step}. ${thinning(trace())}`;
+    told.textContent = `${iteration}${number(searched)} of ${number(search.count)}${step}. ` +
+      thinning(trace());
   };
   store.on(['search', 'searched'], reflect);
   // A trace takes time to decode: its figure is made when the pane is looked at.
