@@ -134,8 +134,10 @@ void hold_laws(const std::string& name, bool never_longer, std::uint64_t from, s
 TEST(SmootherOracle, PruneKeepsItsLaws) { hold_laws("prune", true, 0, 150); }
 TEST(SmootherOracle, BSplineKeepsItsLaws) { hold_laws("bspline", false, 0, 150); }
 TEST(SmootherOracle, ShortcutKeepsItsLaws) { hold_laws("shortcut", true, 0, 150); }
+TEST(SmootherOracle, TrimKeepsItsLaws) { hold_laws("trim", true, 0, 150); }
 TEST(NightlySmootherOracle, PruneKeepsItsLaws) { hold_laws("prune", true, 1000, 5000); }
 TEST(NightlySmootherOracle, BSplineKeepsItsLaws) { hold_laws("bspline", false, 1000, 5000); }
 TEST(NightlySmootherOracle, ShortcutKeepsItsLaws) { hold_laws("shortcut", true, 1000, 5000); }
+TEST(NightlySmootherOracle, TrimKeepsItsLaws) { hold_laws("trim", true, 1000, 5000); }
 }  // namespace
 }  // namespace altiplan::reference

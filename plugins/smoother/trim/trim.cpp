@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trimming of a route in rounds of shorter and shorter strides.
+//
+// Citation: Li Rongsheng et al.: Path planning for flight vehicles based on improved ACO (paper
+//   004), section 2.3 and eq. (11).
+// Guarantees: every new leg, and the turn at its end, keeps every rule of legs; the route never
+//   gets longer, no waypoint moves, and for no rule does the worst excess grow. Not the fewest
+//   waypoints, nor the shortest choice of them (see smoother prune).
+// Complexity: O(n) leg checks a round for n waypoints; 5 rounds by default.
+// Deviations: legs are judged exactly, with the turns at both ends of a stride (the paper looks at
+//   obstacles alone). The nodes are the route's waypoints, however far apart.
+// Symbols: l_c(v) the stride of round v, of kit/trimming.hpp.
+#include "altiplan/kit/trimming.hpp"
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/corners.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
+
+namespace {
+using namespace altiplan;
+
+/// The rounds over one route.
+class Trimming {
+ public:
+  Trimming(const Route& route, const Request& request)
+      : nodes_(without_repeats(route)), request_(request), watch_(request.budget) {}
+
+  void round(std::size_t stride) {
+    kit::trim(nodes_, stride, [&](std::size_t from, std::size_t to) {
+      budget_hit_ = budget_hit_ || watch_.spent(std::uint64_t(tried_));
+      if (budget_hit_) {
+        return false;
+      }
+      ++tried_;
+      return keeps_rules(from, to);
+    });
+  }
+
+  const Route& nodes() const { return nodes_; }
+  std::int64_t tried() const { return tried_; }
+  bool budget_hit() const { return budget_hit_; }
+
+ private:
+  /// The stride from one node to another, and the leg behind it, which it turns into.
+  bool keeps_rules(std::size_t from, std::size_t to) const {
+    const auto before = from == 0 ? request_.before_start() : std::optional(nodes_[from - 1]);
+    return leg_ok(before, nodes_[from], nodes_[to], request_) &&
+           (to + 1 == nodes_.size() || leg_ok(nodes_[from], nodes_[to], nodes_[to + 1], request_));
+  }
+
+  Route nodes_;
+  const Request& request_;
+  BudgetWatch watch_;
+  std::int64_t tried_ = 0;
+  bool budget_hit_ = false;
+};
+
+class Trim final : public Smoother {
+ public:
+  explicit Trim(const kit::TrimParams& params) : strides_(params.strides()) {}
+
+ private:
+  PlanResult do_smooth(const Route& route, const Request& request) const override {
+    Trimming trimming(route, request);
+    for (const std::size_t stride : strides_) {
+      trimming.round(stride);
+    }
+    PlanResult result;
+    result.status = Status::solved;
+    result.budget_hit = trimming.budget_hit();
+    // Rules of whole routes have the last word.
+    const bool stands = kit::Excess(check(trimming.nodes(), request).violations)
+                            .within(kit::Excess(check(route, request).violations));
+    result.route = stands ? trimming.nodes() : route;
+    result.counters = {{"expanded", trimming.tried()},
+                       {"rounds", std::int64_t(strides_.size())},
+                       {"removed", std::int64_t(route.size() - result.route.size())}};
+    result.message = stands ? summary(result, route.size())
+                            : "the trimmed route would break a rule of whole routes: it stays as "
+                              "it was";
+    return result;
+  }
+
+  std::string summary(const PlanResult& result, std::size_t before) const {
+    std::string said = std::to_string(result.route.size()) + " of " + std::to_string(before) +
+                       " waypoints stay, after strides of";
+    for (std::size_t v = 0; v < strides_.size(); ++v) {
+      said += (v == 0 ? " " : ", ") + std::to_string(strides_[v]);
+    }
+    return said + (result.budget_hit ? "; the budget ended" : "");
+  }
+
+  std::vector<std::size_t> strides_;  // of the rounds
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Smoother, "trim", Trim, kit::TrimParams,
+                "straight strides over waypoints, shorter from round to round")
