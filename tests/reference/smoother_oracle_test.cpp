@@ -135,9 +135,11 @@ TEST(SmootherOracle, PruneKeepsItsLaws) { hold_laws("prune", true, 0, 150); }
 TEST(SmootherOracle, BSplineKeepsItsLaws) { hold_laws("bspline", false, 0, 150); }
 TEST(SmootherOracle, ShortcutKeepsItsLaws) { hold_laws("shortcut", true, 0, 150); }
 TEST(SmootherOracle, TrimKeepsItsLaws) { hold_laws("trim", true, 0, 150); }
+TEST(SmootherOracle, HermiteKeepsItsLaws) { hold_laws("hermite", false, 0, 150); }
 TEST(NightlySmootherOracle, PruneKeepsItsLaws) { hold_laws("prune", true, 1000, 5000); }
 TEST(NightlySmootherOracle, BSplineKeepsItsLaws) { hold_laws("bspline", false, 1000, 5000); }
 TEST(NightlySmootherOracle, ShortcutKeepsItsLaws) { hold_laws("shortcut", true, 1000, 5000); }
 TEST(NightlySmootherOracle, TrimKeepsItsLaws) { hold_laws("trim", true, 1000, 5000); }
+TEST(NightlySmootherOracle, HermiteKeepsItsLaws) { hold_laws("hermite", false, 1000, 5000); }
 }  // namespace
 }  // namespace altiplan::reference
