@@ -142,6 +142,37 @@ TEST(LineOfSight, EveryCellOfALegCounts) {
   }
 }
 
+TEST(LineOfSight, OnALevelItIsTheSame) {
+  SplitMix64 random(15);
+  int free = 0;
+  for (int world = 0; world < 60; ++world) {
+    GridSpec spec;
+    spec.counts = {random.integer(1, 260), random.integer(1, 90), 2};
+    VoxelGrid grid(spec);
+    const auto draw = [&] {
+      const int i = random.integer(0, spec.counts[0] - 1);
+      return Cell{i, random.integer(0, spec.counts[1] - 1), 1};
+    };
+    for (std::size_t n = spec.cell_count() / std::size_t(random.integer(20, 400)); n > 0; --n) {
+      grid.set(draw(), true);
+    }
+    grid.set({0, 0, 0}, true);
+    for (int n = 0; n < 2000; ++n) {
+      const Cell a = draw();
+      Cell b = draw();
+      if (n % 2 == 0) {
+        b[0] = std::clamp(a[0] + random.integer(-9, 9), 0, spec.counts[0] - 1);
+        b[1] = std::clamp(a[1] + random.integer(-9, 9), 0, spec.counts[1] - 1);
+      }
+      const bool seen = line_of_sight(grid, a, b);
+      ASSERT_EQ(level_line_of_sight(grid, a, b), seen);
+      free += seen;
+    }
+  }
+  EXPECT_GT(free, 20000);
+  EXPECT_LT(free, 110000);
+}
+
 TEST(LineOfSight, ThroughFreeBlocksIsTheSame) {
   SplitMix64 random(13);
   int seen = 0;

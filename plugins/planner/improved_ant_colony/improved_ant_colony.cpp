@@ -6,12 +6,12 @@
 // Guarantees: every leg keeps every rule; more budget never gives a longer route; one result for
 //   any number of threads. Neither complete nor optimal.
 // Complexity: O(k) a step for k candidates, whatever has evaporated; O(r^2) a place of pheromone.
-//   32 bytes a cell, and 8 more for the legs that are remembered.
+//   32 bytes a cell, and one for each candidate whose leg is remembered.
 // Deviations: eta_min and eta_max are taken over the candidates that are allowed, not over all of
 //   them (with which most ants die); an ant that sees the goal within its neighbourhood goes there;
-//   free legs are remembered from the first time on; pheromone is laid every l_c along the trimmed
-//   legs (`deposit`: on every cell, or on nodes alone, is worse); `heuristic: geodesic` is ours.
-//   The paper's last part, smoothing, is a step of its own: hermite.
+//   the candidates of a cell are remembered, the nearest to the goal first; pheromone is laid every
+//   l_c along the trimmed legs (`deposit`: on every cell, or on nodes alone, is worse); `heuristic:
+//   geodesic` is ours. The paper's last part, smoothing, is a step of its own: hermite.
 // Symbols: l_c the reach of a step and l_s the spacing of candidates in cells, C the tilt of the
 //   roulette, r and mu radius and decay of the region, tau^equ its pheromone; alpha, beta, rho, Q
 //   as in ant_colony.

@@ -10,7 +10,6 @@
 
 #include "altiplan/kit/bucket_queue.hpp"
 #include "altiplan/kit/colony.hpp"
-#include "altiplan/kit/free_blocks.hpp"
 #include "altiplan/kit/line_of_sight.hpp"
 #include "altiplan/kit/trimming.hpp"
 
@@ -59,7 +58,9 @@ inline std::vector<std::array<int, 2>> ring(int reach, int spacing) {
 class RegionColony final : public kit::Colony {
  public:
   static constexpr std::size_t kMostCandidates = 56;
-  static constexpr std::size_t kBytesPerCell = 4 * sizeof(double) + sizeof(std::uint32_t);
+
+  static constexpr std::size_t kBytesPerCell =
+      sizeof(double) + 16 + 2 * sizeof(std::uint32_t) + kMostCandidates + 1;
 
   /// What an ant sees of a cell.
   struct Place {
@@ -70,11 +71,10 @@ class RegionColony final : public kit::Colony {
   struct Memory {
     kit::Pheromone tau_equ;  ///< of regions, eq. (10): sums of amounts evaporate as these do
     std::vector<Place> places;
-    std::vector<std::uint64_t> free_legs;  ///< by cell: known, and a bit a candidate
+    std::vector<std::uint8_t> candidates;  ///< by cell: one more than their number, and they
     std::vector<float> fresh;              ///< by cell: laid in this iteration
     std::vector<std::uint32_t> laid;       ///< its cells
-    kit::FreeBlocks sight;
-    std::vector<std::uint32_t> weighed;  ///< by cell: in which iteration
+    std::vector<std::uint32_t> weighed;    ///< by cell: in which iteration
     kit::BucketQueue open;
   };
 
@@ -104,49 +104,69 @@ class RegionColony final : public kit::Colony {
     memory.laid.clear();
     memory.weighed.assign(lattice.size(), 0);
     memory.fresh.assign(lattice.size(), 0.0F);
-    memory.sight.prepare(grid_);
     rows_in_reach_ = std::uint32_t(settings.reach) * (columns() + 1);
     measure_distances();
-    memory.free_legs.assign(lattice.size(), 0);
+    if (settings.leg_test == LegTest::remembered) {
+      memory.candidates.assign(lattice.size() * (offsets_.size() + 1), 0);
+    }
   }
 
  private:
-  using Mask = std::uint64_t;  ///< of candidates
-
   const Vec3& edge() const { return lattice_.spec().cell; }
 
   // --- Candidates ------------------------------------------------------------------------------
 
-  /// The candidates that the straight leg is free to.
-  Mask free_legs(std::uint32_t cell) const {
-    constexpr Mask kKnown = Mask{1} << 63;
+  /// The candidates that the straight leg is free to, the nearest to the goal first.
+  struct Candidates {
+    const std::uint8_t* k = nullptr;
+    std::size_t count = 0;
+    std::array<std::uint8_t, kMostCandidates> own;  ///< where they are if not remembered
+  };
+
+  /// Made once for a cell if legs are remembered. While one thread does so for a cell, others make
+  /// the same for themselves.
+  void list_candidates(std::uint32_t cell, Candidates& all) const {
     if (settings_.leg_test != LegTest::remembered) {
-      return test_legs(cell);
+      find_candidates(cell, all);
+      return;
     }
-    // Two threads that ask at once find the same.
-    const std::atomic_ref<Mask> known(memory_.free_legs[cell]);
-    Mask mask = known.load(std::memory_order_relaxed);
-    if (mask == 0) {
-      mask = test_legs(cell) | kKnown;
-      known.store(mask, std::memory_order_relaxed);
+    constexpr std::uint8_t kBeingMade = 255;
+    std::uint8_t* const kept = memory_.candidates.data() + cell * (offsets_.size() + 1);
+    const std::atomic_ref<std::uint8_t> state(kept[0]);
+    std::uint8_t known = state.load(std::memory_order_acquire);
+    if (known != 0 && known != kBeingMade) {
+      all.k = kept + 1;
+      all.count = std::size_t(known) - 1;
+      return;
     }
-    return mask & ~kKnown;
+    find_candidates(cell, all);
+    if (known == 0 && state.compare_exchange_strong(known, kBeingMade, std::memory_order_relaxed)) {
+      std::copy_n(all.own.begin(), all.count, kept + 1);
+      state.store(std::uint8_t(all.count + 1), std::memory_order_release);
+    }
   }
 
-  [[gnu::noinline]] Mask test_legs(std::uint32_t cell) const {
+  [[gnu::noinline]] void find_candidates(std::uint32_t cell, Candidates& all) const {
+    all.k = all.own.data();
+    all.count = 0;
     const Cell here = lattice_.cell(cell);
     const Cell& counts = lattice_.spec().counts;
     const bool guarded = settings_.leg_test == LegTest::always || in_guard_zone(here);
-    Mask mask = 0;
     for (std::size_t k = 0; k < offsets_.size(); ++k) {
       const Cell there = {here[0] + offsets_[k][0], here[1] + offsets_[k][1], 0};
       const bool inside =
           there[0] >= 0 && there[1] >= 0 && there[0] < counts[0] && there[1] < counts[1];
-      if (inside && (!guarded || kit::line_of_sight(*grid_, here, there))) {
-        mask |= Mask{1} << k;
+      if (inside && (!guarded || kit::level_line_of_sight(*grid_, here, there))) {
+        all.own[all.count++] = std::uint8_t(k);
       }
     }
-    return mask;
+    const auto distance = [&](std::uint8_t k) {
+      return memory_.places[cell + strides_[k]].distance;
+    };
+    std::sort(all.own.begin(), all.own.begin() + std::ptrdiff_t(all.count),
+              [&](std::uint8_t k, std::uint8_t other) {
+                return distance(k) != distance(other) ? distance(k) < distance(other) : k < other;
+              });
   }
 
   /// Whether a blocked cell is so near that a leg from here may meet it: the blocked cells, dilated
@@ -228,51 +248,51 @@ class RegionColony final : public kit::Colony {
     follow(walker, [&](std::uint32_t at) { return choose(walker, at); });
   }
 
-  /// The biased roulette. What decides between candidates is taken without branches: which of them
-  /// enter is as good as random, and each wrong guess of the processor costs as much as a few of
-  /// them.
+  /// The biased roulette: those of the allowed candidates enter whose distance is within the limit,
+  /// which are the first of them.
   Step choose(Walker& walker, std::uint32_t at) const {
     if (const double metres = metres_to_goal(walker, at); metres > 0) {
       return {goal_, metres};
     }
-    std::array<std::uint8_t, kMostCandidates> candidate;
-    std::array<float, kMostCandidates> distance;
-    std::size_t count = 0;
-    float nearest = std::numeric_limits<float>::infinity();
-    float farthest = 0;
-    for (Mask mask = free_legs(at); mask != 0; mask &= mask - 1) {
-      const auto k = std::size_t(std::countr_zero(mask));
-      const std::uint32_t cell = at + strides_[k];
-      if (walker.visited.test(cell) || (!cells_decide() && !keeps_rules(walker, cell))) {
-        continue;
-      }
-      const float there = memory_.places[cell].distance;
-      candidate[count] = std::uint8_t(k);
-      distance[count++] = there;
-      nearest = std::min(nearest, there);
-      farthest = std::max(farthest, there);
+    const auto is_allowed = [&](std::uint32_t cell) {
+      return !walker.visited.test(cell) && (cells_decide() || keeps_rules(walker, cell));
+    };
+    Candidates all;
+    list_candidates(at, all);
+    while (all.count > 0 && !is_allowed(at + strides_[all.k[all.count - 1]])) {
+      --all.count;
     }
-    if (nearest == std::numeric_limits<float>::infinity()) {
-      return {};  // no candidate, or none from which the goal can be reached
+    std::size_t nearest = 0;
+    while (nearest < all.count && !is_allowed(at + strides_[all.k[nearest]])) {
+      ++nearest;
     }
-    const float limit = distance_limit(nearest, farthest);
+    if (nearest == all.count) {
+      return {};
+    }
+    const auto place = [&](std::size_t n) -> const Place& {
+      return memory_.places[at + strides_[all.k[n]]];
+    };
+    const float limit = distance_limit(place(nearest).distance, place(all.count - 1).distance);
+    std::array<std::uint8_t, kMostCandidates> entered;
     std::array<double, kMostCandidates> up_to;
-    std::size_t entered = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-      candidate[entered] = candidate[n];
-      entered += distance[n] <= limit ? 1 : 0;
-    }
+    std::size_t count = 0;
     double sum = 0;
-    for (std::size_t n = 0; n < entered; ++n) {
-      sum += memory_.places[at + strides_[candidate[n]]].weight;
-      up_to[n] = sum;
+    for (std::size_t n = nearest; n < all.count && place(n).distance <= limit; ++n) {
+      if (n == nearest || is_allowed(at + strides_[all.k[n]])) {
+        sum += place(n).weight;
+        entered[count] = all.k[n];
+        up_to[count++] = sum;
+      }
+    }
+    if (sum == 0) {
+      return {};  // the goal can be reached from none of them
     }
     const double drawn = walker.random.uniform() * sum;
     std::size_t chosen = 0;
     while (up_to[chosen] <= drawn) {
       ++chosen;
     }
-    const std::size_t k = candidate[chosen];
+    const std::size_t k = entered[chosen];
     return {at + strides_[k], metres_[k]};
   }
 
@@ -297,8 +317,19 @@ class RegionColony final : public kit::Colony {
     return (position(goal_) - position(at)).norm();
   }
 
-  bool sees(std::uint32_t a, std::uint32_t b) const {
-    return memory_.sight.line_of_sight(lattice_.cell(a), lattice_.cell(b));
+  /// Whether the straight leg between two cells is free. Most that trimming asks for are blocked
+  /// along a good part of them, and seven cells tell so.
+  bool sees(std::uint32_t from, std::uint32_t to) const {
+    const Cell a = lattice_.cell(from);
+    const Cell b = lattice_.cell(to);
+    for (const int eighths : {4, 2, 6, 1, 3, 5, 7}) {
+      const int x = (8 * a[0] + eighths * (b[0] - a[0]) + 4) / 8;
+      const int y = (8 * a[1] + eighths * (b[1] - a[1]) + 4) / 8;
+      if (grid_->blocked({x, y, 0})) {
+        return false;
+      }
+    }
+    return kit::level_line_of_sight(*grid_, a, b);
   }
 
   /// Eq. (11), in rounds.
