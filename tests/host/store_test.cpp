@@ -64,7 +64,9 @@ TEST_F(StoreTest, GivesBackWhatWasPutIn) {
     Store store(file_, StoreMode::write);
     fill(store);
     store.add({made_run("k1", "b[w=1]", 0), made_run("k2", "a", 1)});
-    store.add({made_run("k2", "a", 1), made_run("k3", "a", 0)});  // k2 is there already
+    StoredRun traced = made_run("k3", "a", 0);
+    traced.trace = "{\"altiplan_trace\": 1}\n";
+    store.add({made_run("k2", "a", 1), traced});  // k2 is there already
   }
   const Store store(file_, StoreMode::read);
   EXPECT_EQ(store.study().at("path"), "study.yaml");
@@ -85,6 +87,8 @@ TEST_F(StoreTest, GivesBackWhatWasPutIn) {
   }
   EXPECT_FALSE(store.run(std::string_view("k4")));
   EXPECT_FALSE(store.run(99));
+  EXPECT_EQ(store.trace(runs[0].id), "{\"altiplan_trace\": 1}\n");
+  EXPECT_EQ(store.trace(runs[2].id) + store.trace(99), "");
 }
 
 TEST_F(StoreTest, ABatchIsAllThereOrNot) {

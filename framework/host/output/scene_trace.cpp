@@ -91,6 +91,9 @@ class Reader {
       event.alive = json.value("alive", -1.0F);
       event.mean = number_or_none(json.value("mean", Json()));
       is_population_ = event.alive >= 0;
+      if (is_population_) {
+        nodes_.clear();  // its routes are over
+      }
       event.parent = event.at;
       iterations_.add(event, false);
     } else {
