@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "colony.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
+#include "altiplan/route.hpp"
+#include "host/config/config.hpp"
+#include "host/config/yaml.hpp"
+#include "host/run/mission.hpp"
+
+namespace altiplan::bench {
+namespace {
+
+void set(Value& map, const std::string& key, const std::string& yaml) {
+  const Value value = host::parse_override(yaml, key);
+  if (Value* old = map.find(key)) {
+    *old = value;
+  } else {
+    map.entries.push_back({key, {}, value});
+  }
+}
+
+std::shared_ptr<const Planner> make(host::Registry& registry, const Setting& setting,
+                                    int iterations) {
+  const std::string& text = setting.planner;
+  const std::size_t space = std::min(text.find(' '), text.size());
+  const std::string yaml = text.substr(space);
+  Value parameters = host::parse_yaml(yaml.empty() ? "{}" : yaml, text);
+  set(parameters, "iterations", std::to_string(iterations));
+  if (setting.cell_m > 0) {
+    const std::string edge = std::to_string(setting.cell_m);
+    set(parameters, "cell_m", "[" + edge + ", " + edge + ", " + edge + "]");
+  }
+  return host::plugin(registry, "planner", text.substr(0, space)).planner(&parameters);
+}
+
+double counted(const PlanResult& result, const std::string& what, const std::string& planner) {
+  for (const Counter& counter : result.counters) {
+    if (counter.name == what) {
+      return double(counter.value);
+    }
+  }
+  throw Error(planner + ": has no counter '" + what + "'");
+}
+}  // namespace
+
+Request problem_of(const std::filesystem::path& scenario) {
+  return host::build_mission(host::load_scenario(scenario, {}), 1).request;
+}
+
+Colony::Colony(host::Registry& registry, const Setting& setting)
+    : name_(setting.planner),
+      all_(make(registry, setting, setting.iterations)),
+      single_(make(registry, setting, 1)) {}
+
+Run Colony::run(const Planner& planner, const Request& request) const {
+  const Time began = Time::now();
+  const PlanResult result = planner.plan(request);
+  Run run;
+  run.time = Time::now().since(began);
+  run.steps = counted(result, "expanded", name_);
+  run.alive = counted(result, "alive", name_);
+  run.length = kInfinity;
+  if (result.status == Status::solved) {
+    if (!check(result.route, request).ok()) {
+      throw Error(name_ + ": a route that the judge refuses");
+    }
+    run.length = length(result.route);
+  }
+  return run;
+}
+
+Time Colony::at_once(const Request& request, int plans) const {
+  const Time began = Time::now();
+  {
+    std::vector<std::jthread> threads;
+    for (int n = 0; n < plans; ++n) {
+      threads.emplace_back([&] { all_->plan(request); });
+    }
+  }
+  return Time::now().since(began);
+}
+
+Pass plan_once(host::Registry& registry, const Setting& setting, Request request, int seed) {
+  const Colony colony(registry, setting);
+  request.random = RandomStream(std::uint64_t(seed));
+  Pass pass;
+  pass.first = colony.all(request);
+  pass.again = colony.all(request);
+  colony.single(request);  // it has memory of its own, which is now there
+  pass.single = colony.single(request);
+  return pass;
+}
+}  // namespace altiplan::bench

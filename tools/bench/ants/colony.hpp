@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "altiplan/planner.hpp"
+#include "clock.hpp"
+#include "host/registry/registry.hpp"
+
+namespace altiplan::bench {
+
+/// The problem of a scenario, its world made anew: no grid of it is there yet.
+Request problem_of(const std::filesystem::path& scenario);
+
+/// How a colony is asked to plan.
+struct Setting {
+  std::string planner;  ///< the plugin's name and, after a space, its parameters in YAML
+  double cell_m = 0;    ///< 0: as the parameters say
+  int iterations = 50;
+};
+
+struct Run {
+  Time time;
+  double steps = 0;   ///< of all ants
+  double alive = 0;   ///< ants of the last iteration that arrived
+  double length = 0;  ///< infinite without a route
+};
+
+/// A planner with all iterations of its setting, and with a single one: what the two have in common
+/// is the set-up, and what the first takes more is the other iterations.
+class Colony {
+ public:
+  Colony(host::Registry& registry, const Setting& setting);
+
+  /// Throws Error where the judge refuses the route, or where the planner is no colony.
+  Run all(const Request& request) const { return run(*all_, request); }
+  Run single(const Request& request) const { return run(*single_, request); }
+  /// That many plans at once, each on a thread of its own.
+  Time at_once(const Request& request, int plans) const;
+
+ private:
+  Run run(const Planner& planner, const Request& request) const;
+
+  std::string name_;
+  std::shared_ptr<const Planner> all_;
+  std::shared_ptr<const Planner> single_;
+};
+
+/// What one seed took, on one thread.
+struct Pass {
+  Run first;   ///< by a new planner in a new world
+  Run again;   ///< by the same once more
+  Run single;  ///< a single iteration
+
+  double iterations_ms(double Time::*clock) const { return again.time.*clock - single.time.*clock; }
+  double step_ns() const {
+    return 1e6 * iterations_ms(&Time::processor_ms) / (again.steps - single.steps);
+  }
+  /// What a plan takes beside its steps.
+  double set_up_ms(const Run& run) const {
+    return run.time.processor_ms - 1e-6 * step_ns() * run.steps;
+  }
+};
+/// The problem is to be a new one.
+Pass plan_once(host::Registry& registry, const Setting& setting, Request request, int seed);
+}  // namespace altiplan::bench
