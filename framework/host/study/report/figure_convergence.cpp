@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "host/study/report/figures.hpp"
@@ -127,7 +128,11 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
   draw_bottom(canvas, along, kTop, bottom, "Iteration, number");
   if (is_population) {
     draw(canvas, band_of(convergence, convergence.mean), along, up, 1);
-    const Axis alive = axis_up({&convergence.alive}, kAliveBottom, kAliveTop);
+    double most = 1;
+    for (const Spread& spread : convergence.alive) {
+      most = std::max(most, spread.high);
+    }
+    const Axis alive(0, 1.04 * most, false, kAliveBottom, kAliveTop);
     draw_left(canvas, alive, kLeft, kRight, kAliveTop, "Found a route in the iteration, number");
     draw(canvas, band_of(convergence, convergence.alive), along, alive, 2);
   }

@@ -68,7 +68,7 @@ Table convergence_table(const Content& content) {
   Table table{"convergence",
               "The first iteration with a best length within 1 % of the last best, and with a mean "
               "within 3 % of it; how many of a population found a route in the last iteration: "
-              "median [10th, 90th percentile] over runs",
+              "median [10th, 90th percentile] over runs, a dash where it was not reached",
               {{"pipeline"},
                {"step"},
                {"runs", true},
