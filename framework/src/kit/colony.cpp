@@ -77,18 +77,6 @@ void Pheromone::rescale(double factor) {
   }
 }
 
-std::optional<PlanResult> Colony::refused(const std::string& planner, const Lattice& lattice) {
-  const int levels = lattice.spec().counts[2];
-  if (levels == 1) {
-    return std::nullopt;
-  }
-  PlanResult result;
-  result.status = Status::invalid_problem;
-  result.message = planner + " searches one level of cells, this lattice has " +
-                   std::to_string(levels) + " (no level flight is asked for): use astar";
-  return result;
-}
-
 Colony::Colony(const Request& request, const ColonyParams& params, const Lattice& lattice)
     : request_(request),
       params_(params),
@@ -382,5 +370,28 @@ std::string Colony::reason() const {
     }
   }
   return text;
+}
+
+PlanResult ColonyPlanner::do_plan(const Request& request) const {
+  const Lattice lattice(request, params_.cell_m, Neighbourhood::all,
+                        {params_.max_bytes(), bytes_per_cell_});
+  if (auto over = beyond_budget(lattice, bytes_per_cell_, request.budget)) {
+    return *std::move(over);
+  }
+  if (const int levels = lattice.spec().counts[2]; levels > 1) {
+    PlanResult result;
+    result.status = Status::invalid_problem;
+    result.message = std::string(name_) + " searches one level of cells, this lattice has " +
+                     std::to_string(levels) + " (no level flight is asked for): use astar";
+    return result;
+  }
+  return search(request, lattice);
+}
+
+Traits ColonyPlanner::do_traits() const {
+  Traits traits;
+  traits.anytime = true;
+  traits.space = false;
+  return traits;
 }
 }  // namespace altiplan::kit

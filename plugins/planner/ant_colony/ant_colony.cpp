@@ -38,28 +38,15 @@ struct Params : kit::ColonyParams {
   }
 };
 
-class AntColony final : public Planner {
+class AntColony final : public kit::ColonyPlanner {
  public:
-  explicit AntColony(const Params& params) : params_(params) {}
+  explicit AntColony(const Params& params)
+      : ColonyPlanner("ant_colony", params_, LegColony::kBytesPerCell), params_(params) {}
 
  private:
-  PlanResult do_plan(const Request& request) const override {
-    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
-                               {params_.max_bytes(), LegColony::kBytesPerCell});
-    if (auto over = kit::beyond_budget(lattice, LegColony::kBytesPerCell, request.budget)) {
-      return *std::move(over);
-    }
-    if (auto refused = kit::Colony::refused("ant_colony", lattice)) {
-      return *std::move(refused);
-    }
+  PlanResult search(const Request& request, const kit::Lattice& lattice) const override {
     const auto memory = memory_.take();
     return LegColony(request, params_, params_.heuristic, lattice, *memory).run();
-  }
-  Traits do_traits() const override {
-    Traits traits;
-    traits.anytime = true;
-    traits.space = false;
-    return traits;
   }
 
   Params params_;

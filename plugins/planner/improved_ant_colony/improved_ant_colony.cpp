@@ -80,20 +80,14 @@ struct Params : kit::ColonyParams {
   }
 };
 
-class ImprovedAntColony final : public Planner {
+class ImprovedAntColony final : public kit::ColonyPlanner {
  public:
-  explicit ImprovedAntColony(const Params& params) : params_(params) {}
+  explicit ImprovedAntColony(const Params& params)
+      : ColonyPlanner("improved_ant_colony", params_, RegionColony::kBytesPerCell),
+        params_(params) {}
 
  private:
-  PlanResult do_plan(const Request& request) const override {
-    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
-                               {params_.max_bytes(), RegionColony::kBytesPerCell});
-    if (auto over = kit::beyond_budget(lattice, RegionColony::kBytesPerCell, request.budget)) {
-      return *std::move(over);
-    }
-    if (auto refused = kit::Colony::refused("improved_ant_colony", lattice)) {
-      return *std::move(refused);
-    }
+  PlanResult search(const Request& request, const kit::Lattice& lattice) const override {
     Settings settings = params_.settings;
     if (params_.least_steps) {
       settings.reach = reach_for(*params_.least_steps, request, lattice);
@@ -113,13 +107,6 @@ class ImprovedAntColony final : public Planner {
                                               "candidates: choose more steps or wider spacing");
     }
     return reach;
-  }
-
-  Traits do_traits() const override {
-    Traits traits;
-    traits.anytime = true;
-    traits.space = false;
-    return traits;
   }
 
   Params params_;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "altiplan/kit/bucket_queue.hpp"
@@ -150,13 +151,11 @@ class RegionColony final : public kit::Colony {
     all.k = all.own.data();
     all.count = 0;
     const Cell here = lattice_.cell(cell);
-    const Cell& counts = lattice_.spec().counts;
     const bool guarded = settings_.leg_test == LegTest::always || in_guard_zone(here);
     for (std::size_t k = 0; k < offsets_.size(); ++k) {
       const Cell there = {here[0] + offsets_[k][0], here[1] + offsets_[k][1], 0};
-      const bool inside =
-          there[0] >= 0 && there[1] >= 0 && there[0] < counts[0] && there[1] < counts[1];
-      if (inside && (!guarded || kit::level_line_of_sight(*grid_, here, there))) {
+      if (lattice_.spec().holds(there) &&
+          (!guarded || kit::level_line_of_sight(*grid_, here, there))) {
         all.own[all.count++] = std::uint8_t(k);
       }
     }
@@ -208,35 +207,49 @@ class RegionColony final : public kit::Colony {
     }
   }
 
-  /// Lengths of the shortest ways over eight neighbours, from the goal on. E. W. Dijkstra, 1959.
+  /// Lengths of the shortest ways over eight neighbours and a knight's moves, from the goal on. E.
+  /// W. Dijkstra, 1959. Without the knight's they are up to 8 % too long, enough to send all ants
+  /// around the wrong side of a zone; with them 3 %.
   void measure_over_cells() {
+    constexpr float kUnknown = std::numeric_limits<float>::infinity();
     for (Place& place : memory_.places) {
-      place.distance = std::numeric_limits<float>::infinity();
+      place.distance = kUnknown;
     }
     if (goal_ == kNone) {
       return;
     }
-    // Ways are whole numbers of a length of which the longest have some 4e9.
+    struct Move {
+      int dx;
+      int dy;
+      std::uint32_t length;
+    };
+    // Lengths are whole numbers of a unit; the longest way has some 4e9 of them.
     const double unit = 1.5 * (edge().x() + edge().y()) * double(lattice_.size()) / 4e9;
+    std::vector<Move> moves;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (std::gcd(dx, dy) == 1) {
+          const double metres = std::hypot(dx * edge().x(), dy * edge().y());
+          moves.push_back({dx, dy, std::uint32_t(std::lround(metres / unit))});
+        }
+      }
+    }
     memory_.open.clear();
     memory_.open.push(0, goal_, 0);
     while (!memory_.open.empty()) {
       const kit::BucketQueue::Entry nearest = memory_.open.pop();
       float& distance = memory_.places[nearest.node].distance;
-      if (distance < std::numeric_limits<float>::infinity()) {
+      if (distance != kUnknown) {
         continue;
       }
       distance = float(nearest.key * unit);
       const Cell here = lattice_.cell(nearest.node);
-      kit::DirectionMask open =
-          lattice_.steps() & lattice_.inside(here) &
-          kit::free_steps(kit::blocked_around(*grid_, here), kit::CornerRule::free_box);
-      for (; open != 0; open &= open - 1) {
-        const int d = std::countr_zero(open);
-        const auto there = std::uint32_t(nearest.node + lattice_.stride(d));
-        const auto metres = std::uint32_t(std::lround(lattice_.step_length(d) / unit));
-        if (memory_.places[there].distance == std::numeric_limits<float>::infinity()) {
-          memory_.open.push(nearest.key + metres, there, 0);
+      for (const Move& move : moves) {
+        const Cell there = {here[0] + move.dx, here[1] + move.dy, 0};
+        if (lattice_.spec().holds(there) &&
+            memory_.places[lattice_.index(there)].distance == kUnknown &&
+            kit::level_line_of_sight(*grid_, here, there)) {
+          memory_.open.push(nearest.key + move.length, lattice_.index(there), 0);
         }
       }
     }

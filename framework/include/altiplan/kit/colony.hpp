@@ -14,7 +14,7 @@
 #include "altiplan/kit/lattice.hpp"
 #include "altiplan/kit/move_rules.hpp"
 #include "altiplan/params.hpp"
-#include "altiplan/plan_result.hpp"
+#include "altiplan/planner.hpp"
 
 /// \file What ant colonies on the cells of a level have in common. M. Dorigo, V. Maniezzo, A.
 /// Colorni: Ant System: Optimization by a Colony of Cooperating Agents. IEEE Transactions on
@@ -140,13 +140,11 @@ class ALTIPLAN_API Colony {
   virtual ~Colony();
   PlanResult run();
 
-  /// The result for a problem that is not one of a level; nothing where it is.
-  static std::optional<PlanResult> refused(const std::string& planner, const Lattice& lattice);
-
  protected:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  struct Ant {
+  // Each on lines of the cache of its own: threads write to them at every step.
+  struct alignas(64) Ant {
     enum class End { arrived, stuck, too_long, stopped };
     std::vector<std::uint32_t> way;  ///< cells, from the start's on
     double length = 0;               ///< metres of the route, ends included
@@ -154,7 +152,7 @@ class ALTIPLAN_API Colony {
     std::uint64_t steps = 0;
   };
   /// What one thread has to itself.
-  struct Walker {
+  struct alignas(64) Walker {
     Walker(const Request& request, const Lattice& lattice)
         : rules(request, lattice, MoveCheck::cells, CornerRule::free_box), watch(request.budget) {}
     Ant* ant = nullptr;
@@ -275,4 +273,22 @@ void Colony::follow(Walker& walker, const Choose& choose) const {
     walker.visited.clear(cell);
   }
 }
+
+/// What a planner by a colony does beside it.
+class ALTIPLAN_API ColonyPlanner : public Planner {
+ protected:
+  /// `params` must outlive the planner; `bytes_per_cell` is what its colony keeps.
+  ColonyPlanner(const char* name, const ColonyParams& params, std::size_t bytes_per_cell)
+      : name_(name), params_(params), bytes_per_cell_(bytes_per_cell) {}
+
+ private:
+  /// On a lattice of one level.
+  virtual PlanResult search(const Request& request, const Lattice& lattice) const = 0;
+  PlanResult do_plan(const Request& request) const final;
+  Traits do_traits() const final;
+
+  const char* name_;
+  const ColonyParams& params_;
+  std::size_t bytes_per_cell_;
+};
 }  // namespace altiplan::kit
