@@ -191,7 +191,7 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
     walker.random = request_.random.sub("ant", iteration * ants_.size() + n);
     walk(walker);
     if (walker.ant->end == Ant::End::arrived) {
-      improve(walker);
+      bring_home(walker);
     } else if (walker.ant->end == Ant::End::stopped && walker.ant->steps < most_steps_) {
       cancelled_ = cancelled_ || walker.watch.cancelled();
       stopped_ = true;
@@ -262,8 +262,6 @@ void Colony::lay_all() {
   }
   settle();
 }
-
-void Colony::improve(Walker&) const {}
 
 std::optional<Vec3> Colony::before(const Ant& ant, std::size_t place) const {
   if (place > 0) {

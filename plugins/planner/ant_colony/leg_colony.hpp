@@ -164,13 +164,20 @@ class LegColony final : public kit::Colony {
 
   void evaporate() override { memory_.tau.evaporate(); }
 
-  void lay(const Ant& ant, double amount) override {
+  void bring_home(Walker& walker) const override {
+    Ant& ant = *walker.ant;
+    ant.places.clear();
     for (std::size_t n = 1; n < ant.way.size(); ++n) {
-      const Direction k = direction_to(ant.way[n - 1], ant.way[n]);
-      const std::size_t one = leg(ant.way[n - 1], k);
-      memory_.tau.lay(one, amount);
-      memory_.laid.push_back(std::uint32_t(one));
+      ant.places.push_back(
+          std::uint32_t(leg(ant.way[n - 1], direction_to(ant.way[n - 1], ant.way[n]))));
     }
+  }
+
+  void lay(const Ant& ant, double amount) override {
+    for (const std::uint32_t one : ant.places) {
+      memory_.tau.lay(one, amount);
+    }
+    memory_.laid.insert(memory_.laid.end(), ant.places.begin(), ant.places.end());
   }
 
   void settle() override {

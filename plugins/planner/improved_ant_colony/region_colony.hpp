@@ -345,28 +345,31 @@ class RegionColony final : public kit::Colony {
     return kit::level_line_of_sight(*grid_, a, b);
   }
 
-  /// Eq. (11), in rounds.
-  void improve(Walker& walker) const override {
-    if (!settings_.trims) {
-      return;
+  void bring_home(Walker& walker) const override {
+    Ant& ant = *walker.ant;
+    if (settings_.trims) {
+      trim(walker);
+      ant.length = length_of(ant.way);
     }
+    list_places(ant);
+  }
+
+  /// Eq. (11), in rounds.
+  void trim(Walker& walker) const {
     std::vector<std::uint32_t>& way = walker.ant->way;
     for (const std::size_t stride : strides_of_rounds_) {
       kit::trim(way, stride, [&](std::size_t from, std::size_t to) {
         return sees(way[from], way[to]) && (cells_decide() || keeps_rules(walker, from, to));
       });
     }
-    walker.ant->length = length_of(way);
   }
 
-  // --- The pheromone ---------------------------------------------------------------------------
-
-  void evaporate() override { memory_.tau_equ.evaporate(); }
-
-  void lay(const Ant& ant, double amount) override {
+  /// Along the legs, from node to node in equal parts.
+  void list_places(Ant& ant) const {
     const double every = settings_.deposit == Deposit::resampled ? settings_.reach
                          : settings_.deposit == Deposit::cells   ? 1
                                                                  : kInfinity;
+    ant.places.clear();
     for (std::size_t n = 0; n + 1 < ant.way.size(); ++n) {
       const Cell a = lattice_.cell(ant.way[n]);
       const Cell b = lattice_.cell(ant.way[n + 1]);
@@ -375,17 +378,25 @@ class RegionColony final : public kit::Colony {
       const int parts = std::max(1, int(std::ceil(std::max(std::abs(x), std::abs(y)) / every)));
       for (int part = 0; part < parts; ++part) {
         const double share = double(part) / parts;
-        lay(lattice_.index({int(a[0] + share * x + 0.5), int(a[1] + share * y + 0.5), 0}), amount);
+        ant.places.push_back(
+            lattice_.index({int(a[0] + share * x + 0.5), int(a[1] + share * y + 0.5), 0}));
       }
     }
-    lay(ant.way.back(), amount);
+    ant.places.push_back(ant.way.back());
   }
-  void lay(std::uint32_t cell, double amount) {
-    float& there = memory_.fresh[cell];
-    if (there == 0) {
-      memory_.laid.push_back(cell);
+
+  // --- The pheromone ---------------------------------------------------------------------------
+
+  void evaporate() override { memory_.tau_equ.evaporate(); }
+
+  void lay(const Ant& ant, double amount) override {
+    for (const std::uint32_t cell : ant.places) {
+      float& there = memory_.fresh[cell];
+      if (there == 0) {
+        memory_.laid.push_back(cell);
+      }
+      there += float(amount);
     }
-    there += float(amount);
   }
 
   /// Adds what has been laid to the regions, eq. (10), and weighs them anew.

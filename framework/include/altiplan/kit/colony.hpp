@@ -146,8 +146,9 @@ class ALTIPLAN_API Colony {
   // Each on lines of the cache of its own: threads write to them at every step.
   struct alignas(64) Ant {
     enum class End { arrived, stuck, too_long, stopped };
-    std::vector<std::uint32_t> way;  ///< cells, from the start's on
-    double length = 0;               ///< metres of the route, ends included
+    std::vector<std::uint32_t> way;     ///< cells, from the start's on
+    std::vector<std::uint32_t> places;  ///< where pheromone is laid, as `bring_home` finds
+    double length = 0;                  ///< metres of the route, ends included
     End end = End::stopped;
     std::uint64_t steps = 0;
   };
@@ -171,9 +172,10 @@ class ALTIPLAN_API Colony {
 
   /// Sends the walker's ant on its way: calls `follow`.
   virtual void walk(Walker& walker) const = 0;
-  /// May shorten the way of an ant that has arrived; it then sets its length.
-  virtual void improve(Walker& walker) const;
-  /// Lays `amount` on the way of an ant. Pheromone has evaporated before.
+  /// Of an ant that has arrived: lists its places, and may shorten its way before; it then sets its
+  /// length.
+  virtual void bring_home(Walker& walker) const = 0;
+  /// Lays `amount` on each place of an ant. Pheromone has evaporated before.
   virtual void lay(const Ant& ant, double amount) = 0;
   virtual void evaporate() = 0;
   /// All is laid.
