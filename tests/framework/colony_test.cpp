@@ -62,6 +62,38 @@ TEST(Pheromone, KeepsTheRatiosOfAPlainOne) {
   }
 }
 
+TEST(Pheromone, KeepsTheRatiosOfSmallAmounts) {
+  Pheromone pheromone;
+  pheromone.reset(2, 0.6, 1);
+  PlainPheromone plain{{1, 1}, 0.6};
+  for (int iteration = 0; iteration < 700; ++iteration) {
+    pheromone.evaporate();
+    plain.evaporate();
+    for (const std::size_t place : {std::size_t(iteration % 2), std::size_t{1}}) {
+      pheromone.lay(place, 1e-4);
+      plain.lay(place, 1e-4);
+    }
+    pheromone.settle();
+    EXPECT_NEAR(pheromone[1] / pheromone[0] / (plain.tau[1] / plain.tau[0]), 1, 1e-9);
+  }
+}
+
+TEST(Pheromone, TellsWhenAllIsAnother) {
+  Pheromone pheromone;
+  pheromone.reset(2, 1, 2);
+  pheromone.evaporate();
+  pheromone.lay(0, 3);
+  EXPECT_TRUE(pheromone.settle());
+  // Nothing is laid: the places are alike.
+  pheromone.evaporate();
+  EXPECT_TRUE(pheromone.settle());
+  EXPECT_EQ(pheromone[0], pheromone[1]);
+  pheromone.evaporate();
+  pheromone.lay(1, 1e-20);
+  EXPECT_TRUE(pheromone.settle());
+  EXPECT_GT(pheromone[1], 1e10 * pheromone[0]);
+}
+
 TEST(Pheromone, WhereAllEvaporatesOnlyTheNewCounts) {
   Pheromone pheromone;
   pheromone.reset(3, 1, 6);

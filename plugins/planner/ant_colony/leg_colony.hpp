@@ -144,9 +144,14 @@ class LegColony final : public kit::Colony {
     const std::uint32_t reach = columns() + 1;
     return goal_ - at + reach <= 2 * reach ? direction_to(at, goal_) : kNeighbours;
   }
+  /// On levels of one or two columns cells in two directions have one number: one leg is open.
   Direction direction_to(std::uint32_t from, std::uint32_t to) const {
-    const auto found = std::find(strides_.begin(), strides_.end(), std::int32_t(to - from));
-    return Direction(found - strides_.begin());
+    Direction k = 0;
+    while (k < kNeighbours &&
+           (strides_[k] != std::int32_t(to - from) || memory_.eta_beta[leg(from, k)] == 0)) {
+      ++k;
+    }
+    return k;
   }
 
   unsigned refused_by_rules(Walker& walker, std::uint32_t at, unsigned closed) const {

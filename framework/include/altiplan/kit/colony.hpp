@@ -80,13 +80,12 @@ class ALTIPLAN_API Pheromone {
   double operator[](std::size_t place) const { return amounts_[place]; }
 
  private:
-  void rescale(double factor);
-
   std::vector<double> amounts_;
   double remains_ = 1;
   double per_unit_ = 1;
   double largest_ = 1;
   double least_ = 0;
+  bool all_changed_ = false;  ///< since the last time that all was settled
 };
 
 /// A bit for each cell of a level, with room at both ends for the cells around the first and the
