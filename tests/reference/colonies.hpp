@@ -60,6 +60,14 @@ inline void expect_one_result_for_any_threads(const std::string& planner,
       EXPECT_TRUE(equal(one, plan_of(planner, settings, request))) << threads << " " << seed;
     }
   }
+  // Nor does what is said of ants that never arrive depend on them.
+  Request turning = flat_world();
+  turning.limits.max_turn_space = radians(5);
+  turning.start.velocity = {-9, 20, 0};
+  const PlanResult stuck = plan_of(planner, settings, turning);
+  EXPECT_NE(stuck.message.find("turn"), std::string::npos) << stuck.message;
+  turning.threads = 8;
+  EXPECT_TRUE(equal(stuck, plan_of(planner, settings, turning)));
 }
 
 inline void expect_anytime(const std::string& planner, const std::string& settings) {

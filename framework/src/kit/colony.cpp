@@ -198,6 +198,9 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
     }
     walker.random = request_.random.sub("ant", iteration * ants_.size() + n);
     walk(walker);
+    if (iteration == 0 && n == 0) {
+      first_refused_ = walker.rules.refusals();
+    }
     if (walker.ant->end == Ant::End::arrived) {
       bring_home(walker);
     } else if (walker.ant->end == Ant::End::stopped && walker.ant->steps < most_steps_) {
@@ -369,13 +372,8 @@ std::string Colony::reason() const {
   if (!best_.way.empty()) {
     return "a route of " + std::to_string(best_.length) + " m after " + walked + "; " + last;
   }
-  std::string text = "no ant has arrived: " + walked + "; " + last;
-  for (const Walker& walker : walkers_) {
-    if (const std::string refusals = walker.rules.refusals(); !refusals.empty()) {
-      return text + "; refused moves: " + refusals;
-    }
-  }
-  return text;
+  return "no ant has arrived: " + walked + "; " + last +
+         (first_refused_.empty() ? "" : "; refused moves of the first ant: " + first_refused_);
 }
 
 PlanResult ColonyPlanner::do_plan(const Request& request) const {

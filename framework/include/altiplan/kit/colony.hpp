@@ -231,6 +231,8 @@ class ALTIPLAN_API Colony {
   std::atomic<bool> cancelled_{false};
   std::uint64_t most_steps_ = 0;  ///< of an ant of this iteration
   std::uint64_t expanded_ = 0;
+  /// Moves of the first ant that rules have refused: which ants a walker leads is left to chance.
+  std::string first_refused_;
   std::vector<Iteration> past_;
   Ant best_;
   std::size_t alive_ = 0;  ///< of the last iteration
