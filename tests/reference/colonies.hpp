@@ -165,6 +165,9 @@ inline void expect_ends_joined(const std::string& planner, const std::string& se
   request.goal.position = request.start.position + Vec3(1, 1, 0);
   const PlanResult near = plan_of(planner, settings, request);
   EXPECT_EQ(near.route, (Route{request.start.position, request.goal.position}));
+  request.limits.max_route_length = 1;
+  EXPECT_EQ(plan_of(planner, settings, request).status, Status::no_route);
+  request.limits.max_route_length = kInfinity;
   // A goal among closed cells.
   request.goal.position = {200, 200, 50};
   EXPECT_NE(plan_of(planner, settings, request).status, Status::solved);

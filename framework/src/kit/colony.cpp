@@ -141,7 +141,9 @@ std::optional<PlanResult> Colony::without_ants() {
   }
   const Vec3& start = request_.start.position;
   const Vec3& goal = request_.goal.position;
-  const bool straight = leg_ok(request_.before_start(), start, goal, request_);
+  const bool straight =
+      (goal - start).norm() <= request_.limits.max_route_length + kLengthTolerance &&
+      leg_ok(request_.before_start(), start, goal, request_);
   result.status = straight ? Status::solved : Status::no_route;
   result.message = straight ? "start and goal share a cell: the straight leg"
                             : "no route: start and goal share a cell, and the straight leg "
