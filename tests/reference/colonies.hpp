@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -94,6 +96,28 @@ inline void expect_step_budgets_kept(const std::string& planner, const std::stri
     EXPECT_TRUE(result.status == Status::solved ? check(result.route, request).ok()
                                                 : result.status == Status::timed_out);
   }
+}
+
+/// Ants that a budget has no steps left for do not walk.
+inline void expect_no_work_beyond_the_budget(const std::string& planner,
+                                             const std::string& settings) {
+  class Counting final : public Constraint {
+   public:
+    std::atomic<int>& asked;
+    explicit Counting(std::atomic<int>& count) : asked(count) {}
+
+   private:
+    bool do_admits(const Leg&) const override {
+      ++asked;
+      return true;
+    }
+  };
+  std::atomic<int> asked = 0;
+  Request request = flat_world();
+  request.constraints.push_back({"counting", std::make_shared<Counting>(asked)});
+  request.budget.max_iterations = 300;
+  EXPECT_EQ(counter(plan_of(planner, "ants: 20000, " + settings, request), "expanded"), 300);
+  EXPECT_LE(asked, 30'000);
 }
 
 inline void expect_iterations_traced(const std::string& planner, const std::string& settings) {

@@ -176,6 +176,7 @@ PlanResult Colony::run() {
 bool Colony::send_out(std::size_t iteration) {
   most_steps_ = request_.budget.max_iterations - expanded_;
   next_ant_ = 0;
+  walked_ = 0;
   std::vector<std::future<void>> others;
   for (std::size_t n = 1; n < walkers_.size(); ++n) {
     others.push_back(
@@ -191,15 +192,22 @@ bool Colony::send_out(std::size_t iteration) {
 }
 
 void Colony::send_out(Walker& walker, std::size_t iteration) {
-  for (std::size_t n = next_ant_++; n < ants_.size(); n = next_ant_++) {
+  for (;;) {
+    // Asked first: all ants whose steps have been added then come before the next one.
+    const bool is_spent = walked_ >= most_steps_;
+    const std::size_t n = next_ant_++;
+    if (n >= ants_.size()) {
+      return;
+    }
     walker.ant = &ants_[n];
-    if (stopped_) {
+    if (is_spent || stopped_) {
       walker.ant->end = Ant::End::stopped;
       walker.ant->steps = 0;
       continue;
     }
     walker.random = request_.random.sub("ant", iteration * ants_.size() + n);
     walk(walker);
+    walked_ += walker.ant->steps;
     if (iteration == 0 && n == 0) {
       first_refused_ = walker.rules.refusals();
     }
@@ -219,9 +227,10 @@ bool Colony::collect() {
   double sum = 0;
   bool complete = true;
   for (Ant& ant : ants_) {
-    if (ant.steps > request_.budget.max_iterations - expanded_) {
+    const std::uint64_t left = request_.budget.max_iterations - expanded_;
+    if (left == 0 || ant.steps > left) {
       ant.end = Ant::End::stopped;
-      ant.steps = request_.budget.max_iterations - expanded_;
+      ant.steps = left;
     }
     expanded_ += ant.steps;
     complete = complete && ant.end != Ant::End::stopped;

@@ -37,6 +37,10 @@ TEST(AntColony, BudgetsOfStepsAreKeptToTheStep) {
   testing::expect_step_budgets_kept("ant_colony", kCells);
 }
 
+TEST(AntColony, AntsBeyondTheBudgetDoNotWalk) {
+  testing::expect_no_work_beyond_the_budget("ant_colony", "cell_m: [10, 10, 10]");
+}
+
 TEST(AntColony, TheTraceTellsOfEveryIteration) {
   testing::expect_iterations_traced("ant_colony", kCells);
 }

@@ -121,6 +121,10 @@ TEST(ImprovedAntColony, BudgetsOfStepsAreKeptToTheStep) {
   testing::expect_step_budgets_kept(kName, kCells);
 }
 
+TEST(ImprovedAntColony, AntsBeyondTheBudgetDoNotWalk) {
+  testing::expect_no_work_beyond_the_budget(kName, "cell_m: [5, 5, 10], reach_cells: 5");
+}
+
 TEST(ImprovedAntColony, TheTraceTellsOfEveryIteration) {
   testing::expect_iterations_traced(kName, kCells);
 }

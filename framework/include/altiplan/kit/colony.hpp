@@ -227,6 +227,7 @@ class ALTIPLAN_API Colony {
   std::vector<Walker> walkers_;
   std::vector<Ant> ants_;
   std::atomic<std::size_t> next_ant_{0};
+  std::atomic<std::uint64_t> walked_{0};  ///< steps of the ants of this iteration that are back
   std::atomic<bool> stopped_{false};
   std::atomic<bool> cancelled_{false};
   std::uint64_t most_steps_ = 0;  ///< of an ant of this iteration
