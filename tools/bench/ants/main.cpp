@@ -19,7 +19,6 @@ struct Arguments {
   std::vector<std::string> planners;
   std::vector<double> cells{8, 4, 2, 1, 0.5};
   int iterations = 50;
-  int cells_iterations = 10;
   int passes = 5;
 };
 
@@ -150,7 +149,7 @@ void time_all(const Arguments& arguments) {
   std::vector<Setting> by_cells;
   for (const Setting& colony : colonies) {
     for (const double cell_m : arguments.cells) {
-      by_cells.push_back({colony.planner, cell_m, arguments.cells_iterations});
+      by_cells.push_back({colony.planner, cell_m, arguments.iterations});
     }
   }
   time_steps(registry, arguments, colonies);
@@ -173,8 +172,6 @@ int run(int argc, char** argv) {
       ->type_name("TEXT");
   app.add_option("--iterations", arguments.iterations, "of a plan")->check(CLI::Range(2, 100'000));
   app.add_option("--cells", arguments.cells, "edges of a cell to grow by, in metres; 0 for none");
-  app.add_option("--cells-iterations", arguments.cells_iterations, "of a plan there")
-      ->check(CLI::Range(2, 100'000));
   app.add_option("--passes", arguments.passes, "each with its own seed; printed are medians")
       ->check(CLI::Range(1, 1000));
   try {
