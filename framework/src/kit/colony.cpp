@@ -2,7 +2,9 @@
 #include "altiplan/kit/colony.hpp"
 
 #include <algorithm>
-#include <future>
+#include <exception>
+#include <functional>
+#include <thread>
 
 #include "altiplan/check.hpp"
 
@@ -14,6 +16,72 @@ namespace {
 constexpr std::size_t kTracedAnts = 10;
 
 }  // namespace
+
+/// Threads that stay for a plan: an iteration is too short to start new ones for.
+class Colony::Crew {
+ public:
+  explicit Crew(std::size_t size) {
+    failed_.resize(size);
+    for (std::size_t n = 1; n < size; ++n) {
+      others_.emplace_back([this, n] { live(n); });
+    }
+  }
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+  ~Crew() {
+    work_ = nullptr;
+    begin();
+  }
+
+  /// Has each of the crew do its part, this thread as number 0; ends when all have, and throws what
+  /// one of them has thrown.
+  void all_do(const std::function<void(std::size_t)>& work) {
+    work_ = &work;
+    busy_ = others_.size();
+    begin();
+    attempt(0);
+    for (std::size_t busy = busy_; busy > 0; busy = busy_) {
+      busy_.wait(busy);
+    }
+    for (std::exception_ptr& failed : failed_) {
+      if (failed != nullptr) {
+        std::rethrow_exception(std::exchange(failed, nullptr));
+      }
+    }
+  }
+
+ private:
+  void begin() {
+    ++round_;
+    round_.notify_all();
+  }
+  void live(std::size_t n) {
+    for (std::uint32_t done = 0;;) {
+      round_.wait(done);
+      done = round_;
+      if (work_ == nullptr) {
+        return;
+      }
+      attempt(n);
+      if (--busy_ == 0) {
+        busy_.notify_one();
+      }
+    }
+  }
+  void attempt(std::size_t n) {
+    try {
+      (*work_)(n);
+    } catch (...) {
+      failed_[n] = std::current_exception();
+    }
+  }
+
+  const std::function<void(std::size_t)>* work_ = nullptr;
+  std::atomic<std::uint32_t> round_{0};
+  std::atomic<std::size_t> busy_{0};
+  std::vector<std::exception_ptr> failed_;
+  std::vector<std::jthread> others_;  // last: they use the rest
+};
 
 void ColonyParams::describe(Fields& f) {
   f("cell_m", cell_m)
@@ -157,14 +225,15 @@ PlanResult Colony::run() {
     return *std::move(told);
   }
   ants_.resize(std::size_t(params_.ants));
-  const std::size_t crew = std::min(std::size_t(std::max(request_.threads, 1)), ants_.size());
-  walkers_.reserve(crew);
-  for (std::size_t n = 0; n < crew; ++n) {
+  const std::size_t size = std::min(std::size_t(std::max(request_.threads, 1)), ants_.size());
+  walkers_.reserve(size);
+  for (std::size_t n = 0; n < size; ++n) {
     walkers_.emplace_back(request_, lattice_);
     walkers_.back().visited.reset(lattice_.spec().counts[0], lattice_.size());
   }
+  Crew crew(size);
   for (int n = 0; n < params_.iterations; ++n) {
-    if (!send_out(std::size_t(n))) {
+    if (!send_out(crew, std::size_t(n))) {
       break;
     }
     lay_all();
@@ -173,19 +242,11 @@ PlanResult Colony::run() {
 }
 
 /// One iteration; false where a budget has ended it.
-bool Colony::send_out(std::size_t iteration) {
+bool Colony::send_out(Crew& crew, std::size_t iteration) {
   most_steps_ = request_.budget.max_iterations - expanded_;
   next_ant_ = 0;
   walked_ = 0;
-  std::vector<std::future<void>> others;
-  for (std::size_t n = 1; n < walkers_.size(); ++n) {
-    others.push_back(
-        std::async(std::launch::async, [this, n, iteration] { send_out(walkers_[n], iteration); }));
-  }
-  send_out(walkers_.front(), iteration);
-  for (std::future<void>& other : others) {
-    other.get();
-  }
+  crew.all_do([&](std::size_t n) { send_out(walkers_[n], iteration); });
   const bool complete = collect();
   note_iteration();
   return complete;

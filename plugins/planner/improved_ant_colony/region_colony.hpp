@@ -378,8 +378,8 @@ class RegionColony final : public kit::Colony {
       const int parts = std::max(1, int(std::ceil(std::max(std::abs(x), std::abs(y)) / every)));
       for (int part = 0; part < parts; ++part) {
         const double share = double(part) / parts;
-        ant.places.push_back(
-            lattice_.index({int(a[0] + share * x + 0.5), int(a[1] + share * y + 0.5), 0}));
+        const auto round = [](double place) { return int(std::floor(place + 0.5)); };
+        ant.places.push_back(lattice_.index({round(a[0] + share * x), round(a[1] + share * y), 0}));
       }
     }
     ant.places.push_back(ant.way.back());

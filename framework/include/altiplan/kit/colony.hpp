@@ -143,7 +143,7 @@ class ALTIPLAN_API Colony {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   // Each on lines of the cache of its own: threads write to them at every step.
-  struct alignas(64) Ant {
+  struct alignas(128) Ant {
     enum class End { arrived, stuck, too_long, stopped };
     std::vector<std::uint32_t> way;     ///< cells, from the start's on
     std::vector<std::uint32_t> places;  ///< where pheromone is laid, as `bring_home` finds
@@ -152,7 +152,7 @@ class ALTIPLAN_API Colony {
     std::uint64_t steps = 0;
   };
   /// What one thread has to itself.
-  struct alignas(64) Walker {
+  struct alignas(128) Walker {
     Walker(const Request& request, const Lattice& lattice)
         : rules(request, lattice, MoveCheck::cells, CornerRule::free_box), watch(request.budget) {}
     Ant* ant = nullptr;
@@ -209,7 +209,8 @@ class ALTIPLAN_API Colony {
   };
   void join_ends();
   std::optional<PlanResult> without_ants();
-  bool send_out(std::size_t iteration);
+  class Crew;
+  bool send_out(Crew& crew, std::size_t iteration);
   void send_out(Walker& walker, std::size_t iteration);
   bool collect();
   void note_iteration();
