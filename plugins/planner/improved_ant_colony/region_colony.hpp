@@ -207,9 +207,9 @@ class RegionColony final : public kit::Colony {
     }
   }
 
-  /// Lengths of the shortest ways over eight neighbours and a knight's moves, from the goal on. E.
-  /// W. Dijkstra, 1959. Without the knight's they are up to 8 % too long, enough to send all ants
-  /// around the wrong side of a zone; with them 3 %.
+  /// Lengths of the shortest ways from the goal on, E. W. Dijkstra, 1959, by moves of up to three
+  /// cells on each axis: 1.3 % too long at most. By the eight neighbours they are up to 8 % too
+  /// long, enough to send all ants around the wrong side of a zone.
   void measure_over_cells() {
     constexpr float kUnknown = std::numeric_limits<float>::infinity();
     for (Place& place : memory_.places) {
@@ -226,8 +226,9 @@ class RegionColony final : public kit::Colony {
     // Lengths are whole numbers of a unit; the longest way has some 4e9 of them.
     const double unit = 1.5 * (edge().x() + edge().y()) * double(lattice_.size()) / 4e9;
     std::vector<Move> moves;
-    for (int dy = -2; dy <= 2; ++dy) {
-      for (int dx = -2; dx <= 2; ++dx) {
+    constexpr int kMost = 3;
+    for (int dy = -kMost; dy <= kMost; ++dy) {
+      for (int dx = -kMost; dx <= kMost; ++dx) {
         if (std::gcd(dx, dy) == 1) {
           const double metres = std::hypot(dx * edge().x(), dy * edge().y());
           moves.push_back({dx, dy, std::uint32_t(std::lround(metres / unit))});
