@@ -78,6 +78,7 @@ class Draw {
   std::vector<Shape> map() {
     for (int n = 0; n < kMaps; ++n) {
       std::vector<Shape> zones;
+      boxes_.clear();
       if (add(params_.bars_across, &Draw::bar, zones, true) &&
           add(params_.bars - params_.bars_across, &Draw::bar, zones) &&
           add(params_.blocks, &Draw::block, zones) && add(params_.circles, &Draw::circle, zones)) {
@@ -103,6 +104,7 @@ class Draw {
       if (tries == kTries) {
         return false;
       }
+      boxes_.push_back(bounds(zone));
       zones.push_back(std::move(zone));
     }
     return true;
@@ -179,8 +181,8 @@ class Draw {
         return false;
       }
     }
-    for (const Shape& other : others) {
-      if (nearer_than_gap(zone, other)) {
+    for (std::size_t n = 0; n < others.size(); ++n) {
+      if (boxes_come_near(box, boxes_[n]) && nearer_than_gap(zone, others[n])) {
         return false;
       }
     }
@@ -191,6 +193,13 @@ class Draw {
     const Point2& a = params_.clear_of_m[0];
     const Point2& b = params_.clear_of_m[1];
     return leg_distance(zone, {a[0], a[1], 0}, {b[0], b[1], 0}) == 0;
+  }
+
+  /// What tells most zones apart, and costs least.
+  bool boxes_come_near(const Box& a, const Box& b) const {
+    const double gap = params_.gap_m + kLengthTolerance;
+    return a.min.x() <= b.max.x() + gap && b.min.x() <= a.max.x() + gap &&
+           a.min.y() <= b.max.y() + gap && b.min.y() <= a.max.y() + gap;
   }
 
   /// Circles come last: a polygon has polygons alone before it. Each one's edges are asked of the
@@ -216,6 +225,7 @@ class Draw {
 
   const Params& params_;
   SplitMix64 random_;
+  std::vector<Box> boxes_;  ///< of the zones so far
 };
 
 std::vector<Shape> draw(const Params& params, const Site& site) {
