@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <system_error>
 #include <thread>
 
 #include "altiplan/check.hpp"
@@ -22,8 +23,12 @@ class Colony::Crew {
  public:
   explicit Crew(std::size_t size) {
     failed_.resize(size);
-    for (std::size_t n = 1; n < size; ++n) {
-      others_.emplace_back([this, n] { live(n); });
+    try {
+      for (std::size_t n = 1; n < size; ++n) {
+        others_.emplace_back([this, n] { live(n); });
+      }
+    } catch (const std::system_error&) {
+      // No more threads are to be had: those that there are take all of the ants.
     }
   }
   Crew(const Crew&) = delete;
