@@ -7,7 +7,7 @@
 //   Yan Xijun, Ren Tianzhu: Path planning for flight vehicles based on improved ACO), section 1.
 // Guarantees: every leg keeps every rule; more budget never gives a longer route; one result for
 //   any number of threads. Neither complete nor optimal.
-// Complexity: O(1) a step, whatever has evaporated; 160 bytes a cell.
+// Complexity: O(1) a step, whatever has evaporated; 224 bytes a cell.
 // Deviations: an ant beside the goal goes there (with eta = 1/d_j it would be certain anyway);
 //   beside `leg` and `goal`, the two readings of eta that are printed and with which no ant ever
 //   arrives on the paper's map, `goal_scaled`, which behaves as the published baseline does.

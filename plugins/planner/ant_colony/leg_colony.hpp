@@ -15,14 +15,14 @@ enum class Heuristic { goal_scaled, goal, leg };
 class LegColony final : public kit::Colony {
  public:
   static constexpr std::size_t kNeighbours = 8;
-  static constexpr std::size_t kBytesPerCell = kNeighbours * (2 * sizeof(double) + sizeof(float));
+  static constexpr std::size_t kBytesPerCell = kNeighbours * (3 * sizeof(double) + sizeof(float));
 
   /// What outlives a plan; a leg is number kNeighbours * cell + direction.
   struct Memory {
     kit::Pheromone tau;
     std::vector<float> eta_beta;  ///< eta^beta, 0 where the leg is closed
     std::vector<double> weights;  ///< tau^alpha eta^beta
-    std::vector<std::uint32_t> laid;
+    kit::Deposits<double> laid;
   };
 
   LegColony(const Request& request, const kit::ColonyParams& params, Heuristic heuristic,
@@ -38,7 +38,7 @@ class LegColony final : public kit::Colony {
       strides_[k] = std::int32_t(lattice.stride(d));
     }
     memory.tau.reset(kNeighbours * lattice.size(), params.evaporation, params.alpha);
-    memory.laid.clear();
+    memory.laid.reset(kNeighbours * lattice.size());
     weigh_legs();
   }
 
@@ -180,18 +180,20 @@ class LegColony final : public kit::Colony {
 
   void lay(const Ant& ant, double amount) override {
     for (const std::uint32_t one : ant.places) {
-      memory_.tau.lay(one, amount);
+      memory_.laid.lay(one, amount);
     }
-    memory_.laid.insert(memory_.laid.end(), ant.places.begin(), ant.places.end());
   }
 
   void settle() override {
+    for (const std::uint32_t one : memory_.laid.places()) {
+      memory_.tau.lay(one, memory_.laid[one]);
+    }
     if (memory_.tau.settle()) {
       for (std::size_t one = 0; one < memory_.weights.size(); ++one) {
         weigh(one);
       }
     } else {
-      for (const std::uint32_t one : memory_.laid) {
+      for (const std::uint32_t one : memory_.laid.places()) {
         weigh(one);
       }
     }

@@ -73,8 +73,7 @@ class RegionColony final : public kit::Colony {
     kit::Pheromone tau_equ;  ///< of regions, eq. (10): sums of amounts evaporate as these do
     std::vector<Place> places;
     std::vector<std::uint8_t> candidates;  ///< by cell: one more than their number, and they
-    std::vector<float> fresh;              ///< by cell: laid in this iteration
-    std::vector<std::uint32_t> laid;       ///< its cells
+    kit::Deposits<float> laid;             ///< on cells
     std::vector<std::uint32_t> weighed;    ///< by cell: in which iteration
     kit::BucketQueue open;
   };
@@ -102,9 +101,8 @@ class RegionColony final : public kit::Colony {
       share /= whole;
     }
     memory.tau_equ.reset(lattice.size(), params.evaporation, params.alpha);
-    memory.laid.clear();
+    memory.laid.reset(lattice.size());
     memory.weighed.assign(lattice.size(), 0);
-    memory.fresh.assign(lattice.size(), 0.0F);
     rows_in_reach_ = std::uint32_t(settings.reach) * (columns() + 1);
     measure_distances();
     if (settings.leg_test == LegTest::remembered) {
@@ -392,19 +390,14 @@ class RegionColony final : public kit::Colony {
 
   void lay(const Ant& ant, double amount) override {
     for (const std::uint32_t cell : ant.places) {
-      float& there = memory_.fresh[cell];
-      if (there == 0) {
-        memory_.laid.push_back(cell);
-      }
-      there += float(amount);
+      memory_.laid.lay(cell, amount);
     }
   }
 
   /// Adds what has been laid to the regions, eq. (10), and weighs them anew.
   void settle() override {
-    for (const std::uint32_t middle : memory_.laid) {
-      const double amount = double(memory_.fresh[middle]);
-      memory_.fresh[middle] = 0;
+    for (const std::uint32_t middle : memory_.laid.places()) {
+      const double amount = memory_.laid[middle];
       for_region(middle, [&](std::uint32_t cell, std::size_t ring) {
         memory_.tau_equ.lay(cell, amount * shares_[ring]);
       });
@@ -415,7 +408,7 @@ class RegionColony final : public kit::Colony {
       }
     } else {
       ++settled_;
-      for (const std::uint32_t middle : memory_.laid) {
+      for (const std::uint32_t middle : memory_.laid.places()) {
         for_region(middle, [&](std::uint32_t cell, std::size_t) {
           if (memory_.weighed[cell] != settled_) {
             memory_.weighed[cell] = settled_;

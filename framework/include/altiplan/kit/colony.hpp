@@ -88,6 +88,35 @@ class ALTIPLAN_API Pheromone {
   bool all_changed_ = false;  ///< since the last time that all was settled
 };
 
+/// What is laid in an iteration: sums by place, and the places that have any. Many ants lay on few
+/// places, which are then looked at once.
+template <class Real>
+class Deposits {
+ public:
+  void reset(std::size_t places) {
+    sums_.assign(places, 0);
+    places_.clear();
+  }
+  void lay(std::uint32_t place, double amount) {
+    if (sums_[place] == 0) {
+      places_.push_back(place);
+    }
+    sums_[place] += Real(amount);
+  }
+  const std::vector<std::uint32_t>& places() const { return places_; }
+  double operator[](std::uint32_t place) const { return double(sums_[place]); }
+  void clear() {
+    for (const std::uint32_t place : places_) {
+      sums_[place] = 0;
+    }
+    places_.clear();
+  }
+
+ private:
+  std::vector<Real> sums_;
+  std::vector<std::uint32_t> places_;
+};
+
 /// A bit for each cell of a level, with room at both ends for the cells around the first and the
 /// last.
 class CellBits {
