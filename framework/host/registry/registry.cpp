@@ -11,6 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/registry/in_child.hpp"
+#include "host/registry/install_root.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -217,10 +218,8 @@ std::vector<fs::path> Registry::search_path(const std::vector<fs::path>& extra) 
       rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
     }
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    const fs::path installed = program.parent_path().parent_path();
+  const fs::path installed = install_root();
+  if (!installed.empty()) {
     folders.push_back(installed / ALTIPLAN_INSTALL_LIBDIR / "altiplan/plugins");
     if (folders.back() != installed / "lib/altiplan/plugins") {
       folders.push_back(installed / "lib/altiplan/plugins");  // of a build tree
