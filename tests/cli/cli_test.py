@@ -140,7 +140,8 @@ class Cli(unittest.TestCase):
             self.result(fails, "--plugin-path", BROKEN, code=4)["status"], "failed")
 
     def test_help_has_an_example(self):
-        for verb in ("run", "validate", "explain", "check", "view", "plugins", "describe", "schema"):
+        for verb in ("run", "validate", "explain", "check", "view", "plugins", "describe", "schema",
+                     "new"):
             out, _ = self.call(verb, "--help")
             self.assertIn("Example:\n  altiplan " + verb, out)
         _, err = self.call("--log-level", "loud", "plugins", code=2)

@@ -151,6 +151,7 @@ int main_checked(int argc, char** argv) {
   add_study(app, action, command_line(argc, argv));
   add_report(app, action);
   add_tune(app, action);
+  add_new(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

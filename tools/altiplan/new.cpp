@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+#include "altiplan/error.hpp"
+#include "commands.hpp"
+#include "host/config/shapes.hpp"
+#include "host/registry/install_root.hpp"
+#include "host/registry/registry.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string kind;
+  std::string name;
+};
+
+constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner",
+                                       "planner",    "smoother",    "tuner"};
+
+/// The keywords of C++, each between spaces.
+constexpr std::string_view kKeywords =
+    " alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t "
+    "char32_t char8_t class co_await co_return co_yield compl concept const const_cast "
+    "consteval constexpr constinit continue decltype default delete do double dynamic_cast else "
+    "enum explicit export extern false float for friend goto if inline int long mutable "
+    "namespace new noexcept not not_eq nullptr operator or or_eq private protected public "
+    "register reinterpret_cast requires return short signed sizeof static static_assert "
+    "static_cast struct switch template this thread_local throw true try typedef typeid "
+    "typename union unsigned using virtual void volatile wchar_t while xor xor_eq ";
+
+/// Words that stand for something else where a file names a plugin.
+constexpr std::string_view kOwnWords[] = {"id", "known", "null", "route"};
+
+template <class Words>
+bool contains(const Words& words, std::string_view word) {
+  return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+/// The plugin that has the name; "" where none has. Kinds may share names, but files and messages
+/// are clearer where they do not.
+std::string offered_by(const std::string& name) {
+  const host::Registry registry(host::Registry::search_path({}));
+  for (const host::Library& library : registry.libraries()) {
+    for (const Manifest& plugin : library.plugins) {
+      if (plugin.name == name) {
+        return "the " + std::string(plugin.kind) + " of " + library.file.string();
+      }
+    }
+  }
+  for (const PluginEntry& entry : host::built_in_environments()) {
+    if (entry.name == name) {
+      return "a built-in environment";
+    }
+  }
+  return "";
+}
+
+/// What is wrong with the kind or the name; "" where nothing is.
+std::string usage_problem(const Arguments& arguments) {
+  const std::string found = ", found '" + arguments.name + "'";
+  if (!contains(kKinds, arguments.kind)) {
+    std::string kinds;
+    for (const std::string_view kind : kKinds) {
+      kinds += (kinds.empty() ? "" : ", ") + std::string(kind);
+    }
+    return "KIND: expected one of " + kinds + ", found '" + arguments.kind + "'";
+  }
+  if (!host::is_snake_case(arguments.name)) {
+    return "NAME: expected lower-case letters, digits and '_', the first a letter" + found;
+  }
+  if (arguments.name.size() >= sizeof(Manifest::name)) {
+    return "NAME: expected at most " + std::to_string(sizeof(Manifest::name) - 1) + " letters" +
+           found;
+  }
+  if (kKeywords.find(" " + arguments.name + " ") != std::string_view::npos) {
+    return "NAME: '" + arguments.name + "' is a keyword of C++";
+  }
+  if (contains(kOwnWords, arguments.name)) {
+    return "NAME: '" + arguments.name + "' means something else in altiplan's files";
+  }
+  if (arguments.name.ends_with("_test")) {
+    return "NAME: a source file that ends in _test is taken for a test" + found;
+  }
+  const std::string offered = offered_by(arguments.name);
+  return offered.empty() ? "" : "NAME: '" + arguments.name + "' is taken by " + offered;
+}
+
+using Files = std::map<fs::path, std::string>;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) {
+    throw Error(file.string() + ": cannot be read");
+  }
+  return text.str();
+}
+
+/// The files below the folder by their paths in it; they take the place of those of the same path.
+void add_files(const fs::path& folder, Files& files) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      files[entry.path().lexically_relative(folder)] = text_of(entry.path());
+    }
+  }
+}
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
+    text.replace(at, what.size(), by);
+    at += by.size();
+  }
+}
+
+/// The project: what all kinds share, with what the kind has of its own. `X.part` is no file of the
+/// project but stands for @X@ in the others.
+Files project(const Arguments& arguments) {
+  const fs::path templates = host::install_root() / "share/altiplan/templates";
+  Files all;
+  add_files(templates / "shared", all);
+  add_files(templates / arguments.kind, all);
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& [path, text] : all) {
+    if (path.extension() == ".part") {
+      values.emplace_back("@" + path.stem().string() + "@", text.substr(0, text.rfind('\n')));
+    }
+  }
+  values.emplace_back("@kind@", arguments.kind);
+  values.emplace_back("@name@", arguments.name);  // last: parts name them too
+  Files files;
+  for (const auto& [path, text] : all) {
+    if (path.extension() == ".part") {
+      continue;
+    }
+    std::string name = path.string();
+    std::string filled = text;
+    for (const auto& [what, by] : values) {
+      replace_all(name, what, by);
+      replace_all(filled, what, by);
+    }
+    files[name] = filled;
+  }
+  return files;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    throw Error("cannot write '" + file.string() + "': " + std::strerror(errno));
+  }
+}
+
+int new_project(const Arguments& arguments) {
+  const std::string problem = usage_problem(arguments);
+  if (!problem.empty()) {
+    std::cerr << "altiplan: new: " << problem << '\n';
+    return kUsage;
+  }
+  const Files files = project(arguments);
+  const fs::path folder = arguments.name;
+  std::error_code error;
+  if (!fs::create_directory(folder, error)) {
+    throw Error(fs::exists(fs::symlink_status(folder))
+                    ? "'" + folder.string() + "' is there already, and nothing is written over"
+                    : "cannot make the folder '" + folder.string() + "': " + error.message());
+  }
+  try {
+    for (const auto& [path, text] : files) {
+      write(folder / path, text);
+    }
+  } catch (...) {
+    fs::remove_all(folder, error);
+    throw;
+  }
+  std::cout << arguments.name << "/README.md says how this " << arguments.kind
+            << " is built, tested, run and compared\n";
+  return kDone;
+}
+}  // namespace
+
+void add_new(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("new", "a project of one plugin, complete and out of tree, in ./NAME");
+  auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("kind", arguments->kind,
+                   "constraint, environment, local_planner, planner, smoother or tuner")
+      ->required();
+  command->add_option("name", arguments->name, "of the plugin and of its folder, in snake_case")
+      ->required();
+  set_example(*command, "altiplan new planner my_planner");
+  command->callback(
+      [&action, arguments] { action = [arguments] { return new_project(*arguments); }; });
+}
+}  // namespace altiplan::cli
