@@ -59,6 +59,7 @@ inline std::vector<std::array<int, 2>> ring(int reach, int spacing) {
 class RegionColony final : public kit::Colony {
  public:
   static constexpr std::size_t kMostCandidates = 56;
+  static constexpr int kSightBits = 12;
 
   static constexpr std::size_t kBytesPerCell =
       sizeof(double) + 16 + 2 * sizeof(std::uint32_t) + kMostCandidates + 1;
@@ -75,6 +76,7 @@ class RegionColony final : public kit::Colony {
     std::vector<std::uint8_t> candidates;  ///< by cell: one more than their number, and they
     kit::Deposits<float> laid;             ///< on cells
     std::vector<std::uint32_t> weighed;    ///< by cell: in which iteration
+    std::vector<std::uint64_t> sights;     ///< legs and, in the last bit, whether they are free
     kit::BucketQueue open;
   };
 
@@ -102,6 +104,7 @@ class RegionColony final : public kit::Colony {
     }
     memory.tau_equ.reset(lattice.size(), params.evaporation, params.alpha);
     memory.laid.reset(lattice.size());
+    memory.sights.assign(std::size_t{1} << kSightBits, ~std::uint64_t{0});
     memory.weighed.assign(lattice.size(), 0);
     rows_in_reach_ = std::uint32_t(settings.reach) * (columns() + 1);
     measure_distances();
@@ -329,11 +332,23 @@ class RegionColony final : public kit::Colony {
     return (position(goal_) - position(at)).norm();
   }
 
-  /// Whether the straight leg between two cells is free. Most that trimming asks for are blocked
-  /// along a good part of them, and seven cells tell so.
+  /// Whether the straight leg between two cells is free. Ants that follow each other ask for the
+  /// same few legs: the last answers are kept, and which thread gave them does not matter.
   bool sees(std::uint32_t from, std::uint32_t to) const {
-    const Cell a = lattice_.cell(from);
-    const Cell b = lattice_.cell(to);
+    const std::uint64_t leg = std::uint64_t{from} << 33 | std::uint64_t{to} << 1;
+    const std::size_t at = (leg * 0x9e3779b97f4a7c15ULL) >> (64 - kSightBits);
+    const std::atomic_ref<std::uint64_t> kept(memory_.sights[at]);
+    const std::uint64_t known = kept.load(std::memory_order_relaxed);
+    if ((known | 1) == (leg | 1)) {
+      return (known & 1) != 0;
+    }
+    const bool free = tests_free(lattice_.cell(from), lattice_.cell(to));
+    kept.store(leg | (free ? 1 : 0), std::memory_order_relaxed);
+    return free;
+  }
+
+  /// Most legs that trimming asks for are blocked along a good part of them: seven cells tell so.
+  bool tests_free(const Cell& a, const Cell& b) const {
     for (const int eighths : {4, 2, 6, 1, 3, 5, 7}) {
       const int x = (8 * a[0] + eighths * (b[0] - a[0]) + 4) / 8;
       const int y = (8 * a[1] + eighths * (b[1] - a[1]) + 4) / 8;
