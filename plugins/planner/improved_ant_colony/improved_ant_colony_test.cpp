@@ -81,6 +81,19 @@ TEST(ImprovedAntColony, LeastStepsSetTheReach) {
             "");
 }
 
+TEST(ImprovedAntColony, OnNarrowLevelsStepsAreNoLongerThanTheReach) {
+  Request request =
+      testing::request_in(World(), {5, 5, 50}, {15, 975, 50}, {{0, 0, 50}, {30, 1000, 50}});
+  request.level_m = 50;
+  const PlanResult result = plan_of(
+      kName, "cell_m: [10, 10, 10], reach_cells: 4, spacing_cells: 0, trim: false, ants: 20",
+      request);
+  ASSERT_EQ(result.status, Status::solved) << result.message;
+  for (std::size_t n = 1; n < result.route.size(); ++n) {
+    EXPECT_LE((result.route[n] - result.route[n - 1]).cwiseAbs().maxCoeff(), 40 + 1e-9);
+  }
+}
+
 TEST(ImprovedAntColony, GeodesicDistancesLeadOutOfADeadEnd) {
   // A cup that opens away from the goal.
   Request request =

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -325,7 +324,8 @@ class RegionColony final : public kit::Colony {
     }
     const Cell here = lattice_.cell(at);
     const Cell there = lattice_.cell(goal_);
-    if (std::abs(there[0] - here[0]) > settings_.reach || !sees(at, goal_) ||
+    if (std::abs(there[0] - here[0]) > settings_.reach ||
+        std::abs(there[1] - here[1]) > settings_.reach || !sees(at, goal_) ||
         (!cells_decide() && !keeps_rules(walker, goal_))) {
       return 0;
     }
