@@ -2,12 +2,10 @@
 #include "altiplan/kit/colony.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <functional>
-#include <system_error>
-#include <thread>
+#include <cmath>
 
 #include "altiplan/check.hpp"
+#include "crew.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -15,78 +13,7 @@ namespace {
 /// Routes of an iteration that a trace shows: as many tell what the colony does, and all of them
 /// would make files of hundreds of megabytes.
 constexpr std::size_t kTracedAnts = 10;
-
 }  // namespace
-
-/// Threads that stay for a plan: an iteration is too short to start new ones for.
-class Colony::Crew {
- public:
-  explicit Crew(std::size_t size) {
-    failed_.resize(size);
-    try {
-      for (std::size_t n = 1; n < size; ++n) {
-        others_.emplace_back([this, n] { live(n); });
-      }
-    } catch (const std::system_error&) {
-      // No more threads are to be had: those that there are take all of the ants.
-    }
-  }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
-  ~Crew() {
-    work_ = nullptr;
-    begin();
-  }
-
-  /// Has each of the crew do its part, this thread as number 0; ends when all have, and throws what
-  /// one of them has thrown.
-  void all_do(const std::function<void(std::size_t)>& work) {
-    work_ = &work;
-    busy_ = others_.size();
-    begin();
-    attempt(0);
-    for (std::size_t busy = busy_; busy > 0; busy = busy_) {
-      busy_.wait(busy);
-    }
-    for (std::exception_ptr& failed : failed_) {
-      if (failed != nullptr) {
-        std::rethrow_exception(std::exchange(failed, nullptr));
-      }
-    }
-  }
-
- private:
-  void begin() {
-    ++round_;
-    round_.notify_all();
-  }
-  void live(std::size_t n) {
-    for (std::uint32_t done = 0;;) {
-      round_.wait(done);
-      done = round_;
-      if (work_ == nullptr) {
-        return;
-      }
-      attempt(n);
-      if (--busy_ == 0) {
-        busy_.notify_one();
-      }
-    }
-  }
-  void attempt(std::size_t n) {
-    try {
-      (*work_)(n);
-    } catch (...) {
-      failed_[n] = std::current_exception();
-    }
-  }
-
-  const std::function<void(std::size_t)>* work_ = nullptr;
-  std::atomic<std::uint32_t> round_{0};
-  std::atomic<std::size_t> busy_{0};
-  std::vector<std::exception_ptr> failed_;
-  std::vector<std::jthread> others_;  // last: they use the rest
-};
 
 void ColonyParams::describe(Fields& f) {
   f("cell_m", cell_m)
@@ -114,48 +41,6 @@ void ColonyParams::describe(Fields& f) {
       .unit("MB")
       .at_least(1)
       .doc("a lattice that needs more is refused before anything is allocated");
-}
-
-void Pheromone::reset(std::size_t places, double evaporation, double alpha) {
-  amounts_.assign(places, 1.0);
-  remains_ = 1 - evaporation;
-  per_unit_ = 1;
-  largest_ = 1;
-  all_changed_ = false;
-  least_ = std::pow(10, -std::min(140 / std::max(alpha, 1e-9), 100.0));
-}
-
-void Pheromone::evaporate() {
-  constexpr double kMost = 1e100;
-  if (per_unit_ <= remains_ * kMost) {
-    per_unit_ /= remains_;
-    return;
-  }
-  const double left = remains_ / per_unit_;
-  for (double& amount : amounts_) {
-    amount *= left;
-  }
-  largest_ *= left;
-  per_unit_ = 1;
-  all_changed_ = true;
-}
-
-bool Pheromone::settle() {
-  if (!all_changed_ && largest_ * least_ < 1) {
-    return false;
-  }
-  all_changed_ = false;
-  double factor = 1;
-  if (largest_ > 0) {  // it is 0 where nothing remains and nothing was laid
-    factor = 1 / largest_;
-    largest_ = 1;
-    // Beside a unit of this size, what is there counts for nothing anyway.
-    per_unit_ = std::min(per_unit_ * factor, 1e50);
-  }
-  for (double& amount : amounts_) {
-    amount = std::max(amount * factor, least_);
-  }
-  return true;
 }
 
 Colony::Colony(const Request& request, const ColonyParams& params, const Lattice& lattice)

@@ -5,13 +5,13 @@
 #include <array>
 #include <atomic>
 #include <limits>
-#include <numeric>
 #include <vector>
 
-#include "altiplan/kit/bucket_queue.hpp"
 #include "altiplan/kit/colony.hpp"
 #include "altiplan/kit/line_of_sight.hpp"
 #include "altiplan/kit/trimming.hpp"
+#include "geodesic.hpp"
+#include "neighbourhood.hpp"
 
 namespace altiplan::improved_ant_colony {
 
@@ -31,28 +31,6 @@ struct Settings {
   kit::TrimParams trim;
   Deposit deposit = Deposit::resampled;
 };
-
-/// How many candidates a neighbourhood has; what eq. (7) means.
-constexpr std::int64_t candidates(int reach, int spacing) {
-  return 8 * ((std::int64_t(reach) - 1) / std::max(std::int64_t(spacing) + 1, std::int64_t{1}) + 1);
-}
-
-/// The candidates of the asynchronous neighbourhood: cells on the border of a square, on each side
-/// from both corners toward the middle, and the middle.
-inline std::vector<std::array<int, 2>> ring(int reach, int spacing) {
-  const auto is_place = [&](int along) {
-    return along == 0 || (reach - std::abs(along)) % (spacing + 1) == 0;
-  };
-  std::vector<std::array<int, 2>> offsets;
-  for (int y = -reach; y <= reach; ++y) {
-    for (int x = -reach; x <= reach; ++x) {
-      if (std::max(std::abs(x), std::abs(y)) == reach && is_place(x) && is_place(y)) {
-        offsets.push_back({x, y});
-      }
-    }
-  }
-  return offsets;
-}
 
 /// A colony whose pheromone lies on cells and counts around them.
 class RegionColony final : public kit::Colony {
@@ -196,7 +174,14 @@ class RegionColony final : public kit::Colony {
   void measure_distances() {
     memory_.places.resize(lattice_.size());
     if (settings_.heuristic == Heuristic::geodesic) {
-      measure_over_cells();
+      for (Place& place : memory_.places) {
+        place.distance = std::numeric_limits<float>::infinity();
+      }
+      if (goal_ != kNone) {
+        measure_over_cells(
+            lattice_, *grid_, goal_, memory_.open,
+            [&](std::uint32_t cell) -> float& { return memory_.places[cell].distance; });
+      }
     } else {
       for (std::uint32_t cell = 0; cell < lattice_.size(); ++cell) {
         memory_.places[cell].distance = float((position(cell) - request_.goal.position).norm());
@@ -204,55 +189,6 @@ class RegionColony final : public kit::Colony {
     }
     for (std::uint32_t cell = 0; cell < lattice_.size(); ++cell) {
       weigh(cell);
-    }
-  }
-
-  /// Lengths of the shortest ways from the goal on, E. W. Dijkstra, 1959, by moves of up to three
-  /// cells on each axis: 1.3 % too long at most. By the eight neighbours they are up to 8 % too
-  /// long, enough to send all ants around the wrong side of a zone.
-  void measure_over_cells() {
-    constexpr float kUnknown = std::numeric_limits<float>::infinity();
-    for (Place& place : memory_.places) {
-      place.distance = kUnknown;
-    }
-    if (goal_ == kNone) {
-      return;
-    }
-    struct Move {
-      int dx;
-      int dy;
-      std::uint32_t length;
-    };
-    // Lengths are whole numbers of a unit; the longest way has some 4e9 of them.
-    const double unit = 1.5 * (edge().x() + edge().y()) * double(lattice_.size()) / 4e9;
-    std::vector<Move> moves;
-    constexpr int kMost = 3;
-    for (int dy = -kMost; dy <= kMost; ++dy) {
-      for (int dx = -kMost; dx <= kMost; ++dx) {
-        if (std::gcd(dx, dy) == 1) {
-          const double metres = std::hypot(dx * edge().x(), dy * edge().y());
-          moves.push_back({dx, dy, std::uint32_t(std::lround(metres / unit))});
-        }
-      }
-    }
-    memory_.open.clear();
-    memory_.open.push(0, goal_, 0);
-    while (!memory_.open.empty()) {
-      const kit::BucketQueue::Entry nearest = memory_.open.pop();
-      float& distance = memory_.places[nearest.node].distance;
-      if (distance != kUnknown) {
-        continue;
-      }
-      distance = float(nearest.key * unit);
-      const Cell here = lattice_.cell(nearest.node);
-      for (const Move& move : moves) {
-        const Cell there = {here[0] + move.dx, here[1] + move.dy, 0};
-        if (lattice_.spec().holds(there) &&
-            memory_.places[lattice_.index(there)].distance == kUnknown &&
-            kit::level_line_of_sight(*grid_, here, there)) {
-          memory_.open.push(nearest.key + move.length, lattice_.index(there), 0);
-        }
-      }
     }
   }
 

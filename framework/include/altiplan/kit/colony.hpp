@@ -2,10 +2,8 @@
 #pragma once
 
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "altiplan/kit/lattice.hpp"
 #include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/pheromone.hpp"
 #include "altiplan/params.hpp"
 #include "altiplan/planner.hpp"
 
@@ -35,86 +34,6 @@ struct ALTIPLAN_API ColonyParams {
 
   void describe(Fields& f);
   std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
-};
-
-/// x^exponent, by products where the exponent is a small whole number.
-class Power {
- public:
-  explicit Power(double exponent)
-      : exponent_(exponent),
-        whole_(exponent == std::floor(exponent) && exponent >= 0 && exponent <= 64 ? int(exponent)
-                                                                                   : -1) {}
-  double operator()(double x) const {
-    if (whole_ < 0) {
-      return std::pow(x, exponent_);
-    }
-    double power = 1;
-    for (int n = whole_; n > 0; n >>= 1) {
-      power *= (n & 1) != 0 ? x : 1;
-      x *= x;
-    }
-    return power;
-  }
-
- private:
-  double exponent_;
-  int whole_;
-};
-
-/// Amounts of pheromone by place, all of which evaporate alike, eq. (4): they are kept in a unit
-/// that evaporates in their stead, and count from the initial amount. Only their ratios matter to
-/// an ant; what is so little beside the largest that its power alpha would underflow counts as the
-/// least that does not.
-class ALTIPLAN_API Pheromone {
- public:
-  /// Starts anew with the initial amount, 1, at each place.
-  void reset(std::size_t places, double evaporation, double alpha);
-  void evaporate();
-  void lay(std::size_t place, double amount) {
-    double& there = amounts_[place];
-    there += amount * per_unit_;
-    largest_ = largest_ < there ? there : largest_;
-  }
-  /// To be called when all is laid. Whether every amount is another than before, in the unit.
-  bool settle();
-  double operator[](std::size_t place) const { return amounts_[place]; }
-
- private:
-  std::vector<double> amounts_;
-  double remains_ = 1;
-  double per_unit_ = 1;
-  double largest_ = 1;
-  double least_ = 0;
-  bool all_changed_ = false;  ///< since the last time that all was settled
-};
-
-/// What is laid in an iteration: sums by place, and the places that have any. Many ants lay on few
-/// places, which are then looked at once.
-template <class Real>
-class Deposits {
- public:
-  void reset(std::size_t places) {
-    sums_.assign(places, 0);
-    places_.clear();
-  }
-  void lay(std::uint32_t place, double amount) {
-    if (sums_[place] == 0) {
-      places_.push_back(place);
-    }
-    sums_[place] += Real(amount);
-  }
-  const std::vector<std::uint32_t>& places() const { return places_; }
-  double operator[](std::uint32_t place) const { return double(sums_[place]); }
-  void clear() {
-    for (const std::uint32_t place : places_) {
-      sums_[place] = 0;
-    }
-    places_.clear();
-  }
-
- private:
-  std::vector<Real> sums_;
-  std::vector<std::uint32_t> places_;
 };
 
 /// A bit for each cell of a level, with room at both ends for the cells around the first and the
@@ -157,6 +76,8 @@ class CellBits {
   std::size_t spare_ = 0;
   std::vector<std::uint8_t> bytes_;
 };
+
+class Crew;
 
 /// One plan by a colony: ants walk from the start to the goal, each by itself, and lay pheromone
 /// when all are back. A result is the same for any number of threads: every ant has a random stream
@@ -238,7 +159,6 @@ class ALTIPLAN_API Colony {
   };
   void join_ends();
   std::optional<PlanResult> without_ants();
-  class Crew;
   bool send_out(Crew& crew, std::size_t iteration);
   void send_out(Walker& walker, std::size_t iteration);
   bool collect();
