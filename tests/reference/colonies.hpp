@@ -18,15 +18,6 @@
 
 namespace altiplan::testing {
 
-inline std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& one : result.counters) {
-    if (one.name == name) {
-      return one.value;
-    }
-  }
-  return -1;
-}
-
 /// Level flight past a block in the straight way.
 inline Request flat_world() {
   Request request = request_in(world_of({Shape{BoxShape{{{150, 100, 0}, {250, 320, 100}}}}}),

@@ -134,6 +134,15 @@ std::string parameter_problems(std::string_view kind, std::string_view name,
   return text;
 }
 
+std::int64_t counter(const PlanResult& result, std::string_view name) {
+  for (const Counter& one : result.counters) {
+    if (one.name == name) {
+      return one.value;
+    }
+  }
+  return -1;
+}
+
 World world_of(std::shared_ptr<const Environment> environment, std::string id) {
   Layer layer;
   layer.plugin = id;

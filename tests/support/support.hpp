@@ -25,6 +25,9 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
 /// Problems of the parameters, as the user would read them, one a line; "" where there are none.
 std::string parameter_problems(std::string_view kind, std::string_view name, std::string_view yaml);
 
+/// The value of a counter, -1 where there is none of the name.
+std::int64_t counter(const PlanResult& result, std::string_view name);
+
 /// A world of one layer.
 World world_of(std::shared_ptr<const Environment> environment, std::string id = "layer");
 /// A world of solid shapes (one layer, through kit::ObstacleSet).

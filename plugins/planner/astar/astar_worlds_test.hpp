@@ -12,15 +12,6 @@
 
 namespace altiplan::testing {
 
-inline std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& c : result.counters) {
-    if (c.name == name) {
-      return c.value;
-    }
-  }
-  return -1;
-}
-
 /// Length of the shortest way over cells by Dijkstra's algorithm; infinite where there is none.
 inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, const Cell& goal,
                        int neighbours,

@@ -10,21 +10,13 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::draw;
 using testing::Drawn;
 using testing::jps;
 using testing::Map;
 using testing::random_map;
 using testing::serpentine;
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& c : result.counters) {
-    if (c.name == name) {
-      return c.value;
-    }
-  }
-  return -1;
-}
 
 Drawn drawn(const std::string& level) {
   Drawn drawn = draw({level});

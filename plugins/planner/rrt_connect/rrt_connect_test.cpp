@@ -8,6 +8,7 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_planner;
 
 constexpr const char* kStep = "{range_m: 12}";
@@ -28,15 +29,6 @@ Request among_balls(std::uint64_t seed, int count) {
   request.limits.min_clearance = request.vehicle.radius_m = 1.5;
   request.random = RandomStream(seed);
   return request;
-}
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& c : result.counters) {
-    if (c.name == name) {
-      return c.value;
-    }
-  }
-  return -1;
 }
 
 TEST(RrtConnect, AStraightWayIsFoundAtOnceInEqualLegs) {

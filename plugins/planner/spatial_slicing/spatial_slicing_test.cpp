@@ -7,18 +7,10 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::draw;
 using testing::Drawn;
 using testing::make_planner;
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& c : result.counters) {
-    if (c.name == name) {
-      return c.value;
-    }
-  }
-  return -1;
-}
 
 PlanResult plan(const Request& request, const std::string& parameters = "{}") {
   return make_planner("spatial_slicing", parameters)->plan(request);

@@ -8,6 +8,7 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_smoother;
 using testing::open_request;
 
@@ -16,15 +17,6 @@ PlanResult arcs(const Route& route, double radius, const std::string& more = "")
   Request request = open_request(route);
   request.limits.min_turn_radius = radius;
   return make_smoother("arc", "{" + more + "}")->smooth(route, request);
-}
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& one : result.counters) {
-    if (one.name == name) {
-      return one.value;
-    }
-  }
-  return -1;
 }
 
 TEST(Arc, TouchesBothLegsAndKeepsToItsCircle) {

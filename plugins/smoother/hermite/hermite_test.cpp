@@ -11,16 +11,8 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_smoother;
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& one : result.counters) {
-    if (one.name == name) {
-      return one.value;
-    }
-  }
-  return -1;
-}
 
 Route smoothed(const Route& route, const std::string& yaml) {
   return make_smoother("hermite", yaml)->smooth(route, testing::open_request(route)).route;

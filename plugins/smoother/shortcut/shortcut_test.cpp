@@ -6,16 +6,8 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_smoother;
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& one : result.counters) {
-    if (one.name == name) {
-      return one.value;
-    }
-  }
-  return -1;
-}
 
 Request beside_a_ball() {
   Request request = testing::request_in(testing::world_of({Shape{Sphere{{50, 0, 0}, 20}}}),

@@ -7,16 +7,8 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_smoother;
-
-std::int64_t counter(const PlanResult& result, const std::string& name) {
-  for (const Counter& one : result.counters) {
-    if (one.name == name) {
-      return one.value;
-    }
-  }
-  return -1;
-}
 
 /// Waypoints on a line, 10 m apart.
 Route waypoints_on_a_line(int count) {

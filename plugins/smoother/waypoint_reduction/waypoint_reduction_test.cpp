@@ -6,6 +6,7 @@
 namespace altiplan {
 namespace {
 
+using testing::counter;
 using testing::make_smoother;
 
 const Box kVolume{{-100, -100, 0}, {100, 100, 0}};
@@ -15,15 +16,6 @@ Request past(std::vector<Shape> shapes, const Route& route) {
                                         route.back(), kVolume);
   request.level_m = 0;
   return request;
-}
-
-std::int64_t counter(const PlanResult& result, std::string_view name) {
-  for (const Counter& counter : result.counters) {
-    if (counter.name == name) {
-      return counter.value;
-    }
-  }
-  return -1;
 }
 
 const Route kOver{{0, 0, 0}, {2, 3, 0}, {5, 4.2, 0}, {8, 4, 0}, {10, 0, 0}};
