@@ -46,6 +46,46 @@ std::vector<Threat> Balls::do_threats() const {
   return threats;
 }
 
+Box BallField::do_bounds() const {
+  const Vec3 last = first_ + spacing_ * Vec3(counts_[0] - 1, counts_[1] - 1, counts_[2] - 1);
+  return Box{first_, last}.grown(radius_);
+}
+
+double BallField::do_clearance(const Vec3& p) const {
+  Vec3 nearest;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = std::round((p[axis] - first_[axis]) / spacing_);
+    nearest[axis] = first_[axis] + spacing_ * std::clamp(at, 0.0, counts_[std::size_t(axis)] - 1.0);
+  }
+  return (p - nearest).norm() - radius_;
+}
+
+void BallField::do_near(const Vec3& p, double reach, const NearSink& sink) const {
+  std::array<int, 3> from;
+  std::array<int, 3> to;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = p[int(axis)] - first_[int(axis)];
+    const double far = reach + radius_;
+    const auto post = [&](double x) {
+      return int(std::clamp(std::floor(x / spacing_), -1.0, double(counts_[axis])));
+    };
+    from[axis] = std::max(post(at - far), 0);
+    to[axis] = std::min(post(at + far), counts_[axis] - 1);
+  }
+  for (int k = from[2]; k <= to[2]; ++k) {
+    for (int j = from[1]; j <= to[1]; ++j) {
+      for (int i = from[0]; i <= to[0]; ++i) {
+        const Vec3 off = p - (first_ + spacing_ * Vec3(i, j, k));
+        const double distance = off.norm() - radius_;
+        if (distance <= reach) {
+          const Vec3 normal = off.norm() > 0 ? Vec3(off.normalized()) : Vec3(0, 0, 1);
+          sink({p - distance * normal, distance, normal, (k * counts_[1] + j) * counts_[0] + i});
+        }
+      }
+    }
+  }
+}
+
 namespace {
 using Vec2 = std::array<double, 2>;
 

@@ -9,22 +9,10 @@ namespace {
 /// The law's bound, in iterations.
 constexpr std::int64_t kStopWithin = 1024;
 
-/// Much to search and nothing to find: a large world whose goal lies in a shell of balls.
+/// Much to search and nothing to find.
 Scene hopeless(const PlannerBench& bench) {
   Scene scene = bench.budgeted(open_scene(bench.options.unit_m, bench.flight()));
-  scene.name = "a goal enclosed by a box";
-  const double unit = bench.options.unit_m;
-  const Vec3 at = scene.request.goal.position;
-  std::vector<Change> changes;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      Box wall{at - Vec3::Constant(1.4 * unit), at + Vec3::Constant(1.4 * unit)};
-      wall.min[axis] = at[axis] + (side < 0 ? -1.4 : 1.2) * unit;
-      wall.max[axis] = at[axis] + (side < 0 ? -1.2 : 1.4) * unit;
-      with_solid(scene, BoxShape{wall}, "wall" + std::to_string(axis) + (side < 0 ? "a" : "b"),
-                 changes);
-    }
-  }
+  enclose_goal(scene);
   return scene;
 }
 

@@ -74,6 +74,13 @@ void large_coordinates(const PlannerBench& bench, Report& report) {
   }
 }
 
+void million_obstacles(const PlannerBench& bench, Report& report) {
+  for (const Flight flight : bench.flights()) {
+    Scene scene = bench.budgeted(crowded_scene(bench.options.unit_m, flight));
+    judge(report, bench.make()->plan(scene.request), scene);
+  }
+}
+
 /// Each limit in turn, on the same worlds.
 void limits_honoured(const PlannerBench& bench, Report& report) {
   const double unit = bench.options.unit_m;
@@ -241,6 +248,7 @@ Cases planner_law_cases(const PlannerBench& bench) {
   };
   return {made("routes_are_sound_in_seeded_worlds", seeded_worlds),
           made("large_coordinates", large_coordinates),
+          made("a_million_obstacles", million_obstacles),
           made("limits_are_honoured", limits_honoured),
           made("impossible_start_or_goal_is_a_status", impossible_ends),
           made("possible_starts_and_goals", possible_ends),

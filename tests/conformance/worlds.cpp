@@ -120,6 +120,35 @@ Scene wall_scene(double unit, double top, Flight flight) {
   return scene;
 }
 
+Scene crowded_scene(double unit, Flight flight) {
+  Scene scene = scene_of(unit, "a million obstacles");
+  Request& request = scene.request;
+  request.volume.max *= 10;
+  // Posts every 1.25 units from (1, 1, 1); the ends lie between four of them, at their height.
+  request.start.position = unit * Vec3(1.625, 1.625, 2.25);
+  request.goal.position = unit * Vec3(197.875, 157.875, 57.25);
+  level_out(scene, flight);
+  request.world = world_of(std::make_shared<BallField>(unit * Vec3(1, 1, 1), 1.25 * unit,
+                                                       std::array{160, 128, 48}, unit / 4));
+  return scene;
+}
+
+void enclose_goal(Scene& scene) {
+  const double unit = scene.unit;
+  const Vec3 at = scene.request.goal.position;
+  std::vector<Change> changes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Box wall{at - Vec3::Constant(1.4 * unit), at + Vec3::Constant(1.4 * unit)};
+      wall.min[axis] = at[axis] + (side < 0 ? -1.4 : 1.2) * unit;
+      wall.max[axis] = at[axis] + (side < 0 ? -1.2 : 1.4) * unit;
+      with_solid(scene, BoxShape{wall}, "wall" + std::to_string(axis) + (side < 0 ? "a" : "b"),
+                 changes);
+    }
+  }
+  scene.name += ", the goal enclosed by a box";
+}
+
 Scene ridge_scene(double unit) {
   Scene scene = scene_of(unit, "a crest across the way");
   scene.ridge = std::make_shared<Ridge>(10 * unit, 2.3 * unit, 0.3);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,6 +25,22 @@ class Balls final : public Environment {
   double do_slack() const override { return 0; }
   std::vector<Threat> do_threats() const override;
   std::vector<Sphere> balls_;
+};
+
+/// Balls of one size on the posts of a grid, as many as there are posts; each query looks at a few.
+class BallField final : public Environment {
+ public:
+  BallField(const Vec3& first, double spacing, const std::array<int, 3>& counts, double radius)
+      : first_(first), spacing_(spacing), counts_(counts), radius_(radius) {}
+
+ private:
+  Box do_bounds() const override;
+  double do_clearance(const Vec3& p) const override;
+  void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
+  Vec3 first_;
+  double spacing_;
+  std::array<int, 3> counts_;
+  double radius_;
 };
 
 /// Ground that rises on both sides to a crest along x = crest_x, in closed form.
@@ -83,6 +100,10 @@ Scene open_scene(double unit, Flight flight);
 Scene random_scene(double unit, std::uint64_t seed, Flight flight);
 /// A wall across the straight way, `top` units high, with a way round that is long.
 Scene wall_scene(double unit, double top, Flight flight);
+/// Ten times as far each way, with a million balls in between.
+Scene crowded_scene(double unit, Flight flight);
+/// Puts a hollow box around the goal: there is no way in.
+void enclose_goal(Scene& scene);
 /// A crest across the straight way, to be crossed at a height above ground.
 Scene ridge_scene(double unit);
 /// Cells as drawn: one text a level from the lowest, rows by '/' from the north, '#' solid, 'S' and

@@ -30,6 +30,7 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line);
 void add_report(CLI::App& app, Action& action);
 void add_tune(CLI::App& app, Action& action);
 void add_new(CLI::App& app, Action& action);
+void add_check_plugin(CLI::App& app, Action& action);
 
 /// --plugin-path, --seed, --set and --scenario as they are wanted.
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);

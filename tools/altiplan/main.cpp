@@ -152,6 +152,7 @@ int main_checked(int argc, char** argv) {
   add_report(app, action);
   add_tune(app, action);
   add_new(app, action);
+  add_check_plugin(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

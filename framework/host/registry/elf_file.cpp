@@ -143,6 +143,22 @@ std::string ElfFile::section(std::string_view name) const {
   return found == nullptr ? "" : read(found->offset, found->size, "a section");
 }
 
+std::vector<std::string> ElfFile::exported_symbols() const {
+  const std::string symbols = section(".dynsym");
+  const std::string names = section(".dynstr");
+  std::vector<std::string> exported;
+  for (std::size_t i = 0; i + sizeof(Elf64_Sym) <= symbols.size(); i += sizeof(Elf64_Sym)) {
+    const auto symbol = at<Elf64_Sym>(symbols, i);
+    const bool local = ELF64_ST_BIND(symbol.st_info) == STB_LOCAL ||
+                       ELF64_ST_VISIBILITY(symbol.st_other) != STV_DEFAULT;
+    const std::size_t end = names.find('\0', symbol.st_name);
+    if (symbol.st_shndx != SHN_UNDEF && !local && end != names.npos) {
+      exported.push_back(names.substr(symbol.st_name, end - symbol.st_name));
+    }
+  }
+  return exported;
+}
+
 std::string ElfFile::build_id() const {
   const std::string note = section(".note.gnu.build-id");
   if (note.size() < sizeof(Elf64_Nhdr) + 4) {

@@ -31,6 +31,8 @@ class ElfFile {
   std::string section(std::string_view name) const;
   /// The GNU build id in hexadecimal, or "".
   std::string build_id() const;
+  /// Symbols that other libraries can bind to.
+  std::vector<std::string> exported_symbols() const;
 
  private:
   struct Section {

@@ -119,7 +119,44 @@ bool has_maker(const PluginEntry& entry) {
           (kind == "tuner" && entry.tuner != nullptr));
 }
 
-std::vector<const PluginEntry*> load(const Library& library) {
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+/// Whether files can hold these parameters: names that lie in damaged data are no names.
+void check_names(const FieldSpec& spec) {
+  for (const FieldSpec& field : spec.children) {
+    const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
+                          field.type == FieldType::plugin;
+    if (!is_snake_case(field.name) && !(nameless && field.name.empty())) {
+      throw PluginError("a parameter is named '" + printable(field.name) +
+                        "', expected lower-case letters, digits and '_'");
+    }
+    check_names(field);
+  }
+}
+
+/// Uses the library as reading a file will, as far as that goes without one.
+void try_out(const Library& library) {
+  for (const PluginEntry* entry : load_library(library)) {
+    try {
+      FieldSpec all;
+      for (const ParamReport report = entry->describe(nullptr, "");
+           const BoundField& field : report.fields) {
+        all.children.push_back(field.spec);
+      }
+      check_names(all);
+    } catch (const std::exception& error) {
+      throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
+                        entry->name + "': " + error.what());
+    }
+  }
+}
+}  // namespace
+
+std::vector<const PluginEntry*> load_library(const Library& library) {
   boost::dll::shared_library& opened = open_for_ever(fs::absolute(library.file));
   if (!opened.has(kPluginListSymbol)) {
     throw PluginError(library.file.string() + " does not export " + kPluginListSymbol);
@@ -142,43 +179,6 @@ std::vector<const PluginEntry*> load(const Library& library) {
   }
   return entries;
 }
-
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
-
-/// Whether files can hold these parameters: names that lie in damaged data are no names.
-void check_names(const FieldSpec& spec) {
-  for (const FieldSpec& field : spec.children) {
-    const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
-                          field.type == FieldType::plugin;
-    if (!is_snake_case(field.name) && !(nameless && field.name.empty())) {
-      throw PluginError("a parameter is named '" + printable(field.name) +
-                        "', expected lower-case letters, digits and '_'");
-    }
-    check_names(field);
-  }
-}
-
-/// Uses the library as reading a file will, as far as that goes without one.
-void try_out(const Library& library) {
-  for (const PluginEntry* entry : load(library)) {
-    try {
-      FieldSpec all;
-      for (const ParamReport report = entry->describe(nullptr, "");
-           const BoundField& field : report.fields) {
-        all.children.push_back(field.spec);
-      }
-      check_names(all);
-    } catch (const std::exception& error) {
-      throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
-                        entry->name + "': " + error.what());
-    }
-  }
-}
-}  // namespace
 
 Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders)) {
   std::set<fs::path> seen;
@@ -276,7 +276,7 @@ const PluginEntry& Registry::get(std::string_view kind, std::string_view name) {
   if (!loaded) {
     // A damaged library can crash the dynamic loader, whose checks are few: a child goes first.
     in_child(library->file.string() + ": ", [&] { try_out(*library); });
-    loaded = std::make_unique<Loaded>(Loaded{load(*library)});
+    loaded = std::make_unique<Loaded>(Loaded{load_library(*library)});
   }
   return **std::find_if(
       loaded->entries.begin(), loaded->entries.end(),

@@ -74,6 +74,11 @@ class Registry {
 /// throws: what is wrong stands in `refused`.
 Library examine_library(const std::filesystem::path& file);
 
+/// Opens the library in this process, for ever: its entries, in the manifest's order. Throws
+/// PluginError where it cannot be opened, or does not hold what its manifest announces. A damaged
+/// one can end the process.
+std::vector<const PluginEntry*> load_library(const Library& library);
+
 /// Lower-case letters, digits and '_', the first a letter: a plugin, and a parameter, are so named.
 bool is_snake_case(std::string_view name);
 }  // namespace altiplan::host

@@ -54,7 +54,7 @@ class Rounding {
         curve_of_(curve_of),
         watch_(request.budget) {
     std::optional<Vec3> before = request.before_start();
-    for (std::size_t i = 0; i + 1 < route_.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < route_.size() && !budget_ended(); ++i) {
       LegExcess leg{Excess(leg_violations(before, route_[i], route_[i + 1], request, i)), {}};
       if (!leg.with_turn.none()) {
         leg.alone = Excess(leg_violations(std::nullopt, route_[i], route_[i + 1], request, i));
@@ -65,11 +65,16 @@ class Rounding {
   }
 
   RoundedRoute run() {
-    const Excess allowed(check(original_, request_).violations);
+    // Judging a long route takes its time: none is begun once the budget has ended.
+    const Excess allowed(budget_ended() ? std::vector<Violation>()
+                                        : check(original_, request_).violations);
+    if (budget_ended()) {
+      return {.route = original_, .budget_hit = true};
+    }
     const auto kept = [&] { return Excess(check(done_, request_).violations).within(allowed); };
     round_all();
     bool stands = kept();
-    if (!stands) {
+    if (!stands && !budget_ended()) {
       // A rule of the whole route, which no leg shows: looked at for every curve.
       allowed_ = &allowed;
       round_all();
@@ -85,6 +90,11 @@ class Rounding {
 
  private:
   static constexpr int kStays = -1;
+
+  bool budget_ended() {
+    result_.budget_hit = result_.budget_hit || watch_.spent(std::uint64_t(result_.attempts));
+    return result_.budget_hit;
+  }
 
   /// What a leg of the route breaks, and what it would break if no leg were before it.
   struct LegExcess {
@@ -138,8 +148,7 @@ class Rounding {
       if (!curve) {
         break;
       }
-      if (result_.budget_hit || watch_.spent(std::uint64_t(result_.attempts))) {
-        result_.budget_hit = true;
+      if (budget_ended()) {
         break;
       }
       ++result_.attempts;

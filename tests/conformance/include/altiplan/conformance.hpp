@@ -11,8 +11,8 @@
 #include "altiplan/plugin_abi.hpp"
 
 /// What every plugin of a kind owes, as cases for any test framework: the laws numbered in the
-/// interfaces' class comments, held against small seeded worlds. Fixed seeds, no clock: a finding
-/// comes again at every run.
+/// interfaces' class comments, held against small seeded worlds. Fixed seeds and, but for
+/// clock_cases_of, no clock: a finding comes again at every run.
 namespace altiplan::conformance {
 
 /// A law that was broken: which ("Planner law 1: …"), and the input that broke it.
@@ -74,4 +74,12 @@ struct Setup {
 };
 /// The cases of the entry's kind.
 Cases cases_of(const PluginEntry& entry, const Setup& setup = {});
+
+/// Those that look at the clock, unlike all others: deadlines and stops, kept within 50 ms. To be
+/// run while nothing else does.
+Cases clock_cases_of(const PluginEntry& entry, const Setup& setup = {});
+
+/// What the plugin answers to a list of questions of its kind, every number in digits enough to make
+/// it again: equal parameters and seeds give equal text, in any process.
+std::string answers_of(const PluginEntry& entry, const Setup& setup = {});
 }  // namespace altiplan::conformance

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "altiplan/conformance.hpp"
+
+namespace altiplan::conformance {
+
+/// The cases may outlive the caller's values.
+inline std::shared_ptr<const Value> kept(const Value* value) {
+  return value != nullptr ? std::make_shared<const Value>(*value) : nullptr;
+}
+
+/// Calls `visit` with the factory of the entry's kind; what it returns, or its type's default where
+/// the entry makes nothing.
+template <class Visit>
+auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit& visit) {
+  const std::shared_ptr<const Value> with = kept(parameters);
+  using Result = decltype(visit(Factory<Planner>()));
+  if (entry.environment != nullptr) {
+    return visit(EnvironmentFactory(
+        [entry, with](const Site& site) { return entry.environment(with.get(), site); }));
+  }
+  if (entry.constraint != nullptr) {
+    return visit(Factory<Constraint>([entry, with] { return entry.constraint(with.get()); }));
+  }
+  if (entry.planner != nullptr) {
+    return visit(Factory<Planner>([entry, with] { return entry.planner(with.get()); }));
+  }
+  if (entry.local_planner != nullptr) {
+    return visit(Factory<LocalPlanner>([entry, with] { return entry.local_planner(with.get()); }));
+  }
+  if (entry.smoother != nullptr) {
+    return visit(Factory<Smoother>([entry, with] { return entry.smoother(with.get()); }));
+  }
+  if (entry.tuner != nullptr) {
+    return visit(Factory<Tuner>([entry, with] { return entry.tuner(with.get()); }));
+  }
+  return Result();
+}
+
+/// One callable of several, for with_factory.
+template <class... Visits>
+struct Overloaded : Visits... {
+  using Visits::operator()...;
+};
+template <class... Visits>
+Overloaded(Visits...) -> Overloaded<Visits...>;
+}  // namespace altiplan::conformance

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "file_watch.hpp"
+
+#include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/ioctl.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <future>
+#include <thread>
+
+namespace altiplan::cli {
+namespace fs = std::filesystem;
+namespace {
+
+/// A system call that changes files: which of its arguments is the path, and which the folder that
+/// the path starts from (-1: the working folder) and the flags of open (-1: none).
+struct Call {
+  int number;
+  const char* does;
+  int path;
+  int folder = -1;
+  int flags = -1;
+};
+constexpr Call kCalls[] = {
+    {SYS_openat, "opens", 1, 0, 2},
+    {SYS_mkdirat, "makes the folder", 1, 0},
+    {SYS_unlinkat, "removes", 1, 0},
+    {SYS_renameat, "renames", 1, 0},
+    {SYS_renameat2, "renames", 1, 0},
+    {SYS_truncate, "truncates", 0},
+    {SYS_linkat, "makes the link", 3, 2},
+    {SYS_symlinkat, "makes the link", 2, 1},
+    {SYS_mknodat, "makes", 1, 0},
+#ifdef SYS_open  // the ones of old, of x86-64
+    {SYS_open, "opens", 0, -1, 1},
+    {SYS_creat, "opens", 0},
+    {SYS_mkdir, "makes the folder", 0},
+    {SYS_rmdir, "removes", 0},
+    {SYS_unlink, "removes", 0},
+    {SYS_rename, "renames", 0},
+    {SYS_link, "makes the link", 1},
+    {SYS_symlink, "makes the link", 1},
+    {SYS_mknod, "makes", 0},
+#endif
+};
+
+/// Those calls wait for the listener's answer, all others pass. -1 where the system refuses.
+int install_filter() {
+  std::vector<sock_filter> program{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr))};
+  for (const Call& call : kCalls) {
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, std::uint32_t(call.number), 0, 1));
+    program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_USER_NOTIF));
+  }
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+    return -1;
+  }
+  return int(
+      ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &filter));
+}
+
+/// Text of another thread, or process, that may have gone meanwhile.
+std::string text_at(pid_t process, std::uint64_t address) {
+  std::string text;
+  while (text.size() < 4096) {
+    std::array<char, 256> part;
+    // Not beyond the end of a page, where the next one need not be there.
+    const std::size_t room = part.size() - address % part.size();
+    const iovec here{part.data(), room};
+    const iovec there{reinterpret_cast<void*>(address), room};  // NOLINT: as the kernel has it
+    const ssize_t got = ::process_vm_readv(process, &here, 1, &there, 1, 0);
+    if (got <= 0) {
+      return text;
+    }
+    const char* const end = std::find(part.data(), part.data() + got, '\0');
+    text.append(part.data(), std::size_t(end - part.data()));
+    if (end != part.data() + got) {
+      return text;
+    }
+    address += std::uint64_t(got);
+  }
+  return text;
+}
+
+fs::path whole_path(const seccomp_notif& asked, const Call& call) {
+  const auto argument = [&](int at) { return asked.data.args[std::size_t(at)]; };
+  const auto process = pid_t(asked.pid);
+  const fs::path path = text_at(process, argument(call.path));
+  const int folder = call.folder < 0 ? AT_FDCWD : int(argument(call.folder));
+  const std::string from = folder == AT_FDCWD ? "/cwd" : "/fd/" + std::to_string(folder);
+  std::error_code error;
+  const fs::path base = fs::read_symlink("/proc/" + std::to_string(process) + from, error);
+  // What a link leads to counts; the last part may be yet to be made.
+  const fs::path whole = (base / path).lexically_normal();
+  return fs::weakly_canonical(whole.parent_path(), error) / whole.filename();
+}
+
+bool below(const fs::path& path, const fs::path& folder) {
+  const auto parted = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return parted.first == folder.end();
+}
+}  // namespace
+
+FileWatch::FileWatch(fs::path scratch) : scratch_(fs::canonical(scratch)) {
+  std::promise<int> listener;
+  // The thread is made before the filter, which therefore is not its own.
+  std::thread([this, of = listener.get_future()]() mutable { serve(of.get()); }).detach();
+  const int made = install_filter();
+  works_ = made >= 0;
+  listener.set_value(made);
+}
+
+void FileWatch::serve(int listener) {
+  while (listener >= 0) {
+    seccomp_notif asked{};
+    if (::ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) != 0) {
+      continue;  // the caller has gone
+    }
+    const auto call = std::find_if(std::begin(kCalls), std::end(kCalls),
+                                   [&](const Call& one) { return one.number == asked.data.nr; });
+    const bool reads = call->flags >= 0 && (asked.data.args[std::size_t(call->flags)] &
+                                            (O_WRONLY | O_RDWR | O_CREAT | O_TRUNC)) == 0;
+    if (!reads) {
+      const fs::path path = whole_path(asked, *call);
+      if (!below(path, scratch_) && !below(path, "/dev") && !below(path, "/proc/self")) {
+        note(std::string(call->does) + " " + path.string() +
+             (call->flags >= 0 ? " for writing" : ""));
+      }
+    }
+    seccomp_notif_resp answer{};
+    answer.id = asked.id;
+    answer.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;
+    ::ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &answer);
+  }
+}
+
+void FileWatch::note(const std::string& what) {
+  constexpr std::size_t kMost = 5;
+  const std::lock_guard lock(mutex_);
+  if (written_.size() < kMost && std::count(written_.begin(), written_.end(), what) == 0) {
+    written_.push_back(what);
+  }
+}
+
+std::vector<std::string> FileWatch::written() const {
+  const std::lock_guard lock(mutex_);
+  return written_;
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugin_test.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "altiplan/error.hpp"
+#include "host/registry/elf_file.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using conformance::Case;
+using conformance::Cases;
+using conformance::Finding;
+
+constexpr const char* kManifest = "Library: a manifest that fits this altiplan";
+constexpr const char* kLoads = "Library: loads, every symbol found, and holds what it announces";
+constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
+
+Outcome manifest_fits(const host::Library& library) {
+  if (library.refused.empty()) {
+    return {};
+  }
+  return {{{kManifest, library.refused}}, "", ""};
+}
+
+Outcome exports_one_symbol(const host::Library& library) {
+  Outcome outcome;
+  try {
+    for (const std::string& symbol : host::ElfFile(library.file).exported_symbols()) {
+      if (symbol != kPluginListSymbol && outcome.findings.size() < 3) {
+        outcome.findings.push_back({kSymbols, "it exports " + symbol});
+      }
+    }
+  } catch (const host::ElfError& error) {
+    outcome.findings.push_back({kSymbols, error.what()});
+  }
+  return outcome;
+}
+
+Outcome loads(const host::Library& library) {
+  try {
+    host::load_library(library);
+  } catch (const PluginError& error) {
+    return {{{kLoads, error.what()}}, "", ""};
+  }
+  return {};
+}
+
+/// An entry of the kind that makes nothing: which cases there are, the kind alone decides.
+PluginEntry stub_of(const Manifest& plugin) {
+  PluginEntry entry{};
+  const std::string_view kind = plugin.kind;
+  if (kind == "environment") {
+    entry.environment = [](const Value*, const Site&) { return std::unique_ptr<Environment>(); };
+  } else if (kind == "constraint") {
+    entry.constraint = [](const Value*) { return std::unique_ptr<Constraint>(); };
+  } else if (kind == "planner") {
+    entry.planner = [](const Value*) { return std::unique_ptr<Planner>(); };
+  } else if (kind == "local_planner") {
+    entry.local_planner = [](const Value*) { return std::unique_ptr<LocalPlanner>(); };
+  } else if (kind == "smoother") {
+    entry.smoother = [](const Value*) { return std::unique_ptr<Smoother>(); };
+  } else {
+    entry.tuner = [](const Value*) { return std::unique_ptr<Tuner>(); };
+  }
+  return entry;
+}
+
+/// Makes the cases of a plugin anew, in the process that runs one of them.
+class PluginUnderTest {
+ public:
+  PluginUnderTest(const PluginToCheck& what, const host::Library& library, const Manifest& plugin,
+                  const ParameterSet& set)
+      : what_(what), library_(library), plugin_(plugin), set_(set) {}
+
+  const PluginEntry& load() const {
+    static std::vector<const PluginEntry*> entries;
+    entries = host::load_library(library_);
+    return **std::find_if(entries.begin(), entries.end(), [&](const PluginEntry* entry) {
+      return std::strcmp(entry->kind, plugin_.kind) == 0 &&
+             std::strcmp(entry->name, plugin_.name) == 0;
+    });
+  }
+  /// Why it cannot be set up here; "" where it can.
+  std::string obstacle() const {
+    const std::string layer = set_.missing_layer(registry());
+    return layer.empty() ? "" : "no library offers the layer '" + layer + "' of its set";
+  }
+  conformance::Setup setup() const { return with_options(set_.setup(registry())); }
+  /// As far as the names of cases depend on it.
+  conformance::Setup named_setup() const { return with_options({}); }
+  const Manifest& plugin() const { return plugin_; }
+
+ private:
+  host::Registry& registry() const {
+    static host::Registry all(host::Registry::search_path(what_.plugin_path));
+    return all;
+  }
+  conformance::Setup with_options(conformance::Setup setup) const {
+    setup.options.seed = what_.seed;
+    setup.options.rounds = what_.rounds;
+#ifndef ALTIPLAN_SANITIZED
+    setup.options.allocations = allocations_of_this_thread;
+#endif
+    return setup;
+  }
+
+  PluginToCheck what_;
+  host::Library library_;
+  Manifest plugin_;
+  ParameterSet set_;
+};
+
+using CasesOf = Cases (*)(const PluginEntry&, const conformance::Setup&);
+
+/// A test for each case; it makes the case again, of the plugin itself.
+std::vector<PluginTest> tests_of_cases(const std::shared_ptr<const PluginUnderTest>& subject,
+                                       const std::string& prefix, CasesOf cases_of) {
+  std::vector<PluginTest> tests;
+  for (const Case& named : cases_of(stub_of(subject->plugin()), subject->named_setup())) {
+    tests.push_back({prefix + named.name, [subject, cases_of, name = named.name] {
+                       for (const Case& one : cases_of(subject->load(), subject->setup())) {
+                         if (one.name == name) {
+                           return Outcome{one.run(), "", ""};
+                         }
+                       }
+                       throw Error("there is no case " + name);
+                     }});
+  }
+  return tests;
+}
+
+void add(std::vector<PluginTest>& all, std::vector<PluginTest> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
+Cases entry_cases(const PluginEntry& entry, const conformance::Setup&) {
+  return conformance::plugin_cases(entry);
+}
+
+std::vector<PluginTest> tests_of_set(const std::shared_ptr<const PluginUnderTest>& subject,
+                                     const std::string& prefix) {
+  const std::string obstacle = subject->obstacle();
+  std::vector<PluginTest> all = tests_of_cases(subject, prefix, conformance::cases_of);
+  add(all, process_tests(
+               prefix, [subject]() -> const PluginEntry& { return subject->load(); },
+               [subject] { return subject->setup(); }));
+  std::vector<PluginTest> timed = tests_of_cases(subject, prefix, conformance::clock_cases_of);
+  for (PluginTest& test : timed) {
+    test.alone = true;
+  }
+  add(all, std::move(timed));
+  for (PluginTest& test : all) {
+    if (!obstacle.empty()) {
+      test.run = [obstacle] { return Outcome{{}, obstacle, ""}; };
+    }
+  }
+  return all;
+}
+
+void expect_known_plugins(const PluginToCheck& what, const host::Library& library) {
+  for (const ParameterSet& set : what.sets) {
+    const bool known = !set.plugin || std::any_of(library.plugins.begin(), library.plugins.end(),
+                                                  [&](const Manifest& plugin) {
+                                                    return *set.plugin == plugin.name;
+                                                  });
+    if (!known) {
+      throw Error("a set of parameters is for '" + *set.plugin + "', which " +
+                  library.file.string() + " does not offer");
+    }
+  }
+}
+}  // namespace
+
+std::vector<PluginTest> tests_of(const PluginToCheck& what) {
+  const host::Library library = host::examine_library(what.library);
+  expect_known_plugins(what, library);
+  std::vector<PluginTest> all{
+      {"library/manifest", [library] { return manifest_fits(library); }},
+      {"library/exports_one_symbol", [library] { return exports_one_symbol(library); }}};
+  if (!library.refused.empty()) {
+    return all;  // nothing of it may run
+  }
+  all.push_back({"library/loads", [library] { return loads(library); }});
+  for (const Manifest& plugin : library.plugins) {
+    const std::string prefix = std::string(plugin.kind) + "/" + plugin.name + "/";
+    std::vector<ParameterSet> sets;
+    std::copy_if(
+        what.sets.begin(), what.sets.end(), std::back_inserter(sets),
+        [&](const ParameterSet& set) { return set.plugin.value_or(plugin.name) == plugin.name; });
+    if (sets.empty()) {
+      sets.emplace_back();
+    }
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      const auto subject = std::make_shared<const PluginUnderTest>(what, library, plugin, sets[i]);
+      if (i == 0) {
+        add(all, tests_of_cases(subject, prefix, entry_cases));
+      }
+      add(all, tests_of_set(subject, sets.size() > 1 ? prefix + std::to_string(i) + "/" : prefix));
+    }
+  }
+  return all;
+}
+}  // namespace altiplan::cli

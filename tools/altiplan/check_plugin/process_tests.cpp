@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <dirent.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <set>
+
+#include "file_watch.hpp"
+#include "host/run/process_guard.hpp"
+#include "plugin_test.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using conformance::answers_of;
+
+constexpr const char* kLeaves =
+    "Process: locale, working folder, signal handlers, floating-point mode, environment, open "
+    "files and threads stay as they were";
+constexpr const char* kStdout = "Process: nothing is written to stdout";
+constexpr const char* kFiles = "Process: nothing is written outside the scratch folder (TMPDIR)";
+constexpr const char* kMemory = "Process: memory is given back";
+
+std::size_t entries_in(const char* folder) {
+  std::size_t count = 0;
+  if (DIR* open = ::opendir(folder)) {
+    while (::readdir(open) != nullptr) {
+      ++count;
+    }
+    ::closedir(open);
+  }
+  return count;
+}
+
+std::multiset<std::string> environment_variables() {
+  std::multiset<std::string> all;
+  for (char** one = environ; *one != nullptr; ++one) {
+    all.insert(*one);
+  }
+  return all;
+}
+
+/// A library that it uses may keep a file or a thread from the first use on: what the second use
+/// leaves behind, every further one will.
+Outcome leaves_the_process(const LoadPlugin& load, const MakeSetup& make_setup) {
+  const conformance::Setup setup = make_setup();
+  host::ProcessGuard guard;
+  const auto variables = environment_variables();
+  const PluginEntry& entry = load();
+  (void)answers_of(entry, setup);
+  const std::size_t files = entries_in("/proc/self/fd");
+  const std::size_t threads = entries_in("/proc/self/task");
+  (void)answers_of(entry, setup);
+  Outcome outcome;
+  const auto expect = [&](bool kept, const std::string& what) {
+    if (!kept) {
+      outcome.findings.push_back({kLeaves, what});
+    }
+  };
+  const std::string changed = guard.restore();
+  expect(changed.empty(), "it changed " + changed);
+  expect(environment_variables() == variables, "it changed an environment variable");
+  const std::size_t files_now = entries_in("/proc/self/fd");
+  expect(files_now <= files,
+         "it left " + std::to_string(files_now - files) + " more open files behind");
+  const std::size_t threads_now = entries_in("/proc/self/task");
+  expect(threads_now <= threads,
+         "it left " + std::to_string(threads_now - threads) + " more threads behind");
+  return outcome;
+}
+
+Outcome writes_nothing_to_stdout(const LoadPlugin& load, const MakeSetup& make_setup) {
+  const conformance::Setup setup = make_setup();
+  host::ProcessGuard guard;
+  (void)answers_of(load(), setup);
+  guard.restore();
+  if (guard.pass_on_output()) {
+    return {{{kStdout, "it wrote to stdout, which is the result's alone"}}, "", ""};
+  }
+  return {};
+}
+
+Outcome writes_no_files(const LoadPlugin& load, const MakeSetup& make_setup) {
+  const conformance::Setup setup = make_setup();
+  FileWatch& watch = *new FileWatch(std::filesystem::temp_directory_path());  // to the end
+  if (!watch.works()) {
+    return {{}, "this system does not let a process watch its own system calls (seccomp)", ""};
+  }
+  (void)answers_of(load(), setup);
+  Outcome outcome;
+  for (const std::string& file : watch.written()) {
+    outcome.findings.push_back({kFiles, "it " + file});
+  }
+  return outcome;
+}
+
+std::size_t memory_in_use() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+/// Caches may fill in the first rounds; what grows in each of the later ones has no end.
+Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup) {
+  constexpr int kRounds = 12;
+  constexpr std::size_t kMost = 4096;
+  const conformance::Setup setup = make_setup();
+  const PluginEntry& entry = load();
+  std::size_t least = ~std::size_t(0);
+  std::size_t before = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    (void)answers_of(entry, setup);
+    const std::size_t now = memory_in_use();
+    if (round >= kRounds / 2) {
+      least = std::min(least, now > before ? now - before : 0);
+    }
+    before = now;
+  }
+  if (least > kMost) {
+    return {{{kMemory, "equal work takes " + std::to_string(least) +
+                           " bytes more each time that it is done"}},
+            "",
+            ""};
+  }
+  return {};
+}
+}  // namespace
+
+std::vector<PluginTest> process_tests(const std::string& prefix, const LoadPlugin& load,
+                                      const MakeSetup& setup) {
+  const auto bound = [&](Outcome (*test)(const LoadPlugin&, const MakeSetup&)) {
+    return [load, setup, test] { return test(load, setup); };
+  };
+  std::vector<PluginTest> all{
+      {prefix + "leaves_the_process_as_it_was", bound(leaves_the_process)},
+      {prefix + "writes_nothing_to_stdout", bound(writes_nothing_to_stdout)},
+      {prefix + "writes_no_files", bound(writes_no_files)},
+      {prefix + "memory_is_given_back", bound(memory_is_given_back)},
+      {prefix + "same_answers_in_two_processes", [load, setup] {
+         return Outcome{{}, "", answers_of(load(), setup())};
+       }}};
+  all.back().in_two_processes = true;
+  return all;
+}
+}  // namespace altiplan::cli

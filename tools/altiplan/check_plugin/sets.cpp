@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sets.hpp"
+
+#include "altiplan/error.hpp"
+#include "altiplan/world.hpp"
+#include "host/config/yaml.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+std::shared_ptr<const World> world_of(const std::vector<Value>& layers, host::Registry& registry) {
+  World world;
+  for (const Value& layer : layers) {
+    const std::string& plugin = layer.entries.at(0).key;
+    Site site;
+    site.before = &world;
+    site.frame = world.frame();
+    const std::shared_ptr<const Environment> made =
+        registry.get("environment", plugin).environment(&layer.entries[0].value, site);
+    world = world.with({plugin, plugin, made, true});
+    if (const auto frame = made->frame()) {
+      world = world.with_frame(*frame);
+    }
+  }
+  return std::make_shared<const World>(std::move(world));
+}
+}  // namespace
+
+void VolumeParams::describe(Fields& f) {
+  f("min_m", min_m).required().doc("lower corner");
+  f("max_m", max_m).required().doc("upper corner");
+  f.check((min_m.array() < max_m.array()).all(), "min_m must be below max_m");
+}
+
+void ParameterSet::describe(Fields& f) {
+  f("plugin", plugin).doc("of a library of several: the one that the set is for");
+  f("with", with).doc("the plugin's parameters");
+  f("tighter", tighter).doc("of a constraint: stricter ones");
+  f("unit_m", unit_m).greater_than(0).doc("what a planner or smoother resolves well");
+  f("iterations", iterations).at_least(1).doc("what one plan may use");
+  f("volume", volume).doc("where an environment is looked at");
+  f("before", before).doc("layers before an environment, as in a scenario");
+}
+
+std::string ParameterSet::missing_layer(const host::Registry& registry) const {
+  for (const Value& layer : before) {
+    if (registry.offering("environment", layer.entries.at(0).key) == nullptr) {
+      return layer.entries[0].key;
+    }
+  }
+  return "";
+}
+
+conformance::Setup ParameterSet::setup(host::Registry& registry) const {
+  conformance::Setup setup;
+  setup.with = &with;
+  setup.tighter = tighter ? &*tighter : nullptr;
+  setup.before = world_of(before, registry);
+  setup.options.unit_m = unit_m;
+  setup.options.iterations = std::uint64_t(iterations);
+  if (volume) {
+    setup.options.volume = Box{volume->min_m, volume->max_m};
+  }
+  return setup;
+}
+
+std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file) {
+  const Value list = host::load_yaml(file);
+  std::vector<Problem> problems;
+  if (list.kind != Value::Kind::list || list.items.empty()) {
+    problems.push_back({list.where, "",
+                        "expected a list of sets of parameters, found " +
+                            (list.items.empty() ? "none" : list.what())});
+  }
+  std::vector<ParameterSet> sets(list.items.size());
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const ParamReport report = bind(sets[i], &list.items[i], std::to_string(i));
+    problems.insert(problems.end(), report.problems.begin(), report.problems.end());
+    for (const Value& layer : sets[i].before) {
+      if (layer.kind != Value::Kind::map || layer.entries.size() != 1) {
+        problems.push_back({layer.where, std::to_string(i) + ".before",
+                            "expected a layer as in a scenario, found " + layer.what()});
+      }
+    }
+  }
+  if (!problems.empty()) {
+    throw ConfigError(std::move(problems));
+  }
+  return sets;
+}
+}  // namespace altiplan::cli
