@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""interfaces_test.py SOURCE: the pages of docs/interfaces say what the code does.
+
+Between their marks stand the laws of the headers and the files of `altiplan new`, which
+tests/sdk/new_test.py builds; with ALTIPLAN_UPDATE=1 they are written. What a page quotes as a message is in
+the source, and no building block of the kit is missing from its page.
+"""
+import os
+import pathlib
+import re
+import sys
+
+SOURCE = pathlib.Path(sys.argv[1])
+PAGES = SOURCE / "docs/interfaces"
+TEMPLATES = SOURCE / "tools/altiplan/templates"
+KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name != "shared")
+MARK = re.compile(r"^(<!-- (laws of|example|test) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
+COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)
+
+
+def laws(text):
+    """[(class, [law])] of a header, in its order. Laws are numbered from 1."""
+    found = []
+    for comment, name in COMMENT_AND_CLASS.findall(text):
+        words = " ".join(re.sub(r"^ *///", "", comment, flags=re.M).split())
+        _, begins, listed = words.partition("Laws")
+        parts = []
+        while begins and (law := re.search(rf"(?:^|\s){len(parts) + 1}\. ", listed)):
+            parts.append(listed[:law.start()].strip())
+            listed = listed[law.end():]
+        if parts:
+            found.append((name, [*parts[1:], listed.strip()]))
+    return found
+
+
+def law_list(kind):
+    found = laws((SOURCE / f"framework/include/altiplan/{kind}.hpp").read_text())
+    assert found, f"no laws in the header of {kind}"
+    return "\n".join(f"Of `{name}`, in `altiplan/{kind}.hpp`:\n\n"
+                     + "".join(f"{number}. {law}\n" for number, law in enumerate(listed, 1))
+                     for name, listed in found)
+
+
+def file_of(kind, name):
+    own = TEMPLATES / kind / name
+    file = own if own.exists() else TEMPLATES / "shared" / name
+    return (f"`{name}`:\n\n```cpp\n{file.read_text()}```\n"
+            .replace("@name@", f"my_{kind}").replace("@kind@", kind))
+
+
+def filled(match):
+    opening, what, kind, closing = match.groups()
+    text = (law_list(kind) if what == "laws of" else
+            file_of(kind, "@name@.cpp" if what == "example" else "@name@_test.cpp"))
+    return opening + text + closing
+
+
+def up_to_date(page):
+    text = page.read_text()
+    wanted = MARK.sub(filled, text)
+    if os.environ.get("ALTIPLAN_UPDATE") == "1":
+        page.write_text(wanted)
+        return []
+    return [] if text == wanted else [f"{page}: out of date; ALTIPLAN_UPDATE=1 mends it"]
+
+
+def parts_of(kind):
+    text = (PAGES / f"{kind}.md").read_text()
+    marks = [(what, of) for _, what, of, _ in MARK.findall(text)]
+    return ([] if marks == [("laws of", kind), ("example", kind), ("test", kind)] else
+            [f"{kind}.md: expected the marks of its laws, example and test, found {marks}"])
+
+
+def sources():
+    """What messages are made of: string literals, those side by side as one."""
+    folders = ["framework/src", "framework/host", "tests/conformance"]
+    text = "\n".join(file.read_text() for folder in folders
+                     for file in sorted((SOURCE / folder).rglob("*.[ch]pp")))
+    return re.sub(r'"\s*\n?\s*"', "", text)
+
+
+def unknown_messages(page, code):
+    """Of the table of mistakes, what stands in code marks in its second column."""
+    _, _, table = page.read_text().partition("## Common mistakes")
+    quoted = [message for row in re.findall(r"^\|.*\|(.*)\|$", table, re.M)
+              for message in re.findall(r"`([^`]+)`", row)]
+    parts = [(message, part.strip(" ,")) for message in quoted for part in message.split("…")]
+    return [f"{page.name}: no message has the words '{part}' of '{message}'"
+            for message, part in parts if part not in code]
+
+
+def main():
+    problems = []
+    code = sources()
+    for kind in KINDS:
+        problems += parts_of(kind)
+    for page in sorted(PAGES.glob("*.md")):
+        problems += up_to_date(page) + unknown_messages(page, code)
+    kit = (PAGES / "kit.md").read_text()
+    headers = {file.name for file in (SOURCE / "framework/include/altiplan/kit").glob("*.hpp")}
+    named = set(re.findall(r"`(\w+\.hpp)`", kit))
+    problems += [f"kit.md: does not list {name}" for name in sorted(headers - named)]
+    problems += [f"kit.md: there is no {name}" for name in sorted(named - headers)]
+    if problems:
+        sys.exit("\n".join(problems))
+
+
+main()
