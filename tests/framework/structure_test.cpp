@@ -203,7 +203,7 @@ TEST(Structure, EverySourceFileNamesItsLicence) {
         files(folder, {".cpp", ".hpp", ".cmake", "CMakeLists.txt", ".py", ".sh", ".bash"});
     all.insert(all.end(), some.begin(), some.end());
   }
-  for (const char* script : {"tools/setup", "tools/run", "tools/test", ".ci/run"}) {
+  for (const char* script : {"tools/docs", "tools/setup", "tools/run", "tools/test", ".ci/run"}) {
     all.push_back(kSource / script);
   }
   for (const fs::path& file : all) {
