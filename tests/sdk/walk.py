@@ -2,8 +2,8 @@
 """Walks through a page of docs/ as a reader would: writes the files that it shows, runs its
 commands and looks for the output that it shows.
 
-The page's files are those of a folder of tests/sdk; with ALTIPLAN_UPDATE=1 they are written into
-the page first.
+The page's files are those of a folder of tests/sdk, and what else it is given; with ALTIPLAN_UPDATE=1 they
+are written into the page first.
 """
 import os
 import pathlib
@@ -65,9 +65,11 @@ class Shell:
 
 
 class Page:
-    def __init__(self, page, files):
+    def __init__(self, page, files, others=None):
+        """`others`: contents of files, by name, that stand elsewhere."""
         self.page = page
-        self.files = files
+        self.contents = {str(file.relative_to(files)): file.read_text()
+                         for file in files.rglob("*") if file.is_file()} | (others or {})
 
     def fail(self, text):
         sys.exit(f"{self.page.name}: {text}")
@@ -76,7 +78,7 @@ class Page:
         text = self.page.read_text()
         if os.environ.get("ALTIPLAN_UPDATE") == "1":
             text = FILE_BLOCK.sub(
-                lambda m: f"`{m[1]}`:\n\n```{m[2]}\n{(self.files / m[1]).read_text()}```", text)
+                lambda m: f"`{m[1]}`:\n\n```{m[2]}\n{self.contents[m[1]]}```", text)
             self.page.write_text(text)
         return text
 
@@ -91,8 +93,7 @@ class Page:
         """The folder that the reader ends in, and the shell."""
         shell = Shell(home)
         folder = home
-        unused = {str(file.relative_to(self.files))
-                  for file in self.files.rglob("*") if file.is_file()}
+        unused = set(self.contents)
         for step in self.steps():
             if step[1] == "file":
                 self.write(folder, *step[2:])
@@ -108,7 +109,7 @@ class Page:
         return folder, shell
 
     def write(self, folder, name, content):
-        if content != (self.files / name).read_text():
-            self.fail(f"{name} differs from {self.files / name}; ALTIPLAN_UPDATE=1 mends it")
+        if content != self.contents.get(name):
+            self.fail(f"{name} differs from the file of that name; ALTIPLAN_UPDATE=1 mends it")
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content)

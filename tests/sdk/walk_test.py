@@ -13,7 +13,10 @@ import tempfile
 import walk
 
 SOURCE, BUILD = (pathlib.Path(argument) for argument in sys.argv[1:3])
-PAGE = walk.Page(SOURCE / "docs/writing-a-plugin.md", SOURCE / "tests/sdk/my_plugins")
+# The page's planner is the one that `altiplan new` writes.
+DOGLEG = (SOURCE / "tools/altiplan/templates/planner/@name@.cpp").read_text()
+PAGE = walk.Page(SOURCE / "docs/writing-a-plugin.md", SOURCE / "tests/sdk/my_plugins",
+                 {"dogleg/dogleg.cpp": DOGLEG.replace("@name@", "dogleg")})
 
 
 def points(route):
