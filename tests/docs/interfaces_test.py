@@ -34,8 +34,10 @@ def laws(text):
 
 
 def law_list(kind):
+    """The laws of the interface itself first."""
     found = laws((SOURCE / f"framework/include/altiplan/{kind}.hpp").read_text())
     assert found, f"no laws in the header of {kind}"
+    found.sort(key=lambda entry: entry[0].lower() != kind.replace("_", ""))
     return "\n".join(f"Of `{name}`, in `altiplan/{kind}.hpp`:\n\n"
                      + "".join(f"{number}. {law}\n" for number, law in enumerate(listed, 1))
                      for name, listed in found)

@@ -28,13 +28,21 @@ GROUPS = [
     ("Compare and tune", ["docs/studies.md", "docs/report.md", "docs/statistics.md",
                           "docs/study-*.md", "docs/tuning.md"]),
     ("Files", ["docs/files.md", "docs/result.md"]),
-    ("Interfaces", ["docs/interfaces/README.md", "docs/interfaces/*.md"]),
+    ("Interfaces", ["docs/interfaces/README.md", "docs/interfaces/request-and-world.md",
+                    *(f"docs/interfaces/{kind}.md" for kind in plugins.KINDS),
+                    "docs/interfaces/*.md"]),
     ("Plugins", plugins.KINDS),
     ("Papers", ["docs/papers/README.md", "docs/papers/*.md", "docs/benchmarks.md"]),
     ("Reference", ["docs/cli.md", "docs/api.md"]),
     ("Decisions", ["docs/decisions/README.md", "docs/decisions/*.md"]),
     ("The project", ["CONTRIBUTING.md", "CHANGELOG.md", "tools/viewer/*.md"]),
 ]
+API = """# The API
+
+[Classes, functions and headers](../api/index.html), by Doxygen from the comments of the public headers: the
+interfaces, what they are told, the kit, and the conformance suite. What a plugin needs of it at first stands
+in [Interfaces](interfaces/README.md).
+"""
 LISTED = {"docs/papers": "Papers, run again", "docs/decisions": "Decisions"}
 FENCE = re.compile(r"^( *)```.*?^\1```$", re.M | re.S)
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
@@ -125,6 +133,7 @@ def main():
         write(page, text, problems)
     for folder, heading in LISTED.items():
         write_list(folder, heading, problems)
+    (SOURCE / "docs/api.md").write_text(API)  # its link is Doxygen's to make
     groups = nav(problems)
     if problems:
         sys.exit("\n".join(problems))
