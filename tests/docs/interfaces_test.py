@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """interfaces_test.py SOURCE: the pages of docs/interfaces say what the code does.
 
-Between their marks stand the laws of the headers and the files of `altiplan new`, which
-tests/sdk/new_test.py builds; with ALTIPLAN_UPDATE=1 they are written. What a page quotes as a message is in
+Between their marks stand the laws of the headers, the files of `altiplan new`, which tests/sdk/new_test.py
+builds, and pieces of snippets.cpp; with ALTIPLAN_UPDATE=1 they are written. What a page quotes as a message is in
 the source, and no building block of the kit is missing from its page.
 """
 import os
 import pathlib
 import re
 import sys
+import textwrap
 
 SOURCE = pathlib.Path(sys.argv[1])
 PAGES = SOURCE / "docs/interfaces"
 TEMPLATES = SOURCE / "tools/altiplan/templates"
 KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name != "shared")
-MARK = re.compile(r"^(<!-- (laws of|example|test) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
+MARK = re.compile(r"^(<!-- (laws of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
 COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)
 
 
@@ -50,10 +51,17 @@ def file_of(kind, name):
             .replace("@name@", f"my_{kind}").replace("@kind@", kind))
 
 
+def snippet(name):
+    text = (SOURCE / "tests/docs/snippets.cpp").read_text()
+    code = re.search(rf"^ *// {name} {{\n(.*?)^ *// }}$", text, re.M | re.S)
+    return f"```cpp\n{textwrap.dedent(code[1])}```\n"
+
+
 def filled(match):
-    opening, what, kind, closing = match.groups()
-    text = (law_list(kind) if what == "laws of" else
-            file_of(kind, "@name@.cpp" if what == "example" else "@name@_test.cpp"))
+    opening, what, name, closing = match.groups()
+    text = {"laws of": law_list, "code": snippet,
+            "example": lambda kind: file_of(kind, "@name@.cpp"),
+            "test": lambda kind: file_of(kind, "@name@_test.cpp")}[what](name)
     return opening + text + closing
 
 
@@ -68,7 +76,7 @@ def up_to_date(page):
 
 def parts_of(kind):
     text = (PAGES / f"{kind}.md").read_text()
-    marks = [(what, of) for _, what, of, _ in MARK.findall(text)]
+    marks = [(what, of) for _, what, of, _ in MARK.findall(text) if what != "code"]
     return ([] if marks == [("laws of", kind), ("example", kind), ("test", kind)] else
             [f"{kind}.md: expected the marks of its laws, example and test, found {marks}"])
 
@@ -103,6 +111,10 @@ def main():
     named = set(re.findall(r"`(\w+\.hpp)`", kit))
     problems += [f"kit.md: does not list {name}" for name in sorted(headers - named)]
     problems += [f"kit.md: there is no {name}" for name in sorted(named - headers)]
+    shown = {name for page in PAGES.glob("*.md")
+             for _, what, name, _ in MARK.findall(page.read_text()) if what == "code"}
+    made = set(re.findall(r"// (\w+) {$", (SOURCE / "tests/docs/snippets.cpp").read_text(), re.M))
+    problems += [f"snippets.cpp: no page shows {name}" for name in sorted(made - shown)]
     if problems:
         sys.exit("\n".join(problems))
 

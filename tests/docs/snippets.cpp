@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pieces of code that pages of docs/interfaces show: what stands between `// name {` and
+// `// }` is written into the page by interfaces_test.py. Compiled, never run.
+#include <altiplan/kit/leg_rules.hpp>
+#include <altiplan/kit/leg_tree.hpp>
+#include <altiplan/kit/open_list.hpp>
+#include <altiplan/kit/point_grid.hpp>
+#include <altiplan/kit/scratch.hpp>
+#include <altiplan/plugin.hpp>
+
+namespace {
+using namespace altiplan;
+
+// parameters {
+struct Params {
+  double cell_m = 50;  // also int, bool, std::string, Vec3, Path, lists, structs with a describe
+  std::optional<double> range_m;
+  std::string order = "near";
+
+  void describe(Fields& f) {
+    f("cell_m", cell_m).unit("m").greater_than(0).doc("edge of a cell");
+    f("range_m", range_m).unit("m").at_least(1).doc("longest leg; default: no limit");
+    f("order", order).one_of({"near", "far"}).doc("which is tried first");
+    f.check(!range_m || *range_m >= cell_m, "range_m must be at least cell_m");
+  }
+};
+// }
+
+// session {
+class RoadmapSession final : public Session {
+ public:
+  explicit RoadmapSession(PlanResult first) : result_(std::move(first)) {}
+
+ private:
+  const PlanResult& do_result() const override { return result_; }
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change> changes,
+                              const Budget& budget) override;
+
+  PlanResult result_;
+};
+// }
+
+const PlanResult& RoadmapSession::do_update(const State&, const Goal&, std::shared_ptr<const World>,
+                                            std::span<const Change>, const Budget&) {
+  return result_;
+}
+
+void expand() {}
+
+void budget(const Request& request) {
+  // budget {
+  BudgetWatch watch(request.budget);
+  std::uint64_t expanded = 0;
+  while (!watch.spent(expanded)) {  // once an iteration, with what was done so far
+    expand();
+    ++expanded;
+  }
+  // }
+}
+
+Vec3 random(const Request& request, std::uint64_t i) {
+  // random {
+  RandomStream draw = request.random.sub("sample", i);
+  const Vec3 p = draw.in(request.volume);     // uniformly in a box
+  const double share = draw.uniform();        // from 0 to below 1; uniform(low, high)
+  const std::int64_t n = draw.integer(1, 6);  // both included
+  const double height = draw.normal();        // mean 0, deviation 1
+  // }
+  return p * share * double(n) * height;
+}
+
+void trace(const Request& request, std::int64_t node, std::int64_t parent, const Vec3& p) {
+  // trace {
+  if (request.trace != nullptr) {
+    TraceEvent event;
+    event.kind = TraceEvent::Kind::added;  // expanded, removed, rewired, iteration
+    event.node = node;
+    event.parent = parent;  // -1: a root
+    event.position = p;
+    request.trace->add(event);
+  }
+  // }
+}
+
+bool cells(const Request& request, const Vec3& p) {
+  // cells {
+  GridSpec spec;
+  spec.origin = request.volume.min;
+  spec.cell = Vec3(50, 50, 10);
+  spec.counts = {40, 40, 10};
+  spec.inflation = request.limits.min_clearance;
+  const std::shared_ptr<const VoxelGrid> grid = request.world->voxels(spec);
+  const Cell cell = spec.cell_of(p);  // may lie outside of the grid
+  const bool is_free = spec.holds(cell) && !grid->blocked(cell);
+  // }
+  return is_free;
+}
+
+std::size_t roadmap(const Request& request, const std::vector<Vec3>& samples) {
+  // roadmap {
+  kit::LegRules rules(request);  // of one search
+  kit::PointGrid points;
+  for (const Vec3& p : samples) {
+    if (rules.point_ok(p)) {
+      points.insert(p);  // returns its number: 0, 1, 2 …
+    }
+  }
+  std::vector<std::uint32_t> near;
+  points.within(request.start.position, 300, near);  // numbers of all within 300 m
+  for (const std::uint32_t n : near) {
+    if (rules.ok(request.before_start(), request.start.position, points.point(n))) {
+      // a leg that keeps every rule
+    }
+  }
+  // }
+  return points.size();
+}
+
+std::uint32_t open_list(double g, double h, std::uint32_t node) {
+  // open_list {
+  kit::OpenList open;
+  open.clear(1e-6);                               // metres; f that differ by less are equal
+  open.push(g + h, g, node);                      // again, where a better way to the node is found
+  const kit::OpenList::Entry first = open.pop();  // the least f; skip a node that was taken before
+  // }
+  return first.node;
+}
+
+class Planning {
+ public:
+  void plan() const {
+    // pool {
+    const auto tree = trees_.take();  // a unique_ptr, which gives it back at the end of the call
+    tree->clear();
+    // }
+  }
+
+ private:
+  // pool_member {
+  mutable kit::ScratchPool<kit::LegTree> trees_;  // a member of the planner
+  // }
+};
+}  // namespace
+
+// What is not shown of them.
+void use_the_snippets(const Request& request) {
+  Params params;
+  bind(params, nullptr);
+  RoadmapSession session({});
+  budget(request);
+  trace(request, 0, -1, random(request, 0));
+  cells(request, request.start.position);
+  roadmap(request, {});
+  open_list(0, 0, 0);
+  Planning().plan();
+}
