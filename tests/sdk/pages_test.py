@@ -15,7 +15,7 @@ import walk
 SOURCE, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 WALKED = {"docs/writing-a-plugin.md", "docs/planner-with-the-kit.md"}
 NOT_RUN = {
-    r"tools/(run|setup|test)\b": "fetches packages, and builds all",
+    r"tools/(run|setup|test|docs|package)\b": "fetches packages, and builds all",
     r"tools/bench/": "draws what a benchmark of minutes measured",
     r"(cmake|ctest)\b": "builds all; that its outcome works, the other commands show",
     r"(cd|export) ": "of another folder",
@@ -24,9 +24,11 @@ NOT_RUN = {
     r"altiplan tune\b": "minutes; tests/tune tunes less",
     r"altiplan study configs/studies/(?!quick)": "minutes to hours; study_every_study runs a part of each",
     r"altiplan report (?!quick\.db)": "of those studies",
-    r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.": "study.yaml is the reader's; tests/study",
+    r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.":
+        "study.yaml is the reader's; tests/study",
     r"altiplan view .*--png": "needs a browser; the tests viewer_… look at pictures",
-    r"gdb\b|~/altiplan-asan|altiplan run first\.yaml": "in a debugger, or with sanitizers",
+    r"gdb\b|~/altiplan-asan|altiplan (run first\.yaml|check-plugin)":
+        "of the reader's plugin, in a debugger or with sanitizers; sdk_walk and sdk_new make such",
 }
 COMMAND = re.compile(r"^(?:\$ )?((?:altiplan(?:-\w[\w-]*)?|tools/[\w/.]+|build/[\w/]+|~/[\w/-]+|cmake|"
                      r"ctest|cd|export|gdb)(?: .*|$))", re.M)
@@ -63,7 +65,7 @@ def main():
         (home / "build/release").symlink_to(BUILD)
         shell = walk.Shell(home)
         shell.run(f"export PATH={BUILD}/bin:$PATH")
-        for page in [SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md"))]:
+        for page in [*sorted(SOURCE.glob("*.md")), *sorted((SOURCE / "docs").rglob("*.md"))]:
             if str(page.relative_to(SOURCE)) in WALKED:
                 continue
             text = page.read_text()

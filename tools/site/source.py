@@ -19,8 +19,9 @@ SOURCE = OUT / "source"
 # Groups of the navigation, in the order that a newcomer needs, and their pages. What no page of the
 # repository matches is not there yet, or no longer.
 GROUPS = [
-    ("Start", ["README.md", "docs/getting-started.md", "docs/gallery.md", "docs/architecture.md"]),
-    ("Plan and fly", ["docs/view.md", "docs/missions.md", "docs/packages.md"]),
+    ("Start", ["README.md", "docs/getting-started.md", "docs/packages.md", "docs/gallery.md",
+               "docs/architecture.md"]),
+    ("Plan and fly", ["docs/view.md", "docs/missions.md"]),
     ("Write a plugin", ["docs/writing-a-plugin.md", "docs/planner-with-the-kit.md",
                         "docs/check-plugin.md", "docs/conformance.md",
                         "docs/debugging-a-plugin.md", "docs/misbehaving-plugins.md",
