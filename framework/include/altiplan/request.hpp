@@ -37,6 +37,7 @@ struct Budget {
 
 /// Asked once an iteration. Iterations are compared every time; the stop token and the clock are
 /// asked every time while iterations take a millisecond or more, and every 512th of quick ones.
+/// What is spent stays spent.
 class BudgetWatch {
  public:
   explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
@@ -48,11 +49,12 @@ class BudgetWatch {
       return false;
     }
     const Budget::Clock::time_point now = Budget::Clock::now();
-    every_ = now - asked_ < std::chrono::milliseconds(1) ? std::min(2 * every_, 512) : 1;
+    cancelled_ = budget_.stop.stop_requested();
+    const bool ended = cancelled_ || (budget_.deadline && now >= *budget_.deadline);
+    every_ = ended || now - asked_ >= std::chrono::milliseconds(1) ? 1 : std::min(2 * every_, 512);
     calls_left_ = every_;
     asked_ = now;
-    cancelled_ = budget_.stop.stop_requested();
-    return cancelled_ || (budget_.deadline && now >= *budget_.deadline);
+    return ended;
   }
   /// Whether the stop token, not a budget, ended it.
   bool cancelled() const { return cancelled_; }

@@ -58,10 +58,10 @@ inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* 
   std::size_t certain = 0;
   std::vector<int> blocked(across);
   for (std::size_t z = 0; z < high; ++z) {
-    if (watch != nullptr && watch->spent(0)) {
-      return 0;
-    }
     for (std::size_t y = 0; y < deep; ++y) {
+      if (watch != nullptr && watch->spent(0)) {
+        return 0;
+      }
       std::fill(blocked.begin(), blocked.end(), 0);
       for (int k = edges[2][z]; k < edges[2][z + 1]; ++k) {
         for (int j = edges[1][y]; j < edges[1][y + 1]; ++j) {
