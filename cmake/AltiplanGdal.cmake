@@ -22,6 +22,7 @@ function(altiplan_add_gdal_plugin kind name)
     message(STATUS "${kind} ${name}: off (no GDAL >= 3.4 found; Debian: libgdal-dev)")
     return()
   endif()
+  set(ALTIPLAN_PLUGIN_COMPONENT geo)
   altiplan_add_plugin(${kind} ${name})
   target_include_directories(altiplan_${kind}_${name} SYSTEM PRIVATE ${GDAL_INCLUDE_DIRS})
   target_compile_definitions(altiplan_${kind}_${name} PRIVATE

@@ -15,6 +15,7 @@ function(altiplan_add_ompl_plugin kind name)
     message(STATUS "${kind} ${name}: off (no OMPL >= 1.5.2 found; Debian: libompl-dev)")
     return()
   endif()
+  set(ALTIPLAN_PLUGIN_COMPONENT geo)
   altiplan_add_plugin(${kind} ${name})
   list(GET OMPL_LIBRARIES 0 library)  # the others are for what is not used here
   target_include_directories(altiplan_${kind}_${name} SYSTEM PRIVATE ${OMPL_INCLUDE_DIRS})
