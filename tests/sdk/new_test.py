@@ -19,12 +19,6 @@ KINDS = ["constraint", "environment", "local_planner", "planner", "smoother", "t
 WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror"
 
 
-def commands(readme):
-    """Of the README's blocks, lines that a backslash goes on with joined."""
-    blocks = re.findall(r"^```sh\n(.*?)^```$", readme, re.M | re.S)
-    return "".join(blocks).replace("\\\n", " ").splitlines()
-
-
 def project(shell, home, kind):
     name = f"my_{kind}"
     before = set(home.iterdir())
@@ -35,7 +29,7 @@ def project(shell, home, kind):
     for file in folder.rglob("*"):
         text = file.read_text() if file.is_file() else ""
         assert not re.search(r"@\w+@", file.name + text), f"{file}: a placeholder is left"
-    for line in commands((folder / "README.md").read_text()):
+    for line in walk.typed((folder / "README.md").read_text()):
         output, code, _ = shell.run(f"cd {folder} && {line}")
         assert code == 0, f"{kind}: $ {line}\nexit code {code}\n{output}"
         assert "warning" not in output.lower(), f"{kind}: $ {line}\n{output}"

@@ -33,6 +33,12 @@ def commands(block):
     return found
 
 
+def typed(readme):
+    """The commands of a README's blocks, lines that a backslash goes on with joined."""
+    blocks = re.findall(r"^```sh\n(.*?)^```$", readme, re.M | re.S)
+    return "".join(blocks).replace("\\\n", " ").splitlines()
+
+
 def shows(output, expected):
     """Whether the lines appear in that order; … stands for anything, spaces count as one."""
     pattern = ".*".join(
@@ -44,11 +50,11 @@ def shows(output, expected):
 class Shell:
     """A bash session that tells the output and exit code of each command."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, program=("bash", "--norc")):
         environment = {name: value for name, value in os.environ.items()
                        if not name.startswith("ALTIPLAN_")}
         environment |= {"HOME": str(folder), "NO_COLOR": "1"}
-        self.bash = subprocess.Popen(["bash", "--norc"], cwd=folder, env=environment, text=True,
+        self.bash = subprocess.Popen(program, cwd=folder, env=environment, text=True,
                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                      stderr=subprocess.STDOUT)
 
