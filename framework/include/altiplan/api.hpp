@@ -4,7 +4,11 @@
 /// Marks what libaltiplan.so exports; everything else is hidden.
 #define ALTIPLAN_API __attribute__((visibility("default")))
 
-/// Version of the plugin interface. A library built for another major, or for a newer minor, is
-/// refused.
+/// Version of the plugin interface, see docs/abi.md. A library built for another major, or for a
+/// newer minor, is refused.
 #define ALTIPLAN_API_MAJOR 0
 #define ALTIPLAN_API_MINOR 1
+
+/// For sources that are built against several versions: `#if ALTIPLAN_API_AT_LEAST(0, 2)`.
+#define ALTIPLAN_API_AT_LEAST(major, minor) \
+  (ALTIPLAN_API_MAJOR > (major) || (ALTIPLAN_API_MAJOR == (major) && ALTIPLAN_API_MINOR >= (minor)))
