@@ -89,5 +89,5 @@ says "E: no space left"
 says "apt-get install failed"
 
 try 1 everything
-says "expected build, test, ci, docs, bench or package, found 'everything'"
+says "expected build, test, ci, docs, bench, package or abi, found 'everything'"
 calls . 0
