@@ -4,7 +4,8 @@
 
 foreach(plugin IN ITEMS environment_terrain environment_mesh planner_ompl)
   if(NOT TARGET altiplan_${plugin})
-    message(FATAL_ERROR "packages hold every plugin: ${plugin} is off, see above (tools/setup package)")
+    message(FATAL_ERROR
+      "packages hold every plugin: ${plugin} is off, see above (tools/setup package)")
   endif()
 endforeach()
 find_program(GZIP gzip REQUIRED)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""abi_test.py SOURCE BUILD [REV…]: plugins of earlier versions in today's altiplan, which is BUILD.
+"""abi_test.py SOURCE BUILD [REV…]: plugins of earlier versions in today's altiplan, that of BUILD.
 
 For each version (the tags v* where none is named): its SDK is built and installed by itself; the
 projects that its `altiplan new` writes and the plugins of its docs/writing-a-plugin.md are built
-against that; then today's altiplan loads and runs them, and their tests run on today's library. Where the
-API version says that this is not supported, they must be refused, and say so. With the last version
-today's library and interfaces are compared by abidiff: what changed must show in the API version.
-docs/abi.md says what that means. What is built stays in BUILD/abi.
+against that; then today's altiplan loads and runs them, and their tests run on today's library.
+Where the API version says that this is not supported, they must be refused, and say so. With the
+last version today's library and interfaces are compared by abidiff: what changed must show in the
+API version. docs/abi.md says what that means. What is built stays in BUILD/abi.
 """
 import os
 import pathlib
@@ -179,11 +179,11 @@ def changes(old, today):
     broken = abidiff(old, today, "--no-added-syms")
     added = abidiff(old, today)
     if broken and today.api[0] == old.api[0]:
-        sys.exit(f"{broken}\nabidiff: plugins built for {old.name} may fail with this altiplan: undo it, or "
-                 f"raise ALTIPLAN_API_MAJOR, which is {old.api[0]} in both (docs/abi.md)")
+        sys.exit(f"{broken}\nabidiff: plugins built for {old.name} may fail with this altiplan: undo "
+                 f"it, or raise ALTIPLAN_API_MAJOR, which is {old.api[0]} in both (docs/abi.md)")
     if added and today.api == old.api:
-        sys.exit(f"{added}\nabidiff: plugins built for this altiplan may need what {old.name} has not: "
-                 f"raise ALTIPLAN_API_MINOR, which is {old.api[1]} in both (docs/abi.md)")
+        sys.exit(f"{added}\nabidiff: plugins built for this altiplan may need what {old.name} has "
+                 f"not: raise ALTIPLAN_API_MINOR, which is {old.api[1]} in both (docs/abi.md)")
     what = "incompatible changes" if broken else "additions" if added else "no change"
     print(f"abidiff from {old.name} (API {old.version()}) to API {today.version()}: {what}")
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""packages_test.py BUILD: the packages in BUILD/packages on a clean Debian 12, as a new user meets them.
+"""packages_test.py BUILD: the packages in BUILD/packages on a clean Debian 12, as a new user does.
 
-Installs them by apt, which resolves what they depend on; runs pipelines; writes a plugin by `altiplan
-new` and does all that its README says, word for word and timed; removes the packages. Needs root. The
-clean system is kept in BUILD/debian12.tar.
+Installs them by apt, which resolves what they depend on; runs pipelines; writes a plugin by
+`altiplan new` and does all that its README says, word for word and timed; removes the packages.
+Needs root. The clean system is kept in BUILD/debian12.tar.
 """
 import pathlib
 import shutil
