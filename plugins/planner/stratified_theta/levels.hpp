@@ -59,11 +59,11 @@ inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* 
   std::vector<int> blocked(across);
   for (std::size_t z = 0; z < high; ++z) {
     for (std::size_t y = 0; y < deep; ++y) {
-      if (watch != nullptr && watch->spent(0)) {
-        return 0;
-      }
       std::fill(blocked.begin(), blocked.end(), 0);
       for (int k = edges[2][z]; k < edges[2][z + 1]; ++k) {
+        if (watch != nullptr && watch->spent(0)) {
+          return 0;
+        }
         for (int j = edges[1][y]; j < edges[1][y + 1]; ++j) {
           occupancy.for_each_run(j, k, [&](int first, int last) {
             // The blocks that the run goes through.
