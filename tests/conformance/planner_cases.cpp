@@ -103,7 +103,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
          r.limits.max_route_length = 1.1 * (r.goal.position - r.start.position).norm();
        }},
       {"heading", [](Request& r) {
-         r.start.velocity = {0, 1, 0};
+         r.start.velocity = {-1, 0, 0};
          r.limits.max_turn_horizontal = radians(100);
        }}};
   for (const auto& [name, set] : limits) {
