@@ -149,7 +149,8 @@ class Child {
     ::setenv("TMPDIR", (scratch_.path() / "tmp").c_str(), 1);
     ::setenv("HOME", (scratch_.path() / "home").c_str(), 1);
     if (again_) {
-      ::setenv("MALLOC_PERTURB_", "165", 1);  // memory that nobody has set holds something else
+      // Memory that nobody has set holds something else, also where it was in use before.
+      ::setenv("GLIBC_TUNABLES", "glibc.malloc.perturb=165:glibc.malloc.tcache_count=0", 1);
     }
     sigset_t none;
     sigemptyset(&none);
