@@ -29,6 +29,7 @@ struct Arguments {
   host::Overrides overrides;  ///< of which the plugin path and the seed are asked for
   int rounds = PluginToCheck().rounds;
   double time_limit_s = RunnerOptions().time_limit_s;
+  double memory_limit_mb = RunnerOptions().memory_limit_mb;
   std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
   bool json = false;
   bool untimed = false;
@@ -137,6 +138,7 @@ int check_plugin(const Arguments& arguments) {
   }
   options.jobs = arguments.jobs;
   options.time_limit_s = arguments.time_limit_s;
+  options.memory_limit_mb = arguments.memory_limit_mb;
   const Interrupt interrupt;
   options.stop = interrupt.token();
   ProgressLine progress;
@@ -211,6 +213,11 @@ void add_check_plugin(CLI::App& app, Action& action) {
   command->add_option("--time-limit", arguments->time_limit_s, "seconds that a test may take")
       ->type_name("S")
       ->check(number_from(0.01, 86400))
+      ->capture_default_str();
+  command
+      ->add_option("--memory-limit", arguments->memory_limit_mb, "megabytes that a test may use")
+      ->type_name("MB")
+      ->check(number_from(1, 1e9))
       ->capture_default_str();
   command->add_flag("--untimed", arguments->untimed, "without the tests that look at the clock");
   command->add_flag("--list", arguments->list, "print the names of the tests and run none");
