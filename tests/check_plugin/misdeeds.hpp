@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cfenv>
+#include <chrono>
+#include <clocale>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "altiplan/plugin.hpp"
+
+/// What code may do to its process, whatever it is there for; each a function that a plugin broken
+/// on purpose calls in the midst of its work.
+namespace altiplan::bad {
+
+using Does = void (*)();
+
+inline void does_nothing() {}
+
+inline void changes_locale() { std::setlocale(LC_ALL, "C.UTF-8"); }
+inline void changes_folder() { (void)!::chdir("/"); }
+inline void changes_rounding() { std::fesetround(FE_UPWARD); }
+inline void takes_signal() { ::signal(SIGSEGV, SIG_IGN); }
+inline void sets_variable() { ::setenv("ALTIPLAN_BAD_PLUGIN", "was here", 1); }
+inline void leaves_file_open() { (void)::open("/dev/null", O_RDONLY); }
+inline void leaves_thread() {
+  std::thread([] {
+    while (true) {
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+  }).detach();
+}
+
+inline void prints() { std::puts("so far, so good"); }
+
+inline void keeps_file(const char* folder) {
+  std::ofstream(std::string(folder) + "/altiplan_bad_plugin.log") << "so far, so good";
+}
+inline void writes_file() { keeps_file(std::getenv("HOME")); }
+inline void makes_folder() {
+  ::mkdir((std::string(std::getenv("HOME")) + "/altiplan_bad_plugin").c_str(), 0700);
+}
+inline void writes_by_process() {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    writes_file();
+    ::_exit(0);
+  }
+  while (::waitpid(child, nullptr, 0) < 0) {
+  }
+}
+inline void writes_scratch_file() { keeps_file(std::getenv("TMPDIR")); }
+
+inline void leaks() {
+  static std::vector<void*> kept;
+  kept.push_back(std::calloc(1, 5000));
+}
+
+[[noreturn]] inline void never_returns() {
+  for (std::atomic<int> turns = 0;; ++turns) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+[[noreturn]] inline void hoards() {
+  std::vector<std::vector<char>> all;
+  while (true) {
+    all.emplace_back(16 << 20, 'x');
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+inline void crashes() { ::raise(SIGSEGV); }
+inline void throws() { throw std::runtime_error("the attic is on fire"); }
+inline void leaves_process() {
+  if (::fork() == 0) {
+    ::setsid();
+    never_returns();
+  }
+}
+/// Other in each process, the same throughout one.
+inline double by_address() {
+  static const int here = 0;
+  return 1e-18 * double(reinterpret_cast<std::uintptr_t>(&here));
+}
+inline double by_time() {
+  static const auto began = std::chrono::steady_clock::now().time_since_epoch().count();
+  return 1e-18 * double(began % 1'000'000'007);
+}
+inline double by_memory() {
+  static const double found = [] {
+    std::vector<char>* volatile hidden = new std::vector<char>(64);
+    volatile const char* volatile data = static_cast<char*>(std::malloc(512));
+    delete hidden;
+    return 1e-9 * data[300];
+  }();
+  return found;
+}
+
+// Parameters that are not declared as they should be; Base holds those that are.
+
+template <class Base>
+struct Undescribed : Base {
+  int size = 1;
+  void describe(Fields& f) {
+    Base::describe(f);
+    f("size", size);
+  }
+};
+template <class Base>
+struct Misnamed : Base {
+  int size = 1;
+  void describe(Fields& f) {
+    Base::describe(f);
+    f("size__m", size).doc("of it");
+  }
+};
+template <class Base>
+struct OutOfBounds : Base {
+  double size = 20;
+  void describe(Fields& f) {
+    Base::describe(f);
+    f("size", size).range(1, 9).doc("of it");
+  }
+};
+
+/// Those whose reading an entry does by itself, wrongly.
+template <class Base>
+struct Bounded : Base {
+  double size = 5;
+  void describe(Fields& f) {
+    Base::describe(f);
+    f("size", size).range(1, 9).doc("of it");
+  }
+};
+}  // namespace altiplan::bad
