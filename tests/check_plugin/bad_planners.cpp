@@ -204,15 +204,6 @@ PlanResult writes_into_its_request(const Sound& sound, const Request& request) {
   const_cast<Request&>(request).limits.min_clearance += 1;
   return result;
 }
-PlanResult depends_on_address(const Sound& sound, const Request& request) {
-  return noting(sound.plan(request), std::int64_t(1e18 * by_address()));
-}
-PlanResult depends_on_time(const Sound& sound, const Request& request) {
-  return noting(sound.plan(request), std::int64_t(1e18 * by_time()));
-}
-PlanResult depends_on_memory(const Sound& sound, const Request& request) {
-  return noting(sound.plan(request), std::int64_t(1e9 * by_memory()));
-}
 
 Traits complete() {
   Traits traits;
@@ -382,12 +373,6 @@ ALTIPLAN_PLUGIN(Planner, "notes_two_at_once", SpoiltPlanner<notes_two_at_once>, 
                 "its answer depends on what other threads ask meanwhile")
 ALTIPLAN_PLUGIN(Planner, "writes_into_its_request", SpoiltPlanner<writes_into_its_request>,
                 NoParams, "changes a limit of the request that it was given")
-ALTIPLAN_PLUGIN(Planner, "depends_on_address", SpoiltPlanner<depends_on_address>, NoParams,
-                "its answer depends on an address")
-ALTIPLAN_PLUGIN(Planner, "depends_on_time", SpoiltPlanner<depends_on_time>, NoParams,
-                "its answer depends on when it was loaded")
-ALTIPLAN_PLUGIN(Planner, "depends_on_memory", SpoiltPlanner<depends_on_memory>, NoParams,
-                "its answer depends on memory that nobody has set")
 ALTIPLAN_PLUGIN(Planner, "gives_up_early", GivesUpEarly, NoParams,
                 "says to be complete, and finds no long route")
 ALTIPLAN_PLUGIN(Planner, "calls_it_a_matter_of_time", CallsItAMatterOfTime, NoParams,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planners that plan well, and do to their process what they should not.
+// Planners that plan well, and do to their process, or declare of themselves, what they should not.
+#include "bad_entries.hpp"
 #include "sound_planner.hpp"
 
 namespace {
@@ -21,10 +22,15 @@ class CrashesAtExit {
   }
 };
 void crashes_at_exit() { static const CrashesAtExit once; }
+
+template <double (*kOther)()>
+PlanResult noting(const Sound& sound, const Request& request) {
+  PlanResult result = sound.plan(request);
+  result.counters.push_back({"noted", std::int64_t(1e18 * kOther())});
+  return result;
+}
 }  // namespace
 
-ALTIPLAN_PLUGIN(Planner, "changes_locale", SpoiltPlanner<after<changes_locale>>, NoParams,
-                "changes the locale")
 ALTIPLAN_PLUGIN(Planner, "changes_folder", SpoiltPlanner<after<changes_folder>>, NoParams,
                 "changes the working folder")
 ALTIPLAN_PLUGIN(Planner, "changes_rounding", SpoiltPlanner<after<changes_rounding>>, NoParams,
@@ -37,15 +43,10 @@ ALTIPLAN_PLUGIN(Planner, "leaves_file_open", SpoiltPlanner<after<leaves_file_ope
                 "leaves a file open at each plan")
 ALTIPLAN_PLUGIN(Planner, "leaves_thread", SpoiltPlanner<after<leaves_thread>>, NoParams,
                 "leaves a thread behind at each plan")
-ALTIPLAN_PLUGIN(Planner, "prints", SpoiltPlanner<after<prints>>, NoParams, "writes to stdout")
-ALTIPLAN_PLUGIN(Planner, "writes_file", SpoiltPlanner<after<writes_file>>, NoParams,
-                "writes a file in the home folder")
 ALTIPLAN_PLUGIN(Planner, "makes_folder", SpoiltPlanner<after<makes_folder>>, NoParams,
                 "makes a folder in the home folder")
 ALTIPLAN_PLUGIN(Planner, "writes_by_process", SpoiltPlanner<after<writes_by_process>>, NoParams,
                 "lets a process of its own write a file in the home folder")
-ALTIPLAN_PLUGIN(Planner, "leaks", SpoiltPlanner<after<leaks>>, NoParams,
-                "keeps 5,000 bytes of each plan")
 ALTIPLAN_PLUGIN(Planner, "exits", SpoiltPlanner<at_a_wide_goal<exits>>, NoParams,
                 "calls exit(0) where the goal has a tolerance")
 ALTIPLAN_PLUGIN(Planner, "exits_at_once", SpoiltPlanner<at_a_wide_goal<exits_at_once>>, NoParams,
@@ -70,3 +71,11 @@ ALTIPLAN_PLUGIN(Planner, "hoards", SpoiltPlanner<at_a_wide_goal<hoards>>, NoPara
                 "takes memory without end where the goal has a tolerance")
 ALTIPLAN_PLUGIN(Planner, "leaves_process", SpoiltPlanner<at_a_wide_goal<leaves_process>>, NoParams,
                 "leaves a process behind where the goal has a tolerance")
+ALTIPLAN_PLUGIN(Planner, "depends_on_time", SpoiltPlanner<noting<by_time>>, NoParams,
+                "its answer depends on when it was loaded")
+ALTIPLAN_PLUGIN(Planner, "depends_on_memory", SpoiltPlanner<noting<by_memory>>, NoParams,
+                "its answer depends on memory that nobody has set")
+BAD_ENTRIES(Planner, SpoiltPlanner<plain>, NoParams)
+BAD_PROCESSES(Planner, SpoiltPlanner<after<changes_locale>>, SpoiltPlanner<after<prints>>,
+              SpoiltPlanner<after<writes_file>>, SpoiltPlanner<after<leaks>>,
+              SpoiltPlanner<noting<by_address>>, NoParams)

@@ -107,41 +107,4 @@ inline double by_memory() {
   }();
   return found;
 }
-
-// Parameters that are not declared as they should be; Base holds those that are.
-
-template <class Base>
-struct Undescribed : Base {
-  int size = 1;
-  void describe(Fields& f) {
-    Base::describe(f);
-    f("size", size);
-  }
-};
-template <class Base>
-struct Misnamed : Base {
-  int size = 1;
-  void describe(Fields& f) {
-    Base::describe(f);
-    f("size__m", size).doc("of it");
-  }
-};
-template <class Base>
-struct OutOfBounds : Base {
-  double size = 20;
-  void describe(Fields& f) {
-    Base::describe(f);
-    f("size", size).range(1, 9).doc("of it");
-  }
-};
-
-/// Those whose reading an entry does by itself, wrongly.
-template <class Base>
-struct Bounded : Base {
-  double size = 5;
-  void describe(Fields& f) {
-    Base::describe(f);
-    f("size", size).range(1, 9).doc("of it");
-  }
-};
 }  // namespace altiplan::bad

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grounds broken on purpose, one thing each.
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/height_field.hpp"
+#include "misdeeds.hpp"
+
+namespace {
+using namespace altiplan;
+using namespace altiplan::bad;
+
+/// Which answer about the ground is wrong.
+enum class Flaw { none, ground, gap, gap_max, enough, slope, steepest, holes, air, has_none, edge };
+
+/// A small model of posts; clearance and blocked as a terrain has them.
+template <Flaw kFlaw>
+class Ground final : public Environment {
+ public:
+  Ground(const NoParams&, const Site&) : field_({0, 0}, {50, 50}, 9, 8, heights()) {}
+
+ private:
+  static std::vector<float> heights() {
+    RandomStream random(3);
+    std::vector<float> all(72);
+    for (float& height : all) {
+      height = float(random.uniform(0, 60));
+    }
+    return all;
+  }
+  Box do_bounds() const override { return {{0, 0, -1000}, {400, 350, 60}}; }
+  double do_clearance(const Vec3& p) const override {
+    const double x = std::clamp(p.x(), 0.0, 400.0);
+    const double y = std::clamp(p.y(), 0.0, 350.0);
+    const double beside = std::hypot(p.x() - x, p.y() - y);
+    const double above = (p.z() - *field_.at(x, y)) / std::hypot(1, field_.max_slope());
+    return beside > 0 ? beside : above;
+  }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    if (!field_.at(a.x(), a.y()) || !field_.at(b.x(), b.y())) {
+      return kFlaw == Flaw::holes;
+    }
+    return kFlaw == Flaw::air
+               ? false
+               : field_.gap(a, b) < r * std::hypot(1, field_.max_slope()) - kLengthTolerance;
+  }
+  double do_slack() const override { return 1000; }
+  bool do_has_ground() const override { return kFlaw != Flaw::has_none; }
+  std::optional<double> do_ground(double x, double y) const override {
+    const auto at = field_.at(x, y);
+    return at && kFlaw == Flaw::ground ? std::optional(*at + 1e-3) : at;
+  }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    if (kFlaw == Flaw::edge && (!field_.at(a.x(), a.y()) || !field_.at(b.x(), b.y()))) {
+      return 0;
+    }
+    if (kFlaw == Flaw::gap && a != b) {
+      return std::min(field_.gap(a, a), field_.gap(b, b));
+    }
+    if (kFlaw == Flaw::enough && enough < kInfinity) {
+      return std::max(enough, field_.gap(a, b));
+    }
+    return field_.gap(a, b);
+  }
+  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+    return kFlaw == Flaw::gap_max && a != b ? field_.gap_max(a, a) : field_.gap_max(a, b);
+  }
+  double do_ground_slope(const Box& box) const override {
+    const bool small = (box.max - box.min).maxCoeff() < 1;
+    return field_.max_slope() * (kFlaw == Flaw::slope && !small     ? 0.2
+                                 : kFlaw == Flaw::steepest && small ? 0.5
+                                                                    : 1);
+  }
+  const HeightField* do_height_field() const override { return &field_; }
+
+  HeightField field_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Environment, "ground_above", Ground<Flaw::ground>, NoParams,
+                "its ground is 1 mm higher than its height field")
+ALTIPLAN_PLUGIN(Environment, "ground_between", Ground<Flaw::gap>, NoParams,
+                "does not look at the ground between the ends of a leg")
+ALTIPLAN_PLUGIN(Environment, "ground_at_one_end", Ground<Flaw::gap_max>, NoParams,
+                "says a leg's height at its begin to be the greatest")
+ALTIPLAN_PLUGIN(Environment, "ground_enough", Ground<Flaw::enough>, NoParams,
+                "says that a leg is as high as is enough")
+ALTIPLAN_PLUGIN(Environment, "ground_flat", Ground<Flaw::slope>, NoParams,
+                "says that large boxes of its ground are flatter than they are")
+ALTIPLAN_PLUGIN(Environment, "ground_flat_in_small", Ground<Flaw::steepest>, NoParams,
+                "says that small boxes of its ground are flatter than they are")
+ALTIPLAN_PLUGIN(Environment, "ground_with_holes", Ground<Flaw::holes>, NoParams,
+                "blocks legs beyond its ground")
+ALTIPLAN_PLUGIN(Environment, "ground_of_air", Ground<Flaw::air>, NoParams,
+                "lets legs lead through its ground")
+ALTIPLAN_PLUGIN(Environment, "ground_that_is_none", Ground<Flaw::has_none>, NoParams,
+                "says to have no ground, and has one")
+ALTIPLAN_PLUGIN(Environment, "ground_beyond_its_edge", Ground<Flaw::edge>, NoParams,
+                "says how high legs are beyond its ground")
