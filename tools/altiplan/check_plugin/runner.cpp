@@ -127,6 +127,7 @@ class Child {
     end();
     Verdict verdict;
     verdict.findings = {{kEnds, "it " + over}};
+    verdict.seen_from_outside = true;
     verdict.said = end_of(scratch_.path() / "said", 2000);
     verdict.time_s = time_s;
     verdict.peak_memory_mb = peak_mb_;
@@ -175,6 +176,7 @@ class Child {
     verdict.said = end_of(scratch_.path() / "said", 2000);
     const auto fault = [&](const std::string& what) {
       verdict.findings.push_back({kEnds, "the process " + what});
+      verdict.seen_from_outside = true;
     };
     const std::string answer = end_of(scratch_.path() / "answer", ~std::size_t(0));
     if (!answer.empty()) {
@@ -292,6 +294,7 @@ class Runner {
       const std::string parted = difference(first_answers_[index], ended.answers());
       if (!parted.empty()) {
         verdict.findings.push_back({kSame, parted});
+        verdict.seen_from_outside = true;
       }
     }
     done_(verdict);

@@ -13,6 +13,7 @@ namespace altiplan::cli {
 struct Verdict {
   std::string test;
   std::vector<conformance::Finding> findings;  ///< none: passed
+  bool seen_from_outside = false;  ///< a finding is this process's, of the one that ran the test
   std::string skipped;
   std::string said;  ///< the end of what it wrote to stdout and stderr
   double time_s = 0;

@@ -43,7 +43,7 @@ std::string findings_text(const CheckedLibrary& library, const Verdict& verdict)
   if (!verdict.said.empty()) {
     all += "  it said:\n" + indented(verdict.said, 4);
   }
-  return all + "  again: " + reproduce(library, verdict.test) + "\n";
+  return all + "  again: " + reproduce(library, verdict) + "\n";
 }
 
 /// XML knows no control characters.
@@ -58,8 +58,9 @@ std::string printable(std::string text) {
 std::string suite_of(const std::string& test) { return test.substr(0, test.rfind('/')); }
 }  // namespace
 
-std::string reproduce(const CheckedLibrary& library, const std::string& test) {
-  return library.command + " --only '^" + test + "$' --here";
+std::string reproduce(const CheckedLibrary& library, const Verdict& verdict) {
+  return library.command + " --only '^" + verdict.test + "$'" +
+         (verdict.seen_from_outside ? "" : " --here");
 }
 
 std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict) {
@@ -102,7 +103,7 @@ nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
                      {"skipped", verdict.skipped.empty() ? nlohmann::ordered_json()
                                                          : nlohmann::ordered_json(verdict.skipped)},
                      {"said", verdict.said},
-                     {"again", reproduce(library, verdict.test)},
+                     {"again", reproduce(library, verdict)},
                      {"time_s", verdict.time_s},
                      {"peak_memory_mb", verdict.peak_memory_mb}});
   }

@@ -18,7 +18,8 @@ struct CheckedLibrary {
   std::string command;  ///< that runs one test, up to its name
 };
 
-std::string reproduce(const CheckedLibrary& library, const std::string& test);
+/// The call that shows the verdict again: in the process itself, where that can show it.
+std::string reproduce(const CheckedLibrary& library, const Verdict& verdict);
 
 /// One verdict in lines, as the user reads them.
 std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict);
