@@ -24,10 +24,10 @@ struct Rule {
   std::vector<Violation> (*violations)(const Route&, double limit) = nullptr;
 };
 
-template <Rule (*kRule)()>
+template <Rule (*kRule)(), Does kDoes = does_nothing>
 class Told final : public Constraint {
  public:
-  explicit Told(const Params& params) : limit_(params.limit) {}
+  explicit Told(const Params& params) : limit_(params.limit) { kDoes(); }
 
  private:
   void do_tighten(Limits& limits, const Request&) const override {
@@ -107,12 +107,7 @@ Violations kept_when_stricter(const Route& route, double limit) {
   return total < 30 * limit ? Violations{{"", 0, total, limit, "short"}} : Violations{};
 }
 template <Does kDoes>
-bool after(const Leg& leg, double limit) {
-  kDoes();
-  return short_leg(leg, limit);
-}
-template <Does kDoes>
-using DoesWhat = Told<admitting<after<kDoes>>>;
+using DoesWhat = Told<admitting<short_leg>, kDoes>;
 Violations by_an_address(const Route& route, double limit) {
   const double total = length(route) + by_address();
   return total > 10 * limit ? Violations{{"", 0, total, limit, "too long"}} : Violations{};

@@ -13,11 +13,10 @@ using namespace altiplan::bad;
 /// Which answer about the ground is wrong.
 enum class Flaw { none, ground, gap, gap_max, enough, slope, steepest, holes, air, has_none, edge };
 
-/// A small model of posts; clearance and blocked as a terrain has them.
-template <Flaw kFlaw>
-class Ground final : public Environment {
+/// A small model of posts, solid below; nothing is wrong with it.
+class SoundGround final : public Environment {
  public:
-  Ground(const NoParams&, const Site&) : field_({0, 0}, {50, 50}, 9, 8, heights()) {}
+  SoundGround() : field_({0, 0}, {50, 50}, 9, 8, heights()) {}
 
  private:
   static std::vector<float> heights() {
@@ -28,55 +27,78 @@ class Ground final : public Environment {
     }
     return all;
   }
-  Box do_bounds() const override { return {{0, 0, -1000}, {400, 350, 60}}; }
+  Box do_bounds() const override { return {{0, 0, -kInfinity}, {400, 350, 60}}; }
   double do_clearance(const Vec3& p) const override {
     const double x = std::clamp(p.x(), 0.0, 400.0);
     const double y = std::clamp(p.y(), 0.0, 350.0);
-    const double beside = std::hypot(p.x() - x, p.y() - y);
+    const double inside = std::min({p.x(), 400 - p.x(), p.y(), 350 - p.y()});
+    const double beside = inside < 0 ? std::hypot(p.x() - x, p.y() - y) : -inside;
     const double above = (p.z() - *field_.at(x, y)) / std::hypot(1, field_.max_slope());
-    return beside > 0 ? beside : above;
+    return std::max(above, beside);
   }
-  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    if (!field_.at(a.x(), a.y()) || !field_.at(b.x(), b.y())) {
-      return kFlaw == Flaw::holes;
-    }
-    return kFlaw == Flaw::air
-               ? false
-               : field_.gap(a, b) < r * std::hypot(1, field_.max_slope()) - kLengthTolerance;
-  }
-  double do_slack() const override { return 1000; }
-  bool do_has_ground() const override { return kFlaw != Flaw::has_none; }
-  std::optional<double> do_ground(double x, double y) const override {
-    const auto at = field_.at(x, y);
-    return at && kFlaw == Flaw::ground ? std::optional(*at + 1e-3) : at;
-  }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    if (kFlaw == Flaw::edge && (!field_.at(a.x(), a.y()) || !field_.at(b.x(), b.y()))) {
-      return 0;
-    }
-    if (kFlaw == Flaw::gap && a != b) {
-      return std::min(field_.gap(a, a), field_.gap(b, b));
-    }
-    if (kFlaw == Flaw::enough && enough < kInfinity) {
-      return std::max(enough, field_.gap(a, b));
-    }
+  bool do_has_ground() const override { return true; }
+  std::optional<double> do_ground(double x, double y) const override { return field_.at(x, y); }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
     return field_.gap(a, b);
   }
   double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
-    return kFlaw == Flaw::gap_max && a != b ? field_.gap_max(a, a) : field_.gap_max(a, b);
+    return field_.gap_max(a, b);
   }
-  double do_ground_slope(const Box& box) const override {
-    const bool small = (box.max - box.min).maxCoeff() < 1;
-    return field_.max_slope() * (kFlaw == Flaw::slope && !small     ? 0.2
-                                 : kFlaw == Flaw::steepest && small ? 0.5
-                                                                    : 1);
-  }
+  double do_ground_slope(const Box&) const override { return field_.max_slope(); }
   const HeightField* do_height_field() const override { return &field_; }
 
   HeightField field_;
 };
+
+template <Flaw kFlaw>
+class Ground final : public Environment {
+ public:
+  Ground(const NoParams&, const Site&) {}
+
+ private:
+  Box do_bounds() const override { return sound_.bounds(); }
+  double do_clearance(const Vec3& p) const override { return sound_.clearance(p); }
+  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+    const bool beyond = !sound_.ground(a.x(), a.y()) || !sound_.ground(b.x(), b.y());
+    if (kFlaw == Flaw::holes && beyond) {
+      return true;
+    }
+    // The slack of legs would reach beyond the ground.
+    return a == b ? kFlaw != Flaw::air && sound_.clearance(a) < r - kLengthTolerance
+                  : sound_.blocked(a, b, r);
+  }
+  bool do_has_ground() const override { return kFlaw != Flaw::has_none; }
+  std::optional<double> do_ground(double x, double y) const override {
+    const auto at = sound_.ground(x, y);
+    return at && kFlaw == Flaw::ground ? std::optional(*at + 1e-3) : at;
+  }
+  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    const bool beyond = !sound_.ground(a.x(), a.y()) || !sound_.ground(b.x(), b.y());
+    const double gap = sound_.ground_gap(a, b);
+    return kFlaw == Flaw::edge && beyond ? 0
+           : kFlaw == Flaw::gap && a != b && !beyond
+               ? std::min(sound_.ground_gap(a, a), sound_.ground_gap(b, b))
+           : kFlaw == Flaw::enough && enough < kInfinity ? std::max(enough, gap)
+                                                         : gap;
+  }
+  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+    return kFlaw == Flaw::gap_max && a != b ? sound_.ground_gap_max(a, a)
+                                            : sound_.ground_gap_max(a, b);
+  }
+  double do_ground_slope(const Box& box) const override {
+    const bool small = (box.max - box.min).head<2>().maxCoeff() < 0.01;
+    return sound_.ground_slope(box) * (kFlaw == Flaw::slope && !small     ? 0.2
+                                       : kFlaw == Flaw::steepest && small ? 0.5
+                                                                          : 1);
+  }
+  const HeightField* do_height_field() const override { return sound_.height_field(); }
+
+  SoundGround sound_;
+};
 }  // namespace
 
+ALTIPLAN_PLUGIN(Environment, "sound_ground", Ground<Flaw::none>, NoParams,
+                "nothing is wrong with it")
 ALTIPLAN_PLUGIN(Environment, "ground_above", Ground<Flaw::ground>, NoParams,
                 "its ground is 1 mm higher than its height field")
 ALTIPLAN_PLUGIN(Environment, "ground_between", Ground<Flaw::gap>, NoParams,
@@ -92,7 +114,7 @@ ALTIPLAN_PLUGIN(Environment, "ground_flat_in_small", Ground<Flaw::steepest>, NoP
 ALTIPLAN_PLUGIN(Environment, "ground_with_holes", Ground<Flaw::holes>, NoParams,
                 "blocks legs beyond its ground")
 ALTIPLAN_PLUGIN(Environment, "ground_of_air", Ground<Flaw::air>, NoParams,
-                "lets legs lead through its ground")
+                "blocks no point below its ground")
 ALTIPLAN_PLUGIN(Environment, "ground_that_is_none", Ground<Flaw::has_none>, NoParams,
                 "says to have no ground, and has one")
 ALTIPLAN_PLUGIN(Environment, "ground_beyond_its_edge", Ground<Flaw::edge>, NoParams,

@@ -22,6 +22,7 @@ enum class Flaw {
   short_of_goal,
   hovers,
   through,
+  into_the_goal,
   old_world,
   climbs,
   throws
@@ -30,14 +31,13 @@ enum class Flaw {
 double same() { return 0; }
 
 /// Straight to the goal, stuck where that is not free; with a flaw.
-template <Flaw kFlaw, Does kDoes, double (*kOther)()>
+template <Flaw kFlaw, double (*kOther)()>
 class Straight final : public Pilot {
  public:
   explicit Straight(const Request& request) : request_(request), mind_(request.start) {}
 
  private:
   PilotStep do_step(const Observation& seen) override {
-    kDoes();
     static std::atomic<int> steps = 0;
     ++steps;
     const State from = kFlaw == Flaw::own_mind ? mind_ : seen.state;
@@ -58,7 +58,9 @@ class Straight final : public Pilot {
     const double run = std::min(way.norm(), speed * seen.max_dt_s);
     Vec3 to = run == way.norm() ? seen.goal.position : Vec3(from.position + run * way.normalized());
     const World& world = kFlaw == Flaw::old_world ? *request_.world : *seen.world;
-    if (kFlaw != Flaw::through && world.blocked(from.position, to, request_.vehicle.radius_m)) {
+    const bool careless = kFlaw == Flaw::into_the_goal && world.clearance(seen.goal.position) < 0;
+    if (kFlaw != Flaw::through && !careless &&
+        world.blocked(from.position, to, request_.vehicle.radius_m)) {
       return {seen.state, PilotStep::Outcome::stuck, "blocked"};
     }
     if (kFlaw == Flaw::allocates) {
@@ -100,7 +102,8 @@ class StraightOn final : public LocalPlanner {
 
  private:
   std::unique_ptr<Pilot> do_begin(const Request& request) const override {
-    return std::make_unique<Straight<kFlaw, kDoes, kOther>>(request);
+    kDoes();
+    return std::make_unique<Straight<kFlaw, kOther>>(request);
   }
   Traits do_traits() const override { return kTraits(); }
 };
@@ -154,6 +157,8 @@ ALTIPLAN_PLUGIN(LocalPlanner, "hovers", StraightOn<Flaw::hovers>, NoParams,
                 "stays where it is, with nothing in the way")
 ALTIPLAN_PLUGIN(LocalPlanner, "through", StraightOn<Flaw::through>, NoParams,
                 "flies through obstacles")
+ALTIPLAN_PLUGIN(LocalPlanner, "into_the_goal", StraightOn<Flaw::into_the_goal>, NoParams,
+                "arrives at a goal inside an obstacle")
 ALTIPLAN_PLUGIN(LocalPlanner, "old_world", StraightOn<Flaw::old_world>, NoParams,
                 "looks at the world as it was at first")
 ALTIPLAN_PLUGIN(LocalPlanner, "climbs", StraightOn<Flaw::climbs>, NoParams,

@@ -124,6 +124,11 @@ PlanResult takes_none_for_all(const Sound& sound, const Request& request) {
   }
   return sound.plan(told);
 }
+PlanResult ignores_iterations(const Sound& sound, const Request& request) {
+  Request told = request;
+  told.budget.max_iterations = ~std::uint64_t{0};
+  return sound.plan(told);
+}
 PlanResult takes_one_more(const Sound& sound, const Request& request) {
   Request told = request;
   told.budget.max_iterations += told.budget.max_iterations > 0;
@@ -348,6 +353,8 @@ ALTIPLAN_PLUGIN(Planner, "proves_too_much", SpoiltPlanner<proves_too_much>, NoPa
                 "says to have proved that there is no route where it would be long")
 ALTIPLAN_PLUGIN(Planner, "takes_none_for_all", SpoiltPlanner<takes_none_for_all>, NoParams,
                 "takes a budget of 0 iterations for no budget")
+ALTIPLAN_PLUGIN(Planner, "ignores_iterations", SpoiltPlanner<ignores_iterations>, NoParams,
+                "knows no budget of iterations")
 ALTIPLAN_PLUGIN(Planner, "takes_one_more", SpoiltPlanner<takes_one_more>, NoParams,
                 "uses one iteration more than it may")
 ALTIPLAN_PLUGIN(Planner, "forgets_that_time_ended", SpoiltPlanner<forgets_that_time_ended>,

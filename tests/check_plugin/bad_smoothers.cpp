@@ -155,6 +155,7 @@ ALTIPLAN_PLUGIN(Smoother, "works_in_its_input", SpoiltSmoother<works_in_its_inpu
 ALTIPLAN_PLUGIN(Smoother, "crashes_unused", Unused, NoParams,
                 "crashes where it goes unused, with no route to smooth")
 ALTIPLAN_PLUGIN(Smoother, "late", SpoiltSmoother<late>, NoParams, "ends 70 ms after its deadline")
+ALTIPLAN_PLUGIN(Smoother, "two__words", Sound, NoParams, "its name is not in snake_case")
 BAD_ENTRIES(Smoother, Sound, NoParams)
 BAD_PLUGIN(Smoother, "thrower", thrower_entry, Sound, Bounded<NoParams>,
            "throws a number where parameters are wrong")

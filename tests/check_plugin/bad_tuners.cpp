@@ -25,7 +25,7 @@ enum class Flaw {
 double same() { return 0; }
 
 /// Draws points; equal weights in each group.
-template <Flaw kFlaw, Does kDoes, double (*kOther)()>
+template <Flaw kFlaw, double (*kOther)()>
 class SpoiltSearch final : public Search {
  public:
   SpoiltSearch(std::vector<Dimension> space, RandomStream random)
@@ -47,13 +47,14 @@ class SpoiltSearch final : public Search {
         group += other.group == d.group;
       }
       const double drawn = random_.uniform(d.min, d.max);
-      const bool weight = d.group >= 0 && kFlaw != Flaw::unequal;
-      point.push_back(weight ? 1 / group : drawn + (kFlaw == Flaw::outside) * (d.max - d.min));
+      const bool unequal = kFlaw == Flaw::unequal && space_.size() == 2;
+      const bool outside = kFlaw == Flaw::outside && space_.size() == 1;
+      point.push_back(d.group >= 0 && !unequal ? 1 / group : drawn + outside * (d.max - d.min));
     }
-    if (kOther() > 0) {
+    if (kOther() > 0 && space_[0].group < 0 && space_[0].max > space_[0].min) {
       point[0] = std::min(space_[0].max, space_[0].min + kOther());
     }
-    if (kFlaw == Flaw::thin) {
+    if (kFlaw == Flaw::thin && space_.size() == 3) {
       point.pop_back();
     }
     if (kFlaw == Flaw::not_a_number && failed_) {
@@ -68,7 +69,6 @@ class SpoiltSearch final : public Search {
     return point;
   }
   std::vector<std::vector<double>> do_ask() override {
-    kDoes();
     static std::atomic<int> of_all = 0;
     const int batch = kFlaw == Flaw::shared ? ++of_all % 20 : ++batches_;
     const bool ends = kFlaw == Flaw::restless ? batch == 10 : batch >= 10;
@@ -103,7 +103,8 @@ class SpoiltTuner final : public Tuner {
  private:
   std::unique_ptr<Search> do_begin(std::vector<Dimension> space,
                                    RandomStream random) const override {
-    return std::make_unique<SpoiltSearch<kFlaw, kDoes, kOther>>(std::move(space), random);
+    kDoes();
+    return std::make_unique<SpoiltSearch<kFlaw, kOther>>(std::move(space), random);
   }
 };
 using Sound = SpoiltTuner<Flaw::none>;
@@ -114,13 +115,14 @@ using ByAddress = SpoiltTuner<Flaw::none, does_nothing, by_address>;
 
 ALTIPLAN_PLUGIN(Tuner, "sound", Sound, NoParams, "nothing is wrong with it")
 ALTIPLAN_PLUGIN(Tuner, "outside", SpoiltTuner<Flaw::outside>, NoParams,
-                "asks for points outside the space")
+                "asks for points outside a space of one dimension")
 ALTIPLAN_PLUGIN(Tuner, "unequal", SpoiltTuner<Flaw::unequal>, NoParams,
-                "its weights do not sum to 1")
+                "a weight alone in its group is not 1")
 ALTIPLAN_PLUGIN(Tuner, "endless", SpoiltTuner<Flaw::endless>, NoParams, "never ends its search")
 ALTIPLAN_PLUGIN(Tuner, "restless", SpoiltTuner<Flaw::restless>, NoParams,
                 "asks for more after it has ended its search")
-ALTIPLAN_PLUGIN(Tuner, "thin", SpoiltTuner<Flaw::thin>, NoParams, "its points lack a dimension")
+ALTIPLAN_PLUGIN(Tuner, "thin", SpoiltTuner<Flaw::thin>, NoParams,
+                "its points lack the third dimension")
 ALTIPLAN_PLUGIN(Tuner, "asks_nothing", SpoiltTuner<Flaw::nothing>, NoParams, "asks for nothing")
 ALTIPLAN_PLUGIN(Tuner, "shared", SpoiltTuner<Flaw::shared>, NoParams,
                 "all its searches count their batches together")
