@@ -147,6 +147,6 @@ ALTIPLAN_PLUGIN(Constraint, "without_words", Told<violating<without_words>>, Par
 ALTIPLAN_PLUGIN(Constraint, "kept_when_stricter", Told<violating<kept_when_stricter>>, Params,
                 "a route that breaks its rule keeps it with the stricter parameter")
 ALTIPLAN_PLUGIN(Constraint, "silent", Told<silent>, Params, "says nothing at all")
-BAD_ENTRIES(Constraint, Sound, Params)
-BAD_PROCESSES(Constraint, DoesWhat<changes_locale>, DoesWhat<prints>, DoesWhat<writes_file>,
-              DoesWhat<leaks>, ByAddress, Params)
+ALTIPLAN_BAD_ENTRIES(Constraint, Sound, Params)
+ALTIPLAN_BAD_PROCESSES(Constraint, DoesWhat<changes_locale>, DoesWhat<prints>,
+                       DoesWhat<writes_file>, DoesWhat<leaks>, ByAddress, Params)

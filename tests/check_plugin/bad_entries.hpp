@@ -106,9 +106,9 @@ constexpr PluginEntry silent_entry(const char* name, const char*) {
 }  // namespace altiplan::bad
 
 /// ALTIPLAN_PLUGIN with an entry of its own: MAKER is one of the templates above.
-#define BAD_PLUGIN(Interface, plugin_name, maker, Class, Params, plugin_sentence) \
-  BAD_PLUGIN_(Interface, plugin_name, maker, Class, Params, plugin_sentence, __COUNTER__)
-#define BAD_PLUGIN_(Interface, plugin_name, maker, Class, Params, plugin_sentence, n)             \
+#define ALTIPLAN_BAD_PLUGIN(Interface, plugin_name, maker, Class, Params, plugin_sentence) \
+  ALTIPLAN_BAD_PLUGIN_(Interface, plugin_name, maker, Class, Params, plugin_sentence, __COUNTER__)
+#define ALTIPLAN_BAD_PLUGIN_(Interface, plugin_name, maker, Class, Params, plugin_sentence, n)    \
   namespace {                                                                                     \
   __attribute__((section("altiplan_manifest"),                                                    \
                  used)) constinit const altiplan::Manifest ALTIPLAN_JOIN(bad_manifest_, n) =      \
@@ -122,24 +122,25 @@ constexpr PluginEntry silent_entry(const char* name, const char*) {
   }
 
 /// What each kind has of bad entries. `Base`: parameters that Class is made of.
-#define BAD_ENTRIES(Interface, Class, Base)                                                     \
-  BAD_PLUGIN(Interface, "says_nothing", silent_entry, Class, Base, "its entry has no sentence") \
-  ALTIPLAN_PLUGIN(Interface, "undescribed", Class, altiplan::bad::Undescribed<Base>,            \
-                  "a parameter has no sentence")                                                \
-  ALTIPLAN_PLUGIN(Interface, "misnamed", Class, altiplan::bad::Misnamed<Base>,                  \
-                  "a parameter is not named in snake_case")                                     \
-  ALTIPLAN_PLUGIN(Interface, "out_of_bounds", Class, altiplan::bad::OutOfBounds<Base>,          \
-                  "a default lies out of its own bounds")                                       \
-  BAD_PLUGIN(Interface, "deaf", deaf_entry, Class, altiplan::bad::Bounded<Base>,                \
-             "does not hold its parameters to their bounds")                                    \
-  BAD_PLUGIN(Interface, "careless", careless_entry, Class, altiplan::bad::Bounded<Base>,        \
-             "makes objects of any parameters")
+#define ALTIPLAN_BAD_ENTRIES(Interface, Class, Base)                                              \
+  ALTIPLAN_BAD_PLUGIN(Interface, "says_nothing", silent_entry, Class, Base,                       \
+                      "its entry has no sentence")                                                \
+  ALTIPLAN_PLUGIN(Interface, "undescribed", Class, altiplan::bad::Undescribed<Base>,              \
+                  "a parameter has no sentence")                                                  \
+  ALTIPLAN_PLUGIN(Interface, "misnamed", Class, altiplan::bad::Misnamed<Base>,                    \
+                  "a parameter is not named in snake_case")                                       \
+  ALTIPLAN_PLUGIN(Interface, "out_of_bounds", Class, altiplan::bad::OutOfBounds<Base>,            \
+                  "a default lies out of its own bounds")                                         \
+  ALTIPLAN_BAD_PLUGIN(Interface, "deaf", deaf_entry, Class, altiplan::bad::Bounded<Base>,         \
+                      "does not hold its parameters to their bounds")                             \
+  ALTIPLAN_BAD_PLUGIN(Interface, "careless", careless_entry, Class, altiplan::bad::Bounded<Base>, \
+                      "makes objects of any parameters")
 
 /// What each kind has of plugins that do well, and do to their process what they should not.
-#define BAD_PROCESSES(Interface, Locale, Prints, Writes, Leaks, Differs, Params)       \
-  ALTIPLAN_PLUGIN(Interface, "changes_locale", Locale, Params, "changes the locale")   \
-  ALTIPLAN_PLUGIN(Interface, "prints", Prints, Params, "writes to stdout")             \
-  ALTIPLAN_PLUGIN(Interface, "writes_file", Writes, Params, "writes a file at home")   \
-  ALTIPLAN_PLUGIN(Interface, "leaks", Leaks, Params, "keeps 5,000 bytes at each call") \
-  ALTIPLAN_PLUGIN(Interface, "depends_on_address", Differs, Params,                    \
+#define ALTIPLAN_BAD_PROCESSES(Interface, Locale, Prints, Writes, Leaks, Differs, Params) \
+  ALTIPLAN_PLUGIN(Interface, "changes_locale", Locale, Params, "changes the locale")      \
+  ALTIPLAN_PLUGIN(Interface, "prints", Prints, Params, "writes to stdout")                \
+  ALTIPLAN_PLUGIN(Interface, "writes_file", Writes, Params, "writes a file at home")      \
+  ALTIPLAN_PLUGIN(Interface, "leaks", Leaks, Params, "keeps 5,000 bytes at each call")    \
+  ALTIPLAN_PLUGIN(Interface, "depends_on_address", Differs, Params,                       \
                   "its answer depends on an address")

@@ -17,8 +17,8 @@ std::vector<Shape> shapes() {
           BoxShape{{{350, 600, 0}, {352, 900, 300}}}};
 }
 const kit::ObstacleSet& sound() {
-  static const kit::ObstacleSet set(shapes());
-  return set;
+  static const kit::ObstacleSet kSet(shapes());
+  return kSet;
 }
 
 /// What stands in place of the sound answers; unset ones are sound.
@@ -276,6 +276,7 @@ ALTIPLAN_PLUGIN(Environment, "flat_cells", Spoilt<flat_cells>, NoParams,
 ALTIPLAN_PLUGIN(Environment, "bent_frame", Spoilt<bent_frame>, NoParams,
                 "its frame does not bring a place back")
 ALTIPLAN_PLUGIN(Environment, "empty", Empty, NoParams, "there is nothing in it")
-BAD_ENTRIES(Environment, Sound, NoParams)
-BAD_PROCESSES(Environment, Spoilt<does<changes_locale>>, Spoilt<does<prints>>,
-              Spoilt<does<writes_file>>, Spoilt<does<leaks>>, Spoilt<by_its_address>, NoParams)
+ALTIPLAN_BAD_ENTRIES(Environment, Sound, NoParams)
+ALTIPLAN_BAD_PROCESSES(Environment, Spoilt<does<changes_locale>>, Spoilt<does<prints>>,
+                       Spoilt<does<writes_file>>, Spoilt<does<leaks>>, Spoilt<by_its_address>,
+                       NoParams)

@@ -171,6 +171,6 @@ ALTIPLAN_PLUGIN(LocalPlanner, "climbs_on_the_level", ClimbsOnTheLevel, NoParams,
                 "flies on a level alone by its traits, and leaves it")
 ALTIPLAN_PLUGIN(LocalPlanner, "through_on_the_level", ThroughOnTheLevel, NoParams,
                 "flies on a level alone by its traits, and through obstacles")
-BAD_ENTRIES(LocalPlanner, Sound, NoParams)
-BAD_PROCESSES(LocalPlanner, DoesWhat<changes_locale>, DoesWhat<prints>, DoesWhat<writes_file>,
-              DoesWhat<leaks>, ByAddress, NoParams)
+ALTIPLAN_BAD_ENTRIES(LocalPlanner, Sound, NoParams)
+ALTIPLAN_BAD_PROCESSES(LocalPlanner, DoesWhat<changes_locale>, DoesWhat<prints>,
+                       DoesWhat<writes_file>, DoesWhat<leaks>, ByAddress, NoParams)

@@ -21,7 +21,7 @@ class CrashesAtExit {
     std::atexit([] { std::abort(); });
   }
 };
-void crashes_at_exit() { static const CrashesAtExit once; }
+void crashes_at_exit() { static const CrashesAtExit kOnce; }
 
 template <double (*kOther)()>
 PlanResult noting(const Sound& sound, const Request& request) {
@@ -75,7 +75,7 @@ ALTIPLAN_PLUGIN(Planner, "depends_on_time", SpoiltPlanner<noting<by_time>>, NoPa
                 "its answer depends on when it was loaded")
 ALTIPLAN_PLUGIN(Planner, "depends_on_memory", SpoiltPlanner<noting<by_memory>>, NoParams,
                 "its answer depends on memory that nobody has set")
-BAD_ENTRIES(Planner, SpoiltPlanner<plain>, NoParams)
-BAD_PROCESSES(Planner, SpoiltPlanner<after<changes_locale>>, SpoiltPlanner<after<prints>>,
-              SpoiltPlanner<after<writes_file>>, SpoiltPlanner<after<leaks>>,
-              SpoiltPlanner<noting<by_address>>, NoParams)
+ALTIPLAN_BAD_ENTRIES(Planner, SpoiltPlanner<plain>, NoParams)
+ALTIPLAN_BAD_PROCESSES(Planner, SpoiltPlanner<after<changes_locale>>, SpoiltPlanner<after<prints>>,
+                       SpoiltPlanner<after<writes_file>>, SpoiltPlanner<after<leaks>>,
+                       SpoiltPlanner<noting<by_address>>, NoParams)

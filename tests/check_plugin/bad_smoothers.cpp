@@ -156,11 +156,11 @@ ALTIPLAN_PLUGIN(Smoother, "crashes_unused", Unused, NoParams,
                 "crashes where it goes unused, with no route to smooth")
 ALTIPLAN_PLUGIN(Smoother, "late", SpoiltSmoother<late>, NoParams, "ends 70 ms after its deadline")
 ALTIPLAN_PLUGIN(Smoother, "two__words", Sound, NoParams, "its name is not in snake_case")
-BAD_ENTRIES(Smoother, Sound, NoParams)
-BAD_PLUGIN(Smoother, "thrower", thrower_entry, Sound, Bounded<NoParams>,
-           "throws a number where parameters are wrong")
-BAD_PLUGIN(Smoother, "throws_at_keys", throwing_entry, Sound, Bounded<NoParams>,
-           "throws where it reads a parameter that it does not know")
-BAD_PROCESSES(Smoother, SpoiltSmoother<after<changes_locale>>, SpoiltSmoother<after<prints>>,
-              SpoiltSmoother<after<writes_file>>, SpoiltSmoother<after<leaks>>,
-              SpoiltSmoother<noting<by_address>>, NoParams)
+ALTIPLAN_BAD_ENTRIES(Smoother, Sound, NoParams)
+ALTIPLAN_BAD_PLUGIN(Smoother, "thrower", thrower_entry, Sound, Bounded<NoParams>,
+                    "throws a number where parameters are wrong")
+ALTIPLAN_BAD_PLUGIN(Smoother, "throws_at_keys", throwing_entry, Sound, Bounded<NoParams>,
+                    "throws where it reads a parameter that it does not know")
+ALTIPLAN_BAD_PROCESSES(Smoother, SpoiltSmoother<after<changes_locale>>,
+                       SpoiltSmoother<after<prints>>, SpoiltSmoother<after<writes_file>>,
+                       SpoiltSmoother<after<leaks>>, SpoiltSmoother<noting<by_address>>, NoParams)

@@ -132,6 +132,6 @@ ALTIPLAN_PLUGIN(Tuner, "throws_at_failures", SpoiltTuner<Flaw::throws>, NoParams
                 "throws where a score is infinite")
 ALTIPLAN_PLUGIN(Tuner, "not_a_number", SpoiltTuner<Flaw::not_a_number>, NoParams,
                 "asks for what is no number after a failure")
-BAD_ENTRIES(Tuner, Sound, NoParams)
-BAD_PROCESSES(Tuner, DoesWhat<changes_locale>, DoesWhat<prints>, DoesWhat<writes_file>,
-              DoesWhat<leaks>, ByAddress, NoParams)
+ALTIPLAN_BAD_ENTRIES(Tuner, Sound, NoParams)
+ALTIPLAN_BAD_PROCESSES(Tuner, DoesWhat<changes_locale>, DoesWhat<prints>, DoesWhat<writes_file>,
+                       DoesWhat<leaks>, ByAddress, NoParams)

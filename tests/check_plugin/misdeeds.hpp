@@ -91,20 +91,20 @@ inline void leaves_process() {
 }
 /// Other in each process, the same throughout one.
 inline double by_address() {
-  static const int here = 0;
-  return 1e-18 * double(reinterpret_cast<std::uintptr_t>(&here));
+  static const int kHere = 0;
+  return 1e-18 * double(reinterpret_cast<std::uintptr_t>(&kHere));
 }
 inline double by_time() {
-  static const auto began = std::chrono::steady_clock::now().time_since_epoch().count();
-  return 1e-18 * double(began % 1'000'000'007);
+  static const auto kBegan = std::chrono::steady_clock::now().time_since_epoch().count();
+  return 1e-18 * double(kBegan % 1'000'000'007);
 }
 inline double by_memory() {
-  static const double found = [] {
+  static const double kFound = [] {
     std::vector<char>* volatile hidden = new std::vector<char>(64);
     volatile const char* volatile data = static_cast<char*>(std::malloc(512));
     delete hidden;
     return 1e-9 * data[300];
   }();
-  return found;
+  return kFound;
 }
 }  // namespace altiplan::bad

@@ -214,8 +214,7 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->type_name("S")
       ->check(number_from(0.01, 86400))
       ->capture_default_str();
-  command
-      ->add_option("--memory-limit", arguments->memory_limit_mb, "megabytes that a test may use")
+  command->add_option("--memory-limit", arguments->memory_limit_mb, "megabytes that a test may use")
       ->type_name("MB")
       ->check(number_from(1, 1e9))
       ->capture_default_str();
