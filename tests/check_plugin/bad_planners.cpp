@@ -196,13 +196,9 @@ PlanResult remembers(const Sound& sound, const Request& request) {
   const double before = last.exchange(request.start.position.x());
   return noting(sound.plan(request), before != request.start.position.x());
 }
-PlanResult notes_two_at_once(const Sound& sound, const Request& request) {
-  static std::atomic<int> inside = 0;
-  const int others = inside++;
-  PlanResult result = sound.plan(request);
-  std::this_thread::sleep_for(std::chrono::milliseconds(others == 0 ? 1 : 2));
-  --inside;
-  return noting(std::move(result), others);
+PlanResult knows_its_thread(const Sound& sound, const Request& request) {
+  static const std::thread::id kFirst = std::this_thread::get_id();
+  return noting(sound.plan(request), std::this_thread::get_id() == kFirst);
 }
 PlanResult writes_into_its_request(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
@@ -376,8 +372,8 @@ ALTIPLAN_PLUGIN(Planner, "counts_threads", SpoiltPlanner<counts_threads>, NoPara
                 "its answer depends on the number of threads")
 ALTIPLAN_PLUGIN(Planner, "remembers", SpoiltPlanner<remembers>, NoParams,
                 "its answer depends on the request before")
-ALTIPLAN_PLUGIN(Planner, "notes_two_at_once", SpoiltPlanner<notes_two_at_once>, NoParams,
-                "its answer depends on what other threads ask meanwhile")
+ALTIPLAN_PLUGIN(Planner, "knows_its_thread", SpoiltPlanner<knows_its_thread>, NoParams,
+                "its answer depends on the thread that asks")
 ALTIPLAN_PLUGIN(Planner, "writes_into_its_request", SpoiltPlanner<writes_into_its_request>,
                 NoParams, "changes a limit of the request that it was given")
 ALTIPLAN_PLUGIN(Planner, "gives_up_early", GivesUpEarly, NoParams,
