@@ -39,6 +39,8 @@ constexpr Call kCalls[] = {
     {SYS_linkat, "makes the link", 3, 2},
     {SYS_symlinkat, "makes the link", 2, 1},
     {SYS_mknodat, "makes", 1, 0},
+    {SYS_fchmodat, "changes", 1, 0},
+    {SYS_fchownat, "changes", 1, 0},
 #ifdef SYS_open  // the ones of old, of x86-64
     {SYS_open, "opens", 0, -1, 1},
     {SYS_creat, "opens", 0},
@@ -49,6 +51,8 @@ constexpr Call kCalls[] = {
     {SYS_link, "makes the link", 1},
     {SYS_symlink, "makes the link", 1},
     {SYS_mknod, "makes", 0},
+    {SYS_chmod, "changes", 0},
+    {SYS_chown, "changes", 0},
 #endif
 };
 
