@@ -138,19 +138,19 @@ double Ridge::do_ground_gap_max(const Vec3& a, const Vec3& b) const {
 }
 
 double Watched::do_clearance(const Vec3& p) const {
-  asked_();
+  asked_(p);
   return inner_->clearance(p);
 }
 bool Watched::do_blocked(const Vec3& a, const Vec3& b, double r) const {
-  asked_();
+  asked_(a + b);
   return inner_->blocked(a, b, r);
 }
 void Watched::do_near(const Vec3& p, double reach, const NearSink& sink) const {
-  asked_();
+  asked_(p);
   inner_->near(p, reach, sink);
 }
 void Watched::do_rasterize(VoxelGrid& grid) const {
-  asked_();
+  asked_(Vec3::Zero());
   inner_->rasterize(grid);
 }
 }  // namespace altiplan::conformance

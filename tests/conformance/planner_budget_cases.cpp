@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <atomic>
+#include <mutex>
 
 #include "planner_bench.hpp"
 
@@ -17,7 +19,7 @@ Scene hopeless(const PlannerBench& bench) {
 }
 
 /// The same problem, every query of its world reported.
-Request watched(const Scene& scene, const std::function<void()>& asked) {
+Request watched(const Scene& scene, const Watched::Asked& asked) {
   World world;
   for (const Layer& layer : scene.request.world->layers()) {
     world = world.with(
@@ -28,13 +30,28 @@ Request watched(const Scene& scene, const std::function<void()>& asked) {
   return request;
 }
 
-std::int64_t queries_within(const PlannerBench& bench, const Scene& scene,
-                            std::uint64_t iterations) {
-  std::atomic<std::int64_t> queries = 0;
-  Request request = watched(scene, [&] { ++queries; });
+/// Where it asks the world, in order, with that budget.
+std::vector<Vec3> queries_of(const PlannerBench& bench, const Scene& scene,
+                             std::uint64_t iterations) {
+  std::vector<Vec3> queries;
+  std::mutex mutex;
+  Request request = watched(scene, [&](const Vec3& at) {
+    const std::lock_guard lock(mutex);
+    queries.push_back(at);
+  });
   request.budget.max_iterations = iterations;
   (void)bench.make()->plan(request);
   return queries;
+}
+
+/// Of those with more iterations, how many come before the iterations given have ended. What a
+/// planner asks after its search, for its message, differs from what the search goes on with.
+std::size_t queries_within(const PlannerBench& bench, const Scene& scene, std::uint64_t iterations,
+                           const std::vector<Vec3>& with_more) {
+  const std::vector<Vec3> queries = queries_of(bench, scene, iterations);
+  return std::size_t(
+      std::mismatch(queries.begin(), queries.end(), with_more.begin(), with_more.end()).first -
+      queries.begin());
 }
 
 void no_iterations(const PlannerBench& bench, Report& report) {
@@ -52,7 +69,12 @@ void no_iterations(const PlannerBench& bench, Report& report) {
 void iterations_kept(const PlannerBench& bench, Report& report) {
   for (Scene scene :
        {hopeless(bench), bench.world(0, bench.flight()), bench.cells(1, bench.flight())}) {
-    for (const std::uint64_t most : {1, 2, 17, 300, 2000}) {
+    // Also in each phase of what it does with more: it may sample, then join, then search.
+    const auto all = std::uint64_t(
+        std::max(std::int64_t(0), counter(bench.make()->plan(scene.request).counters, "expanded")));
+    for (const std::uint64_t most :
+         {std::uint64_t(1), std::uint64_t(2), std::uint64_t(17), std::uint64_t(300),
+          std::uint64_t(2000), all / 2, all * 3 / 4, all * 9 / 10, all - all / 100}) {
       scene.request.budget.max_iterations = most;
       const PlanResult result = bench.make()->plan(scene.request);
       judge(report, result, scene);
@@ -93,8 +115,9 @@ void stopped_before(const PlannerBench& bench, Report& report) {
 /// equal requests do equal things.
 void stopped_at_a_query(const PlannerBench& bench, Report& report) {
   const Scene scene = hopeless(bench);
-  const std::int64_t all = queries_within(bench, scene, bench.options.iterations);
-  for (const std::int64_t query : {std::int64_t(1), all / 3, 2 * all / 3}) {
+  const std::vector<Vec3> queries = queries_of(bench, scene, bench.options.iterations);
+  const std::size_t all = queries.size();
+  for (const std::size_t query : {std::size_t(1), all / 3, 2 * all / 3}) {
     if (query < 1) {
       continue;
     }
@@ -102,12 +125,12 @@ void stopped_at_a_query(const PlannerBench& bench, Report& report) {
     std::uint64_t after = bench.options.iterations;
     while (after - before > 1) {
       const std::uint64_t middle = before + (after - before) / 2;
-      (queries_within(bench, scene, middle) < query ? before : after) = middle;
+      (queries_within(bench, scene, middle, queries) < query ? before : after) = middle;
     }
     std::stop_source source;
-    std::atomic<std::int64_t> queries = 0;
-    Request request = watched(scene, [&] {
-      if (++queries == query) {
+    std::atomic<std::size_t> asked = 0;
+    Request request = watched(scene, [&](const Vec3&) {
+      if (++asked == query) {
         source.request_stop();
       }
     });

@@ -24,6 +24,7 @@ bool judge(Report& report, const PlanResult& result, const Scene& scene) {
                   told("returns a route without saying solved"));
     report.expect(known, ends ? kPlannerEnds : kPlannerStatus,
                   told("failed, or used a status that is not a planner's"));
+    report.expect(!result.message.empty(), kPlannerStatus, told("gives no reason"));
     return false;
   }
   const std::string fault = unsound(result.route, scene);
@@ -81,30 +82,43 @@ void million_obstacles(const PlannerBench& bench, Report& report) {
   }
 }
 
+/// A rule of an author's own, which looks at two legs at a time.
+class NoSharpTurns final : public Constraint {
+ private:
+  bool do_admits(const Leg& leg) const override {
+    return !leg.before ||
+           turn_angle_in_space(leg.from - *leg.before, leg.to - leg.from) <= radians(65);
+  }
+};
+
 /// Each limit in turn, on the same worlds.
 void limits_honoured(const PlannerBench& bench, Report& report) {
   const double unit = bench.options.unit_m;
   const std::vector<std::pair<const char*, std::function<void(Request&)>>> limits{
-      {"climb", [](Request& r) { r.limits.max_climb = radians(35); }},
-      {"turn", [](Request& r) { r.limits.max_turn_horizontal = radians(40); }},
-      {"turn in space", [](Request& r) { r.limits.max_turn_space = radians(40); }},
-      {"turn radius", [&](Request& r) { r.limits.min_turn_radius = unit; }},
-      {"clearance", [&](Request& r) { r.limits.min_clearance = unit / 2; }},
-      {"vehicle's radius", [&](Request& r) { r.vehicle.radius_m = unit / 2; }},
-      {"longest leg", [&](Request& r) { r.limits.max_leg = 4 * unit; }},
-      {"shortest leg", [&](Request& r) { r.limits.min_leg = unit / 2; }},
+      {"climb 35 degrees", [](Request& r) { r.limits.max_climb = radians(35); }},
+      {"turn 40 degrees", [](Request& r) { r.limits.max_turn_horizontal = radians(40); }},
+      {"turn in space 40 degrees", [](Request& r) { r.limits.max_turn_space = radians(40); }},
+      {"turn radius 1 unit", [&](Request& r) { r.limits.min_turn_radius = unit; }},
+      {"clearance half a unit", [&](Request& r) { r.limits.min_clearance = unit / 2; }},
+      {"vehicle's radius half a unit", [&](Request& r) { r.vehicle.radius_m = unit / 2; }},
+      {"longest leg 4 units", [&](Request& r) { r.limits.max_leg = 4 * unit; }},
+      {"shortest leg half a unit", [&](Request& r) { r.limits.min_leg = unit / 2; }},
       {"altitude",
        [&](Request& r) {
          const double highest = std::max(r.start.position.z(), r.goal.position.z());
          r.limits.altitude.push_back({AltitudeBand::Datum::sea, unit, highest + unit / 2});
        }},
-      {"route length",
+      {"route length 1.1 of the straight way",
        [&](Request& r) {
          r.limits.max_route_length = 1.1 * (r.goal.position - r.start.position).norm();
        }},
-      {"heading", [](Request& r) {
+      {"heading away from the goal, turn 100 degrees",
+       [](Request& r) {
          r.start.velocity = {-1, 0, 0};
          r.limits.max_turn_horizontal = radians(100);
+       }},
+      {"a rule of its own: no turn in space above 65 degrees", [](Request& r) {
+         r.constraints.push_back({"no_sharp_turns", std::make_shared<NoSharpTurns>()});
        }}};
   for (const auto& [name, set] : limits) {
     for (int n = 0; n < 2 + bench.options.rounds / 2; ++n) {

@@ -64,10 +64,11 @@ class Ridge final : public Environment {
   double slope_;
 };
 
-/// Passes everything on to another layer, and calls `asked` at each query of obstacles.
+/// Passes everything on to another layer, and tells `asked` where at each query of obstacles.
 class Watched final : public Environment {
  public:
-  Watched(std::shared_ptr<const Environment> inner, std::function<void()> asked)
+  using Asked = std::function<void(const Vec3&)>;
+  Watched(std::shared_ptr<const Environment> inner, Asked asked)
       : inner_(std::move(inner)), asked_(std::move(asked)) {}
 
  private:
@@ -79,7 +80,7 @@ class Watched final : public Environment {
   double do_slack() const override { return inner_->slack(); }
   std::optional<GridSpec> do_native_grid() const override { return inner_->native_grid(); }
   std::shared_ptr<const Environment> inner_;
-  std::function<void()> asked_;
+  Asked asked_;
 };
 
 /// A problem, and what it is made of, so that it can be judged apart from the world's queries.

@@ -223,6 +223,27 @@ TEST(Flight, ReplansAroundWhatBlocksTheRest) {
                           [](const auto& at) { return at.second == Vec3(17000, 13000, 500); }));
 }
 
+TEST(Flight, ReplanThatBreaksARuleIsNotFlownAndSaysSo) {
+  Scene scene;
+  scene.hide(layer("unknown", post(17000, 15050, 800)));
+  scene.follow_alone();
+  Detour back_first({4000, 15000, 500});  // a turn on the spot
+  scene.setup.replanner = &back_first;
+  scene.setup.replan_step = "route";
+  scene.setup.route_request.limits.max_turn_horizontal = radians(30);
+  const FlightResult result = fly(scene.setup);
+  EXPECT_EQ(result.status, Status::collided) << result.message;
+  ASSERT_FALSE(result.replans.empty());
+  for (const Replan& replan : result.replans) {
+    EXPECT_EQ(replan.status, Status::rejected);
+    EXPECT_NE(replan.message.find("the judge found"), std::string::npos) << replan.message;
+    EXPECT_NE(replan.message.find("turn"), std::string::npos) << replan.message;
+  }
+  EXPECT_NE(result.message.find("the last replan, by 'route', was not flown: the judge found"),
+            std::string::npos)
+      << result.message;
+}
+
 TEST(Flight, ReplansAtAnyChangeWhereAskedTo) {
   for (const ReplanWhen when : {ReplanWhen::unsafe, ReplanWhen::any_change}) {
     Scene scene;

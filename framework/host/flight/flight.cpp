@@ -114,9 +114,12 @@ void Flight::end_flight(Status status, std::string message) {
   result_.status = status;
   result_.message = std::move(message);
   if (status != Status::solved && !result_.replans.empty() &&
-      result_.replans.back().status == Status::failed) {
+      (result_.replans.back().status == Status::failed ||
+       result_.replans.back().status == Status::rejected)) {
     const Replan& last = result_.replans.back();
-    result_.message += "; the last replan, by '" + last.step + "', failed: " + last.message;
+    result_.message += "; the last replan, by '" + last.step + "', " +
+                       (last.status == Status::failed ? "failed: " : "was not flown: ") +
+                       last.message;
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/run/judge.hpp"
+
 namespace altiplan::host {
 
 void Flight::ask_replan() {
@@ -28,8 +30,16 @@ void Flight::replan_when_due() {
                                    std::chrono::duration<double>(*setup_.replan_within_s));
   }
   const PlanResult plan = replan(request);
-  if (plan.status == Status::solved && check(plan.route, request).ok()) {
+  if (plan.status != Status::solved) {
+    return;
+  }
+  const CheckResult found = check(plan.route, request);
+  if (found.ok()) {
     take_route(plan.route, request);
+  } else {
+    Replan& refused = result_.replans.back();
+    refused.status = Status::rejected;
+    refused.message = verdict_sentence(found, found.violations.front());
   }
 }
 

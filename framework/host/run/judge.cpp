@@ -67,6 +67,13 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
   return result;
 }
 
+std::string verdict_sentence(const CheckResult& result, const Violation& shown) {
+  const std::size_t count = result.violations.size();
+  return "the judge found " + std::to_string(count) + " violation" +
+         (count == 1 ? "" : "s; the first") + ", at waypoint " + std::to_string(shown.at) + " (" +
+         shown.constraint + "): " + shown.message;
+}
+
 const Violation* blamed_layer(const CheckResult& result) {
   const auto found = std::find_if(result.violations.begin(), result.violations.end(),
                                   [](const Violation& v) { return v.constraint == kLayerRule; });

@@ -16,6 +16,9 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
 /// Index of the waypoint at each via point, in order; shorter than `via` where one is not passed.
 std::vector<std::size_t> via_indices(const Route& route, const std::vector<Goal>& via);
 
+/// What the judge found, in a sentence: how many violations there are, and one of them.
+std::string verdict_sentence(const CheckResult& result, const Violation& shown);
+
 /// The violation that says that a layer contradicts itself; null where there is none.
 const Violation* blamed_layer(const CheckResult& result);
 }  // namespace altiplan::host

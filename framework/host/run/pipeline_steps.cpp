@@ -131,9 +131,7 @@ void Run::take_verdict(StepResult& step) {
   if (worst == nullptr) {
     worst = &found.front();
   }
-  step.message = "the judge found " + std::to_string(found.size()) + " violation" +
-                 (found.size() == 1 ? "" : "s; the first") + ", at waypoint " +
-                 std::to_string(worst->at) + " (" + worst->constraint + "): " + worst->message;
+  step.message = verdict_sentence(*step.check, *worst);
 }
 
 ConfigError Run::at_its_key(const StepEntry& entry, const ParameterError& error) {
