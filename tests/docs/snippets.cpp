@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pieces of code that pages of docs/interfaces show: what stands between `// name {` and
 // `// }` is written into the page by interfaces_test.py. Compiled, never run.
+#include <altiplan/check.hpp>
 #include <altiplan/kit/leg_rules.hpp>
 #include <altiplan/kit/leg_tree.hpp>
 #include <altiplan/kit/open_list.hpp>
@@ -15,36 +16,100 @@ using namespace altiplan;
 struct Params {
   double cell_m = 50;  // also int, bool, std::string, Vec3, Path, lists, structs with a describe
   std::optional<double> range_m;
+  AutoNumber step_m;  // a number or the word auto, the default; step_m.value is a std::optional
   std::string order = "near";
 
   void describe(Fields& f) {
     f("cell_m", cell_m).unit("m").greater_than(0).doc("edge of a cell");
     f("range_m", range_m).unit("m").at_least(1).doc("longest leg; default: no limit");
+    f("step_m", step_m).unit("m").greater_than(0).doc("between samples; auto: half a cell");
     f("order", order).one_of({"near", "far"}).doc("which is tried first");
     f.check(!range_m || *range_m >= cell_m, "range_m must be at least cell_m");
   }
 };
 // }
 
+// rule {
+class LittleClimbing final : public Constraint {
+ private:
+  AppliesTo do_applies_to() const override { return AppliesTo::route; }  // without it: both
+
+  void do_tighten(Limits& limits, const Request&) const override {
+    limits.max_climb = std::min(limits.max_climb, radians(10));  // never looser than it was
+  }
+
+  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+    double climbed = 0;
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+      climbed += std::max(0.0, route[i + 1].z() - route[i].z());
+      if (climbed > most_m_ + kLengthTolerance) {
+        Violation broken;
+        broken.at = i;  // the leg from waypoint i to the next
+        broken.value = climbed;
+        broken.limit = most_m_;
+        broken.message = "the route climbs more than " + std::to_string(most_m_) + " m in all";
+        return {broken};
+      }
+    }
+    return {};  // the rule is kept
+  }
+
+  double most_m_ = 500;
+};
+// }
+
 // session {
-class RoadmapSession final : public Session {
+/// Goes on along the last route while the vehicle can fly to it; else plans anew.
+class JoiningSession final : public Session {
  public:
-  explicit RoadmapSession(PlanResult first) : result_(std::move(first)) {}
+  JoiningSession(const Planner& planner, const Request& request)
+      : planner_(planner), request_(request), result_(planner.plan(request)) {}
 
  private:
   const PlanResult& do_result() const override { return result_; }
-  const PlanResult& do_update(const State& state, const Goal& goal,
-                              std::shared_ptr<const World> world, std::span<const Change> changes,
-                              const Budget& budget) override;
 
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change>,
+                              const Budget& budget) override {
+    request_.start = state;  // what is new; all else is as it was
+    request_.goal = goal;
+    request_.world = std::move(world);
+    request_.budget = budget;
+    BudgetWatch watch(request_.budget);
+    std::int64_t tried = 0;
+    const Route last = result_.route;
+    for (std::size_t at = last.size(); at-- > 1 && !watch.spent(std::uint64_t(tried));) {
+      ++tried;
+      Route joined = {state.position};
+      joined.insert(joined.end(), last.begin() + std::ptrdiff_t(at), last.end());
+      if (check(joined, request_).ok()) {
+        result_ = PlanResult{};
+        result_.status = Status::solved;
+        result_.route = joined;
+        result_.counters = {{"expanded", tried}};
+        return result_;
+      }
+    }
+    request_.budget.max_iterations -= std::min(budget.max_iterations, std::uint64_t(tried));
+    result_ = planner_.plan(request_);
+    return result_;  // what do_result returns too
+  }
+
+  const Planner& planner_;  // outlives its sessions
+  Request request_;         // a copy: that of the caller does not last
   PlanResult result_;
 };
 // }
 
-const PlanResult& RoadmapSession::do_update(const State&, const Goal&, std::shared_ptr<const World>,
-                                            std::span<const Change>, const Budget&) {
-  return result_;
-}
+class Joining final : public Planner {
+  // begin {
+  std::unique_ptr<Session> do_begin(const Request& request) const override {
+    return std::make_unique<JoiningSession>(*this, request);
+  }
+  // }
+  PlanResult do_plan(const Request&) const override { return {}; }
+  Traits do_traits() const override { return {}; }
+};
 
 void expand() {}
 
@@ -147,7 +212,8 @@ class Planning {
 void use_the_snippets(const Request& request) {
   Params params;
   bind(params, nullptr);
-  RoadmapSession session({});
+  LittleClimbing().violations({}, request);
+  Joining().begin(request);
   budget(request);
   trace(request, 0, -1, random(request, 0));
   cells(request, request.start.position);

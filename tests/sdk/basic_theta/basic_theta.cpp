@@ -128,7 +128,7 @@ class BasicTheta final : public Planner {
             .message = none ? "refused moves: " + search.rules.refusals() : "",
             .route = std::move(search.route),
             .counters = {{"expanded", search.expanded}},
-            .budget_hit = status == Status::timed_out || status == Status::cancelled,
+            .budget_hit = status == Status::timed_out,
             .proved = none && !search.rules.parent_mattered() &&
                       request.limits.max_route_length == kInfinity};
   }
