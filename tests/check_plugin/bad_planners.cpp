@@ -73,6 +73,7 @@ void route_length(Request& r) { r.limits.max_route_length = kInfinity; }
 void ground(Request& r) { r.limits.min_ground_clearance.reset(); }
 void level(Request& r) { r.level_m.reset(); }
 void heading(Request& r) { r.start.velocity = {0, 0, 0}; }
+void rules(Request& r) { r.constraints.clear(); }
 PlanResult forgets_longest_leg(const Sound& sound, const Request& request) {
   Request told = request;
   told.limits.max_leg = kInfinity;
@@ -96,6 +97,13 @@ PlanResult says_timed_out(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (request.goal.tolerance_m > 0 && result.status == Status::solved) {
     result.status = Status::timed_out;
+  }
+  return result;
+}
+PlanResult gives_no_reason(const Sound& sound, const Request& request) {
+  PlanResult result = sound.plan(request);
+  if (result.status == Status::no_route) {
+    result.message.clear();
   }
   return result;
 }
@@ -216,6 +224,7 @@ PlanResult gives_up_early(const Sound& sound, const Request& request) {
   if (result.route.size() > 9) {
     result = {};
     result.status = Status::no_route;
+    result.message = "the route would be long";
   }
   return result;
 }
@@ -337,12 +346,16 @@ ALTIPLAN_PLUGIN(Planner, "forgets_level", SpoiltPlanner<forgets<level>>, NoParam
                 "leaves its level in level flight")
 ALTIPLAN_PLUGIN(Planner, "forgets_heading", SpoiltPlanner<forgets<heading>>, NoParams,
                 "does not look where the vehicle comes from")
+ALTIPLAN_PLUGIN(Planner, "forgets_rules", SpoiltPlanner<forgets<rules>>, NoParams,
+                "asks no constraint")
 ALTIPLAN_PLUGIN(Planner, "throws_under_a_limit", SpoiltPlanner<throws_under_a_limit>, NoParams,
                 "throws a number where climb is limited")
 ALTIPLAN_PLUGIN(Planner, "solves_without_a_route", SpoiltPlanner<solves_without_a_route>, NoParams,
                 "says solved and returns no route, where the goal has a tolerance")
 ALTIPLAN_PLUGIN(Planner, "says_timed_out", SpoiltPlanner<says_timed_out>, NoParams,
                 "returns a route and says timed_out, where the goal has a tolerance")
+ALTIPLAN_PLUGIN(Planner, "gives_no_reason", SpoiltPlanner<gives_no_reason>, NoParams,
+                "does not say why there is no route")
 ALTIPLAN_PLUGIN(Planner, "says_not_reached", SpoiltPlanner<says_not_reached>, NoParams,
                 "uses a status of flights in place of no_route")
 ALTIPLAN_PLUGIN(Planner, "proves_too_much", SpoiltPlanner<proves_too_much>, NoParams,

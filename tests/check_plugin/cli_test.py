@@ -99,6 +99,25 @@ class CheckPlugin(unittest.TestCase):
                       self.run_it(TUNERS, "--sets", sets, code=3).stderr)
         self.run_it(TUNERS, "--sets", self.path("none.yaml"), code=3)
 
+    def test_parameters_that_do_not_fit(self):
+        sets = self.write("sets.yaml", "- with: {nonsense: 3}\n")
+        done = self.run_it(TUNERS, "--sets", sets, "--only", "^tuner/sound/", code=3)
+        self.assertIn("sets.yaml:1:10: nonsense: unknown key", done.stderr)
+        self.assertIn("0 failed", done.stdout)
+
+    def test_scratch_folder_by_a_relative_path(self):
+        self.environment["TMPDIR"] = "tmp"
+        self.run_it(TUNERS, "--only", "^tuner/sound/searches")
+        self.environment["TMPDIR"] = "nowhere"
+        done = self.run_it(TUNERS, "--only", "^tuner/sound/searches", code=3)
+        self.assertIn("TMPDIR: no such folder: nowhere", done.stderr)
+
+    def test_input_is_left_alone(self):
+        command = f"'{PROGRAM}' check-plugin '{TUNERS}' --only ^tuner/sound/ > out; cat"
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment,
+                              input="of the next command", text=True, capture_output=True)
+        self.assertEqual(done.stdout, "of the next command")
+
     def test_several_sets(self):
         sets = self.write("sets.yaml", "- plugin: sound\n- plugin: sound\n  unit_m: 20\n")
         names = self.run_it(TUNERS, "--sets", sets, "--list", "--only", "/sound/.*turns").stdout

@@ -87,7 +87,7 @@ class NoSharpTurns final : public Constraint {
  private:
   bool do_admits(const Leg& leg) const override {
     return !leg.before ||
-           turn_angle_in_space(leg.from - *leg.before, leg.to - leg.from) <= radians(65);
+           turn_angle_in_space(leg.from - *leg.before, leg.to - leg.from) <= radians(40);
   }
 };
 
@@ -117,7 +117,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
          r.start.velocity = {-1, 0, 0};
          r.limits.max_turn_horizontal = radians(100);
        }},
-      {"a rule of its own: no turn in space above 65 degrees", [](Request& r) {
+      {"a rule of its own: no turn in space above 40 degrees", [](Request& r) {
          r.constraints.push_back({"no_sharp_turns", std::make_shared<NoSharpTurns>()});
        }}};
   for (const auto& [name, set] : limits) {

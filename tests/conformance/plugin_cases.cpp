@@ -134,6 +134,10 @@ void whole_entry(const PluginEntry& entry, Report& report) {
   report.expect(is_snake_case(name), kEntry, [&] { return "the name is '" + name + "'"; });
   report.expect(entry.sentence != nullptr && entry.sentence[0] != '\0', kEntry,
                 [] { return "there is no sentence"; });
+  const std::string sentence = entry.sentence == nullptr ? "" : entry.sentence;
+  report.expect(std::none_of(sentence.begin(), sentence.end(),
+                             [](unsigned char c) { return c < ' ' || c == 0x7F; }),
+                kEntry, [] { return "the sentence holds a control character"; });
 }
 
 void declaration(const PluginEntry& entry, Report& report) {

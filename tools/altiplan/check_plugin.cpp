@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 #include "altiplan/error.hpp"
@@ -36,6 +38,21 @@ struct Arguments {
   bool list = false;
   bool here = false;
 };
+
+/// Tests run in folders of their own.
+void make_plugin_path_absolute() {
+  const char* const listed = std::getenv("ALTIPLAN_PLUGIN_PATH");
+  std::istringstream folders(listed != nullptr ? listed : "");
+  std::string all;
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!folder.empty()) {
+      all += (all.empty() ? "" : ":") + fs::absolute(folder).string();
+    }
+  }
+  if (!all.empty()) {
+    ::setenv("ALTIPLAN_PLUGIN_PATH", all.c_str(), 1);
+  }
+}
 
 PluginToCheck plugin_of(const Arguments& arguments) {
   if (!fs::is_regular_file(arguments.library)) {
@@ -93,7 +110,12 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
     outcome.findings.push_back({"Process: the test can be made", error.what()});
   }
   if (!arguments.answer.empty()) {
-    std::ofstream(arguments.answer) << outcome_text(outcome);
+    std::ofstream answer(arguments.answer);
+    answer << outcome_text(outcome);
+    answer.close();
+    if (!answer) {
+      throw Error("cannot write the result of a test to " + arguments.answer);
+    }
     return kDone;
   }
   Verdict verdict;
@@ -105,6 +127,7 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
 }
 
 int check_plugin(const Arguments& arguments) {
+  make_plugin_path_absolute();
   const PluginToCheck what = plugin_of(arguments);
   const std::vector<PluginTest> tests = chosen(arguments, what);
   if (tests.empty()) {
@@ -153,23 +176,30 @@ int check_plugin(const Arguments& arguments) {
   });
   progress.clear();
   library.time_s = std::chrono::duration<double>(Clock::now() - from).count();
-  if (!arguments.junit.empty()) {
-    host::write_file(arguments.junit, verdicts_junit(library, verdicts));
-  }
   if (arguments.json) {
     std::cout << host::file_text(verdicts_json(library, verdicts));
   } else {
     std::cout << summary_text(library, verdicts);
+  }
+  std::cout.flush();  // what is known, before what may fail
+  if (!arguments.junit.empty()) {
+    host::write_file(arguments.junit, verdicts_junit(library, verdicts));
   }
   if (verdicts.size() < tests.size()) {
     std::cerr << "altiplan: check-plugin: interrupted, " << tests.size() - verdicts.size()
               << " tests were not run\n";
     return kInterrupted;
   }
-  return std::any_of(verdicts.begin(), verdicts.end(),
-                     [](const Verdict& verdict) { return verdict.failed(); })
-             ? kBadPlugin
-             : kDone;
+  if (std::any_of(verdicts.begin(), verdicts.end(),
+                  [](const Verdict& verdict) { return verdict.failed(); })) {
+    return kBadPlugin;
+  }
+  const auto misfit = std::find_if(verdicts.begin(), verdicts.end(),
+                                   [](const Verdict& verdict) { return verdict.misfit; });
+  if (misfit != verdicts.end()) {
+    throw Error(misfit->test + " and others were skipped: " + misfit->skipped);
+  }
+  return kDone;
 }
 
 std::string regex_problem(const std::string& text) {
@@ -220,11 +250,13 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--untimed", arguments->untimed, "without the tests that look at the clock");
   command->add_flag("--list", arguments->list, "print the names of the tests and run none");
-  command->add_flag("--here", arguments->here,
-                    "run the one test that --only leaves in this process: for a debugger");
-  command->add_flag("--json", arguments->json, "print JSON");
+  CLI::Option* here =
+      command->add_flag("--here", arguments->here,
+                        "run the one test that --only leaves in this process: for a debugger");
+  command->add_flag("--json", arguments->json, "print JSON")->excludes(here);
   command->add_option("--junit", arguments->junit, "write the verdicts for a build server too")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(here);
   command->add_option("--answer", arguments->answer)->group("");  // between two of these processes
   set_example(*command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
   command->callback(

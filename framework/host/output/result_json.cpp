@@ -264,14 +264,15 @@ void write_file(const std::filesystem::path& named, const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
   const bool closed = std::fclose(out) == 0;
   const int error = errno;
+  std::error_code renaming;
   if (in_place) {
     if (written && closed) {
       return;
     }
   } else {
     if (written && closed) {
-      fs::rename(beside, file, code);
-      if (!code) {
+      fs::rename(beside, file, renaming);
+      if (!renaming) {
         return;
       }
     }
@@ -279,6 +280,6 @@ void write_file(const std::filesystem::path& named, const std::string& text) {
     fs::remove(beside, ignored);
   }
   throw Error("cannot write '" + file.string() +
-              "': " + (code ? code.message() : std::strerror(error)));
+              "': " + (renaming ? renaming.message() : std::strerror(error)));
 }
 }  // namespace altiplan::host

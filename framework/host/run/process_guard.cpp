@@ -46,8 +46,8 @@ constexpr std::array kFatal = {Fatal{SIGSEGV, "crashed (SIGSEGV)"},
                                Fatal{SIGBUS, "crashed (SIGBUS)"}, Fatal{SIGILL, "crashed (SIGILL)"},
                                Fatal{SIGFPE, "crashed (SIGFPE)"},
                                Fatal{SIGABRT, "aborted (SIGABRT)"}};
-constexpr std::array kWatched = {SIGSEGV, SIGBUS,  SIGILL,  SIGFPE, SIGABRT, SIGINT,
-                                 SIGTERM, SIGPIPE, SIGCHLD, SIGHUP, SIGUSR1, SIGALRM};
+constexpr std::array kWatched = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,  SIGABRT, SIGINT,  SIGTERM,
+                                 SIGPIPE, SIGCHLD, SIGHUP, SIGUSR1, SIGUSR2, SIGQUIT, SIGALRM};
 
 /// All that a handler may need; there is one, as there is one process.
 struct State {

@@ -41,6 +41,7 @@ constexpr Call kCalls[] = {
     {SYS_mknodat, "makes", 1, 0},
     {SYS_fchmodat, "changes", 1, 0},
     {SYS_fchownat, "changes", 1, 0},
+    {SYS_utimensat, "changes", 1, 0},
 #ifdef SYS_open  // the ones of old, of x86-64
     {SYS_open, "opens", 0, -1, 1},
     {SYS_creat, "opens", 0},
@@ -103,9 +104,20 @@ fs::path whole_path(const seccomp_notif& asked, const Call& call) {
   const std::string from = folder == AT_FDCWD ? "/cwd" : "/fd/" + std::to_string(folder);
   std::error_code error;
   const fs::path base = fs::read_symlink("/proc/" + std::to_string(process) + from, error);
-  // What a link leads to counts; the last part may be yet to be made.
+  // What a link leads to counts; the last part may be yet to be made. Only opening follows that
+  // too.
   const fs::path whole = (base / path).lexically_normal();
-  return fs::weakly_canonical(whole.parent_path(), error) / whole.filename();
+  return call.flags >= 0 ? fs::weakly_canonical(whole, error)
+                         : fs::weakly_canonical(whole.parent_path(), error) / whole.filename();
+}
+
+/// Whether the call would change what its path names. (A file of O_TMPFILE has no name.)
+bool changes(const seccomp_notif& asked, const Call& call) {
+  if (asked.data.args[std::size_t(call.path)] == 0) {
+    return false;  // of an open file
+  }
+  const std::uint64_t flags = call.flags < 0 ? O_WRONLY : asked.data.args[std::size_t(call.flags)];
+  return (flags & (O_WRONLY | O_RDWR | O_CREAT | O_TRUNC)) != 0 && (flags & O_TMPFILE) != O_TMPFILE;
 }
 
 bool below(const fs::path& path, const fs::path& folder) {
@@ -131,11 +143,9 @@ void FileWatch::serve(int listener) {
     }
     const auto call = std::find_if(std::begin(kCalls), std::end(kCalls),
                                    [&](const Call& one) { return one.number == asked.data.nr; });
-    const bool reads = call->flags >= 0 && (asked.data.args[std::size_t(call->flags)] &
-                                            (O_WRONLY | O_RDWR | O_CREAT | O_TRUNC)) == 0;
-    if (!reads) {
+    if (changes(asked, *call)) {
       const fs::path path = whole_path(asked, *call);
-      if (!below(path, scratch_) && !below(path, "/dev") && !below(path, "/proc/self")) {
+      if (!below(path, scratch_) && !below(path, "/dev") && !below(path, "/proc")) {
         note(std::string(call->does) + " " + path.string() +
              (call->flags >= 0 ? " for writing" : ""));
       }

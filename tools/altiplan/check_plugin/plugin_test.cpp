@@ -23,7 +23,7 @@ Outcome manifest_fits(const host::Library& library) {
   if (library.refused.empty()) {
     return {};
   }
-  return {{{kManifest, library.refused}}, "", ""};
+  return {{{kManifest, library.refused}}, "", false, ""};
 }
 
 Outcome exports_one_symbol(const host::Library& library) {
@@ -44,7 +44,7 @@ Outcome loads(const host::Library& library) {
   try {
     host::load_library(library);
   } catch (const PluginError& error) {
-    return {{{kLoads, error.what()}}, "", ""};
+    return {{{kLoads, error.what()}}, "", false, ""};
   }
   return {};
 }
@@ -89,6 +89,25 @@ class PluginUnderTest {
     const std::string layer = set_.missing_layer(registry());
     return layer.empty() ? "" : "no library offers the layer '" + layer + "' of its set";
   }
+  /// Why its parameters are none of the plugin's, or its layers cannot be made; "" where all is
+  /// well.
+  std::string misfit() const {
+    try {
+      const conformance::Setup made = setup();
+      for (const Value* parameters : {made.with, made.tighter}) {
+        for (const Problem& problem : parameters == nullptr
+                                          ? std::vector<Problem>()
+                                          : load().describe(parameters, "").problems) {
+          return problem.text() + (what_.sets.empty() ? " (--sets FILE gives it parameters)" : "");
+        }
+      }
+    } catch (const ConfigError& error) {
+      return error.problems().front().text();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
   conformance::Setup setup() const { return with_options(set_.setup(registry())); }
   /// As far as the names of cases depend on it.
   conformance::Setup named_setup() const { return with_options({}); }
@@ -116,15 +135,21 @@ class PluginUnderTest {
 
 using CasesOf = Cases (*)(const PluginEntry&, const conformance::Setup&);
 
+Cases entry_cases(const PluginEntry& entry, const conformance::Setup&) {
+  return conformance::plugin_cases(entry);
+}
+
 /// A test for each case; it makes the case again, of the plugin itself.
 std::vector<PluginTest> tests_of_cases(const std::shared_ptr<const PluginUnderTest>& subject,
                                        const std::string& prefix, CasesOf cases_of) {
   std::vector<PluginTest> tests;
   for (const Case& named : cases_of(stub_of(subject->plugin()), subject->named_setup())) {
     tests.push_back({prefix + named.name, [subject, cases_of, name = named.name] {
-                       for (const Case& one : cases_of(subject->load(), subject->setup())) {
+                       const conformance::Setup setup =
+                           cases_of == entry_cases ? subject->named_setup() : subject->setup();
+                       for (const Case& one : cases_of(subject->load(), setup)) {
                          if (one.name == name) {
-                           return Outcome{one.run(), "", ""};
+                           return Outcome{one.run(), "", false, ""};
                          }
                        }
                        throw Error("there is no case " + name);
@@ -135,10 +160,6 @@ std::vector<PluginTest> tests_of_cases(const std::shared_ptr<const PluginUnderTe
 
 void add(std::vector<PluginTest>& all, std::vector<PluginTest> more) {
   std::move(more.begin(), more.end(), std::back_inserter(all));
-}
-
-Cases entry_cases(const PluginEntry& entry, const conformance::Setup&) {
-  return conformance::plugin_cases(entry);
 }
 
 std::vector<PluginTest> tests_of_set(const std::shared_ptr<const PluginUnderTest>& subject,
@@ -155,7 +176,12 @@ std::vector<PluginTest> tests_of_set(const std::shared_ptr<const PluginUnderTest
   add(all, std::move(timed));
   for (PluginTest& test : all) {
     if (!obstacle.empty()) {
-      test.run = [obstacle] { return Outcome{{}, obstacle, ""}; };
+      test.run = [obstacle] { return Outcome{{}, obstacle, false, ""}; };
+    } else {
+      test.run = [subject, run = std::move(test.run)] {
+        const std::string misfit = subject->misfit();
+        return misfit.empty() ? run() : Outcome{{}, misfit, true, ""};
+      };
     }
   }
   return all;

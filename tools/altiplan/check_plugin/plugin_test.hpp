@@ -25,6 +25,7 @@ struct PluginToCheck {
 struct Outcome {
   std::vector<conformance::Finding> findings;
   std::string skipped;  ///< why there was nothing to do; "" where there was
+  bool misfit = false;  ///< skipped, as the parameters do not fit the plugin
   std::string answers;  ///< of a test of two processes: what must be equal in both
 };
 

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,7 +39,12 @@ constexpr rlim_t kMostOutput = 64 << 20;
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "altiplan-check-XXXXXX").string();
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (error) {
+      throw Error("TMPDIR: no such folder: " + std::string(std::getenv("TMPDIR")));
+    }
+    std::string name = (fs::absolute(folder) / "altiplan-check-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
       throw Error("cannot make the folder " + name + ": " + std::strerror(errno));
     }
@@ -56,13 +62,28 @@ class ScratchFolder {
   fs::path path_;
 };
 
-/// At most the last `most` bytes.
+/// The last bytes of a file, at most that many; "" of what is no regular file: a test may have put
+/// anything in its place.
 std::string end_of(const fs::path& file, std::size_t most) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  const std::string all = text.str();
-  return all.substr(all.size() - std::min(most, all.size()));
+  const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  struct stat status {};
+  std::string text;
+  if (from >= 0 && ::fstat(from, &status) == 0 && S_ISREG(status.st_mode)) {
+    text.resize(std::min(most, std::size_t(status.st_size)));
+    const ssize_t got =
+        ::pread(from, text.data(), text.size(), status.st_size - off_t(text.size()));
+    text.resize(std::size_t(std::max(ssize_t(0), got)));
+  }
+  if (from >= 0) {
+    ::close(from);
+  }
+  return text;
+}
+
+/// "SIGSEGV", "signal 37"
+std::string signal_name(int number) {
+  const char* const name = ::sigabbrev_np(number);
+  return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(number);
 }
 
 /// A test under way, in its process.
@@ -99,16 +120,17 @@ class Child {
 
   std::size_t index() const { return index_; }
   bool again() const { return again_; }
+  pid_t process() const { return process_; }
 
   /// What is wrong once it has ended, or has used more than it may; nullopt while neither is so.
-  std::optional<Verdict> look(const RunnerOptions& options) {
+  std::optional<Verdict> look(const RunnerOptions& options, const std::vector<pid_t>& others) {
     int status = 0;
     rusage use{};
     const pid_t got = ::wait4(process_, &status, WNOHANG, &use);
     const double time_s = std::chrono::duration<double>(Clock::now() - began_).count();
     if (got == process_) {
       process_ = 0;
-      Verdict verdict = verdict_of(status);
+      Verdict verdict = verdict_of(status, others);
       verdict.time_s = time_s;
       verdict.peak_memory_mb = double(use.ru_maxrss) / 1024;
       return verdict;
@@ -138,12 +160,16 @@ class Child {
 
  private:
   [[noreturn]] void become(char* const* arguments) const {
+    ::setsid();  // what it sends to its group stays there, and the terminal's signals away
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     host::set_mark(mark_);
     const rlimit output{kMostOutput, kMostOutput};
     ::setrlimit(RLIMIT_FSIZE, &output);
     const int said =
         ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    const int nothing = ::open("/dev/null", O_RDONLY);
+    ::dup2(nothing, STDIN_FILENO);
+    ::close(nothing);
     ::dup2(said, STDOUT_FILENO);
     ::dup2(said, STDERR_FILENO);
     ::close(said);
@@ -171,32 +197,47 @@ class Child {
     }
   }
 
-  Verdict verdict_of(int status) {
+  /// Ends what has become this process's child when its own parent ended: the test's, though it
+  /// does not bear its mark. `others` are tests under way. How many there were.
+  static std::size_t end_orphans(const std::vector<pid_t>& others) {
+    std::size_t count = 0;
+    for (const pid_t child : host::children_of(::getpid())) {
+      if (std::find(others.begin(), others.end(), child) == others.end()) {
+        ::kill(child, SIGKILL);
+        count += ::waitpid(child, nullptr, 0) == child;
+      }
+    }
+    return count;
+  }
+
+  Verdict verdict_of(int status, const std::vector<pid_t>& others) {
     Verdict verdict;
     verdict.said = end_of(scratch_.path() / "said", 2000);
     const auto fault = [&](const std::string& what) {
       verdict.findings.push_back({kEnds, "the process " + what});
       verdict.seen_from_outside = true;
     };
-    const std::string answer = end_of(scratch_.path() / "answer", ~std::size_t(0));
+    const std::string answer = end_of(scratch_.path() / "answer", kMostOutput);
     if (!answer.empty()) {
       try {
         Outcome outcome = outcome_of(answer);
         verdict.findings = std::move(outcome.findings);
         verdict.skipped = std::move(outcome.skipped);
+        verdict.misfit = outcome.misfit;
         answers_ = std::move(outcome.answers);
       } catch (const Error& error) {
         fault(error.what());
       }
     }
     if (WIFSIGNALED(status)) {
-      fault(std::string("crashed (SIG") + ::sigabbrev_np(WTERMSIG(status)) + ")" +
+      fault("crashed (" + signal_name(WTERMSIG(status)) + ")" +
             (answer.empty() ? "" : ", after the test"));
     } else if (answer.empty() || WEXITSTATUS(status) != 0) {
       fault("ended with exit code " + std::to_string(WEXITSTATUS(status)) +
             (answer.empty() ? ", but without a result" : " after the test"));
     }
-    if (const std::size_t left = host::ProcessTree{0, mark_}.kill(); left > 0) {
+    if (const std::size_t left = host::ProcessTree{0, mark_}.kill() + end_orphans(others);
+        left > 0) {
       fault("left " + std::to_string(left) + " processes behind");
     }
     return verdict;
@@ -263,18 +304,33 @@ class Runner {
     std::vector<std::unique_ptr<Child>> children;
     while ((!waiting.empty() || !children.empty()) && !options_.stop.stop_requested()) {
       while (!waiting.empty() && children.size() < jobs) {
-        start(children, waiting.back(), false);
+        try {
+          start(children, waiting.back(), false);
+        } catch (const Error&) {
+          if (children.empty()) {
+            throw;
+          }
+          break;  // there is room again when one of them has ended
+        }
         waiting.pop_back();
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       for (std::size_t i = 0; i < children.size(); ++i) {
-        if (std::optional<Verdict> verdict = children[i]->look(options_)) {
+        if (std::optional<Verdict> verdict = children[i]->look(options_, processes(children))) {
           const std::unique_ptr<Child> ended = std::move(children[i]);
           children.erase(children.begin() + std::ptrdiff_t(i--));
           take(children, *ended, std::move(*verdict));
         }
       }
     }
+  }
+
+  static std::vector<pid_t> processes(const std::vector<std::unique_ptr<Child>>& children) {
+    std::vector<pid_t> all;
+    for (const std::unique_ptr<Child>& child : children) {
+      all.push_back(child->process());
+    }
+    return all;
   }
 
   void start(std::vector<std::unique_ptr<Child>>& children, std::size_t index, bool again) {
@@ -315,7 +371,10 @@ std::string outcome_text(const Outcome& outcome) {
   for (const conformance::Finding& finding : outcome.findings) {
     findings.push_back({finding.law, finding.message});
   }
-  return Json{{"findings", findings}, {"skipped", outcome.skipped}, {"answers", outcome.answers}}
+  return Json{{"findings", findings},
+              {"skipped", outcome.skipped},
+              {"misfit", outcome.misfit},
+              {"answers", outcome.answers}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -327,6 +386,7 @@ Outcome outcome_of(const std::string& text) {
       outcome.findings.push_back({finding.at(0), finding.at(1)});
     }
     outcome.skipped = json.at("skipped");
+    outcome.misfit = json.at("misfit");
     outcome.answers = json.at("answers");
     return outcome;
   } catch (const Json::exception&) {
@@ -336,6 +396,9 @@ Outcome outcome_of(const std::string& text) {
 
 std::vector<Verdict> run_apart(const std::vector<PluginTest>& tests, const RunnerOptions& options,
                                const std::function<void(const Verdict&)>& done) {
+  ::signal(SIGCHLD,
+           SIG_DFL);  // a parent may have left it ignored, and then nothing can be waited for
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   return Runner(tests, options, done).run();
 }
 }  // namespace altiplan::cli

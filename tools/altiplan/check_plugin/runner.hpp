@@ -15,7 +15,8 @@ struct Verdict {
   std::vector<conformance::Finding> findings;  ///< none: passed
   bool seen_from_outside = false;  ///< a finding is this process's, of the one that ran the test
   std::string skipped;
-  std::string said;  ///< the end of what it wrote to stdout and stderr
+  bool misfit = false;  ///< skipped, as the parameters do not fit the plugin
+  std::string said;     ///< the end of what it wrote to stdout and stderr
   double time_s = 0;
   double peak_memory_mb = 0;
 

@@ -70,7 +70,7 @@ std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file) {
   if (list.kind != Value::Kind::list || list.items.empty()) {
     problems.push_back({list.where, "",
                         "expected a list of sets of parameters, found " +
-                            (list.items.empty() ? "none" : list.what())});
+                            (list.kind == Value::Kind::list ? "none" : list.what())});
   }
   std::vector<ParameterSet> sets(list.items.size());
   for (std::size_t i = 0; i < sets.size(); ++i) {

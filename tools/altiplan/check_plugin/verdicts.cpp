@@ -35,23 +35,32 @@ std::string indented(const std::string& text, std::size_t by) {
   return all;
 }
 
+/// What a plugin says need not be text: without control characters, which a terminal obeys and XML
+/// does not know, and as UTF-8.
+std::string printable(const std::string& text) {
+  using Json = nlohmann::json;
+  std::string all = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))
+                        .get<std::string>();
+  std::replace_if(
+      all.begin(), all.end(),
+      [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7F; }, '?');
+  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"}) {  // U+FFFE and U+FFFF
+    for (std::size_t at = all.find(none); at != std::string::npos; at = all.find(none)) {
+      all.replace(at, 3, "?");
+    }
+  }
+  return all;
+}
+
 std::string findings_text(const CheckedLibrary& library, const Verdict& verdict) {
   std::string all;
   for (const conformance::Finding& finding : verdict.findings) {
-    all += "  " + finding.law + "\n" + indented(finding.message, 4);
+    all += "  " + printable(finding.law) + "\n" + indented(printable(finding.message), 4);
   }
   if (!verdict.said.empty()) {
-    all += "  it said:\n" + indented(verdict.said, 4);
+    all += "  it said:\n" + indented(printable(verdict.said), 4);
   }
   return all + "  again: " + reproduce(library, verdict) + "\n";
-}
-
-/// XML knows no control characters.
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7F; }, '?');
-  return text;
 }
 
 /// "planner/astar/2" of "planner/astar/2/limits_are_honoured".
@@ -69,7 +78,7 @@ std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict) 
     return "FAILED  " + verdict.test + time + findings_text(library, verdict);
   }
   if (!verdict.skipped.empty()) {
-    return "skipped " + verdict.test + ": " + verdict.skipped + "\n";
+    return "skipped " + verdict.test + ": " + printable(verdict.skipped) + "\n";
   }
   return "passed  " + verdict.test + time;
 }
@@ -80,7 +89,7 @@ std::string summary_text(const CheckedLibrary& library, const std::vector<Verdic
   for (const Verdict& verdict : verdicts) {
     peak = std::max(peak, verdict.peak_memory_mb);
   }
-  return library.file + ": " + std::to_string(all.passed) + " passed, " +
+  return printable(library.file) + ": " + std::to_string(all.passed) + " passed, " +
          std::to_string(all.failed) + " failed" +
          (all.skipped > 0 ? ", " + std::to_string(all.skipped) + " skipped" : "") + " in " +
          fixed(library.time_s, 1) + " s; at most " + fixed(peak, 0) + " MB\n";
@@ -120,7 +129,7 @@ std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verd
   }
   pugi::xml_document document;
   pugi::xml_node root = document.append_child("testsuites");
-  root.append_attribute("name") = library.file.c_str();
+  root.append_attribute("name") = printable(library.file).c_str();
   for (const auto& [name, tests] : suites) {
     const Count all = count(tests);
     pugi::xml_node suite = root.append_child("testsuite");
@@ -139,7 +148,8 @@ std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verd
         failure.append_attribute("message") = printable(verdict.findings.front().law).c_str();
         failure.text() = printable(findings_text(library, verdict)).c_str();
       } else if (!verdict.skipped.empty()) {
-        test.append_child("skipped").append_attribute("message") = verdict.skipped.c_str();
+        test.append_child("skipped").append_attribute("message") =
+            printable(verdict.skipped).c_str();
       }
     }
   }
