@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "test_process.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "altiplan/error.hpp"
+#include "commands.hpp"
+#include "host/study/pool/process_tree.hpp"
+
+namespace altiplan::cli {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kEnds = "Process: the test ends well, with a result";
+constexpr rlim_t kMostOutput = 64 << 20;
+
+/// The last bytes of a file, at most that many; "" of what is no regular file: a test may have put
+/// anything in its place.
+std::string end_of(const fs::path& file, std::size_t most) {
+  const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  struct stat status {};
+  std::string text;
+  if (from >= 0 && ::fstat(from, &status) == 0 && S_ISREG(status.st_mode)) {
+    text.resize(std::min(most, std::size_t(status.st_size)));
+    const ssize_t got =
+        ::pread(from, text.data(), text.size(), status.st_size - off_t(text.size()));
+    text.resize(std::size_t(std::max(ssize_t(0), got)));
+  }
+  if (from >= 0) {
+    ::close(from);
+  }
+  return text;
+}
+
+/// "SIGSEGV", "signal 37"
+std::string signal_name(int number) {
+  const char* const name = ::sigabbrev_np(number);
+  return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(number);
+}
+
+/// Ends what has become this process's child when its own parent ended: the test's, though it
+/// does not bear its mark. `others` are tests under way. How many there were.
+std::size_t end_orphans(const std::vector<pid_t>& others) {
+  std::size_t count = 0;
+  for (const pid_t child : host::children_of(::getpid())) {
+    const bool is_test = std::find(others.begin(), others.end(), child) != others.end();
+    if (!is_test && ::waitpid(child, nullptr, WNOHANG) == 0) {  // and has not ended
+      ::kill(child, SIGKILL);
+      count += ::waitpid(child, nullptr, 0) == child;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error) {
+    throw Error("TMPDIR: no such folder: " + std::string(std::getenv("TMPDIR")));
+  }
+  std::string name = (fs::absolute(folder) / "altiplan-check-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw Error("cannot make the folder " + name + ": " + std::strerror(errno));
+  }
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code error;
+  fs::remove_all(path_, error);
+}
+
+TestProcess::TestProcess(const PluginTest& test, std::size_t index, std::uint64_t mark, bool again,
+                         const RunnerOptions& options)
+    : index_(index), mark_(mark), again_(again) {
+  for (const char* name : {"tmp", "home", "here"}) {
+    fs::create_directory(scratch_.path() / name);
+  }
+  std::vector<std::string> words = options.command;
+  for (const std::string& word :
+       {std::string("--only"), "^" + test.name + "$", std::string("--here"),
+        std::string("--answer"), (scratch_.path() / "answer").string()}) {
+    words.push_back(word);
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : words) {
+    arguments.push_back(word.data());
+  }
+  arguments.push_back(nullptr);
+  process_ = ::fork();
+  if (process_ < 0) {
+    throw Error(std::string("no process for a test: ") + std::strerror(errno));
+  }
+  if (process_ == 0) {
+    become(arguments.data());
+  }
+}
+
+std::optional<Verdict> TestProcess::look(const RunnerOptions& options,
+                                         const std::vector<pid_t>& others) {
+  int status = 0;
+  rusage use{};
+  const pid_t got = ::wait4(process_, &status, WNOHANG, &use);
+  const double time_s = std::chrono::duration<double>(Clock::now() - began_).count();
+  if (got == process_) {
+    process_ = 0;
+    Verdict verdict = verdict_of(status, others);
+    verdict.time_s = time_s;
+    verdict.peak_memory_mb = double(use.ru_maxrss) / 1024;
+    return verdict;
+  }
+  const double memory_mb = host::use_of(process_).memory_mb;
+  peak_mb_ = std::max(peak_mb_, memory_mb);
+  std::string over;
+  if (time_s > options.time_limit_s) {
+    over = "did not end within " + fixed(options.time_limit_s, 0) + " s";
+  } else if (memory_mb > options.memory_limit_mb) {
+    over = "used more than " + fixed(options.memory_limit_mb, 0) + " MB";
+  }
+  if (over.empty()) {
+    return std::nullopt;
+  }
+  end();
+  Verdict verdict;
+  verdict.findings = {{kEnds, "it " + over}};
+  verdict.seen_from_outside = true;
+  verdict.said = end_of(scratch_.path() / "said", 2000);
+  verdict.time_s = time_s;
+  verdict.peak_memory_mb = peak_mb_;
+  return verdict;
+}
+
+void TestProcess::become(char* const* arguments) const {
+  ::setsid();  // what it sends to its group stays there, and the terminal's signals away
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  host::set_mark(mark_);
+  const rlimit output{kMostOutput, kMostOutput};
+  ::setrlimit(RLIMIT_FSIZE, &output);
+  const int said = ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, STDIN_FILENO);
+  ::close(nothing);
+  ::dup2(said, STDOUT_FILENO);
+  ::dup2(said, STDERR_FILENO);
+  ::close(said);
+  ::setenv("TMPDIR", (scratch_.path() / "tmp").c_str(), 1);
+  ::setenv("HOME", (scratch_.path() / "home").c_str(), 1);
+  if (again_) {
+    // Memory that nobody has set holds something else, also where it was in use before.
+    ::setenv("GLIBC_TUNABLES", "glibc.malloc.perturb=165:glibc.malloc.tcache_count=0", 1);
+  }
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  if (::chdir((scratch_.path() / "here").c_str()) == 0) {
+    ::execv("/proc/self/exe", arguments);
+  }
+  ::_exit(127);
+}
+
+void TestProcess::end() {
+  if (process_ > 0) {
+    host::ProcessTree{process_, mark_}.kill(process_);
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    process_ = 0;
+  }
+}
+
+Verdict TestProcess::verdict_of(int status, const std::vector<pid_t>& others) {
+  Verdict verdict;
+  verdict.said = end_of(scratch_.path() / "said", 2000);
+  const auto fault = [&](const std::string& what) {
+    verdict.findings.push_back({kEnds, "the process " + what});
+    verdict.seen_from_outside = true;
+  };
+  const std::string answer = end_of(scratch_.path() / "answer", kMostOutput);
+  if (!answer.empty()) {
+    try {
+      Outcome outcome = outcome_of(answer);
+      verdict.findings = std::move(outcome.findings);
+      verdict.skipped = std::move(outcome.skipped);
+      verdict.misfit = outcome.misfit;
+      answers_ = std::move(outcome.answers);
+    } catch (const Error& error) {
+      fault(error.what());
+    }
+  }
+  if (WIFSIGNALED(status)) {
+    fault("crashed (" + signal_name(WTERMSIG(status)) + ")" +
+          (answer.empty() ? "" : ", after the test"));
+  } else if (answer.empty() || WEXITSTATUS(status) != 0) {
+    fault("ended with exit code " + std::to_string(WEXITSTATUS(status)) +
+          (answer.empty() ? ", but without a result" : " after the test"));
+  }
+  if (const std::size_t left = host::ProcessTree{0, mark_}.kill() + end_orphans(others); left > 0) {
+    fault("left " + std::to_string(left) + " processes behind");
+  }
+  return verdict;
+}
+}  // namespace altiplan::cli
