@@ -50,20 +50,26 @@ std::string signal_name(int number) {
   return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(number);
 }
 
-/// Ends what has become this process's child when its own parent ended: the test's, though it
-/// does not bear its mark. `others` are tests under way. How many there were.
+/// Ends what has become this process's child when its own parent ended: the test's, though it does
+/// not bear its mark. `others` are tests under way. How many there were that had not ended.
 std::size_t end_orphans(const std::vector<pid_t>& others) {
   std::size_t count = 0;
-  for (const pid_t child : host::children_of(::getpid())) {
-    const bool is_test = std::find(others.begin(), others.end(), child) != others.end();
-    if (!is_test && ::waitpid(child, nullptr, WNOHANG) == 0) {  // and has not ended
-      ::kill(child, SIGKILL);
-      count += ::waitpid(child, nullptr, 0) == child;
+  for (bool more = true; more;) {  // children of those that end come after them
+    more = false;
+    for (const pid_t child : host::children_of(::getpid())) {
+      if (std::find(others.begin(), others.end(), child) != others.end()) {
+        continue;
+      }
+      more = true;
+      if (::waitpid(child, nullptr, WNOHANG) == 0) {
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        ++count;
+      }
     }
   }
   return count;
 }
-
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
