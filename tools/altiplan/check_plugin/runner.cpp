@@ -85,21 +85,13 @@ class Runner {
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       for (std::size_t i = 0; i < children.size(); ++i) {
-        if (std::optional<Verdict> verdict = children[i]->look(options_, processes(children))) {
+        if (std::optional<Verdict> verdict = children[i]->look(options_)) {
           const std::unique_ptr<TestProcess> ended = std::move(children[i]);
           children.erase(children.begin() + std::ptrdiff_t(i--));
           take(children, *ended, std::move(*verdict));
         }
       }
     }
-  }
-
-  static std::vector<pid_t> processes(const std::vector<std::unique_ptr<TestProcess>>& children) {
-    std::vector<pid_t> all;
-    for (const std::unique_ptr<TestProcess>& child : children) {
-      all.push_back(child->process());
-    }
-    return all;
   }
 
   void start(std::vector<std::unique_ptr<TestProcess>>& children, std::size_t index, bool again) {

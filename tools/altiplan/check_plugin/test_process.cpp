@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 #include "altiplan/error.hpp"
 #include "commands.hpp"
@@ -50,20 +52,25 @@ std::string signal_name(int number) {
   return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(number);
 }
 
-/// Ends what has become this process's child when its own parent ended: the test's, though it does
-/// not bear its mark. `others` are tests under way. How many there were that had not ended.
-std::size_t end_orphans(const std::vector<pid_t>& others) {
+/// Whether the process stems from the test of that scratch folder, which its TMPDIR names.
+bool stems_from(pid_t process, const fs::path& scratch) {
+  std::ifstream variables("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
+  std::ostringstream text;
+  text << variables.rdbuf();
+  return text.str().find(scratch.string()) != std::string::npos;
+}
+
+/// Ends what has become this process's child when its own parent ended, and stems from the test,
+/// though it may not bear its mark. How many there were that had not ended.
+std::size_t end_orphans(const fs::path& scratch) {
   std::size_t count = 0;
   for (bool more = true; more;) {  // children of those that end come after them
     more = false;
     for (const pid_t child : host::children_of(::getpid())) {
-      if (std::find(others.begin(), others.end(), child) != others.end()) {
-        continue;
-      }
-      more = true;
-      if (::waitpid(child, nullptr, WNOHANG) == 0) {
+      if (stems_from(child, scratch)) {
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
+        more = true;
         ++count;
       }
     }
@@ -116,15 +123,14 @@ TestProcess::TestProcess(const PluginTest& test, std::size_t index, std::uint64_
   }
 }
 
-std::optional<Verdict> TestProcess::look(const RunnerOptions& options,
-                                         const std::vector<pid_t>& others) {
+std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
   int status = 0;
   rusage use{};
   const pid_t got = ::wait4(process_, &status, WNOHANG, &use);
   const double time_s = std::chrono::duration<double>(Clock::now() - began_).count();
   if (got == process_) {
     process_ = 0;
-    Verdict verdict = verdict_of(status, others);
+    Verdict verdict = verdict_of(status);
     verdict.time_s = time_s;
     verdict.peak_memory_mb = double(use.ru_maxrss) / 1024;
     return verdict;
@@ -187,7 +193,7 @@ void TestProcess::end() {
   }
 }
 
-Verdict TestProcess::verdict_of(int status, const std::vector<pid_t>& others) {
+Verdict TestProcess::verdict_of(int status) {
   Verdict verdict;
   verdict.said = end_of(scratch_.path() / "said", 2000);
   const auto fault = [&](const std::string& what) {
@@ -213,7 +219,8 @@ Verdict TestProcess::verdict_of(int status, const std::vector<pid_t>& others) {
     fault("ended with exit code " + std::to_string(WEXITSTATUS(status)) +
           (answer.empty() ? ", but without a result" : " after the test"));
   }
-  if (const std::size_t left = host::ProcessTree{0, mark_}.kill() + end_orphans(others); left > 0) {
+  if (const std::size_t left = host::ProcessTree{0, mark_}.kill() + end_orphans(scratch_.path());
+      left > 0) {
     fault("left " + std::to_string(left) + " processes behind");
   }
   return verdict;

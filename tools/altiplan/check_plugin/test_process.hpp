@@ -40,18 +40,16 @@ class TestProcess {
 
   std::size_t index() const { return index_; }
   bool again() const { return again_; }
-  pid_t process() const { return process_; }
 
   /// What is wrong once it has ended, or has used more than it may; nullopt while neither is so.
-  /// `others` are the processes of all tests under way.
-  std::optional<Verdict> look(const RunnerOptions& options, const std::vector<pid_t>& others);
+  std::optional<Verdict> look(const RunnerOptions& options);
   /// Of a test of two processes that has passed.
   const std::string& answers() const { return answers_; }
 
  private:
   [[noreturn]] void become(char* const* arguments) const;
   void end();
-  Verdict verdict_of(int status, const std::vector<pid_t>& others);
+  Verdict verdict_of(int status);
 
   ScratchFolder scratch_;
   std::size_t index_;
