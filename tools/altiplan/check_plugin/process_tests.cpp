@@ -101,7 +101,7 @@ Outcome writes_nothing_to_stdout(const LoadPlugin& load, const MakeSetup& make_s
 
 Outcome writes_no_files(const LoadPlugin& load, const MakeSetup& make_setup) {
   const conformance::Setup setup = make_setup();
-  FileWatch& watch = *new FileWatch(std::filesystem::temp_directory_path());  // to the end
+  static FileWatch& watch = *new FileWatch(std::filesystem::temp_directory_path());  // to the end
   if (!watch.works()) {
     return {
         {}, "this system does not let a process watch its own system calls (seccomp)", false, ""};
