@@ -79,7 +79,7 @@ Cases cases_of(const PluginEntry& entry, const Setup& setup = {});
 /// run while nothing else does.
 Cases clock_cases_of(const PluginEntry& entry, const Setup& setup = {});
 
-/// What the plugin answers to a list of questions of its kind, every number in digits enough to make
-/// it again: equal parameters and seeds give equal text, in any process.
+/// What the plugin answers to a list of questions of its kind, every number in digits enough to
+/// make it again: equal parameters and seeds give equal text, in any process.
 std::string answers_of(const PluginEntry& entry, const Setup& setup = {});
 }  // namespace altiplan::conformance
