@@ -72,9 +72,9 @@ PluginEntry stub_of(const Manifest& plugin) {
 /// Makes the cases of a plugin anew, in the process that runs one of them.
 class PluginUnderTest {
  public:
-  PluginUnderTest(const PluginToCheck& what, const host::Library& library, const Manifest& plugin,
-                  const ParameterSet& set)
-      : what_(what), library_(library), plugin_(plugin), set_(set) {}
+  PluginUnderTest(std::shared_ptr<const PluginToCheck> what, const host::Library& library,
+                  const Manifest& plugin, const ParameterSet& set)
+      : what_(std::move(what)), library_(library), plugin_(plugin), set_(set) {}
 
   const PluginEntry& load() const {
     static std::vector<const PluginEntry*> entries;
@@ -98,7 +98,7 @@ class PluginUnderTest {
       if (problems.empty() && made.tighter != nullptr) {
         problems = load().describe(made.tighter, "").problems;
       }
-      const char* const hint = what_.sets.empty() ? " (--sets FILE gives it parameters)" : "";
+      const char* const hint = what_->sets.empty() ? " (--sets FILE gives it parameters)" : "";
       return problems.empty() ? "" : problems.front().text() + hint;
     } catch (const ConfigError& error) {
       return error.problems().front().text();
@@ -113,19 +113,19 @@ class PluginUnderTest {
 
  private:
   host::Registry& registry() const {
-    static host::Registry all(host::Registry::search_path(what_.plugin_path));
+    static host::Registry all(host::Registry::search_path(what_->plugin_path));
     return all;
   }
   conformance::Setup with_options(conformance::Setup setup) const {
-    setup.options.seed = what_.seed;
-    setup.options.rounds = what_.rounds;
+    setup.options.seed = what_->seed;
+    setup.options.rounds = what_->rounds;
 #ifndef ALTIPLAN_SANITIZED
     setup.options.allocations = allocations_of_this_thread;
 #endif
     return setup;
   }
 
-  PluginToCheck what_;
+  std::shared_ptr<const PluginToCheck> what_;
   host::Library library_;
   Manifest plugin_;
   ParameterSet set_;
@@ -223,6 +223,7 @@ std::vector<PluginTest> tests_of(const PluginToCheck& what) {
     return all;  // nothing of it may run
   }
   all.push_back({"library/loads", [library] { return loads(library); }});
+  const auto shared = std::make_shared<const PluginToCheck>(what);
   for (const Manifest& plugin : library.plugins) {
     const std::string prefix = std::string(plugin.kind) + "/" + plugin.name + "/";
     std::vector<ParameterSet> sets;
@@ -233,7 +234,8 @@ std::vector<PluginTest> tests_of(const PluginToCheck& what) {
       sets.emplace_back();
     }
     for (std::size_t i = 0; i < sets.size(); ++i) {
-      const auto subject = std::make_shared<const PluginUnderTest>(what, library, plugin, sets[i]);
+      const auto subject =
+          std::make_shared<const PluginUnderTest>(shared, library, plugin, sets[i]);
       if (i == 0) {
         add(all, tests_of_cases(subject, prefix, entry_cases));
       }

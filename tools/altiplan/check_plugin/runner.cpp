@@ -158,8 +158,8 @@ Outcome outcome_of(const std::string& text) {
 
 std::vector<Verdict> run_apart(const std::vector<PluginTest>& tests, const RunnerOptions& options,
                                const std::function<void(const Verdict&)>& done) {
-  ::signal(SIGCHLD,
-           SIG_DFL);  // a parent may have left it ignored, and then nothing can be waited for
+  // A parent may have left it ignored, and then nothing can be waited for.
+  ::signal(SIGCHLD, SIG_DFL);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   return Runner(tests, options, done).run();
 }

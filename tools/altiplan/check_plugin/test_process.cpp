@@ -189,6 +189,7 @@ void TestProcess::end() {
     host::ProcessTree{process_, mark_}.kill(process_);
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
+    end_orphans(scratch_.path());
     process_ = 0;
   }
 }
