@@ -4,6 +4,26 @@
 # KIND: environment, constraint, planner, local_planner, smoother or tuner.
 
 set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
+set(ALTIPLAN_PLUGIN_CHECKSUM ${CMAKE_CURRENT_LIST_DIR}/plugin_checksum.cpp)
+
+# altiplan_plugin_library(TARGET): how a library of plugins is linked. One exported symbol; never
+# unloaded; a checksum of what is loaded of it, filled in after linking.
+function(altiplan_plugin_library target)
+  target_link_libraries(${target} PRIVATE altiplan::sdk)
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})
+  target_link_options(${target} PRIVATE
+    -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id)
+  altiplan_add_checksum(${target})
+endfunction()
+
+function(altiplan_add_checksum target)
+  target_sources(${target} PRIVATE ${ALTIPLAN_PLUGIN_CHECKSUM})
+  add_custom_command(TARGET ${target} POST_BUILD
+    COMMAND $<TARGET_FILE:altiplan::checksum> $<TARGET_FILE:${target}> VERBATIM)
+  if(TARGET altiplan_checksum)  # in altiplan's own build
+    add_dependencies(${target} altiplan_checksum)
+  endif()
+endfunction()
 
 function(altiplan_add_plugin kind name)
   set(kinds environment constraint planner local_planner smoother tuner)
@@ -17,13 +37,10 @@ function(altiplan_add_plugin kind name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   add_library(${target} MODULE ${sources})
-  target_link_libraries(${target} PRIVATE altiplan::sdk)
-  # One exported symbol; never unloaded; -ffp-contract=off comes with altiplan::sdk.
+  # -ffp-contract=off comes with altiplan::sdk.
+  altiplan_plugin_library(${target})
   set_target_properties(${target} PROPERTIES
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-    LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})
-  target_link_options(${target} PRIVATE
-    -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id)
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # Out of tree all of a project's plugins end up in its build folder: `--plugin-path build`.
   if(NOT ALTIPLAN_PLUGIN_DIR)
     set(ALTIPLAN_PLUGIN_DIR ${CMAKE_BINARY_DIR})

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "altiplan/measures.hpp"
+#include "altiplan/what_blocks.hpp"
 #include "blame.hpp"
 
 namespace altiplan {
@@ -29,9 +30,13 @@ std::string place(const Vec3& p) {
 /// A quantity beyond its limit, with the sentence that says so.
 Violation beyond(const char* rule, std::size_t at, double value, double limit, const char* unit,
                  const std::string& what, bool too_small) {
+  int digits = 2;  // as many as tell the two apart
+  while (digits < 9 && fixed(value, digits) == fixed(limit, digits)) {
+    ++digits;
+  }
   return {rule, at, value, limit,
-          what + " is " + fixed(value) + unit + ", " + (too_small ? "below" : "above") +
-              " the limit of " + fixed(limit) + unit};
+          what + " is " + fixed(value, digits) + unit + ", " + (too_small ? "below" : "above") +
+              " the limit of " + fixed(limit, digits) + unit};
 }
 
 /// Where a leg with no ground below part of it comes to the first such part.
@@ -57,8 +62,8 @@ double required_clearance(const Request& request) {
 template <class Report>
 class LegJudge {
  public:
-  LegJudge(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, const Request& request,
-           std::size_t at, const Report& report)
+  LegJudge(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+           const Request& request, std::size_t at, const Report& report)
       : before_(before),
         a_(a),
         b_(b),
@@ -77,6 +82,7 @@ class LegJudge {
     (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_size() && keeps_bend() &&
            keeps_heights() && keeps_constraints() && keeps_off());
   }
+  void judge_bend() const { (void)keeps_bend(); }
 
  private:
   // Quantities and their limits; `scale` turns both into the unit of the message.
@@ -131,14 +137,14 @@ class LegJudge {
     if (!before_) {
       return true;
     }
-    const Vec3 incoming = a_ - *before_;
-    return at_most_angle([&] { return turn_angle_horizontal(incoming, leg_); },
+    const bool on_the_spot = request_.vehicle.turns_on_the_spot;
+    return at_most_angle([&] { return horizontal_turn(*before_, a_, b_, on_the_spot); },
                          limits_.max_turn_horizontal, kPi, "turn_angle", "the turn angle") &&
-           at_most_angle([&] { return turn_angle_in_space(incoming, leg_); },
+           at_most_angle([&] { return turn_angle_in_space(a_ - before_->from, leg_); },
                          limits_.max_turn_space, kPi, "turn_angle", "the turn angle") &&
            (limits_.min_turn_radius == 0 ||
-            at_least(radius_through(*before_, a_, b_), limits_.min_turn_radius, kLengthTolerance,
-                     "turn_radius", "the turn radius", " m"));
+            at_least(corner_radius(*before_, a_, b_, on_the_spot), limits_.min_turn_radius,
+                     kLengthTolerance, "turn_radius", "the turn radius", " m"));
   }
 
   bool keeps_heights() const {
@@ -175,14 +181,16 @@ class LegJudge {
   }
 
   bool keeps_constraints() const {
-    return std::all_of(request_.constraints.begin(), request_.constraints.end(),
-                       [&](const NamedConstraint& named) {
-                         return named.admits({before_, a_, b_}) || report_([&] {
-                                  return Violation{named.name, at_, 0, 0,
-                                                   "the constraint does not admit the leg from " +
-                                                       place(a_) + " to " + place(b_)};
-                                });
-                       });
+    return std::all_of(
+        request_.constraints.begin(), request_.constraints.end(),
+        [&](const NamedConstraint& named) {
+          return named.admits({before_ ? std::optional(before_->from) : std::nullopt, a_, b_}) ||
+                 report_([&] {
+                   return Violation{named.name, at_, 0, 0,
+                                    "the constraint does not admit the leg from " + place(a_) +
+                                        " to " + place(b_)};
+                 });
+        });
   }
 
   bool keeps_off() const {
@@ -199,16 +207,20 @@ class LegJudge {
                }
              }
              // What blocks may lie around: beyond a keep-in zone.
-             const std::string where =
-                 clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
-                                     layer->id + "' blocks"
-                               : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
+             std::string where = clearance < 0
+                                     ? "lies up to " + fixed(-clearance) + " m inside what '" +
+                                           layer->id + "' blocks"
+                                     : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
+             if (const auto* says = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
+               const std::string what = says->what_blocks(a_, b_, clearance);
+               where += what.empty() ? "" : " (" + what + ")";
+             }
              return Violation{"clearance", at_, clearance, needed,
                               where + ", where " + fixed(needed) + " m of clearance are needed"};
            });
   }
 
-  const std::optional<Vec3>& before_;
+  const std::optional<Approach>& before_;
   const Vec3& a_;
   const Vec3& b_;
   const Vec3 leg_;
@@ -219,7 +231,7 @@ class LegJudge {
 };
 }  // namespace
 
-bool leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
+bool leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
             const Request& request) {
   bool ok = true;
   const auto note = [&](const auto&) { return ok = false; };
@@ -227,7 +239,15 @@ bool leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
   return ok;
 }
 
-std::vector<Violation> leg_violations(const std::optional<Vec3>& before, const Vec3& a,
+bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b, const Request& request) {
+  bool ok = true;
+  const auto note = [&](const auto&) { return ok = false; };
+  const std::optional<Approach> approach = before;
+  LegJudge(approach, a, b, request, 0, note).judge_bend();
+  return ok;
+}
+
+std::vector<Violation> leg_violations(const std::optional<Approach>& before, const Vec3& a,
                                       const Vec3& b, const Request& request, std::size_t index) {
   std::vector<Violation> all;
   const auto add = [&](const auto& violation) {
@@ -269,13 +289,13 @@ CheckResult check(const Route& route, const Request& request) {
                      "the route ends " + fixed(off) + " m from the goal, whose tolerance is " +
                          fixed(request.goal.tolerance_m) + " m"});
   }
-  std::optional<Vec3> before = request.before_start();
+  std::optional<Approach> before = request.before_start();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     for (Violation& violation : leg_violations(before, route[i], route[i + 1], request, i)) {
       found.push_back(std::move(violation));
     }
     if (route[i + 1] != route[i]) {  // a repeated point hides no turn
-      before = route[i];
+      before = onward(before, route[i]);
     }
   }
   const double total = length(route);

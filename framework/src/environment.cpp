@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/what_blocks.hpp"
 #include "altiplan/world.hpp"
 
 namespace altiplan {
@@ -56,6 +57,7 @@ Vec3 Site::resolve(const Point& point) const {
 }
 
 Environment::~Environment() = default;
+WhatBlocks::~WhatBlocks() = default;
 
 // Layers are asked about places only: of what is none, nothing good is said.
 double Environment::clearance(const Vec3& p) const {

@@ -5,14 +5,6 @@
 #include <algorithm>
 
 namespace altiplan {
-namespace {
-
-/// A heading is lost in the rounding of coordinates where a direction is this near to the vertical.
-bool has_heading(const Vec3& direction) {
-  const double most = kAngleTolerance * direction.z();
-  return direction.head<2>().squaredNorm() > most * most;
-}
-}  // namespace
 
 double turn_angle_horizontal(const Vec3& before, const Vec3& after) {
   if (!has_heading(before) || !has_heading(after)) {
@@ -42,6 +34,17 @@ double radius_through(const Vec3& a, const Vec3& b, const Vec3& c) {
     return u.dot(v) < 0 ? 0 : kInfinity;  // straight back is no circle at all
   }
   return u.norm() * v.norm() * (c - a).norm() / (2 * twice_area);
+}
+
+double fillet_radius(const Vec3& before, const Vec3& after) {
+  const double in = before.norm();
+  const double out = after.norm();
+  const double sine = before.cross(after).norm();
+  const double cosine = before.dot(after);
+  if (sine == 0) {
+    return cosine < 0 ? 0 : kInfinity;
+  }
+  return std::min(in, out) / 2 * (in * out + cosine) / sine;  // 1 / tan(turn / 2)
 }
 
 double point_leg_distance(const Vec3& p, const Vec3& a, const Vec3& b) {

@@ -3,29 +3,11 @@
 
 #include <algorithm>
 
+#include "altiplan/nearest_place.hpp"
+#include "deepest_place.hpp"
+
 namespace altiplan {
 namespace {
-
-/// Least signed clearance along a leg that goes into the layer, by branch and bound on the
-/// 1-Lipschitz clearance, within a ten-thousandth of the leg's length.
-double deepest(const std::function<double(const Vec3&)>& clearance, const Vec3& a, const Vec3& b) {
-  const double total = (b - a).norm();
-  const double tolerance = std::max(1e-3, total * 1e-4);
-  double least = std::min(clearance(a), clearance(b));
-  std::vector<std::pair<double, double>> open{{0, 1}};
-  while (!open.empty()) {
-    const auto [t0, t1] = open.back();
-    open.pop_back();
-    const double middle = (t0 + t1) / 2;
-    const double here = clearance(a + middle * (b - a));
-    least = std::min(least, here);
-    if (here - (t1 - t0) / 2 * total < least - tolerance) {
-      open.emplace_back(t0, middle);
-      open.emplace_back(middle, t1);
-    }
-  }
-  return least;
-}
 
 /// Bounds the error of greatest_free_radius, as a share of what it finds.
 constexpr double kFine = 1e-9;
@@ -34,7 +16,7 @@ constexpr double kFine = 1e-9;
 double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3& b) {
   constexpr double kFar = 1e7;
   if (solid.blocked(a, b, 0)) {
-    return std::min(0.0, deepest([&](const Vec3& p) { return solid.clearance(p); }, a, b));
+    return std::min(0.0, deepest_place(solid, a, b).clearance);
   }
   double free = 0;
   double met = 1;
@@ -50,32 +32,6 @@ double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3&
     (solid.blocked(a, b, middle) ? met : free) = middle;
   }
   return std::max(0.0, free - kLengthTolerance);  // touching within the tolerance counts as free
-}
-/// Least clearance of the route's legs. Those that come nearest by the clearance of their middles
-/// are measured first, and the others only where they may be nearer still.
-double least_clearance(const Environment& environment, const Route& route, double enough) {
-  struct Candidate {
-    double at_least;
-    std::size_t leg;
-  };
-  std::vector<Candidate> legs;
-  const double spare = environment.slack() + 2 * kLengthTolerance;
-  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-    const double clearance = environment.clearance((route[i] + route[i + 1]) / 2);
-    const double at_least = clearance - (route[i + 1] - route[i]).norm() / 2 - spare;
-    legs.push_back({std::isnan(at_least) ? -kInfinity : at_least, i});
-  }
-  std::sort(legs.begin(), legs.end(),
-            [](const Candidate& x, const Candidate& y) { return x.at_least < y.at_least; });
-  double least = enough;
-  for (const Candidate& candidate : legs) {
-    if (candidate.at_least >= least) {
-      break;
-    }
-    const std::size_t i = candidate.leg;
-    least = std::min(least, leg_clearance(environment, route[i], route[i + 1], least));
-  }
-  return least;
 }
 }  // namespace
 
@@ -133,15 +89,18 @@ Measures measure(const Route& route, const Request& request) {
     double turn = 0;
     double radius = kInfinity;
     double smoothness = 0;
+    const bool on_the_spot = request.vehicle.turns_on_the_spot;
+    std::optional<Approach> before;
     for (std::size_t i = 1; i + 1 < bends.size(); ++i) {
+      before = onward(before, bends[i - 1]);
       const Vec3 in = bends[i] - bends[i - 1];
       const Vec3 out = bends[i + 1] - bends[i];
-      const double angle = turn_angle_horizontal(in, out);
+      const double angle = horizontal_turn(*before, bends[i], bends[i + 1], on_the_spot);
       const auto climb = [](const Vec3& leg) {
         return std::atan2(leg.z(), std::hypot(leg.x(), leg.y()));
       };
       turn = std::max(turn, angle);
-      radius = std::min(radius, radius_through(bends[i - 1], bends[i], bends[i + 1]));
+      radius = std::min(radius, corner_radius(*before, bends[i], bends[i + 1], on_the_spot));
       smoothness += angle + std::abs(climb(out) - climb(in));
     }
     m.max_turn_deg = degrees(turn);
@@ -153,17 +112,15 @@ Measures measure(const Route& route, const Request& request) {
   const Route legs = bends.size() > 1 ? bends : Route{bends.front(), bends.front()};
   double clearance = kInfinity;
   for (const Layer& layer : world.layers()) {
-    clearance = least_clearance(*layer.environment, legs, clearance);
-  }
-  double ground = kInfinity;
-  for (std::size_t i = 0; i + 1 < legs.size(); ++i) {
-    ground = std::min(ground, world.ground_gap(legs[i], legs[i + 1], ground));
+    if (const auto nearest = nearest_leg(*layer.environment, legs, clearance)) {
+      clearance = nearest->distance;
+    }
   }
   if (std::isfinite(clearance)) {
     m.min_clearance_m = clearance;
   }
-  if (std::isfinite(ground)) {
-    m.min_ground_clearance_m = ground;
+  if (const auto lowest = lowest_leg(world, legs)) {
+    m.min_ground_clearance_m = lowest->distance;
   }
   return m;
 }

@@ -20,4 +20,38 @@ Route without_repeats(const Route& route) {
   }
   return out;
 }
+
+double horizontal_turn(const Approach& before, const Vec3& here, const Vec3& next,
+                       bool turns_on_the_spot) {
+  const Vec3 heading = turns_on_the_spot ? Vec3(here - before.from) : before.heading_at(here);
+  return turn_angle_horizontal(heading, next - here);
+}
+
+double corner_radius(const Approach& before, const Vec3& here, const Vec3& next,
+                     bool turns_on_the_spot) {
+  const Vec3 incoming = here - before.from;
+  const bool turned_on_the_spot =
+      !has_heading(incoming) &&
+      horizontal_turn(before, here, next, turns_on_the_spot) > kAngleTolerance;
+  return turned_on_the_spot ? 0 : fillet_radius(incoming, next - here);
+}
+
+std::optional<Approach> approach(const Route& route, std::size_t to,
+                                 const std::optional<Approach>& before) {
+  std::size_t last = to;  // the point before, another one
+  while (last > 0 && route[last] == route[to]) {
+    --last;
+  }
+  if (route[last] == route[to]) {
+    return before;
+  }
+  std::size_t leg = last;  // where the last leg with a heading before that point begins
+  while (leg > 0 && !has_heading(route[leg] - route[leg - 1])) {
+    --leg;
+  }
+  if (leg > 0) {
+    return Approach(route[last], route[leg] - route[leg - 1]);
+  }
+  return Approach(route[last], before ? before->heading_at(route.front()) : Vec3::Zero());
+}
 }  // namespace altiplan

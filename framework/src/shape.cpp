@@ -16,37 +16,20 @@ double product_distance(double horizontal, double vertical) {
                                           : std::hypot(horizontal, vertical);
 }
 
-// What the outline is to a place: its point nearest to it, and whether it holds the place.
-struct Plan {
-  Point2 nearest{kInfinity, kInfinity};
-  bool is_inside = false;
-};
-
-Plan plan_at(const Prism& prism, double x, double y) {
-  Plan plan;
-  double least2 = kInfinity;
-  for_each_edge(prism, [&](const Point2& e, const Point2& f) {
-    const Point2 q = nearest_on_edge(e, f, x, y);
-    const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
-    if (distance2 < least2) {
-      least2 = distance2;
-      plan.nearest = q;
-    }
-    plan.is_inside ^= crosses(e, f, x, y);
-  });
-  return plan;
-}
-
 double plane_distance(const Plan& plan, double x, double y) {
   const double distance = std::hypot(x - plan.nearest[0], y - plan.nearest[1]);
   return plan.is_inside ? -distance : distance;
 }
 
-double plane_distance(const Prism& prism, double x, double y) {
-  return plane_distance(plan_at(prism, x, y), x, y);
+Plan plan_at(const Prism& prism, const EdgeTree* tree, double x, double y) {
+  return with_edges(prism, tree, [&](const auto& edges) { return edges.plan_at(x, y); });
 }
 
-double plane_distance(const Cylinder& c, double x, double y) {
+double plane_distance(const Prism& prism, const EdgeTree* tree, double x, double y) {
+  return plane_distance(plan_at(prism, tree, x, y), x, y);
+}
+
+double plane_distance(const Cylinder& c, const EdgeTree*, double x, double y) {
   return std::hypot(x - c.x, y - c.y) - c.radius;
 }
 
@@ -115,9 +98,9 @@ Shape moved(const Shape& shape, const Vec3& offset) {
   return result;
 }
 
-double signed_distance(const Shape& shape, const Vec3& p) {
+double shape_parts::signed_distance(const Indexed& solid, const Vec3& p) {
   const auto product = [&](const auto& s) {
-    return product_distance(plane_distance(s, p.x(), p.y()),
+    return product_distance(plane_distance(s, solid.tree, p.x(), p.y()),
                             interval_distance(s.floor, s.ceiling, p.z()));
   };
   return std::visit(Overloaded{[&](const Sphere& s) { return (p - s.centre).norm() - s.radius; },
@@ -127,10 +110,18 @@ double signed_distance(const Shape& shape, const Vec3& p) {
                                                             : out.cwiseMax(0.0).norm();
                                },
                                product},
-                    shape);
+                    solid.shape);
+}
+
+double signed_distance(const Shape& shape, const Vec3& p) {
+  return shape_parts::signed_distance({shape, nullptr}, p);
 }
 
 Vec3 nearest_surface_point(const Shape& shape, const Vec3& p) {
+  return shape_parts::nearest_surface_point({shape, nullptr}, p);
+}
+
+Vec3 shape_parts::nearest_surface_point(const Indexed& solid, const Vec3& p) {
   return std::visit(
       Overloaded{[&](const Sphere& s) {
                    const Vec3 out = p - s.centre;
@@ -159,10 +150,10 @@ Vec3 nearest_surface_point(const Shape& shape, const Vec3& p) {
                    return q;
                  },
                  [&](const Prism& prism) {
-                   const Plan plan = plan_at(prism, p.x(), p.y());
+                   const Plan plan = plan_at(prism, solid.tree, p.x(), p.y());
                    return nearest_of_product(p, plane_distance(plan, p.x(), p.y()), plan.nearest,
                                              prism.floor, prism.ceiling);
                  }},
-      shape);
+      solid.shape);
 }
 }  // namespace altiplan

@@ -17,6 +17,7 @@ struct Look {
 
 // What a search for the least distance is after: the distance itself, …
 struct Exactly {
+  static double most() { return kInfinity; }
   static bool is_below(double) { return false; }
   static bool is_beyond(double) { return false; }
   static bool is_beyond(const Look&, const Look&, double) { return false; }
@@ -28,6 +29,7 @@ struct Below {
   double limit;
   double rounding;  // of coordinates, metres
 
+  double most() const { return limit + rounding; }  // that is not beyond
   bool is_below(double distance) const { return distance < limit; }
   bool is_beyond(double distance) const { return distance - rounding > limit; }
   // A convex function lies above its tangents, so nowhere below where these two cross.
@@ -89,27 +91,62 @@ double crossing(const Vec3& a, const Vec3& b, const Point2& e, const Point2& f) 
   return meets ? t : std::numeric_limits<double>::quiet_NaN();
 }
 
+// The least that the leg a–b can be away from what is in a rectangle, between two heights.
+class LegGap {
+ public:
+  LegGap(const Vec3& a, const Vec3& b, double floor, double ceiling, double extent)
+      : leg_(leg_box(a, b)), start_{a.x(), a.y()} {
+    constexpr double kRounding = 1e-13;  // of the greatest coordinate, with room to spare
+    const double length = std::hypot(b.x() - a.x(), b.y() - a.y());
+    if (length > 0) {
+      across_ = {(a.y() - b.y()) / length, (b.x() - a.x()) / length};
+    }
+    rounding_ = kRounding * (leg_.min.cwiseAbs().cwiseMax(leg_.max.cwiseAbs()).maxCoeff() + extent);
+    vertical_ = interval_gap(floor, ceiling, leg_.min.z(), leg_.max.z());
+  }
+
+  double operator()(const EdgeTree::Rectangle& box) const {
+    const double gap_x = interval_gap(box.min[0], box.max[0], leg_.min.x(), leg_.max.x());
+    const double gap_y = interval_gap(box.min[1], box.max[1], leg_.min.y(), leg_.max.y());
+    // From the line through the leg, for legs whose box is much larger than themselves.
+    const double middle = across_[0] * ((box.min[0] + box.max[0]) / 2 - start_[0]) +
+                          across_[1] * ((box.min[1] + box.max[1]) / 2 - start_[1]);
+    const double reach = std::abs(across_[0]) * (box.max[0] - box.min[0]) / 2 +
+                         std::abs(across_[1]) * (box.max[1] - box.min[1]) / 2;
+    const double gap = std::max({gap_x, gap_y, std::abs(middle) - reach});
+    return std::max(0.0, std::sqrt(gap * gap + vertical_ * vertical_) - rounding_);
+  }
+
+ private:
+  Box leg_;
+  Point2 start_;
+  Point2 across_{0, 0};
+  double rounding_;
+  double vertical_;
+};
+
 // The nearest point of a prism lies inside it, on a side (a vertical rectangle over an edge), or on
 // its floor or ceiling away from the edges; there it is below an end of the leg, or the leg goes
 // through.
-template <class Goal>
-double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b, const Goal& goal) {
+template <class Edges, class Goal>
+double prism_leg_distance(const Prism& prism, const Edges& edges, const Vec3& a, const Vec3& b,
+                          const Goal& goal) {
   double least = kInfinity;
   for (const Vec3* p : {&a, &b}) {
-    if (covers(prism, p->x(), p->y())) {
+    if (edges.covers(p->x(), p->y())) {
       least = std::min(least, std::max(0.0, interval_distance(prism.floor, prism.ceiling, p->z())));
     }
   }
   for (const double level : {prism.floor, prism.ceiling}) {
     if ((a.z() < level) != (b.z() < level) && std::isfinite(level)) {
       const Vec3 p = a + (level - a.z()) / (b.z() - a.z()) * (b - a);
-      if (covers(prism, p.x(), p.y())) {
+      if (edges.covers(p.x(), p.y())) {
         return 0;
       }
     }
   }
   const Box leg = leg_box(a, b);
-  for_each_edge(prism, [&](const Point2& e, const Point2& f) {
+  const auto look = [&](const Point2& e, const Point2& f) {
     const double gap_x =
         interval_gap(std::min(e[0], f[0]), std::max(e[0], f[0]), leg.min.x(), leg.max.x());
     const double gap_y =
@@ -129,12 +166,16 @@ double prism_leg_distance(const Prism& prism, const Vec3& a, const Vec3& b, cons
                    const Point2 q = nearest_on_edge(e, f, p.x(), p.y());
                    return Vec3(q[0], q[1], std::max(prism.floor, std::min(prism.ceiling, p.z())));
                  }));
-  });
+  };
+  const auto limit = [&] {
+    return least == 0 || goal.is_below(least) ? -1.0 : std::min(least, goal.most());
+  };
+  edges.visit(LegGap(a, b, prism.floor, prism.ceiling, edges.extent()), limit, look);
   return least;
 }
 
 template <class Goal>
-double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b, const Goal& goal) {
+double distance_of(const Indexed& solid, const Vec3& a, const Vec3& b, const Goal& goal) {
   return std::visit(
       Overloaded{[&](const Sphere& s) {
                    return std::max(0.0, point_leg_distance(s.centre, a, b) - s.radius);
@@ -154,21 +195,23 @@ double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b, const Goal
                    return convex_leg_distance(a, b, goal,
                                               [&](const Vec3& p) { return clamped(s.box, p); });
                  },
-                 [&](const Prism& prism) { return prism_leg_distance(prism, a, b, goal); }},
-      shape);
+                 [&](const Prism& prism) {
+                   return with_edges(prism, solid.tree, [&](const auto& edges) {
+                     return prism_leg_distance(prism, edges, a, b, goal);
+                   });
+                 }},
+      solid.shape);
 }
 
 // Greatest of the coordinates that points of the surface are worked out from.
-double extent(const Shape& shape) {
-  double most = 0;
-  if (const auto* c = std::get_if<Cylinder>(&shape)) {
-    most = std::max(std::abs(c->x), std::abs(c->y)) + c->radius;
-  } else if (const auto* prism = std::get_if<Prism>(&shape)) {
-    for_each_edge(*prism, [&](const Point2& e, const Point2&) {
-      most = std::max({most, std::abs(e[0]), std::abs(e[1])});
-    });
+double extent(const Indexed& solid) {
+  if (const auto* c = std::get_if<Cylinder>(&solid.shape)) {
+    return std::max(std::abs(c->x), std::abs(c->y)) + c->radius;
   }
-  return most;
+  if (const auto* prism = std::get_if<Prism>(&solid.shape)) {
+    return with_edges(*prism, solid.tree, [](const auto& edges) { return edges.extent(); });
+  }
+  return 0;
 }
 
 // Shares of the leg where it meets a circle or sphere: |from + t along| = radius.
@@ -209,48 +252,124 @@ struct Breaks {
   void operator()(const Prism& prism) {
     add_level(2, prism.floor);
     add_level(2, prism.ceiling);
+  }
+  // Where the leg crosses the edge, and where it passes its ends: crossings there may be missed.
+  void add_edge(const Point2& e, const Point2& f) {
+    const double t = crossing(a, b, e, f);
+    if (!std::isnan(t)) {
+      shares.push_back(t);
+    }
+    for (const Point2& corner : {e, f}) {
+      shares.push_back(share_beside(corner));
+    }
+  }
+  // Share of the leg at which it passes the point.
+  double share_beside(const Point2& p) const {
     const double dx = b.x() - a.x();
     const double dy = b.y() - a.y();
     const double length2 = dx * dx + dy * dy;
-    for_each_edge(prism, [&](const Point2& e, const Point2& f) {
-      const double t = crossing(a, b, e, f);
-      if (!std::isnan(t)) {
-        shares.push_back(t);
-      }
-      if (length2 > 0) {
-        shares.push_back(((e[0] - a.x()) * dx + (e[1] - a.y()) * dy) / length2);
-      }
-    });
+    return length2 > 0 ? ((p[0] - a.x()) * dx + (p[1] - a.y()) * dy) / length2 : 0;
+  }
+  // In order, within the leg.
+  std::vector<double> sorted() {
+    for (double& share : shares) {
+      share = std::clamp(share, 0.0, 1.0);
+    }
+    std::sort(shares.begin(), shares.end());
+    shares.erase(std::unique(shares.begin(), shares.end()), shares.end());
+    return std::move(shares);
   }
 };
 
+// Between its breaks the leg is inside or outside. Distance to an edge is a convex function, so the
+// depth between two breaks is at most the greater of what their distances to the edge nearest to
+// their middle are. Where that is more than twice the depth in the middle, the leg passes an end of
+// the edge, and the part is cut there.
+template <class Edges>
+double prism_leg_depth(const Prism& prism, const Edges& edges, const Vec3& a, const Vec3& b) {
+  constexpr double kBeside = 1e-9;  // of the greatest coordinate: what may touch the leg
+  const double extent = edges.extent() + std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  Breaks breaks{a, b};
+  breaks(prism);
+  const LegGap beside(a, b, -kInfinity, kInfinity, edges.extent());
+  edges.visit(
+      beside, [&] { return kBeside * extent; },
+      [&](const Point2& e, const Point2& f) { breaks.add_edge(e, f); });
+  const std::vector<double> shares = breaks.sorted();
+  double deepest = 0;
+  std::vector<std::array<double, 2>> parts;
+  for (std::size_t n = 0; n + 1 < shares.size(); ++n) {
+    parts.push_back({shares[n], shares[n + 1]});
+  }
+  while (!parts.empty()) {
+    const auto [from, to] = parts.back();
+    parts.pop_back();
+    const Vec3 p = a + (from + to) / 2 * (b - a);
+    const double vertical = -interval_distance(prism.floor, prism.ceiling, p.z());
+    if (vertical <= deepest || !edges.covers(p.x(), p.y())) {
+      continue;
+    }
+    const auto [e, f] = edges.nearest(p.x(), p.y());
+    const double side = distance_to_edge(e, f, p.x(), p.y());
+    deepest = std::max(deepest, std::min(side, vertical));
+    const auto side_at = [&, &e = e, &f = f](double share) {
+      const Vec3 q = a + share * (b - a);
+      return distance_to_edge(e, f, q.x(), q.y());
+    };
+    if (vertical <= side || std::max(side_at(from), side_at(to)) <= 2 * deepest) {
+      continue;
+    }
+    std::array<double, 4> cuts{from, breaks.share_beside(e), breaks.share_beside(f), to};
+    for (double& cut : cuts) {
+      cut = std::clamp(cut, from, to);
+    }
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t n = 0; n < 3; ++n) {
+      if (cuts[n] < cuts[n + 1] && cuts[n + 1] - cuts[n] < to - from) {
+        parts.push_back({cuts[n], cuts[n + 1]});
+      }
+    }
+  }
+  return deepest;
+}
+
 }  // namespace
 
+double shape_parts::leg_distance(const Indexed& solid, const Vec3& a, const Vec3& b) {
+  return distance_of(solid, a, b, Exactly{});
+}
+
+bool shape_parts::comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit) {
+  constexpr double kRounding = 1e-14;  // of the greatest coordinate, with room to spare
+  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(solid);
+  return distance_of(solid, a, b, Below{limit, kRounding * most}) < limit;
+}
+
+double shape_parts::leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b) {
+  if (const auto* prism = std::get_if<Prism>(&solid.shape)) {
+    return with_edges(*prism, solid.tree,
+                      [&](const auto& edges) { return prism_leg_depth(*prism, edges, a, b); });
+  }
+  Breaks breaks{a, b};
+  std::visit(breaks, solid.shape);
+  const std::vector<double> shares = breaks.sorted();
+  double least = 0;
+  for (std::size_t n = 0; n + 1 < shares.size(); ++n) {
+    const double middle = (shares[n] + shares[n + 1]) / 2;
+    least = std::min(least, signed_distance(solid, a + middle * (b - a)));
+  }
+  return -least;
+}
+
 double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b) {
-  return leg_distance(shape, a, b, Exactly{});
+  return shape_parts::leg_distance({shape, nullptr}, a, b);
 }
 
 bool comes_within(const Shape& shape, const Vec3& a, const Vec3& b, double limit) {
-  constexpr double kRounding = 1e-14;  // of the greatest coordinate, with room to spare
-  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(shape);
-  return leg_distance(shape, a, b, Below{limit, kRounding * most}) < limit;
+  return shape_parts::comes_within({shape, nullptr}, a, b, limit);
 }
 
 double leg_depth(const Shape& shape, const Vec3& a, const Vec3& b) {
-  Breaks breaks{a, b};
-  std::visit(breaks, shape);
-  std::vector<double>& shares = breaks.shares;
-  for (double& share : shares) {
-    share = std::clamp(share, 0.0, 1.0);
-  }
-  std::sort(shares.begin(), shares.end());
-  double least = 0;
-  for (std::size_t n = 0; n + 1 < shares.size(); ++n) {
-    if (shares[n] < shares[n + 1]) {
-      const double middle = (shares[n] + shares[n + 1]) / 2;
-      least = std::min(least, signed_distance(shape, a + middle * (b - a)));
-    }
-  }
-  return -least;
+  return shape_parts::leg_depth({shape, nullptr}, a, b);
 }
 }  // namespace altiplan

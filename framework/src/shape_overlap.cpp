@@ -13,28 +13,36 @@ using namespace shape_parts;
 constexpr double kTouch = 1e-9;
 
 // Least distance between the plan of a prism and a rectangle.
-double plan_gap(const Prism& prism, const Box& box) {
+template <class Edges>
+double plan_gap(const Edges& edges, const Box& box) {
   const Vec3 centre = (box.min + box.max) / 2;
-  if (covers(prism, centre.x(), centre.y())) {
+  if (edges.covers(centre.x(), centre.y())) {
     return 0;
   }
   const Shape column =
       BoxShape{{{box.min.x(), box.min.y(), -kInfinity}, {box.max.x(), box.max.y(), kInfinity}}};
   double least = kInfinity;
-  for_each_edge(prism, [&](const Point2& e, const Point2& f) {
-    const Vec3 from(e[0], e[1], 0);
-    const Vec3 to(f[0], f[1], 0);
-    const Box edge = leg_box(from, to);
-    if (std::max(interval_gap(edge.min.x(), edge.max.x(), box.min.x(), box.max.x()),
-                 interval_gap(edge.min.y(), edge.max.y(), box.min.y(), box.max.y())) < least) {
-      least = std::min(least, leg_distance(column, from, to));
-    }
-  });
+  const auto gap = [&](const Point2& low, const Point2& high) {
+    return std::max(interval_gap(low[0], high[0], box.min.x(), box.max.x()),
+                    interval_gap(low[1], high[1], box.min.y(), box.max.y()));
+  };
+  edges.visit([&](const EdgeTree::Rectangle& node) { return gap(node.min, node.max); },
+              [&] { return least; },
+              [&](const Point2& e, const Point2& f) {
+                const Point2 low{std::min(e[0], f[0]), std::min(e[1], f[1])};
+                const Point2 high{std::max(e[0], f[0]), std::max(e[1], f[1])};
+                if (gap(low, high) < least) {
+                  const Vec3 from(e[0], e[1], 0);
+                  const Vec3 to(f[0], f[1], 0);
+                  least = std::min(least, altiplan::leg_distance(column, from, to));
+                }
+              });
   return least;
 }
 
 struct BoxGap {
   const Box& box;
+  const EdgeTree* tree;
 
   double vertical(double floor, double ceiling) const {
     return interval_gap(floor, ceiling, box.min.z(), box.max.z());
@@ -51,16 +59,22 @@ struct BoxGap {
     return (s.box.min - box.max).cwiseMax(box.min - s.box.max).cwiseMax(0.0).norm();
   }
   double operator()(const Prism& prism) const {
-    return std::hypot(plan_gap(prism, box), vertical(prism.floor, prism.ceiling));
+    const double horizontal =
+        with_edges(prism, tree, [&](const auto& edges) { return plan_gap(edges, box); });
+    return std::hypot(horizontal, vertical(prism.floor, prism.ceiling));
   }
 };
 
 }  // namespace
 
-bool overlaps(const Shape& shape, const Box& box, double by) {
+bool shape_parts::overlaps(const Indexed& solid, const Box& box, double by) {
   // The open box is taken as the closed one, smaller by what still counts as touching.
   const Vec3 shrink = Vec3::Constant(kTouch).cwiseMin((box.max - box.min) / 4);
   const Box inner{box.min + shrink, box.max - shrink};
-  return std::visit(BoxGap{inner}, shape) <= by;
+  return std::visit(BoxGap{inner, solid.tree}, solid.shape) <= by;
+}
+
+bool overlaps(const Shape& shape, const Box& box, double by) {
+  return shape_parts::overlaps({shape, nullptr}, box, by);
 }
 }  // namespace altiplan

@@ -5,6 +5,8 @@
 
 #include "altiplan/shape.hpp"
 
+#include "edge_tree.hpp"
+
 /// What the files on shapes share: visiting, intervals of heights, and the plan of a prism.
 namespace altiplan::shape_parts {
 
@@ -14,8 +16,6 @@ struct Overloaded : Cases... {
 };
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
-
-using Point2 = std::array<double, 2>;
 
 inline double interval_distance(double floor, double ceiling, double z) {
   return std::max(floor - z, z - ceiling);
@@ -52,13 +52,6 @@ inline bool crosses(const Point2& e, const Point2& f, double x, double y) {
   return spans & is_east;
 }
 
-// Whether (x, y) lies in the polygon: the ray crosses its edges an odd number of times.
-inline bool covers(const Prism& prism, double x, double y) {
-  bool inside = false;
-  for_each_edge(prism, [&](const Point2& e, const Point2& f) { inside ^= crosses(e, f, x, y); });
-  return inside;
-}
-
 inline Point2 nearest_on_edge(const Point2& e, const Point2& f, double x, double y) {
   const double dx = f[0] - e[0];
   const double dy = f[1] - e[1];
@@ -67,4 +60,130 @@ inline Point2 nearest_on_edge(const Point2& e, const Point2& f, double x, double
       length2 > 0 ? std::clamp(((x - e[0]) * dx + (y - e[1]) * dy) / length2, 0.0, 1.0) : 0.0;
   return share < 1 ? Point2{e[0] + share * dx, e[1] + share * dy} : f;
 }
+
+inline double distance_to_edge(const Point2& e, const Point2& f, double x, double y) {
+  const Point2 q = nearest_on_edge(e, f, x, y);
+  return std::hypot(x - q[0], y - q[1]);
+}
+
+/// A shape, and the tree over its edges where it is a prism that has one.
+struct Indexed {
+  const Shape& shape;
+  const EdgeTree* tree;
+};
+
+/// What the outline is to a place: its point nearest to it, and whether it holds the place.
+struct Plan {
+  Point2 nearest{kInfinity, kInfinity};
+  bool is_inside = false;
+};
+
+/// The edges of a prism, each looked at in turn.
+class PlainEdges {
+ public:
+  explicit PlainEdges(const Prism& prism) : prism_(prism) {}
+
+  /// Whether (x, y) lies in the polygon: the ray crosses its edges an odd number of times.
+  bool covers(double x, double y) const {
+    bool inside = false;
+    for_each_edge(prism_, [&](const Point2& e, const Point2& f) { inside ^= crosses(e, f, x, y); });
+    return inside;
+  }
+  Plan plan_at(double x, double y) const {
+    Plan plan;
+    double least2 = kInfinity;
+    for_each_edge(prism_, [&](const Point2& e, const Point2& f) {
+      const Point2 q = nearest_on_edge(e, f, x, y);
+      const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
+      if (distance2 < least2) {
+        least2 = distance2;
+        plan.nearest = q;
+      }
+      plan.is_inside ^= crosses(e, f, x, y);
+    });
+    return plan;
+  }
+  EdgeTree::Edge nearest(double x, double y) const {
+    EdgeTree::Edge nearest{};
+    double least = kInfinity;
+    for_each_edge(prism_, [&](const Point2& e, const Point2& f) {
+      if (const double distance = distance_to_edge(e, f, x, y); distance < least) {
+        least = distance;
+        nearest = {e, f};
+      }
+    });
+    return nearest;
+  }
+  double extent() const {
+    double most = 0;
+    for_each_edge(prism_, [&](const Point2& e, const Point2&) {
+      most = std::max({most, std::abs(e[0]), std::abs(e[1])});
+    });
+    return most;
+  }
+  /// Calls visit(from, to) for the edges that may be as near as limit(), and maybe for others.
+  template <class Gap, class Limit, class Visit>
+  void visit(const Gap&, const Limit&, const Visit& visit) const {
+    for_each_edge(prism_, visit);
+  }
+
+ private:
+  const Prism& prism_;
+};
+
+/// The same answers, from a tree.
+class TreeEdges {
+ public:
+  explicit TreeEdges(const EdgeTree& tree) : tree_(tree) {}
+
+  bool covers(double x, double y) const { return tree_.covers(x, y); }
+  Plan plan_at(double x, double y) const {
+    const EdgeTree::Edge edge = nearest(x, y);
+    return {nearest_on_edge(edge.from, edge.to, x, y), covers(x, y)};
+  }
+  EdgeTree::Edge nearest(double x, double y) const {
+    double least2 = kInfinity;
+    std::size_t nearest = 0;
+    tree_.visit(
+        [&](const EdgeTree::Rectangle& box) {
+          const double gap_x = std::max({0.0, box.min[0] - x, x - box.max[0]});
+          const double gap_y = std::max({0.0, box.min[1] - y, y - box.max[1]});
+          return gap_x * gap_x + gap_y * gap_y;
+        },
+        [&] { return least2; },
+        [&](std::size_t index, const EdgeTree::Edge& edge) {
+          const Point2 q = nearest_on_edge(edge.from, edge.to, x, y);
+          const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
+          // Of edges that are as near the first, as in a plain loop.
+          if (distance2 < least2 || (distance2 == least2 && index < nearest)) {
+            least2 = distance2;
+            nearest = index;
+          }
+        });
+    return tree_.edges()[nearest];
+  }
+  double extent() const { return tree_.extent(); }
+  template <class Gap, class Limit, class Visit>
+  void visit(const Gap& gap, const Limit& limit, const Visit& visit) const {
+    tree_.visit(gap, limit,
+                [&](std::size_t, const EdgeTree::Edge& edge) { visit(edge.from, edge.to); });
+  }
+
+ private:
+  const EdgeTree& tree_;
+};
+
+/// Calls work(edges) with those of the prism, by its tree where there is one.
+template <class Work>
+auto with_edges(const Prism& prism, const EdgeTree* tree, const Work& work) {
+  return tree != nullptr ? work(TreeEdges(*tree)) : work(PlainEdges(prism));
+}
+
+// The questions of altiplan/shape.hpp, with the same answers.
+double signed_distance(const Indexed& solid, const Vec3& p);
+double leg_distance(const Indexed& solid, const Vec3& a, const Vec3& b);
+bool comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit);
+double leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b);
+Vec3 nearest_surface_point(const Indexed& solid, const Vec3& p);
+bool overlaps(const Indexed& solid, const Box& box, double by);
 }  // namespace altiplan::shape_parts

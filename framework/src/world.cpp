@@ -379,9 +379,10 @@ bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& 
   const auto [from, to] = relative(obstacle, a, t0, b, t1);
   const double limit = r - kLengthTolerance;
   const double distance = leg_distance(obstacle.shape, from, to);
-  // A point (r below the tolerance) hits where it gets inside, as touching is free.
+  // A point (r below the tolerance) hits where it gets inside, as touching is free; leg_depth may
+  // be half of what the leg's deepest place is.
   return distance < limit || (limit <= 0 && distance <= kLengthTolerance &&
-                              -leg_depth(obstacle.shape, from, to) < limit);
+                              -leg_depth(obstacle.shape, from, to) < r - kLengthTolerance / 2);
 }
 
 double separation(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,

@@ -75,7 +75,9 @@ class Sdk:
                  "-DBUILD_TESTING=OFF", f"-DCMAKE_CXX_FLAGS={DEBUG}",
                  f"-DCMAKE_INSTALL_PREFIX={self.prefix}", "-DCMAKE_INSTALL_LIBDIR=lib", *launcher])
         quietly(["cmake", "--build", build, "--parallel", os.cpu_count(),
-                 "--target", "altiplan", "altiplan_conformance"], env=environment)
+                 "--target", "altiplan", "altiplan_conformance",
+                 *(["altiplan_checksum"] if (tree / "tools/checksum").exists() else [])],
+                env=environment)
         shutil.rmtree(self.prefix, ignore_errors=True)
         for component in ("library", "sdk"):
             quietly(["cmake", "--install", build, "--component", component])

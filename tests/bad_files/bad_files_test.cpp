@@ -14,12 +14,13 @@
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
 #include "host/study/plan/study_plan.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::host {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kValid = fs::path(ALTIPLAN_SOURCE_DIR) / "tests/bad_files";
+const fs::path kValid = altiplan::folders::source() / "tests/bad_files";
 constexpr std::array kFiles = {"pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson",
                                "study.yaml"};
 
@@ -78,7 +79,7 @@ class BadFiles : public testing::Test {
   BadFiles()
       : folder_(fs::path(testing::TempDir()) / ("altiplan_bad_files_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
-    overrides_.plugin_path = {fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins"};
+    overrides_.plugin_path = {altiplan::folders::build() / "lib/altiplan/plugins"};
   }
   ~BadFiles() override { fs::remove_all(folder_); }
 

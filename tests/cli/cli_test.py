@@ -2,6 +2,7 @@
 """cli_test.py PROGRAM BROKEN: the command line, as a user calls it.
 
 BROKEN is the folder of the libraries that no one can use."""
+import glob
 import json
 import os
 import re
@@ -127,6 +128,23 @@ class Cli(unittest.TestCase):
         with open("/dev/full", "w") as full:
             self.call("plugins", code=5, stdout=full)
 
+    def test_a_reader_that_goes_away_ends_every_command_quietly(self):
+        self.call("run", self.pipeline, "--out", "read.json")
+        for command in (("plugins",), ("plugins", "--json"), ("describe", "astar"), ("schema",),
+                        ("explain", self.pipeline), ("run", self.pipeline, "--out", "kept.json"),
+                        ("run", "--json", self.pipeline), ("check", "read.json"),
+                        ("--log-level", "quiet", "export", "read.json", "--to", "csv"),
+                        ("--help",), ("run", "--help"), ("--version",)):
+            with self.subTest(command=command):
+                read_end, write_end = os.pipe()
+                os.close(read_end)
+                try:
+                    _, err = self.call(*command, code=-signal.SIGPIPE, stdout=write_end)
+                finally:
+                    os.close(write_end)
+                self.assertEqual(err, "")
+        self.assertIn('"altiplan": 1', self.read("kept.json"), "files are written all the same")
+
     def test_a_refused_library_or_a_failed_step_is_4(self):
         refused = self.write("refused.yaml", PIPELINE + "constraints:\n  - gamma: {}\n")
         out, err = self.call("run", refused, "--plugin-path", BROKEN, code=4)
@@ -215,7 +233,8 @@ class Cli(unittest.TestCase):
              "steps.0.with.cell_m=[4, 4, 4]", "--trace", trace, "--out", self.path("result.json")],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=self.folder)
         try:
-            while not os.path.exists(trace) or os.path.getsize(trace) < 10000:
+            # Under a name of its own until the run ends.
+            while not any(os.path.getsize(file) >= 10000 for file in glob.glob(trace + ".*")):
                 self.assertIsNone(run.poll(), "ended by itself")
                 time.sleep(0.01)
             run.send_signal(signal.SIGINT)
@@ -474,8 +493,8 @@ events:
         self.write("sealed.yaml", SEALED + "# changed\n")
         _, err = self.view("result.json", "-o", "page.html")
         self.assertEqual(err, f"altiplan: warning: {self.sealed} is not the file that result.json "
-                              "was made from\naltiplan: warning: trace.jsonl: the trace is not "
-                              "there: the search is not shown\n")
+                              "was made from\naltiplan: warning: trace.jsonl: there is no such "
+                              "file: the search is not shown\n")
         os.remove(self.sealed)
         self.view("result.json", "-o", "page.html", code=3)
 

@@ -92,13 +92,13 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
 /// A walk through the world whose legs all keep the request's rules.
 Route sound_walk(const Scene& scene, RandomStream random) {
   Route route{scene.request.start.position};
-  std::optional<Vec3> before = scene.request.before_start();
+  std::optional<Approach> before = scene.request.before_start();
   for (int tries = 0; tries < 4000 && route.size() < 12; ++tries) {
     const Vec3 reach = scene.unit * random.uniform(0.5, 6) *
                        Vec3(random.normal(), random.normal(), 0.3 * random.normal());
     const Vec3 next = route.back() + reach;
     if (leg_ok(before, route.back(), next, scene.request)) {
-      before = route.back();
+      before = onward(before, route.back());
       route.push_back(next);
     }
   }

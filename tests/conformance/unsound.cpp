@@ -15,11 +15,18 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return lengths == 0 ? 0 : std::acos(std::clamp(a.dot(b) / lengths, -1.0, 1.0));
 }
 
-std::string bend_problem(const Vec3& before, const Vec3& here, const Vec3& next,
-                         const Limits& limits) {
+bool is_upright(const Vec3& leg) { return std::hypot(leg.x(), leg.y()) < 1e-6; }
+
+/// The corner at `here`, for a vehicle that comes from `before`; `heading` is that of the last leg
+/// which was not upright, zero where there was none.
+std::string bend_problem(const Vec3& before, const Vec3& heading, const Vec3& here,
+                         const Vec3& next, const Request& request) {
+  const Limits& limits = request.limits;
   const Vec3 in = here - before;
   const Vec3 out = next - here;
-  const double level = angle_between({in.x(), in.y(), 0}, {out.x(), out.y(), 0});
+  const Vec3 from = request.vehicle.turns_on_the_spot && is_upright(in) ? Vec3(0, 0, 0) : heading;
+  const double level =
+      is_upright(out) ? 0 : angle_between({from.x(), from.y(), 0}, {out.x(), out.y(), 0});
   if (level > limits.max_turn_horizontal + kRadians) {
     return "turns by " + text(degrees(level)) + " degrees at " + text(here);
   }
@@ -27,11 +34,12 @@ std::string bend_problem(const Vec3& before, const Vec3& here, const Vec3& next,
     return "turns by " + text(degrees(angle_between(in, out))) + " degrees in space at " +
            text(here);
   }
-  const Vec3 across(in.y() * out.z() - in.z() * out.y(), in.z() * out.x() - in.x() * out.z(),
-                    in.x() * out.y() - in.y() * out.x());
-  const double area = across.norm();  // twice the triangle's
-  const double radius =
-      area > 0 ? in.norm() * out.norm() * (next - before).norm() / (2 * area) : kInfinity;
+  // Half of the shorter leg is the tangent of a circle over half of the turn.
+  const double half_turn = std::tan(angle_between(in, out) / 2);
+  double radius = half_turn > 0 ? std::min(in.norm(), out.norm()) / 2 / half_turn : kInfinity;
+  if (is_upright(in) && level > kRadians) {
+    radius = 0;
+  }
   if (radius < limits.min_turn_radius * (1 - 1e-6)) {
     return "bends with a radius of " + text(radius) + " m at " + text(here);
   }
@@ -99,18 +107,26 @@ std::string unsound(const Route& route, const Scene& scene) {
   if ((route.back() - request.goal.position).norm() > request.goal.tolerance_m + kMetres) {
     return "ends at " + text(route.back()) + ", outside the goal's tolerance";
   }
-  std::optional<Vec3> before = request.before_start();
+  std::optional<Vec3> before;
+  Vec3 heading(0, 0, 0);
+  const auto came = [&](const Vec3& from, const Vec3& to) {
+    before = from;
+    heading = is_upright(to - from) ? heading : Vec3(to - from);
+  };
+  if (!request.start.velocity.isZero(0)) {
+    came(request.start.position - request.start.velocity, request.start.position);
+  }
   double total = 0;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     total += (route[i + 1] - route[i]).norm();
     std::string fault = leg_fault(route[i], route[i + 1], scene);
     if (fault.empty() && before) {
-      fault = bend_problem(*before, route[i], route[i + 1], request.limits);
+      fault = bend_problem(*before, heading, route[i], route[i + 1], request);
     }
     if (!fault.empty()) {
       return fault;
     }
-    before = route[i];
+    came(route[i], route[i + 1]);
   }
   if (total > request.limits.max_route_length + kMetres) {
     return "is " + text(total) + " m long";

@@ -103,9 +103,10 @@ TEST(Check, LegsRadiusAndLength) {
   request.limits.min_leg = 800;
   EXPECT_EQ(rules(check(bend, request)), "leg_length@0 leg_length@1 ");
   request.limits.min_leg = 0;
-  request.limits.min_turn_radius = 500;  // the circle through the three points has exactly that
+  // A right angle: the fillet of half of a leg is half of it.
+  request.limits.min_turn_radius = 250 * std::sqrt(2);
   EXPECT_EQ(rules(check(bend, request)), "");
-  request.limits.min_turn_radius = 500.001;
+  request.limits.min_turn_radius += 0.001;
   EXPECT_EQ(rules(check(bend, request)), "turn_radius@1 ");
   request.limits.min_turn_radius = 0;
   request.limits.max_route_length = length(bend);

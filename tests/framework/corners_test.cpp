@@ -54,11 +54,11 @@ TEST(Corners, TellsACurveWhatItMayUse) {
 }
 
 TEST(Corners, ACornerThatStaysKeepsItsRadius) {
-  // The circle of the second corner shrinks with the leg that the first one's cut leaves it, which
+  // The fillet of the second corner shrinks with the leg that the first one's cut leaves it, which
   // its own cut would mend. Where it has none, the first corner takes less, or stays as well.
   const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {200, 100, 0}};
   Request request = open_request(route);
-  request.limits.min_turn_radius = 55;
+  request.limits.min_turn_radius = 28;
   const auto first_only = [](std::vector<double> reaches) {
     return [inner = chamfer(std::move(reaches))](const Corner& corner, int attempt) {
       return corner.last ? std::nullopt : inner(corner, attempt);
@@ -67,9 +67,9 @@ TEST(Corners, ACornerThatStaysKeepsItsRadius) {
   EXPECT_EQ(round_corners(route, request, chamfer({50})).replaced, 2);
   EXPECT_EQ(round_corners(route, request, first_only({60})).route, route);
   EXPECT_EQ(round_corners(route, request, first_only({60})).refused, 1);
-  const RoundedRoute less = round_corners(route, request, first_only({60, 50, 45}));
+  const RoundedRoute less = round_corners(route, request, first_only({60, 50, 40}));
   EXPECT_EQ(less.replaced, 1);
-  EXPECT_EQ(less.route[1].x(), 50);
+  EXPECT_EQ(less.route[1].x(), 60);
   EXPECT_TRUE(check(less.route, request).ok());
 }
 

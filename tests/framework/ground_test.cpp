@@ -38,12 +38,21 @@ TEST(Ground, TooNearIsHeldToTheSlopeNearby) {
   const double r = 5;
   const double enough = kit::height_for(r, 2);
   const auto near = [&](double x0, double x1, double z) {
-    return kit::too_near_ground({x0, 0, z}, {x1, 0, z}, r, {1e9, enough}, 0.1, gap, slope);
+    return kit::too_near_ground({x0, 0, z}, {x1, 0, z}, r, {1e9, enough}, 0.1, gap, slope,
+                                [](const Vec3&, const Vec3& b, double keep) {
+                                  // From the foot of the slope, at its end or beyond it.
+                                  const double up = b.x() - 100;
+                                  return up + 2 * b.z() > 0 &&
+                                         (b.z() - 2 * up) / std::sqrt(5) < keep;
+                                });
   };
   EXPECT_FALSE(near(0, 90, 5)) << "touching is free";
   EXPECT_TRUE(near(0, 90, 4.9999));
   EXPECT_FALSE(near(0, 94, 5)) << "5 m above the flat, 6 m from the slope's foot";
   EXPECT_TRUE(near(0, 100, 5)) << "by the slope";
+  const double touching = 100 + 2.5 * (1 - std::sqrt(5));
+  EXPECT_FALSE(near(0, touching, 5));
+  EXPECT_TRUE(near(0, touching + 1e-3, 5));
   EXPECT_FALSE(near(0, 100, enough));
 }
 
@@ -60,7 +69,8 @@ TEST(Ground, WhatIsFarAboveTheTopIsFree) {
   };
   const auto slope = [](const Vec3&, const Vec3&, double) { return 2.0; };
   const auto near = [&](const Vec3& a, const Vec3& b) {
-    return kit::too_near_ground(a, b, 30, {100, kit::height_for(30, 2)}, 0.1, gap, slope);
+    return kit::too_near_ground(a, b, 30, {100, kit::height_for(30, 2)}, 0.1, gap, slope,
+                                [](const Vec3&, const Vec3&, double) { return true; });
   };
   EXPECT_FALSE(near({60, 0, 130}, {400, 0, 130})) << "30 m above the plateau";
   EXPECT_TRUE(near({60, 0, 129.99}, {400, 0, 130}));

@@ -86,14 +86,14 @@ TEST(LegRules, AskWhatLooksAtTheLegBefore) {
       testing::request_in(World(), {0, 0, 0}, {9, 9, 0}, {{-20, -20, -20}, {20, 20, 20}});
   request.limits.max_turn_space = radians(50);
   LegRules rules(request);
-  EXPECT_TRUE(rules.follows({-1, 0, 0}, {0, 0, 0}, {1, 1, 0}));
-  EXPECT_FALSE(rules.follows({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}));
+  EXPECT_TRUE(rules.follows(Vec3{-1, 0, 0}, {0, 0, 0}, {1, 1, 0}));
+  EXPECT_FALSE(rules.follows(Vec3{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}));
   EXPECT_EQ(rules.refusals(), "turn_angle (1)");
   request.limits.max_turn_space = kPi;
   request.constraints.push_back({"north", std::make_shared<OnlyNorth>()});
   LegRules north(request);
-  EXPECT_TRUE(north.follows({-1, 0, 0}, {0, 0, 0}, {1, 1, 0}));
-  EXPECT_FALSE(north.follows({-1, 0, 0}, {0, 0, 0}, {1, -1, 0}));
+  EXPECT_TRUE(north.follows(Vec3{-1, 0, 0}, {0, 0, 0}, {1, 1, 0}));
+  EXPECT_FALSE(north.follows(Vec3{-1, 0, 0}, {0, 0, 0}, {1, -1, 0}));
   EXPECT_FALSE(north.ok(Vec3(-1, 0, 0), {0, 0, 0}, {1, -1, 0}));
   EXPECT_EQ(north.refusals(), "north (2)");
 }

@@ -128,7 +128,7 @@ TEST(KeepsLimits, IsTheJudgesAnswerNearTheLimits) {
     Request request = testing::request_in(World(), a, b, everywhere);
     Limits& limits = request.limits;
     const int which = draw.below(16);
-    const double radius = radius_through(before, a, b);
+    const double radius = fillet_radius(in, out);
     if ((which & 1) != 0) {
       limits.max_turn_horizontal = std::clamp(turn_angle_horizontal(in, out) + off(), 0.0, kPi);
     }

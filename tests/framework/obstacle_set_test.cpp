@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <thread>
 
 #include "altiplan/error.hpp"
+#include "altiplan/world.hpp"
 #include "framework/shape_oracle.hpp"
 
 namespace altiplan::kit {
@@ -239,6 +241,28 @@ TEST(ObstacleSet, EmptyEqualAndEndlessSets) {
   EXPECT_TRUE(endless.blocked({-1e7, 4e6, 9e6}, {1e7, 5e6, -9e6}, 0));
   EXPECT_EQ(endless.clearance({5, 1e8, -1e8}), 4);
   EXPECT_EQ(ObstacleSet({BoxShape{}}).clearance({0, 0, 0}), -kInfinity);
+}
+
+TEST(ObstacleSet, APointIsBlockedWhereItIsInside) {
+  // By more than the tolerance, whichever way it leaves: a leg that ends there is blocked too.
+  Draw draw(17);
+  for (int n = 0; n < 3000; ++n) {
+    const double radius = std::pow(10, draw(0, 3));
+    const Vec3 centre = draw.point(1e4);
+    const Vec3 away = draw.point(1).normalized();
+    const Vec3 inside = centre + (radius - 1.1e-6) * away;
+    const Vec3 outside = inside + (away + 0.9 * draw.point(1)).normalized() * draw(1, 1000);
+    const ObstacleSet ball({Sphere{centre, radius}});
+    ASSERT_TRUE(ball.blocked(inside, inside, 0)) << n;
+    ASSERT_TRUE(ball.blocked(inside, outside, 0)) << n;
+    ASSERT_TRUE(ball.blocked(outside, inside, 0)) << n;
+    const MovingObstacle moving{"ball", Sphere{centre, radius}};
+    ASSERT_TRUE(hits(moving, inside, 0, outside, 1, 0)) << n;
+    // What only touches is free.
+    const Vec3 on = centre + radius * away;
+    const Vec3 along = away.cross(draw.point(1)).normalized();
+    ASSERT_FALSE(ball.blocked(on - radius * along, on + radius * along, 0)) << n;
+  }
 }
 
 TEST(ObstacleSet, RefusesWhatIsNoSolid) {

@@ -26,8 +26,8 @@ bool blocked(const std::vector<Shape>& shapes, const Vec3& a, const Vec3& b, dou
   const double limit = r - kLengthTolerance;
   return std::any_of(shapes.begin(), shapes.end(), [&](const Shape& shape) {
     const double distance = leg_distance(shape, a, b);
-    return distance < limit ||
-           (limit <= 1e-9 && distance <= 1e-9 && -leg_depth(shape, a, b) < limit);
+    return distance < limit || (limit <= 1e-9 && distance <= 1e-9 &&
+                                -leg_depth(shape, a, b) < r - kLengthTolerance / 2);
   });
 }
 

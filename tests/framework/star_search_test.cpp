@@ -101,7 +101,7 @@ TEST(StarSearch, AWholeTreeKeepsItsTurnsThroughRewiring) {
       const TraceEvent& parent = kept.nodes.at(node.parent);
       const auto before = parent.parent < 0
                               ? request.before_start()
-                              : std::optional<Vec3>(kept.nodes.at(parent.parent).position);
+                              : std::optional<Approach>(kept.nodes.at(parent.parent).position);
       ASSERT_TRUE(leg_ok(before, parent.position, node.position, request)) << number;
     }
     EXPECT_TRUE(std::is_sorted(kept.lengths.rbegin(), kept.lengths.rend()));

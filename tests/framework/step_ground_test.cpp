@@ -5,6 +5,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/move_rules.hpp"
+#include "support/folders.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::kit {
@@ -78,7 +79,7 @@ TEST(StepGround, StepsOverHillsAreJudgedAsTheJudgeJudgesThem) {
 
 TEST(StepGround, StepsOverAnElevationModelAreJudgedAsTheJudgeJudgesThem) {
   const std::string file =
-      "{file: " + std::string(ALTIPLAN_SOURCE_DIR) + "/configs/data/jacksboro_fault.tif}";
+      "{file: " + altiplan::folders::source().string() + "/configs/data/jacksboro_fault.tif}";
   for (int seed = 0; seed < 6; ++seed) {
     expect_the_judges_answers({"terrain", file, 29.6e3, 1200, {300, 300, 20}}, seed);
   }

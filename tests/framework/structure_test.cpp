@@ -2,6 +2,7 @@
 // What the source tree promises: who may include whom, what a plugin's folder holds, what a plugin
 // library exports.
 #include <gtest/gtest.h>
+#include "support/folders.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +19,7 @@
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kSource = ALTIPLAN_SOURCE_DIR;
+const fs::path kSource = altiplan::folders::source();
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
@@ -227,7 +228,7 @@ std::vector<std::string> exports(const fs::path& library) {
 }
 
 TEST(Structure, APluginLibraryExportsOneSymbol) {
-  const fs::path folder = fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins";
+  const fs::path folder = altiplan::folders::build() / "lib/altiplan/plugins";
   std::size_t looked_at = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".so") {

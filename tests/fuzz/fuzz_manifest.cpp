@@ -9,6 +9,7 @@
 
 #include "altiplan/plugin_abi.hpp"
 #include "fuzz/memory_file.hpp"
+#include "host/registry/checksum.hpp"
 #include "host/registry/registry.hpp"
 
 namespace {
@@ -33,7 +34,8 @@ Elf64_Shdr section(unsigned name, unsigned type, std::size_t offset, std::size_t
 
 /// The least that examine_library takes for a library of two plugins.
 std::string whole_library() {
-  const std::string names("\0altiplan_manifest\0.note.gnu.build-id\0.shstrtab\0", 48);
+  const std::string names("\0altiplan_manifest\0.note.gnu.build-id\0.shstrtab\0altiplan_checksum\0",
+                          66);
   std::string note;
   append(note, Elf64_Nhdr{4, 20, NT_GNU_BUILD_ID});
   note += std::string("GNU\0abcdefghijklmnopqrst", 24);
@@ -41,8 +43,11 @@ std::string whole_library() {
   append(body, make_manifest("planner", "fuzz", "a sentence"));
   append(body, make_manifest("smoother", "fuzz", "another"));
   const std::size_t manifest_size = body.size();
+  host::Checksum checksum{};
+  std::memcpy(checksum.magic, host::Checksum::kMagic, sizeof checksum.magic);
+  append(body, checksum);
   const std::size_t start = kRecordsAt;
-  const std::size_t note_at = start + manifest_size;
+  const std::size_t note_at = start + body.size();
   const std::size_t names_at = note_at + note.size();
   const std::size_t table_at = names_at + names.size();
 
@@ -61,7 +66,7 @@ std::string whole_library() {
   header.e_phentsize = sizeof(Elf64_Phdr);
   header.e_phnum = 1;
   header.e_shentsize = sizeof(Elf64_Shdr);
-  header.e_shnum = 4;
+  header.e_shnum = 5;
   header.e_shstrndx = 3;
   Elf64_Phdr segment{};
   segment.p_type = PT_LOAD;
@@ -74,6 +79,7 @@ std::string whole_library() {
   append(file, section(1, SHT_PROGBITS, start, manifest_size));
   append(file, section(19, SHT_NOTE, note_at, note.size()));
   append(file, section(38, SHT_STRTAB, names_at, names.size()));
+  append(file, section(48, SHT_PROGBITS, start + manifest_size, sizeof checksum));
   return file;
 }
 

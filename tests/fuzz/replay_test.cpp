@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "fuzz/memory_file.hpp"
+#include "support/folders.hpp"
 
 namespace {
 namespace fs = std::filesystem;
@@ -28,7 +29,7 @@ std::size_t replay(const fs::path& folder) {
 }
 
 TEST(FuzzReplay, SeedsAndOldCrashes) {
-  const fs::path inputs = fs::path(ALTIPLAN_SOURCE_DIR) / "tests/fuzz";
+  const fs::path inputs = altiplan::folders::source() / "tests/fuzz";
   EXPECT_GT(replay(inputs / "seeds" / ALTIPLAN_FUZZ_TARGET), 0U);
   replay(inputs / "crashes" / ALTIPLAN_FUZZ_TARGET);
 }

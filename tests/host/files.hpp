@@ -11,6 +11,7 @@
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
 #include "host/run/pipeline.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::host::testing {
 
@@ -23,8 +24,8 @@ class Files : public ::testing::Test {
                  ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
-    overrides_.plugin_path = {std::filesystem::path(ALTIPLAN_BUILD_DIR) / "tests/plugins",
-                              std::filesystem::path(ALTIPLAN_BUILD_DIR) / "tests/mock_plugins"};
+    overrides_.plugin_path = {altiplan::folders::build() / "tests/plugins",
+                              altiplan::folders::build() / "tests/mock_plugins"};
     scenario("");
   }
   ~Files() override { std::filesystem::remove_all(folder_); }

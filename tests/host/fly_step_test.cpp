@@ -51,7 +51,7 @@ TEST_F(FlyStepTest, PilotsThatMisbehave) {
   }
   const RunResult stuck = fly("fly: told_pilot, command: always, with: {does: stuck}");
   EXPECT_EQ(stuck.status, Status::not_reached);
-  EXPECT_HAS(stuck.message, "no way is open");
+  EXPECT_HAS(stuck.message, "no way is open; the fly step has no replan: with replan: ID");
 }
 
 TEST_F(FlyStepTest, AlternativesAreFlownUntilOneArrives) {

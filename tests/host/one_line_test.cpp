@@ -6,12 +6,13 @@
 #include "host/config/schema.hpp"
 #include "host/output/describe.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::host {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kLibraries = fs::path(ALTIPLAN_BUILD_DIR) / "tests/one_line";
+const fs::path kLibraries = altiplan::folders::build() / "tests/one_line";
 
 struct OneLine : ::testing::TestWithParam<bool> {
   fs::path library() const { return kLibraries / (GetParam() ? "with" : "without"); }

@@ -8,13 +8,14 @@
 
 #include "host/output/describe.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::host {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kSource = ALTIPLAN_SOURCE_DIR;
+const fs::path kSource = altiplan::folders::source();
 
 /// The text with the table between the opening mark and the next closing one.
 std::string filled(const std::string& text, const std::string& open, const std::string& table) {
@@ -37,7 +38,7 @@ void expect_tables(const fs::path& file, const std::string& wanted) {
 }
 
 TEST(ParameterTables, OfPlugins) {
-  Registry registry({fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins"});
+  Registry registry({altiplan::folders::build() / "lib/altiplan/plugins"});
   int tables = 0;
   for (const fs::directory_entry& kind : fs::directory_iterator(kSource / "plugins")) {
     if (!kind.is_directory()) {

@@ -2,6 +2,8 @@
 #include "host/registry/registry.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -11,12 +13,16 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/params.hpp"
+#include "host/registry/checksum.hpp"
+#include "host/registry/in_child.hpp"
+#include "host/registry/machine_fault.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::host {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kBroken = fs::path(ALTIPLAN_BUILD_DIR) / "tests/broken_plugins";
+const fs::path kBroken = altiplan::folders::build() / "tests/broken_plugins";
 
 std::string bytes_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -56,7 +62,9 @@ class RegistryTest : public ::testing::Test {
     edit(record);
     record.checksum += checksum_of(record) - before;
     std::memcpy(bytes.data() + at, &record, sizeof record);
-    return write(name, bytes);
+    const fs::path file = write(name, bytes);
+    write_checksum(file);
+    return file;
   }
 
   fs::path folder_;
@@ -85,6 +93,7 @@ TEST_F(RegistryTest, ReadsAManifestWithoutRunningAnything) {
   EXPECT_STREQ(library.plugins[0].sentence, "admits every route");
   EXPECT_EQ(library.build.size(), 40U);
   EXPECT_EQ(library.build.find_first_not_of("0123456789abcdef"), std::string::npos);
+  EXPECT_EQ(library.checksum.size(), 8U);
   EXPECT_EQ(examine_library(kBroken / "no_manifest.so").refused,
             "not an altiplan plugin (no section altiplan_manifest)");
 }
@@ -267,12 +276,57 @@ TEST_F(RegistryTest, ALibraryThatCannotBeUsedIsAPluginError) {
   EXPECT_EQ(text.find("Bad file descriptor"), std::string::npos) << text;
 }
 
+/// Gives the process no further descriptor while it lives.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(RegistryTest, WhatTheMachineDoesNotGiveIsNotTheLibrarysFault) {
+  const fs::path file = folder_ / "libaltiplan_planner_alpha.so";
+  fs::copy(kBroken / "two_plugins.so", file);
+  Registry registry({folder_});
+  {
+    const NoDescriptors none;
+    EXPECT_HAS(text_of<MachineFault>([&] { registry.get("planner", "alpha"); }),
+               "Too many open files");
+    EXPECT_HAS(text_of<MachineFault>([&] { Registry{{folder_}}; }), "Too many open files");
+    EXPECT_EQ(examine_library(file).refused, "cannot be opened: Too many open files");
+  }
+  EXPECT_STREQ(registry.get("planner", "alpha").name, "alpha") << "the fault has passed";
+}
+
+TEST_F(RegistryTest, AChildsReportNeedsNoDescriptor) {
+  EXPECT_EQ(text_of<Error>([] { in_child("it: ", [] { ::close_range(0, ~0U, 0); }); }), "");
+  EXPECT_EQ(text_of<PluginError>([] { in_child("it: ", [] { throw Error("is bad"); }); }),
+            "is bad");
+  EXPECT_EQ(text_of<MachineFault>([] { in_child("it: ", [] { throw MachineFault("a disk"); }); }),
+            "a disk");
+  EXPECT_EQ(text_of<PluginError>([] { in_child("it: ", [] { ::_exit(3); }); }),
+            "it: loading it ends the process with exit code 3");
+  EXPECT_HAS(text_of<PluginError>([] { in_child("it: ", [] { ::raise(SIGKILL); }); }), "Killed");
+  const std::string long_text(1 << 20, 'x');
+  EXPECT_EQ(text_of<Error>([&] { in_child("it: ", [&] { throw Error(long_text); }); }).size(),
+            std::size_t(65535));
+}
+
 TEST_F(RegistryTest, AParameterWithoutAProperNameIsAPluginError) {
   std::string bytes = bytes_of(kBroken / "two_plugins.so");
   const std::size_t at = bytes.find(std::string("least_m") + '\0');
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, 2, "\xF1\0", 2);
   const fs::path file = write("two.so", bytes);
+  write_checksum(file);
   Registry registry({folder_});
   EXPECT_EQ(text_of<PluginError>([&] { registry.get("planner", "alpha"); }),
             file.string() + ": describing the constraint 'beta': a parameter is named '??ast_m', " +

@@ -54,10 +54,17 @@ Json scene_of(int nx, int ny, std::size_t samples) {
   for (int at = 0; at < nx * ny; ++at) {
     heights.push_back(at == 0 ? std::numeric_limits<float>::quiet_NaN() : float(at % nx));
   }
-  Json profile{{"s", Json::array()}, {"turn", Json::array()}};
+  Json profile{{"s", Json::array()},
+               {"turn", Json::array()},
+               {"altitude", Json::array()},
+               {"ground", Json::array()},
+               {"to", {{"zones", Json::array()}}}};
   for (std::size_t at = 0; at < samples; ++at) {
     profile["s"].push_back(at);
     profile["turn"].push_back(at % 100 == 50 ? Json(10.0) : Json(nullptr));
+    profile["altitude"].push_back(100);
+    profile["ground"].push_back(at == 77 ? Json(nullptr) : Json(at == 1011 ? 30 : 20));
+    profile["to"]["zones"].push_back(at == 1013 ? 1 : 2);
   }
   return {{"ground",
            {{"nx", nx},
@@ -90,9 +97,15 @@ TEST(ReportScenes, AreThinned) {
   EXPECT_EQ(heights[134 + 133], 399);
   const Json& profile = scene.at("results")[0].at("profile");
   EXPECT_EQ(profile.at("s").size(), profile.at("turn").size());
-  EXPECT_LE(profile.at("s").size(), 262u);
+  EXPECT_LE(profile.at("s").size(), 264u);
   EXPECT_EQ(profile.at("s").back(), 2000);
   EXPECT_EQ(std::count(profile.at("turn").begin(), profile.at("turn").end(), Json(10.0)), 20);
+  const auto has = [](const Json& values, int value) {
+    return std::find(values.begin(), values.end(), Json(value)) != values.end();
+  };
+  EXPECT_TRUE(has(profile.at("ground"), 30)) << "where it is lowest above ground";
+  EXPECT_TRUE(has(profile.at("to").at("zones"), 1)) << "where it is nearest";
+  EXPECT_EQ(profile.at("to").at("zones").size(), profile.at("s").size());
 }
 
 TEST(ReportScenes, SmallOnesStay) {

@@ -46,18 +46,114 @@ TEST(Base64, ComesBack) {
   }
 }
 
+/// The scene that the page holds.
+Json scene_in(const std::string& page) {
+  const std::string begin = "<script id=\"scene\" type=\"application/json\">";
+  const std::size_t at = page.find(begin) + begin.size();
+  const std::string text = page.substr(at, page.find("</script>", at) - at);
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  return Json::parse(text);
+}
+
 TEST(ViewerPage, HoldsTheScene) {
   const Json scene{{"message", "</script><!-- \xF1 & é"}, {"n", 1.5}};
   const std::string page = viewer_page(scene);
-  const std::string begin = "<script id=\"scene\" type=\"application/json\">";
-  const std::size_t at = page.find(begin);
-  ASSERT_NE(at, std::string::npos);
-  const std::string text =
-      page.substr(at + begin.size(), page.find("</script>", at) - at - begin.size());
-  EXPECT_EQ(text.find('<'), std::string::npos);
-  EXPECT_EQ(Json::parse(text).at("message"), "</script><!-- \xEF\xBF\xBD & é");
+  EXPECT_EQ(scene_in(page).at("message"), "</script><!-- \xEF\xBF\xBD & é");
   EXPECT_EQ(page.find("/*SCENE*/"), std::string::npos);
   EXPECT_EQ(page.substr(page.size() - 8, 7), "</html>") << "all of the page";
+}
+
+/// A list as tools/viewer/src/packed.js unpacks it.
+Json unpacked(const Json& list) {
+  const std::vector<std::byte> bytes = from_base64(list.at("packed").get<std::string>());
+  std::size_t at = 0;
+  const auto read = [&] {
+    std::uint64_t token = 0;
+    for (int shift = 0;; shift += 7) {
+      const auto byte = std::uint64_t(bytes.at(at++));
+      token |= (byte & 127) << shift;
+      if (byte < 128) {
+        return token;
+      }
+    }
+  };
+  std::vector<std::uint64_t> tokens;
+  while (at < bytes.size()) {
+    const std::uint64_t token = read();
+    tokens.resize(tokens.size() + (token == 1 ? read() : 1), token == 1 ? tokens.back() : token);
+  }
+  const auto per = list.at("per").get<std::size_t>();
+  const auto count = list.at("count").get<std::size_t>();
+  EXPECT_EQ(tokens.size(), count * std::max<std::size_t>(per, 1));
+  Json result = Json::array();
+  std::int64_t last = 0;
+  std::int64_t step = 0;
+  for (std::size_t n = 0; n < tokens.size(); ++n) {
+    if (n % count == 0) {
+      last = step = 0;
+    }
+    Json value = nullptr;
+    if (tokens[n] != 0) {
+      const auto half = std::int64_t((tokens[n] - 1) / 2);
+      const std::int64_t now = last + step + (tokens[n] % 2 == 1 ? -half : half);
+      step = list.at("order") == 2 ? now - last : 0;
+      last = now;
+      value = double(now) / 1000;
+    }
+    if (per > 0 && n < count) {
+      result.push_back(Json::array());
+    }
+    (per > 0 ? result[n % count] : result).push_back(value);
+  }
+  return result;
+}
+
+TEST(ViewerPage, PacksLongListsToTheLastBit) {
+  std::mt19937_64 random(3);
+  Json scene;
+  for (const std::int64_t most : {1L, 100L, 100'000L, 30'000'000'000L}) {
+    Json numbers;
+    Json points;
+    Json even;
+    for (int n = 0; n < 200; ++n) {
+      const auto any = [&] {
+        return double(std::int64_t(random() % (2 * most + 1)) - most) / 1000;
+      };
+      numbers.push_back(n % 50 == 7 ? Json(nullptr) : Json(any()));
+      points.push_back({any(), any(), n % 50 == 9 ? Json(nullptr) : Json(any())});
+      even.push_back(std::round(double(n) * double(most) / 7) / 1000);
+    }
+    scene["numbers " + std::to_string(most)] = numbers;
+    scene["points " + std::to_string(most)] = points;
+    scene["even " + std::to_string(most)] = even;
+  }
+  scene["same"] = std::vector<double>(1000, 2.5);
+  scene["nothing"] = std::vector<std::nullptr_t>(1000);
+  const Json shown = scene_in(viewer_page(scene));
+  for (const auto& [key, list] : scene.items()) {
+    EXPECT_EQ(unpacked(shown.at(key)), list) << key;
+  }
+  const auto size_of = [&](const char* key) {
+    return shown.at(key).at("packed").get<std::string>().size();
+  };
+  EXPECT_LT(size_of("even 100000"), 200 * 4 / 3 + 16);
+  EXPECT_LT(size_of("same"), 16);
+  EXPECT_LT(size_of("nothing"), 16);
+}
+
+TEST(ViewerPage, LeavesOtherListsAsTheyAre) {
+  Json scene;
+  for (int n = 0; n < 70; ++n) {
+    scene["fine"].push_back(n / 7.0);
+    scene["texts"].push_back("a");
+    scene["mixed"].push_back(n % 2 == 0 ? Json(1) : Json{1, 2});
+    scene["uneven"].push_back(n % 2 == 0 ? Json{1, 2, 3} : Json{1, 2});
+    scene["deep"].push_back(Json{Json{1}, Json{2}});
+    scene["huge"].push_back(1e300);
+    scene["empty"].push_back(Json::array());
+  }
+  scene["short"] = {1, 2, 3};
+  EXPECT_EQ(scene_in(viewer_page(scene)), scene);
 }
 
 TEST(Png, HoldsThePixels) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "altiplan/height_field.hpp"
 #include "altiplan/kit/obstacle_set.hpp"
@@ -116,6 +117,23 @@ TEST_F(SceneWorld, GroundWithoutPostsIsSampled) {
   EXPECT_EQ(shown.at("ground").at("ny"), 321);
   EXPECT_EQ(shown.at("notes"), Json{"the ground is shown by its heights every 2.5 m"});
   expect_heights(shown.at("ground"), mission().truth, 1e-3);
+}
+
+TEST_F(SceneWorld, UnknownSpaceIsARoleOfItsOwn) {
+  const auto map = altiplan::testing::configs() / "../plugins/environment/octomap/conformance.bt";
+  const auto roles = [&](const std::string& more) {
+    scenario("environment: [{octomap: {file: " + map.string() + more + "}}]\n");
+    std::set<std::string> found;
+    const Json shown = scene(kTold);
+    for (const char* list : {"solids", "boxes"}) {
+      for (const Json& thing : shown.at(list)) {
+        found.insert(thing.at("role").get<std::string>());
+      }
+    }
+    return found;
+  };
+  EXPECT_EQ(roles(""), (std::set<std::string>{"obstacle", "unknown"}));
+  EXPECT_EQ(roles(", unknown: free"), std::set<std::string>{"obstacle"});
 }
 
 TEST_F(SceneWorld, ShapesAreThoseOfTheLayers) {

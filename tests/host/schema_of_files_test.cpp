@@ -9,6 +9,7 @@
 #include "host/config/config.hpp"
 #include "host/config/schema.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::host {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 using altiplan::testing::configs;
 using altiplan::testing::yaml_as_json;
 
-const fs::path kPlugins = fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins";
+const fs::path kPlugins = altiplan::folders::build() / "lib/altiplan/plugins";
 
 class SchemaOfFiles : public ::testing::Test {
  protected:

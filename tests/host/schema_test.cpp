@@ -5,6 +5,7 @@
 
 #include "host/output/describe.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -148,8 +149,8 @@ TEST_F(SchemaTest, StudyAndTheThreeTogether) {
 }
 
 TEST_F(SchemaTest, OfThePluginsOfThisBuild) {
-  Registry registry({fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins",
-                     fs::path(ALTIPLAN_BUILD_DIR) / "tests/broken_plugins"});
+  Registry registry({altiplan::folders::build() / "lib/altiplan/plugins",
+                     altiplan::folders::build() / "tests/broken_plugins"});
   const Choices choices = choices_of(registry);
   EXPECT_EQ(
       check(any_file_schema(choices),
@@ -160,7 +161,7 @@ TEST_F(SchemaTest, OfThePluginsOfThisBuild) {
 }
 
 TEST(Describe, TextJsonAndTable) {
-  Registry registry({fs::path(ALTIPLAN_BUILD_DIR) / "tests/broken_plugins"});
+  Registry registry({altiplan::folders::build() / "tests/broken_plugins"});
   const std::vector<Description> found = describe_plugin(registry, "alpha");
   ASSERT_EQ(found.size(), 1U);
   const std::string text = describe_text(found[0]);
@@ -180,7 +181,7 @@ TEST(Describe, TextJsonAndTable) {
 }
 
 TEST(Plugins, EachLibraryIsTriedInAProcessOfItsOwn) {
-  Registry registry({fs::path(ALTIPLAN_BUILD_DIR) / "tests/broken_plugins"});
+  Registry registry({altiplan::folders::build() / "tests/broken_plugins"});
   const std::vector<Library> libraries = examine_all(registry);
   const std::string text = plugins_text(registry, libraries);
   const Json json = plugins_json(registry, libraries);

@@ -169,6 +169,22 @@ TEST_F(StoreTest, IsOnePlaceByEveryName) {
   EXPECT_EQ(work_folder_of(folder_ / "here/./out.db"), place.string() + ".work");
 }
 
+TEST_F(StoreTest, HasOneWriterByEveryName) {
+  {
+    const Store opened(file_, StoreMode::write);
+    fs::create_hard_link(file_, folder_ / "hard.db");
+    fs::create_symlink("out.db", folder_ / "soft.db");
+    for (const char* name : {"out.db", "hard.db", "soft.db"}) {
+      const std::string why = refusal([&] { Store(folder_ / name, StoreMode::write); });
+      EXPECT_HAS(why, "is being written by process " + std::to_string(::getpid()));
+      EXPECT_HAS(why, name);
+      EXPECT_TRUE(Store(folder_ / name, StoreMode::read).keys().empty());
+    }
+    EXPECT_HAS(refusal([&] { Store(file_, StoreMode::write); }), "is being written by process");
+  }
+  EXPECT_TRUE(Store(folder_ / "hard.db", StoreMode::write).keys().empty());
+}
+
 TEST_F(StoreTest, TellsDamage) {
   const auto damaged = [&](const char* sql) {
     fs::remove(file_);

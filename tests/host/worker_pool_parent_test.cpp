@@ -59,6 +59,73 @@ TEST_F(WorkerPoolTest, FolderThatVanishesIsAnErrorOfTheStudy) {
                Error);
 }
 
+/// Appraises ends by their payloads: "doubtful 2" …
+Appraisal by_payload(const Ended& ended) {
+  const auto verdict = ended.payload.starts_with("doubtful")   ? Appraisal::doubtful
+                       : ended.payload.starts_with("fault")    ? Appraisal::fault
+                       : ended.payload.starts_with("hopeless") ? Appraisal::hopeless
+                                                               : Appraisal::final;
+  return {verdict, ended.payload};
+}
+
+TEST_F(WorkerPoolTest, ADoubtfulEndCountsWhenSeenTwiceOrTheThirdTime) {
+  options_.appraise = by_payload;
+  const fs::path tries = path_.string() + ".tries";
+  const auto all = run(3, [&](const Job& job) -> std::string {
+    const std::string own = tries.string() + std::to_string(job.index);
+    std::ofstream(own, std::ios::app) << "x";
+    const std::string number = std::to_string(fs::file_size(own));
+    return job.index == 0   ? "doubtful"            // always alike
+           : job.index == 1 ? "doubtful " + number  // never
+           : number == "1"  ? "doubtful"
+                            : "done";  // once only
+  });
+  const auto ended = [&](std::size_t job) {
+    const std::string own = tries.string() + std::to_string(job);
+    const auto number = fs::file_size(own);
+    fs::remove(own);
+    return all.at(job).payload + ", tries: " + std::to_string(number);
+  };
+  EXPECT_EQ(ended(0), "doubtful, tries: 2");
+  EXPECT_EQ(ended(1), "doubtful 3, tries: 3");
+  EXPECT_EQ(ended(2), "done, tries: 2");
+}
+
+TEST_F(WorkerPoolTest, AFaultThatPassesIsToldAndTheJobIsDoneAgain) {
+  std::vector<std::string> said;
+  options_.appraise = by_payload;
+  options_.say = [&](const std::string& what) { said.push_back(what); };
+  const fs::path tries = path_.string() + ".tries";
+  const auto all = run(5, [&](const Job& job) -> std::string {
+    if (job.index == 1) {
+      std::ofstream(tries, std::ios::app) << "x";
+    }
+    return job.index == 1 && fs::file_size(tries) < 4 ? "fault of the disk" : "done";
+  });
+  EXPECT_EQ(all.at(1).payload, "done");
+  EXPECT_EQ(said, std::vector<std::string>{"fault of the disk; tried again"});
+  fs::remove(tries);
+}
+
+TEST_F(WorkerPoolTest, AFaultThatDoesNotPassEndsTheCallAfterTheOthers) {
+  options_.appraise = by_payload;
+  for (const std::string payload : {"fault of the disk", "hopeless"}) {
+    WorkFolder folder(path_);
+    WorkerPool pool(folder, options_);
+    std::map<std::size_t, Ended> all;
+    std::string said;
+    try {
+      pool.run(
+          numbers(5), [&](const Job& job) { return job.index == 1 ? payload : "done"; }, into(all));
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    EXPECT_EQ(said, payload + "; what was done before is kept, and the same call goes on");
+    EXPECT_EQ(all.size(), payload == "hopeless" ? 1U : 4U);
+    EXPECT_FALSE(all.contains(1));
+  }
+}
+
 TEST_F(WorkerPoolTest, WhatKeepThrowsEndsThePoolAndTheRecordsStay) {
   {
     WorkFolder folder(path_);

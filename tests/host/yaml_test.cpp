@@ -197,10 +197,10 @@ TEST(Yaml, FilesThatCannotBeRead) {
   };
   const std::filesystem::path folder = testing::TempDir();
   EXPECT_EQ(message(folder / "no_such_file.yaml"), "there is no such file");
-  EXPECT_EQ(message(folder), "this is a folder, expected a YAML file");
+  EXPECT_EQ(message(folder), "is a folder, expected a file");
   const std::filesystem::path large = folder / "altiplan_large.yaml";
   std::ofstream(large) << "a: " << std::string(std::size_t{16} << 20, 'x');
-  EXPECT_PRED2(starts_with, message(large), "larger than 16 MiB");
+  EXPECT_PRED2(starts_with, message(large), "is larger than 16 MiB");
   std::ofstream(large) << "a: 1\n";
   EXPECT_EQ(load_yaml(large).find("a")->where.file, large.string());
   std::filesystem::remove(large);

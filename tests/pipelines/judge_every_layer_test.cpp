@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <span>
 
 #include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
 namespace altiplan {
@@ -280,6 +282,63 @@ TEST(LawsOfEveryLayer, HoldOnRandomLegs) {
     }
     EXPECT_GT(blocked_legs, 20);
     EXPECT_GT(free_legs, 20);
+  }
+}
+
+/// The distance between a leg and the ground about it: the best of a grid of places, each of the
+/// thirty best looked at finer and finer.
+double sampled_distance(const Environment& made, const Vec3& a, const Vec3& b, double reach) {
+  struct Place {
+    double distance, x, y;
+  };
+  const auto place = [&](double x, double y) {
+    const Vec3 point(x, y, *made.ground(x, y));
+    return Place{point_leg_distance(point, a, b), x, y};
+  };
+  const auto nearer = [](const Place& p, const Place& q) { return p.distance < q.distance; };
+  const Box box = leg_box(a, b).grown(reach);
+  constexpr double kStep = 4;
+  std::vector<Place> places;
+  for (double x = box.min.x(); x <= box.max.x(); x += kStep) {
+    for (double y = box.min.y(); y <= box.max.y(); y += kStep) {
+      places.push_back(place(x, y));
+    }
+  }
+  std::partial_sort(places.begin(), places.begin() + 30, places.end(), nearer);
+  Place best = places.front();
+  for (Place at : std::span(places).first(30)) {
+    for (double half = kStep; half > 1e-4; half *= 0.7) {
+      const Place from = at;
+      for (int n = 0; n < 81; ++n) {
+        at = std::min(at, place(from.x + half * (n % 9 - 4) / 4, from.y + half * (n / 9 - 4) / 4),
+                      nearer);
+      }
+    }
+    best = std::min(best, at, nearer);
+  }
+  return best.distance;
+}
+
+TEST(LawsOfEveryLayer, ClearanceFromGroundIsTheDistance) {
+  // A plateau of 160 m on the flank of the higher hill.
+  const std::string cut = "{base_m: 10, cap_m: 160, " + kHills.substr(kHills.find("peaks"));
+  for (const Kind& kind :
+       {Kind{"terrain", terrain({{20, 15, 200}}, true)}, Kind{"hills", layer("hills", kHills)},
+        Kind{"hills with a plateau", layer("hills", cut)}}) {
+    SCOPED_TRACE(kind.name);
+    RandomStream random(19);
+    for (int n = 0; n < 40; ++n) {
+      Vec3 a(random.uniform(500, 3500), random.uniform(500, 2500), 0);
+      Vec3 b = a + 100 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+      a.z() = *kind.made->ground(a.x(), a.y()) + random.uniform(30, 60);
+      b = n % 4 == 0 ? a : Vec3(b.x(), b.y(), *kind.made->ground(b.x(), b.y()) + 30);
+      const double gap = kind.made->ground_gap(a, b);
+      if (gap < 5) {
+        continue;
+      }
+      EXPECT_NEAR(leg_clearance(*kind.made, a, b), sampled_distance(*kind.made, a, b, gap), 1e-3)
+          << n;
+    }
   }
 }
 

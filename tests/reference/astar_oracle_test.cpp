@@ -268,6 +268,7 @@ void compare_turns(std::uint64_t seed, TurnTally& tally) {
   const double turns[] = {50, 80, 100, 140};
   (seed % 2 == 0 ? request.limits.max_turn_horizontal : request.limits.max_turn_space) =
       radians(turns[draw.below(4)]);
+  request.vehicle.turns_on_the_spot = seed % 5 == 0;
   if (draw.below(2) == 0) {
     request.start.velocity = draw.point(3);
   }
@@ -278,25 +279,33 @@ void compare_turns(std::uint64_t seed, TurnTally& tally) {
     const double norms = u.norm() * v.norm();
     return norms < 1e-12 ? 0 : std::acos(std::clamp(u.dot(v) / norms, -1.0, 1.0));
   };
-  const auto turn_ok = [&](std::size_t before, std::size_t here, std::size_t next) {
-    const auto& at = oracle.graph.at;
-    const bool heading = request.start.velocity.norm() > 0;
+  const auto& at = oracle.graph.at;
+  const auto has_heading = [&](std::size_t from, std::size_t to) {
+    return std::hypot(at[to].x() - at[from].x(), at[to].y() - at[from].y()) >= 1e-6;
+  };
+  const auto turn_ok = [&](const Reached& reached, std::size_t next) {
+    const std::size_t here = reached.here;
     if (at[here] == at[next]) {
       return true;  // from the start to the cell whose centre it is
     }
-    std::size_t from = before;
+    std::size_t from = reached.before;
     if (from != kNoNode && at[from] == at[here]) {
       from = kNoNode;
     }
-    if (from == kNoNode && !heading) {
-      return true;
-    }
-    const Vec3 in = from == kNoNode ? request.start.velocity : Vec3(at[here] - at[from]);
     const Vec3 out = at[next] - at[here];
-    return turn(in, out, true) <= request.limits.max_turn_horizontal + 1e-7 &&
+    const Vec3 in = from == kNoNode ? request.start.velocity : Vec3(at[here] - at[from]);
+    // The heading lasts through legs that have none.
+    Vec3 heading = reached.heading_from == kNoNode
+                       ? request.start.velocity
+                       : Vec3(at[reached.heading_to] - at[reached.heading_from]);
+    if (request.vehicle.turns_on_the_spot) {
+      heading = in;
+    }
+    const bool upright = std::hypot(out.x(), out.y()) < 1e-6;
+    return (upright || turn(heading, out, true) <= request.limits.max_turn_horizontal + 1e-7) &&
            turn(in, out, false) <= request.limits.max_turn_space + 1e-7;
   };
-  const auto best = dijkstra_with_turns(oracle.graph, oracle.start, turn_ok);
+  const auto best = dijkstra_with_turns(oracle.graph, oracle.start, turn_ok, has_heading);
   const double expected = oracle.shortest(best);
   if (oracle.rules.in_doubt() || request.goal.reached_at(request.start.position)) {
     return;

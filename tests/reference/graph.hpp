@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <set>
 #include <utility>
 #include <vector>
@@ -48,16 +49,23 @@ inline std::vector<double> dijkstra(const Graph& graph, std::size_t start) {
   return best;
 }
 
-/// The same where a leg may depend on the one before: a state is a leg (from, to), so every way to
-/// a node is kept that may matter. `turn_ok(before, here, next)` with before = kNoNode at the
-/// start.
+/// How a node was reached where a leg may depend on those before it: the last leg, and the last one
+/// that has a heading (kNoNode: there was none).
 inline constexpr std::size_t kNoNode = ~std::size_t{0};
-template <class TurnOk>
+struct Reached {
+  std::size_t before, here;
+  std::size_t heading_from, heading_to;
+  auto operator<=>(const Reached&) const = default;
+};
+
+/// The same by states, so that every path to a node is kept that may matter. `turn_ok(reached,
+/// next)` says whether a leg may follow, `has_heading(from, to)` whether it has a heading.
+template <class TurnOk, class HasHeading>
 std::vector<double> dijkstra_with_turns(const Graph& graph, std::size_t start,
-                                        const TurnOk& turn_ok) {
+                                        const TurnOk& turn_ok, const HasHeading& has_heading) {
   std::vector<double> best(graph.at.size(), kInfinity);
-  using State = std::pair<std::size_t, std::size_t>;
-  std::set<std::pair<double, State>> open{{0, {kNoNode, start}}};
+  using State = Reached;
+  std::set<std::pair<double, State>> open{{0, {kNoNode, start, kNoNode, kNoNode}}};
   std::set<State> settled;
   while (!open.empty()) {
     const auto [g, state] = *open.begin();
@@ -65,10 +73,13 @@ std::vector<double> dijkstra_with_turns(const Graph& graph, std::size_t start,
     if (!settled.insert(state).second) {
       continue;
     }
-    best[state.second] = std::min(best[state.second], g);
-    for (const Edge& edge : graph.from[state.second]) {
-      const State next = {state.second, edge.to};
-      if (!settled.contains(next) && turn_ok(state.first, state.second, edge.to)) {
+    best[state.here] = std::min(best[state.here], g);
+    for (const Edge& edge : graph.from[state.here]) {
+      State next = {state.here, edge.to, state.heading_from, state.heading_to};
+      if (has_heading(state.here, edge.to)) {
+        next = {state.here, edge.to, state.here, edge.to};
+      }
+      if (!settled.contains(next) && turn_ok(state, edge.to)) {
         open.insert({g + edge.length, next});
       }
     }

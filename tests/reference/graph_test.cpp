@@ -24,8 +24,8 @@ TEST(DijkstraItself, EqualsAllSimplePathsOnTinyGrids) {
     ASSERT_TRUE(walked == settled || std::abs(walked - settled) < 1e-9) << seed;
     // Turns that nothing forbids change nothing.
     const auto turning = dijkstra_with_turns(
-        oracle.graph, oracle.start,
-        [](std::size_t, std::size_t, std::size_t) { return true; })[oracle.goal];
+        oracle.graph, oracle.start, [](const Reached&, std::size_t) { return true; },
+        [](std::size_t, std::size_t) { return true; })[oracle.goal];
     ASSERT_TRUE(turning == settled || std::abs(turning - settled) < 1e-9) << seed;
   }
   EXPECT_GT(reached, 30);

@@ -27,16 +27,6 @@ inline double angle_between(const Vec3& u, const Vec3& v) {
 }
 inline Vec3 flat(const Vec3& v) { return {v.x(), v.y(), 0}; }
 
-/// Radius of the circle through three points by Heron's formula.
-inline double circle_radius(const Vec3& p, const Vec3& q, const Vec3& r) {
-  const double a = (q - r).norm();
-  const double b = (p - r).norm();
-  const double c = (p - q).norm();
-  const double s = (a + b + c) / 2;
-  const double square = s * (s - a) * (s - b) * (s - c);
-  return square > 0 ? a * b * c / (4 * std::sqrt(square)) : b < std::max(a, c) ? 0 : kInfinity;
-}
-
 /// Least signed distance of a leg to the scene by `samples` + 1 points of it.
 inline double sampled_clearance(const Scene& scene, const Vec3& a, const Vec3& b, int samples) {
   double least = kInfinity;
@@ -81,17 +71,55 @@ inline void judge_leg(const Scene& scene, const Request& request, const Vec3& a,
                               leg.norm() / (2 * kSamples) + 1e-6};
 }
 
-inline void judge_bend(const Request& request, const Vec3& before, const Vec3& a, const Vec3& b,
-                       std::size_t at, Excesses& found) {
+/// A corner: the directions of its legs, and the heading with which the first one ends.
+struct Corner {
+  Vec3 in{0, 0, 0}, out{0, 0, 0}, heading{0, 0, 0};
+
+  /// The turn as seen from above; an upright leg turns nowhere.
+  double level_turn() const {
+    return flat(out).norm() < 1e-6 ? 0 : angle_between(flat(heading), flat(out));
+  }
+  /// Of the circle that touches both legs at the middle of the shorter one.
+  double radius() const {
+    const double tangent = std::tan(angle_between(in, out) / 2);
+    const bool on_the_spot = flat(in).norm() < 1e-6 && level_turn() > 1e-8;
+    return on_the_spot ? 0 : std::min(in.norm(), out.norm()) / 2 / tangent;
+  }
+};
+
+/// The corner at each waypoint from the second leg on; at the first where the start has a velocity.
+inline std::vector<std::pair<std::size_t, Corner>> corners(const Route& route,
+                                                           const Request& request) {
+  std::vector<std::pair<std::size_t, Corner>> all;
+  Vec3 in = request.start.velocity;
+  Vec3 heading = in;
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    const Vec3 out = route[i + 1] - route[i];
+    if (in.norm() > 0) {
+      all.push_back({i, {in, out, request.vehicle.turns_on_the_spot ? in : heading}});
+      if (request.vehicle.turns_on_the_spot && flat(in).norm() < 1e-6) {
+        all.back().second.heading = {0, 0, 0};
+      }
+    }
+    if (out.norm() > 0) {
+      in = out;
+      heading = flat(out).norm() < 1e-6 ? heading : out;
+    }
+  }
+  return all;
+}
+
+inline void judge_bend(const Request& request, const Corner& corner, std::size_t at,
+                       Excesses& found) {
   const Limits& limits = request.limits;
   Excess& turn = found[{"turn_angle", at}];
   turn.unsure = 1e-7;
-  turn.add(angle_between(flat(a - before), flat(b - a)) - limits.max_turn_horizontal);
-  turn.add(angle_between(a - before, b - a) - limits.max_turn_space);
+  turn.add(corner.level_turn() - limits.max_turn_horizontal);
+  turn.add(angle_between(corner.in, corner.out) - limits.max_turn_space);
   Excess& radius = found[{"turn_radius", at}];
   radius.unsure = 1e-5 * std::max(1.0, limits.min_turn_radius);
   if (limits.min_turn_radius > 0) {
-    radius.add(limits.min_turn_radius - circle_radius(before, a, b));
+    radius.add(limits.min_turn_radius - corner.radius());
   }
 }
 
@@ -102,12 +130,9 @@ inline Excesses sampled_judge(const Route& route, const Scene& scene, const Requ
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     judge_leg(scene, request, route[i], route[i + 1], i, found);
     total += (route[i + 1] - route[i]).norm();
-    if (i > 0) {
-      judge_bend(request, route[i - 1], route[i], route[i + 1], i, found);
-    } else if (request.start.velocity.norm() > 0) {
-      judge_bend(request, request.start.position - request.start.velocity, route[0], route[1], i,
-                 found);
-    }
+  }
+  for (const auto& [i, corner] : corners(route, request)) {
+    judge_bend(request, corner, i, found);
   }
   for (std::size_t i = 0; i < route.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -12,6 +12,7 @@
 
 #include "host/config/yaml.hpp"
 #include "host/run/pipeline.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::testing {
 namespace fs = std::filesystem;
@@ -85,7 +86,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
 }
 
 Ran run_file(const fs::path& pipeline, host::Overrides overrides, int threads) {
-  overrides.plugin_path.push_back(fs::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins");
+  overrides.plugin_path.push_back(altiplan::folders::build() / "lib/altiplan/plugins");
   const host::Config config = host::load_config(pipeline, overrides);
   host::RunOptions options;
   options.threads = threads;
@@ -105,7 +106,7 @@ std::string schema_disagreement(const host::Json& schema,
     one["file"] = document;
     list.push_back(std::move(one));
   }
-  const std::string command = "/usr/bin/python3 " ALTIPLAN_SOURCE_DIR
+  const std::string command = "/usr/bin/python3 " + altiplan::folders::source().string() +
                               "/tests/host/check_schema.py " +
                               folder.write("schema.json", schema.dump(1)).string() + " " +
                               folder.write("cases.json", list.dump(1)).string() + " > " +

@@ -8,13 +8,13 @@
 #include "altiplan/kit/obstacle_set.hpp"
 #include "host/config/yaml.hpp"
 #include "host/registry/registry.hpp"
+#include "support/folders.hpp"
 
 namespace altiplan::testing {
 namespace {
 
 host::Registry& registry() {
-  static host::Registry registry(
-      {std::filesystem::path(ALTIPLAN_BUILD_DIR) / "lib/altiplan/plugins"});
+  static host::Registry registry({altiplan::folders::build() / "lib/altiplan/plugins"});
   return registry;
 }
 
@@ -216,10 +216,10 @@ std::filesystem::path test_data(std::string_view relative) {
   const char* folder = std::getenv("ALTIPLAN_TEST_DATA");
   const std::filesystem::path file =
       (folder != nullptr ? std::filesystem::path(folder)
-                         : std::filesystem::path(ALTIPLAN_SOURCE_DIR) / "../shared/data") /
+                         : altiplan::folders::source() / "../shared/data") /
       relative;
   return std::filesystem::exists(file) ? file : std::filesystem::path();
 }
 
-std::filesystem::path configs() { return std::filesystem::path(ALTIPLAN_SOURCE_DIR) / "configs"; }
+std::filesystem::path configs() { return altiplan::folders::source() / "configs"; }
 }  // namespace altiplan::testing

@@ -45,6 +45,21 @@ class Both:
         self.click("[data-layer='houses|obstacle|true']")
         self.assertEqual(self.drawn()["solids"], before - 60)
 
+    def test_unknown_space_is_hidden_until_asked_for(self):
+        scene = scenes.empty([[0.0, 0.0, 0.0], [100.0, 100.0, 50.0]])
+        box = {"shape": "box", "min": [0, 0, 0], "max": [10, 10, 10]}
+        scene["solids"] = [scenes.thing("obstacle", "map", **box),
+                           scenes.thing("unknown", "map", **{**box, "max": [100, 100, 50]}),
+                           scenes.thing("unknown", "map", **{**box, "min": [50, 50, 0]})]
+        self.open(scene)
+        self.assertEqual(self.drawn()["solids"], 1)
+        self.assertNotIn("Unknown space", self.text("#legend"))
+        self.click("[data-layer='map|unknown|true']")
+        self.assertEqual(self.drawn()["solids"], 3)
+        self.assertIn("Unknown space, treated as blocked", self.text("#legend"))
+        self.click("[data-layer='map|unknown|true']")
+        self.assertEqual(self.drawn()["solids"], 1)
+
     def test_time(self):
         """The pop-up radar comes at 10 s and goes at 40 s; the balloon flies east at 60 m/s."""
         solids = {}

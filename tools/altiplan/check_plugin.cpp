@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <regex>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "altiplan/error.hpp"
 #include "check_plugin/verdicts.hpp"
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/result_json.hpp"
 #include "host/study/report/text.hpp"
 #include "interrupt.hpp"
@@ -110,12 +110,7 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
     outcome.findings.push_back({"Process: the test can be made", error.what()});
   }
   if (!arguments.answer.empty()) {
-    std::ofstream answer(arguments.answer);
-    answer << outcome_text(outcome);
-    answer.close();
-    if (!answer) {
-      throw Error("cannot write the result of a test to " + arguments.answer);
-    }
+    host::write_file(arguments.answer, outcome_text(outcome));
     return kDone;
   }
   Verdict verdict;

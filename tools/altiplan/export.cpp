@@ -3,6 +3,7 @@
 #include <map>
 
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/export.hpp"
 #include "host/output/stored_result.hpp"
 #include "host/run/events.hpp"
@@ -65,6 +66,7 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 }
 
 int export_result(const Arguments& arguments) {
+  expect_writable(arguments.out, "-o");
   const host::StoredResult stored = host::read_result(arguments.result, arguments.overrides);
   for (const std::string& changed : stored.changed) {
     warn(changed + " is not the file that the result was made from");

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "guarded.hpp"
 
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
+#include <system_error>
 
 #include "altiplan/error.hpp"
 
@@ -28,17 +35,35 @@ int code_of(const char* program, const std::function<int()>& action) {
     std::cerr << program << ": " << error.path1().string() << ": " << error.code().message()
               << '\n';
     return kBadFile;
+  } catch (const std::bad_alloc&) {
+    std::cerr << program << ": out of memory: free some, or ask for less\n";
+    return kInternal;
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    std::cerr << program << (no_thread ? ": the system gives no thread: " : ": ") << error.what()
+              << '\n';
+    return kInternal;
   } catch (const std::exception& error) {
     std::cerr << program << ": internal error: " << error.what() << '\n';
     return kInternal;
   }
+}
+
+/// Whether stdout is a pipe or socket that nobody reads any more.
+bool reader_is_gone() {
+  pollfd out{STDOUT_FILENO, 0, 0};
+  return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 }  // namespace
 
 int guarded(const char* program, const std::function<int()>& action) {
   const int code = code_of(program, action);
   std::cout.flush();
-  if (!std::cout) {
+  if (!std::cout || std::ferror(stdout) != 0) {
+    if (reader_is_gone()) {  // as in `| head`: no error, and nothing to say to anybody
+      std::signal(SIGPIPE, SIG_DFL);
+      std::raise(SIGPIPE);
+    }
     std::cerr << program << ": cannot write to stdout\n";
     return code == kDone ? kInternal : code;
   }

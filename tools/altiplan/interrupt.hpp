@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <csignal>
 #include <stop_token>
-#include <thread>
 
 namespace altiplan::cli {
 
-/// Turns SIGINT and SIGTERM into a stop token: the step under way ends, the result is written.
-/// A second signal ends the process at once; not within half a second, as timeout(1) sends two.
+/// From now on SIGINT, SIGTERM and SIGHUP end the process with exit code 130, whatever it does, and
+/// what is unfinished is undone: no half file, no temporary one. To be called once, at the start.
+void catch_interrupts();
+
+/// While it lives, a signal asks for a stop in place of ending the process: the step under way
+/// ends, the result is written. A second signal ends the process; not within half a second, as
+/// timeout(1) sends two. One at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -17,13 +19,14 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  std::stop_token token() const { return stop_.get_token(); }
-  bool happened() const { return happened_; }
+  /// From now on a signal ends the process again. Where one has come, what is still done (printing
+  /// to a pipe that nobody reads) has half a second.
+  void finish();
+
+  std::stop_token token() const;
+  bool happened() const { return token().stop_requested(); }
 
  private:
-  sigset_t signals_;
   std::stop_source stop_;
-  std::atomic<bool> happened_ = false;
-  std::thread thread_;
 };
 }  // namespace altiplan::cli

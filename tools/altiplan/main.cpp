@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "host/study/report/text.hpp"
+#include "interrupt.hpp"
 
 namespace altiplan::cli {
 
@@ -164,9 +165,12 @@ int main_checked(int argc, char** argv) {
       return kUsage;
     }
     const int code = app.exit(error);
-    return code == 0 ? kDone : kUsage;
+    return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
   }
-  return guarded("altiplan", action);
+  return guarded("altiplan", [&] {
+    catch_interrupts();
+    return action();
+  });
 }
 }  // namespace
 }  // namespace altiplan::cli

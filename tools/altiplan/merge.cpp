@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "host/study/store/merge.hpp"
+#include "host/study/store/place.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -28,7 +29,7 @@ void expect_no_loss(const Arguments& arguments) {
 }
 
 int merge(const Arguments& arguments) {
-  expect_writable(arguments.out, "-o");
+  expect_writable(host::place_of(arguments.out).string(), "-o");
   expect_no_loss(arguments);
   const host::Merged merged = host::merge_stores(arguments.stores, arguments.out);
   for (const std::string& sentence : merged.differing) {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
-#include <sstream>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
+#include "host/base/unfinished.hpp"
 #include "host/config/shapes.hpp"
 #include "host/registry/install_root.hpp"
 #include "host/registry/registry.hpp"
@@ -97,21 +96,11 @@ std::string usage_problem(const Arguments& arguments) {
 
 using Files = std::map<fs::path, std::string>;
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) {
-    throw Error(file.string() + ": cannot be read");
-  }
-  return text.str();
-}
-
 /// The files below the folder by their paths in it; they take the place of those of the same path.
 void add_files(const fs::path& folder, Files& files) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) {
-      files[entry.path().lexically_relative(folder)] = text_of(entry.path());
+      files[entry.path().lexically_relative(folder)] = kit::read_file(entry.path().string());
     }
   }
 }
@@ -154,16 +143,6 @@ Files project(const Arguments& arguments) {
   return files;
 }
 
-void write(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) {
-    throw Error("cannot write '" + file.string() + "': " + std::strerror(errno));
-  }
-}
-
 int new_project(const Arguments& arguments) {
   const std::string problem = usage_problem(arguments);
   if (!problem.empty()) {
@@ -172,6 +151,7 @@ int new_project(const Arguments& arguments) {
   }
   const Files files = project(arguments);
   const fs::path folder = arguments.name;
+  const auto lock = host::uninterrupted();
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     throw Error(fs::exists(fs::symlink_status(folder))
@@ -180,7 +160,8 @@ int new_project(const Arguments& arguments) {
   }
   try {
     for (const auto& [path, text] : files) {
-      write(folder / path, text);
+      fs::create_directories((folder / path).parent_path());
+      host::write_file(folder / path, text);
     }
   } catch (...) {
     fs::remove_all(folder, error);

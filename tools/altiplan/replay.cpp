@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/result_json.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/study/compare/find_run.hpp"
@@ -75,10 +76,10 @@ host::ProcessGuard::LastWords last_words(const Arguments& arguments, const host:
 }
 
 int run_again(const Arguments& arguments, const host::Store& store, const host::StoredRun& stored) {
-  const Interrupt interrupt;
   const host::Config config = host::config_of(store, stored, arguments.overrides.plugin_path);
   const host::StudyBudget budget = host::budget_of(store);
   const std::string key = host::key_of(config, budget, host::run_name(stored), stored.seed);
+  Interrupt interrupt;
   host::RunOptions options;
   options.patience_s = budget.wall_s;
   options.trace = arguments.trace;
@@ -90,6 +91,9 @@ int run_again(const Arguments& arguments, const host::Store& store, const host::
   };
   options.on_stuck = [&](const host::RunResult& result) {
     // The plugin still runs, and may print: what it has for stdout is not given back.
+    if (interrupt.happened()) {
+      _exit(kInterrupted);
+    }
     int code = kInternal;
     if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
       code = hand_out(out, arguments, stored, config, key, result);

@@ -68,7 +68,9 @@ int write_page(const Arguments& arguments) {
 }
 
 int report(const Arguments& arguments) {
-  expect_writable(arguments.arena, "--arena");
+  if (arguments.arena) {
+    expect_writable(host::place_of(*arguments.arena).string(), "--arena");
+  }
   expect_apart(arguments.arena, "--arena", arguments.stores);
   if (arguments.arena) {
     host::expect_replaceable(*arguments.arena);

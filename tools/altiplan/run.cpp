@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/result_json.hpp"
 #include "host/run/pipeline.hpp"
 #include "interrupt.hpp"
@@ -42,12 +43,15 @@ void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
 }
 
 void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_short) {
-  std::fprintf(to, "  flight: %s after %s s, %d collision%s, nearest %s m, %zu replan%s\n",
+  const std::optional<double>& separation = flight.min_separation_m;
+  const bool is_inside = separation && *separation < 0;
+  std::fprintf(to, "  flight: %s after %s s, %d collision%s, %s%s m%s, %zu replan%s\n",
                flight.reached ? "reached the goal"
                : is_cut_short ? "the step's budget ended it"
                               : "did not reach the goal",
                fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
-               flight.collisions == 1 ? "" : "s", fixed(flight.min_separation_m, 1).c_str(),
+               flight.collisions == 1 ? "" : "s", is_inside ? "" : "nearest ",
+               fixed(is_inside ? -*separation : separation, 1).c_str(), is_inside ? " inside" : "",
                flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
   for (const host::Handover& handover : flight.handovers) {
     std::fprintf(to, "  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
@@ -83,9 +87,18 @@ void print_table(std::FILE* to, const host::RunResult& result) {
 }
 
 void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& config,
-              const host::RunResult& result) {
+              const host::RunResult& result, Interrupt& interrupt) {
   const host::Json json =
       arguments.out || arguments.json ? host::result_json(config, result) : host::Json();
+  std::string problem;
+  if (arguments.out) {
+    try {
+      host::write_file(*arguments.out, host::file_text(json));
+    } catch (const Error& error) {  // the result is shown all the same
+      problem = error.what();
+    }
+  }
+  interrupt.finish();
   if (arguments.json) {
     std::fputs(host::file_text(json).c_str(), to);
   } else {
@@ -93,8 +106,8 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
     print_table(to, result);
     std::fprintf(to, "  %s\n", result.message.c_str());
   }
-  if (arguments.out) {  // last: where it cannot be written, the result stands on stdout
-    host::write_file(*arguments.out, host::file_text(json));
+  if (!problem.empty()) {
+    throw Error(problem);
   }
 }
 
@@ -109,9 +122,6 @@ host::ProcessGuard::LastWords last_words(const RunArguments& arguments, const ho
   }
   words.on_stdout = arguments.json;
   if (arguments.out) {
-    std::error_code error;
-    words.in_place = std::filesystem::exists(*arguments.out, error) &&
-                     !std::filesystem::is_regular_file(*arguments.out, error);
     words.file = std::filesystem::absolute(*arguments.out);
   }
   return words;
@@ -120,7 +130,6 @@ host::ProcessGuard::LastWords last_words(const RunArguments& arguments, const ho
 int run(const RunArguments& arguments) {
   expect_writable(arguments.out, "--out");
   expect_writable(arguments.trace, "--trace");
-  const Interrupt interrupt;
   const host::Config config = host::load_config(arguments.pipeline, arguments.overrides);
   std::vector<std::string> read{config.pipeline_path.string(), config.scenario_path.string()};
   for (const std::filesystem::path& file : config.files) {
@@ -129,6 +138,7 @@ int run(const RunArguments& arguments) {
   expect_apart(arguments.out, "--out", read);
   read.push_back(arguments.out.value_or(""));
   expect_apart(arguments.trace, "--trace", read);
+  Interrupt interrupt;
   host::RunOptions options;
   options.patience_s = arguments.patience_s;
   options.threads = arguments.threads;
@@ -142,10 +152,14 @@ int run(const RunArguments& arguments) {
   options.on_stuck = [&](const host::RunResult& result) {
     // The plugin still runs, and may print: what it has for stdout is not given back.
     if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
-      hand_out(out, arguments, config, result);
+      try {
+        hand_out(out, arguments, config, result, interrupt);
+      } catch (const Error& error) {
+        std::cerr << "altiplan: " << error.what() << std::endl;
+      }
       std::fclose(out);
     }
-    _exit(result.exit_code());
+    _exit(interrupt.happened() ? kInterrupted : result.exit_code());
   };
   const host::RunResult result = host::run(config, options);
   process.reset();
@@ -155,7 +169,7 @@ int run(const RunArguments& arguments) {
   for (const std::string& note : result.notes) {
     info(note);
   }
-  hand_out(stdout, arguments, config, result);
+  hand_out(stdout, arguments, config, result, interrupt);
   if (!result.trace_error.empty()) {
     throw Error(result.trace_error);
   }

@@ -3,12 +3,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
+#include "altiplan/kit/input_file.hpp"
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/study/slurm/command.hpp"
 #include "host/study/slurm/slurm.hpp"
 #include "host/study/store/merge.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/store.hpp"
 
 namespace altiplan::cli {
@@ -78,8 +80,11 @@ host::SlurmJob job_of(const Arguments& arguments, const host::StudyPlan& plan) {
 
 /// What was said in a small file of an earlier call, a word per line.
 std::vector<std::string> lines_of(const fs::path& file) {
-  std::ifstream in(file);
   std::vector<std::string> lines;
+  if (!fs::exists(file)) {
+    return lines;
+  }
+  kit::InputFile in(file.string());
   for (std::string line; std::getline(in, line);) {
     lines.push_back(line);
   }
@@ -181,7 +186,7 @@ int slurm(const Arguments& arguments) {
         "there is no sbatch on PATH: this machine cannot submit to Slurm (--dry-run writes "
         "the scripts all the same)");
   }
-  expect_writable(arguments.out, "--out");
+  expect_writable(host::place_of(arguments.out).string(), "--out");
   const host::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
   const host::StudyPlan plan =
       host::load_study(arguments.study, selection, arguments.overrides.plugin_path);

@@ -11,6 +11,7 @@
 #include "host/study/report/analysis.hpp"
 #include "host/study/run/study_run.hpp"
 #include "host/study/statistics/claims.hpp"
+#include "host/study/store/place.hpp"
 #include "host/study/store/study_data.hpp"
 #include "progress_line.hpp"
 
@@ -113,7 +114,7 @@ int study(Arguments arguments) {
     arguments.options.store = std::filesystem::temp_directory_path() / name;
   } else {
     arguments.options.store = arguments.store;
-    expect_writable(arguments.store, "--out");
+    expect_writable(host::place_of(arguments.store).string(), "--out");
   }
   const host::StudyPlan plan =
       host::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/picture_svg.hpp"
 #include "host/output/scene.hpp"
 #include "host/output/screenshot.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/config.hpp"
 
+#include "host/base/input.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/config/overrides.hpp"
@@ -92,17 +93,11 @@ bool find_scenario(Config& config, Checker& checker) {
     return false;  // said already
   }
   config.scenario_path = absolute_file(named->text);
-  std::error_code error;
-  if (fs::is_directory(config.scenario_path, error)) {
-    checker.problem(where, "scenario",
-                    "'" + config.scenario_path.string() + "' is a folder, expected a scenario");
-    return false;
+  const std::string why = file_problem(config.scenario_path);
+  if (!why.empty()) {
+    checker.problem(where, "scenario", why);
   }
-  if (!fs::is_regular_file(config.scenario_path, error)) {
-    checker.problem(where, "scenario", "there is no file '" + config.scenario_path.string() + "'");
-    return false;
-  }
-  return true;
+  return why.empty();
 }
 }  // namespace
 

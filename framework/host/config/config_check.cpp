@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "host/base/input.hpp"
 #include "host/config/shapes.hpp"
 #include "host/config/yaml.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "src/blame.hpp"
 
 namespace altiplan::host {
@@ -21,6 +23,8 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
     entry = &plugin(*config_.registry, kind, name);
   } catch (const PluginError&) {
     throw;  // a library that offers the name is refused: exit code 4
+  } catch (const MachineFault&) {
+    throw;
   } catch (const Error& error) {
     std::string built_in;
     if (kind == "environment") {
@@ -51,11 +55,8 @@ void Checker::check_report(const ParamReport& report, const std::string& path) {
 }
 
 void Checker::check_file(const std::string& file, const Location& where, const std::string& key) {
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    problem(where, key, "there is no file '" + file + "'");
-  } else if (!fs::is_regular_file(file, error)) {
-    problem(where, key, "'" + file + "' is not a file");
+  if (const std::string why = file_problem(file); !why.empty()) {
+    problem(where, key, why);
   } else if (std::find(config_.files.begin(), config_.files.end(), file) == config_.files.end()) {
     config_.files.emplace_back(file);
   }

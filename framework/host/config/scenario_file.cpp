@@ -48,6 +48,8 @@ void VehicleEntry::describe(Fields& f) {
       .unit("m")
       .greater_than(0)
       .doc("what is not known is seen within this distance; default: unlimited");
+  f("turns_on_the_spot", turns_on_the_spot)
+      .doc("turns to any heading where it climbs or sinks on the spot; else it keeps its heading");
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");
   for (std::size_t i = 1; i < speed_near.size(); ++i) {
     f.check(speed_near[i - 1].within_m < speed_near[i].within_m,

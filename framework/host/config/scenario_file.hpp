@@ -54,6 +54,7 @@ struct VehicleEntry {
   double speed_mps = 15;
   std::optional<double> sensing_m;
   std::vector<SpeedNearEntry> speed_near;
+  bool turns_on_the_spot = false;
   void describe(Fields& f);
 };
 

@@ -4,14 +4,10 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <map>
-#include <memory>
 #include <sstream>
 
+#include "altiplan/kit/input_file.hpp"
 #include "host/config/yaml_reader.hpp"
 
 namespace altiplan::host {
@@ -104,31 +100,11 @@ Value parse(const YamlSource& source, const char* when_empty) {
 }
 
 std::string read_file(const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& message) {
-    throw ConfigError({file.string(), 0, 0, ""}, "", message);
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    refuse("this is a folder, expected a YAML file");
+  try {
+    return kit::read_file(file.string(), kMaxBytes);
+  } catch (const kit::InputError& error) {
+    throw ConfigError({file.string(), 0, 0, ""}, "", error.why());
   }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
-                                                               &std::fclose);
-  if (!stream) {
-    refuse(errno == ENOENT ? "there is no such file"
-                           : std::string("cannot be opened: ") + std::strerror(errno));
-  }
-  std::string text;
-  std::array<char, 65536> buffer;
-  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), stream.get())) {
-    text.append(buffer.data(), got);
-    if (text.size() > kMaxBytes) {
-      refuse("larger than 16 MiB, the most that a YAML file may have");
-    }
-  }
-  if (std::ferror(stream.get()) != 0) {
-    refuse(std::string("cannot be read: ") + std::strerror(errno));
-  }
-  return text;
 }
 }  // namespace
 
@@ -138,8 +114,7 @@ Value load_yaml(const std::filesystem::path& file) {
 
 Value parse_yaml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxBytes) {
-    throw ConfigError({name, 0, 0, ""}, "",
-                      "larger than 16 MiB, the most that a YAML file may have");
+    throw ConfigError({name, 0, 0, ""}, "", "is larger than 16 MiB, the most that is read");
   }
   if (text.substr(0, 3) == "\xEF\xBB\xBF") {
     text.remove_prefix(3);

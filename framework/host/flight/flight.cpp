@@ -34,6 +34,7 @@ Flight::Flight(const FlightSetup& setup)
   // Shares without owning: the truth lives, and changes, in world_.
   truth_request_.world =
       std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
+  truth_request_.limits.min_turn_radius = 0;  // held to by the track as a whole
   result_.track.emplace_back(state_.time_s, state_.position);
 }
 
@@ -65,7 +66,11 @@ void Flight::fly_to_the_end() {
     hand_over(true, "the pilot flies all the way");
   }
   end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
-  while (!ended_ && !request_.goal.reached_at(state_.position)) {
+  while (!ended_) {
+    meet_events();  // at the goal too: what comes down on it there is met
+    if (ended_ || request_.goal.reached_at(state_.position)) {
+      return;
+    }
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMostSteps) {
       end_flight(Status::not_reached, (late ? time_out()
@@ -76,7 +81,6 @@ void Flight::fly_to_the_end() {
     } else if (setup_.request.budget.stop.stop_requested()) {
       end_flight(Status::cancelled, "stopped at " + place(state_.position));
     } else {
-      meet_events();
       sense();
       replan_when_due();
       pilot_commands_ ? fly_pilot() : fly_route();
@@ -113,6 +117,11 @@ void Flight::end_flight(Status status, std::string message) {
   ended_ = true;
   result_.status = status;
   result_.message = std::move(message);
+  if (status == Status::not_reached && pilot_commands_ && setup_.replanner == nullptr) {
+    result_.message +=
+        "; the fly step has no replan: with replan: ID (of a plan step) a new route "
+        "from there is sought";
+  }
   if (status != Status::solved && !result_.replans.empty() &&
       (result_.replans.back().status == Status::failed ||
        result_.replans.back().status == Status::rejected)) {

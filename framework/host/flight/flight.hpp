@@ -84,7 +84,7 @@ struct FlightResult {
   std::vector<Handover> handovers;
   std::vector<Replan> replans;
   int collisions = 0;                      ///< the first contact ends the flight
-  std::optional<double> min_separation_m;  ///< from anything in the true world; empty: nothing is
+  std::optional<double> min_separation_m;  ///< from anything in the true world, negative inside
   bool reached = false;
   Counters counters;  ///< the pilot's, and "steps" of the simulation
   Measures measures;  ///< of the track, in the world as it was in the end

@@ -12,22 +12,20 @@ void Flight::fly_leg(const State& next) {
   const double t0 = state_.time_s;
   const double t1 = next.time_s;
   const Vec3& b = next.position;
-  if (a == b) {
-    state_ = next;
-    return;
-  }
-  separation_ = world_.separation_below(separation_, a, t0, b, t1);
-  for (Violation& violation :
-       leg_violations(before_, a, b, truth_request_, result_.track.size() - 1)) {
-    result_.check.violations.push_back(std::move(violation));
+  if (a != b) {  // one that hovers flies no leg, but may be met there
+    for (Violation& violation :
+         leg_violations(before_, a, b, truth_request_, result_.track.size() - 1)) {
+      result_.check.violations.push_back(std::move(violation));
+    }
+    before_ = onward(before_, a);
   }
   result_.track.emplace_back(t1, b);
-  before_ = a;
   state_ = next;
   end_on_contact(a, t0, b, t1);
 }
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
+  separation_ = world_.separation_below(separation_, a, t0, b, t1);
   const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
   if (met == nullptr) {
     return;
@@ -45,6 +43,7 @@ void Flight::finish() {
     track.push_back(p);
   }
   result_.measures = measure(track, truth_request_);
+  result_.measures.min_radius_m = track_radius(track, request_.vehicle).radius_m;
   result_.measures.duration_s = state_.time_s - setup_.request.start.time_s;
   if (std::isfinite(separation_)) {
     result_.min_separation_m = separation_;
@@ -79,7 +78,8 @@ void Flight::judge_whole(const Route& track) {
     found.push_back({"goal", track.size() - 1, (track.back() - request.goal.position).norm(),
                      request.goal.tolerance_m, "the flight ended " + away() + " from the goal"});
   }
-  for (Violation& violation : whole_track_violations(track, request)) {
+  for (Violation& violation :
+       whole_track_violations(track, request, request_.limits.min_turn_radius)) {
     found.push_back(std::move(violation));
   }
 }

@@ -27,6 +27,7 @@ class Flight {
   void hand_over(bool to_pilot, std::string why);
 
   // Events, sensing, and what the route ahead meets: flight_sensing.cpp.
+  /// What is due happens; something that then lies over the vehicle has met it.
   void meet_events();
   void sense();
   /// A layer that the route was not planned around and that comes nearer than `room` to the leg.
@@ -58,7 +59,7 @@ class Flight {
 
   // What was flown, judged in the true world: flight_judging.cpp.
   void fly_leg(const State& next);
-  /// The first contact with the true world ends the flight.
+  /// Takes the separation from the true world there; the first contact ends the flight.
   void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);
   void finish();
   /// The first rule that was broken, with time and place.
@@ -73,7 +74,7 @@ class Flight {
   FlightPath path_;
   std::vector<FlightEvent> events_;  ///< still to come
   State state_;
-  std::optional<Vec3> before_;
+  std::optional<Approach> before_;
   double required_;
   std::unique_ptr<Pilot> pilot_;
   double reach_ = 0;

@@ -6,6 +6,7 @@
 namespace altiplan::host {
 
 void Flight::meet_events() {
+  bool world_differs = false;
   for (auto event = events_.begin(); event != events_.end();) {
     if (!event->is_due(state_.time_s, state_.position)) {
       ++event;
@@ -20,8 +21,12 @@ void Flight::meet_events() {
       ask_replan();
     } else {
       world_.apply(*event);
+      world_differs = true;
     }
     event = events_.erase(event);
+  }
+  if (world_differs) {
+    end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
   }
 }
 

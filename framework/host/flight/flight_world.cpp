@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/obstacle_set.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -80,6 +81,21 @@ template <class Obstacles>
 auto find(Obstacles& moving, const std::string& id) {
   return std::find_if(moving.begin(), moving.end(),
                       [&](const MovingObstacle& obstacle) { return obstacle.id == id; });
+}
+/// Least signed distance of that flight from the obstacle's surface: minus the depth inside it.
+double signed_separation(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,
+                         double t1) {
+  const double outside = separation(obstacle, a, t0, b, t1);
+  if (outside > 0) {
+    return outside;
+  }
+  // Seen from the obstacle, which then stands, the flight is a straight leg as well.
+  const Shape shape = obstacle.at(t0);
+  const Vec3 end = b - obstacle.velocity * (t1 - t0);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return leg_distance(Sphere{sphere->centre, 0}, a, end) - sphere->radius;
+  }
+  return leg_clearance(kit::ShapeLayer({shape}), a, end);
 }
 }  // namespace
 
@@ -254,11 +270,11 @@ double FlightWorld::separation_below(double least, const Vec3& a, double t0, con
   const double run = (b - a).norm();
   for (const Layer& layer : truth_.layers()) {
     if (layer.environment->clearance(a) - run < least) {
-      least = std::min(least, std::max(0.0, leg_clearance(*layer.environment, a, b, least)));
+      least = std::min(least, leg_clearance(*layer.environment, a, b, least));
     }
   }
   for (const MovingObstacle& obstacle : truth_.moving()) {
-    least = std::min(least, separation(obstacle, a, t0, b, t1));
+    least = std::min(least, signed_separation(obstacle, a, t0, b, t1));
   }
   return least;
 }

@@ -36,7 +36,8 @@ class FlightWorld {
   /// What the leg touches in the true world: an id, or null.
   const std::string* contact(const Vec3& a, double t0, const Vec3& b, double t1,
                              double radius) const;
-  /// Least distance between the leg and anything in the true world, if it is below `least`.
+  /// Least distance between the leg and anything in the true world, if it is below `least`:
+  /// signed as leg_clearance is, and so minus the depth inside of something.
   double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const;
 
  private:

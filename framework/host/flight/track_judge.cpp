@@ -2,6 +2,7 @@
 #include "host/flight/track_judge.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "altiplan/error.hpp"
@@ -13,22 +14,29 @@ namespace {
 class Replay {
  public:
   explicit Replay(const FlightSetup& setup)
-      : world_(setup), events_(setup.events), request_(setup.request) {}
+      : world_(setup),
+        events_(setup.events),
+        min_turn_radius_(setup.request.limits.min_turn_radius),
+        request_(setup.request) {
+    request_.limits.min_turn_radius = 0;  // held to by the track as a whole
+  }
 
   TrackVerdict operator()(const Track& track) {
     if (track.empty() || track.front().second != request_.start.position) {
       found().push_back({"start", 0, 0, 0, "the track does not begin at the start"});
       return std::move(verdict_);
     }
-    std::optional<Vec3> before = request_.before_start();
+    std::optional<Approach> before = request_.before_start();
     bool touching = false;
     note_contact(track.front(), track.front(), 0, touching);
     for (std::size_t i = 0; i + 1 < track.size(); ++i) {
-      meet_events(track[i].first, track[i].second);
+      meet_events(track[i], i, touching);
       judge_leg(before, track[i], track[i + 1], i, touching);
-      before = track[i].second;
+      if (track[i].second != track[i + 1].second) {
+        before = onward(before, track[i].second);
+      }
     }
-    meet_events(track.back().first, track.back().second);
+    meet_events(track.back(), track.size() - 1, touching);
     Route places;
     for (const auto& [t, p] : track) {
       places.push_back(p);
@@ -40,9 +48,11 @@ class Replay {
  private:
   std::vector<Violation>& found() { return verdict_.check.violations; }
 
-  void meet_events(double time_s, const Vec3& p) {
+  /// What is due happens; something that then lies over the vehicle has met it.
+  void meet_events(const std::pair<double, Vec3>& here, std::size_t at, bool& touching) {
+    bool world_differs = false;
     for (auto event = events_.begin(); event != events_.end();) {
-      if (!event->is_due(time_s, p)) {
+      if (!event->is_due(here.first, here.second)) {
         ++event;
         continue;
       }
@@ -50,12 +60,16 @@ class Replay {
         request_.goal.position = event->vector;
       } else {
         world_.apply(*event);
+        world_differs = true;
       }
       event = events_.erase(event);
     }
+    if (world_differs) {
+      note_contact(here, here, at, touching);
+    }
   }
 
-  void judge_leg(const std::optional<Vec3>& before, const std::pair<double, Vec3>& from,
+  void judge_leg(const std::optional<Approach>& before, const std::pair<double, Vec3>& from,
                  const std::pair<double, Vec3>& to, std::size_t at, bool& touching) {
     const auto& [t0, a] = from;
     const auto& [t1, b] = to;
@@ -66,13 +80,15 @@ class Replay {
                          "the track is faster there than the vehicle"});
     }
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
-    for (Violation& violation : leg_violations(before, a, b, request_, at)) {
-      found().push_back(std::move(violation));
+    if (a != b) {
+      for (Violation& violation : leg_violations(before, a, b, request_, at)) {
+        found().push_back(std::move(violation));
+      }
     }
     note_contact(from, to, at, touching);
   }
 
-  /// A contact that goes on from leg to leg counts once.
+  /// A contact that goes on from place to leg to place counts once.
   void note_contact(const std::pair<double, Vec3>& from, const std::pair<double, Vec3>& to,
                     std::size_t at, bool& touching) {
     const std::string* met =
@@ -91,14 +107,15 @@ class Replay {
       found().push_back({"goal", track.size() - 1, (track.back() - request_.goal.position).norm(),
                          request_.goal.tolerance_m, "the track does not end at the goal"});
     }
-    for (Violation& violation : whole_track_violations(track, request_)) {
+    for (Violation& violation : whole_track_violations(track, request_, min_turn_radius_)) {
       found().push_back(std::move(violation));
     }
   }
 
   FlightWorld world_;
   std::vector<FlightEvent> events_;  ///< still to come
-  Request request_;                  ///< in the true world as it is then
+  double min_turn_radius_;
+  Request request_;  ///< in the true world as it is then
   TrackVerdict verdict_;
 };
 }  // namespace
@@ -107,8 +124,52 @@ TrackVerdict judge_track(const Track& track, const FlightSetup& setup) {
   return Replay(setup)(track);
 }
 
-std::vector<Violation> whole_track_violations(const Route& track, const Request& request) {
+namespace {
+/// Leaves out the points that lie on the straight way from the last one kept to the next; `index`
+/// gets the places in the track of those that stay.
+Route stretches(const Route& track, std::vector<std::size_t>& index) {
+  Route kept;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const bool ends = i == 0 || i + 1 == track.size();
+    if (ends || point_leg_distance(track[i], kept.back(), track[i + 1]) > kLengthTolerance) {
+      kept.push_back(track[i]);
+      index.push_back(i);
+    }
+  }
+  return kept;
+}
+}  // namespace
+
+TrackRadius track_radius(const Route& track, const Vehicle& vehicle) {
+  TrackRadius least;
+  std::vector<std::size_t> index;
+  const Route bends = stretches(track, index);
+  std::optional<Approach> before;
+  for (std::size_t k = 1; k + 1 < bends.size(); ++k) {
+    before = onward(before, bends[k - 1]);
+    const std::size_t i = index[k];
+    double radius = corner_radius(*before, bends[k], bends[k + 1], vehicle.turns_on_the_spot);
+    if (radius > 0 && track[i - 1] != track[i] && track[i] != track[i + 1]) {
+      radius = std::max(radius, radius_through(track[i - 1], track[i], track[i + 1]));
+    }
+    if (radius < least.radius_m.value_or(kInfinity)) {
+      least = {radius, i};
+    }
+  }
+  return least;
+}
+
+std::vector<Violation> whole_track_violations(const Route& track, const Request& request,
+                                              double min_turn_radius) {
   std::vector<Violation> found;
+  const TrackRadius tightest = track_radius(track, request.vehicle);
+  if (tightest.radius_m && *tightest.radius_m < min_turn_radius - kLengthTolerance) {
+    char message[96];
+    std::snprintf(message, sizeof message,
+                  "the track turns on a radius of %.9g m, below the limit of %.9g m",
+                  *tightest.radius_m, min_turn_radius);
+    found.push_back({"turn_radius", tightest.at, *tightest.radius_m, min_turn_radius, message});
+  }
   const double total = length(track);
   if (total > request.limits.max_route_length + kLengthTolerance) {
     found.push_back({"route_length", 0, total, request.limits.max_route_length,

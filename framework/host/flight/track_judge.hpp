@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,9 +24,21 @@ struct TrackVerdict {
 /// the first point of the track at or after its time, or within its distance.
 TrackVerdict judge_track(const Track& track, const FlightSetup& setup);
 
-/// What is asked of a track as a whole, beyond its legs: the length, and the constraints that look
-/// at all of it.
-std::vector<Violation> whole_track_violations(const Route& track, const Request& request);
+/// The tightest turn of a track; none where it goes straight on.
+struct TrackRadius {
+  std::optional<double> radius_m;
+  std::size_t at = 0;  ///< index of the track's point
+};
+/// At each point the larger of what two readings of the samples say: that they lie on the curve
+/// that was flown (the circle through a sample and its neighbours), or that the vehicle flew
+/// straight stretches with fillets between them (fillet_radius). One sampling cannot tell the two
+/// apart.
+TrackRadius track_radius(const Route& track, const Vehicle& vehicle);
+
+/// What is asked of a track as a whole, beyond its legs: its least turn radius, its length, and the
+/// constraints that look at all of it.
+std::vector<Violation> whole_track_violations(const Route& track, const Request& request,
+                                              double min_turn_radius);
 
 /// The fastest that the vehicle's speed law allows anywhere.
 double top_speed(const Vehicle& vehicle);

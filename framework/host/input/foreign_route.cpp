@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "host/input/route_csv.hpp"
 #include "host/output/stored_result.hpp"
 
@@ -133,19 +132,7 @@ ForeignRoute read_foreign_route(const std::string& file, const Mission& mission)
   const Vec3& start = mission.request.start.position;
   const World& world = mission.truth;
   if (is_csv(file)) {
-    constexpr std::uintmax_t kMostBytes = 64'000'000;
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error) ||
-        std::filesystem::file_size(file, error) > kMostBytes) {
-      throw Error(file + ": expected a file of at most 64 MB");
-    }
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-      throw Error(file + ": cannot be read");
-    }
-    const std::string text{std::istreambuf_iterator<char>(stream),
-                           std::istreambuf_iterator<char>()};
-    return read_foreign_route(file, text, world, start);
+    return read_foreign_route(file, kit::read_file(file), world, start);
   }
   const std::filesystem::path ending = std::filesystem::path(file).extension();
   if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||

@@ -84,6 +84,7 @@ Json plugins_json(const Registry& registry, const std::vector<Library>& librarie
     json["libraries"].push_back(
         {{"file", library.file.string()},
          {"build", library.build},
+         {"checksum", library.checksum},
          {"plugins", std::move(plugins)},
          {"refused", library.refused.empty() ? Json() : Json(library.refused)}});
   }

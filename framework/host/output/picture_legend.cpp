@@ -125,7 +125,9 @@ std::string legend(const Json& scene, const Area& area) {
   for (const char* list : {"solids", "boxes", "meshes", "moving"}) {
     for (const Json& thing : scene.at(list)) {
       const bool met = !thing.at("known").get<bool>() || !thing.at("added_by").is_null();
-      roles[{thing.at("role").get<std::string>(), met}] = true;
+      if (is_drawn(thing)) {
+        roles[{thing.at("role").get<std::string>(), met}] = true;
+      }
     }
   }
   for (const auto& [key, there] : roles) {

@@ -165,13 +165,13 @@ std::string ends(const Json& scene, const Map& map) {
 std::string solids(const Json& scene, const Map& map) {
   std::string svg;
   for (const Json& thing : scene.at("boxes")) {
-    svg += boxes(thing, map);
+    svg += is_drawn(thing) ? boxes(thing, map) : "";
   }
   for (const Json& thing : scene.at("meshes")) {
     svg += mesh(thing, map);
   }
   for (const Json& thing : scene.at("solids")) {
-    svg += solid(thing, map);
+    svg += is_drawn(thing) ? solid(thing, map) : "";
   }
   for (const Json& thing : scene.at("moving")) {
     svg += moving(thing, map);

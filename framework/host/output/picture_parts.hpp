@@ -36,6 +36,9 @@ inline std::string_view role_color(std::string_view role) {
                              : "#2f363d";
 }
 
+/// Unknown space would hide all else, and is not drawn.
+inline bool is_drawn(const Json& thing) { return thing.at("role") != "unknown"; }
+
 /// Text and attributes as XML holds them; control characters, which it cannot hold, left out.
 std::string escaped(std::string_view text);
 /// Tenths of a pixel.

@@ -8,17 +8,18 @@
 namespace altiplan::host::picture {
 namespace {
 
-/// Distance along the route to the right, height upward.
+/// Distance along the route to the right, a height or a distance upward.
 class Chart {
  public:
-  Chart(const Json& results, const Area& area) : area_(area) {
+  Chart(const Json& results, const Area& area, std::initializer_list<const char*> keys)
+      : area_(area) {
     for (const Json& result : results) {
       const Json& profile = result.at("profile");
       if (profile.is_null()) {
         continue;
       }
       longest_ = std::max(longest_, profile.at("s").back().get<double>());
-      for (const char* key : {"altitude", "ground"}) {
+      for (const char* key : keys) {
         for (const Json& z : profile.at(key)) {
           if (z.is_number()) {
             low_ = std::min(low_, z.get<double>());
@@ -39,7 +40,7 @@ class Chart {
   std::string axes() const {
     std::string svg;
     const double dz = round_step(high_ - low_, 4);
-    for (double z = std::ceil(low_ / dz) * dz; z <= high_; z += dz) {
+    for (double z = std::ceil(low_ / dz) * dz + 0.0; z <= high_; z += dz) {
       svg += line(area_.left, y(z), area_.right(), y(z), "#d8dde2");
       svg += text_at(area_.left - 8, y(z) + 4, grouped(z), kFaint, 12, Align::end);
     }
@@ -72,19 +73,21 @@ class Chart {
   double low_ = kInfinity;
   double high_ = -kInfinity;
 };
-}  // namespace
 
-std::string profiles(const Json& scene, const Area& area) {
+/// The frame of a chart in an area.
+Area within(const Area& area) {
+  return {area.left + 56, area.top + 22, area.width - 64, area.height - 46};
+}
+
+std::string heights(const Json& scene, const Area& area) {
   const Json& results = scene.at("results");
-  const Area inner{area.left + 56, area.top + 22, area.width - 64, area.height - 46};
-  const Chart chart(results, inner);
+  const Chart chart(results, within(area), {"altitude", "ground"});
   std::string caption = "Height above the sea over the distance flown, m";
   if (!scene.at("ground").is_null()) {
-    caption +=
-        "; the ground below: grey below the first route, thin and in its colour below others";
+    caption += results.size() > 1 ? "; ground: grey below the first route, thin below others"
+                                  : "; the ground below";
   }
-  std::string svg = text_at(area.left, area.top + 8, caption, kFaint, 12);
-  svg += chart.axes();
+  std::string svg = text_at(area.left, area.top + 8, caption, kFaint, 12) + chart.axes();
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& profile = results[i].at("profile");
     if (profile.is_null()) {
@@ -100,5 +103,44 @@ std::string profiles(const Json& scene, const Area& area) {
            "\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n";
   }
   return svg;
+}
+
+std::string clearances(const Json& results, const Area& area) {
+  const Chart chart(results, within(area), {"clearance"});
+  std::string svg = text_at(area.left, area.top + 8,
+                            "Clearance from all obstacles and the ground, m", kFaint, 12) +
+                    chart.axes();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& profile = results[i].at("profile");
+    if (!profile.is_null()) {
+      svg += "<path d=\"" + chart.curve(profile, "clearance") + "\" stroke=\"" +
+             std::string(route_color(i)) + "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n";
+    }
+  }
+  return svg;
+}
+
+bool has_clearance(const Json& results) {
+  for (const Json& result : results) {
+    const Json& profile = result.at("profile");
+    for (const Json& clearance : profile.is_null() ? Json::array() : profile.at("clearance")) {
+      if (clearance.is_number()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+}  // namespace
+
+std::string profiles(const Json& scene, const Area& area) {
+  constexpr double kHeights = 0.6;  // of the width
+  const Json& results = scene.at("results");
+  if (!has_clearance(results)) {
+    return heights(scene, area);
+  }
+  const double width = kHeights * area.width;
+  return heights(scene, {area.left, area.top, width, area.height}) +
+         clearances(results, {area.left + width, area.top, area.width - width, area.height});
 }
 }  // namespace altiplan::host::picture

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/output/result_json.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <set>
 
 namespace altiplan::host {
@@ -176,7 +173,10 @@ Json plugins_json(const Config& config) {
   Json json = Json::array();
   for (const auto& [kind, plugin_name] : used) {
     if (const Library* library = config.registry->offering(kind, plugin_name)) {
-      json.push_back({{"kind", kind}, {"name", plugin_name}, {"build", library->build}});
+      json.push_back({{"kind", kind},
+                      {"name", plugin_name},
+                      {"build", library->build},
+                      {"checksum", library->checksum}});
     }
   }
   return json;
@@ -247,39 +247,5 @@ Json result_json(const Config& config, const RunResult& result) {
 
 std::string file_text(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-void write_file(const std::filesystem::path& named, const std::string& text) {
-  namespace fs = std::filesystem;
-  std::error_code code;
-  // A rename would put a file in place of a device, a pipe or a link.
-  const bool in_place = fs::exists(named, code) && !fs::is_regular_file(named, code);
-  const fs::path file =
-      !in_place && fs::is_symlink(named, code) ? fs::weakly_canonical(named, code) : named;
-  const fs::path beside = in_place ? file : fs::path(file.string() + ".partial");
-  std::FILE* out = std::fopen(beside.c_str(), "w");
-  if (out == nullptr) {
-    throw Error("cannot write '" + file.string() + "': " + std::strerror(errno));
-  }
-  const bool written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  const bool closed = std::fclose(out) == 0;
-  const int error = errno;
-  std::error_code renaming;
-  if (in_place) {
-    if (written && closed) {
-      return;
-    }
-  } else {
-    if (written && closed) {
-      fs::rename(beside, file, renaming);
-      if (!renaming) {
-        return;
-      }
-    }
-    std::error_code ignored;
-    fs::remove(beside, ignored);
-  }
-  throw Error("cannot write '" + file.string() +
-              "': " + (renaming ? renaming.message() : std::strerror(error)));
 }
 }  // namespace altiplan::host

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 /// result.json, format 1 (docs/result.md). Wall times stand only in keys that end in time_s.
 Json result_json(const Config& config, const RunResult& result);
 
-/// [{"kind", "name", "build"}] of the plugins that the files name.
+/// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
 Json plugins_json(const Config& config);
 
 Json to_json(const Route& route);
@@ -26,8 +26,8 @@ Json to_json(const Measures& measures);
 /// above all, need not be UTF-8: U+FFFD stands for what is not.
 std::string file_text(const Json& json);
 
-/// Writes the whole file or, where that fails, throws Error and leaves what was there: it is
-/// written beside and renamed. What is no regular file (a pipe, a device) is written in place.
+/// Writes the whole file or, where that fails, throws Error and leaves what was there: how, and
+/// what is refused, is told in host/base/output_file.hpp.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
 /// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.

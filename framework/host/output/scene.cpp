@@ -12,6 +12,9 @@
 namespace altiplan::host {
 namespace {
 
+/// Samples of all profiles of a scene together, so that many results do not take their time alone.
+constexpr std::size_t kProfileSamples = 12'000;
+
 namespace fs = std::filesystem;
 
 /// Layers' notes that begin so name whose data they show.
@@ -118,29 +121,58 @@ void name_apart(Json& results) {
   }
 }
 
+/// What the mission of a result is made from, but for the plugins' folders: those of the call.
+std::string mission_text(const StoredResult& stored) {
+  std::string text = stored.pipeline.string() + '\n' + stored.json.at("scenario").dump() + '\n' +
+                     std::to_string(stored.overrides.seed.value_or(0));
+  for (const std::string& set : stored.overrides.set) {
+    text += '\n' + set;
+  }
+  return text;
+}
+
 class SceneBuilder {
  public:
   explicit SceneBuilder(const std::vector<StoredResult>& results) : results_(results) {}
 
   Scene operator()() {
-    Json results = Json::array();
-    for (const StoredResult& stored : results_) {
-      try {
-        results.push_back(add(stored));
-      } catch (const Json::exception& error) {
-        const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
-        throw Error(stored.file +
-                    ": expected a result of altiplan run: " + why.substr(why.find("] ") + 2));
-      }
+    // Results of one mission together, so that it is built once.
+    std::map<std::string, std::size_t> groups;
+    std::vector<std::vector<std::size_t>> indices;
+    for (std::size_t n = 0; n < results_.size(); ++n) {
+      by_json(results_[n], [&] {
+        note_changed(results_[n]);
+        const auto [found, is_new] = groups.emplace(mission_text(results_[n]), indices.size());
+        if (is_new) {
+          indices.emplace_back();
+        }
+        indices[found->second].push_back(n);
+      });
     }
-    name_apart(results);
+    std::vector<Json> results(results_.size());
+    for (const std::vector<std::size_t>& group : indices) {
+      add(group, results);
+    }
+    Json all = std::move(results);
+    name_apart(all);
     scene_["notes"] = notes_.lines();
-    scene_["results"] = std::move(results);
+    scene_["results"] = std::move(all);
     return {std::move(scene_), notes_.warnings()};
   }
 
  private:
-  Json add(const StoredResult& stored) {
+  template <class Work>
+  static void by_json(const StoredResult& stored, const Work& work) {
+    try {
+      work();
+    } catch (const Json::exception& error) {
+      const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
+      throw Error(stored.file +
+                  ": expected a result of altiplan run: " + why.substr(why.find("] ") + 2));
+    }
+  }
+
+  void note_changed(const StoredResult& stored) {
     for (const std::string& changed : stored.changed) {
       notes_.warn(changed + " is not the file that " + stored.file + " was made from");
     }
@@ -148,7 +180,12 @@ class SceneBuilder {
     if (world_text(stored) != world_text(first)) {
       refuse(first, world_text(first), stored, world_text(stored));
     }
-    const Config config = load_config(stored.pipeline, stored.overrides);
+  }
+
+  void add(const std::vector<std::size_t>& group, std::vector<Json>& results) {
+    const StoredResult& of = results_[group.front()];
+    const Config config = load_config(of.pipeline, of.overrides, registry_);
+    registry_ = config.registry;
     const Mission mission = build_mission(config, 1);
     if (scene_.is_null()) {
       box_ = scene_box(mission, results_);
@@ -158,15 +195,21 @@ class SceneBuilder {
       // Whether a layer asks for the run's seed is its own affair: the worlds themselves tell.
       SceneNotes unused;
       if (world_scene(config, mission, box_, unused) != scene_) {
-        refuse(first, "with the seed " + std::to_string(seed_), stored,
+        refuse(results_.front(), "with the seed " + std::to_string(seed_), of,
                "with the seed " + std::to_string(config.seed) +
                    ", which the scenario's layers or moving obstacles follow");
       }
     }
-    return result_scene(stored, mission, build_events(config, mission), notes_);
+    const std::vector<FlightEvent> events = build_events(config, mission);
+    const auto samples = std::clamp<std::size_t>(kProfileSamples / results_.size(), 60, 300);
+    for (const std::size_t n : group) {
+      by_json(results_[n],
+              [&] { results[n] = result_scene(results_[n], mission, events, samples, notes_); });
+    }
   }
 
   const std::vector<StoredResult>& results_;
+  std::shared_ptr<Registry> registry_;
   Json scene_;
   Box box_;
   std::int64_t seed_ = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "altiplan/nearest_place.hpp"
 #include "host/flight/flight_world.hpp"
 #include "host/output/scene_parts.hpp"
 
@@ -10,7 +11,6 @@ namespace altiplan::host {
 namespace {
 
 constexpr std::size_t kMostPoints = 20'000;
-constexpr std::size_t kMostSamples = 2'000;
 
 /// For each event the first point of the track to which it happens.
 std::vector<std::optional<std::size_t>> points_of_events(const Track& track,
@@ -103,13 +103,18 @@ class TruthAlong {
     }
   }
   std::optional<double> ground(const Vec3& p) const { return world_.truth().ground(p.x(), p.y()); }
-  double clearance(double time_s, const Vec3& p) const {
-    double least = world_.truth().clearance(p);
+  std::map<std::string, double> clearance(double time_s, const Vec3& p) const {
+    std::map<std::string, double> each = clearances(world_.truth(), p);
     for (const MovingObstacle& moving : world_.truth().moving()) {
+      double& least = each.try_emplace("moving", kInfinity).first->second;
       least = std::min(least, signed_distance(moving.at(time_s), p));
     }
-    return least;
+    return each;
   }
+  double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const {
+    return world_.separation_below(least, a, t0, b, t1);
+  }
+  const World& truth() const { return world_.truth(); }
 
  private:
   static FlightSetup setup_of(const Mission& mission) {
@@ -124,36 +129,103 @@ class TruthAlong {
   std::size_t next_ = 0;
 };
 
-/// The flight in numbers at those points: height, clearance in the true world, and the speed and
+/// A place of the track: a point, and the share of the way to the next.
+using TrackPlace = std::pair<std::size_t, double>;
+
+std::pair<double, Vec3> at(const Track& track, const TrackPlace& place) {
+  const auto& [t, p] = track[place.first];
+  if (place.second == 0) {
+    return {t, p};
+  }
+  const auto& [t1, p1] = track[place.first + 1];
+  return {t + place.second * (t1 - t), p + place.second * (p1 - p)};
+}
+
+/// Where the flight came nearest to anything in the true world.
+TrackPlace nearest_place(const Track& track, TruthAlong truth) {
+  constexpr double kFine = 1e-4;  // metres
+  TruthAlong there = truth;
+  double least = kInfinity;
+  std::size_t leg = 0;
+  for (std::size_t i = 0; i + 1 < track.size(); ++i) {
+    truth.go_to(i);
+    const double its = truth.separation_below(least, track[i].second, track[i].first,
+                                              track[i + 1].second, track[i + 1].first);
+    if (its < least) {
+      least = its;
+      leg = i;
+    }
+  }
+  if (least == kInfinity) {
+    return {0, 0};
+  }
+  there.go_to(leg);
+  double from = 0;
+  double to = 1;
+  while ((to - from) * (track[leg + 1].second - track[leg].second).norm() > kFine) {
+    const double middle = (from + to) / 2;
+    const auto [t0, a] = at(track, {leg, from});
+    const auto [t1, b] = at(track, {leg, middle});
+    const double met = least + kLengthTolerance;
+    (there.separation_below(met, a, t0, b, t1) < met ? to : from) = middle;
+  }
+  return to == 1 ? TrackPlace{leg + 1, 0} : TrackPlace{leg, from};
+}
+
+/// Those points, where the flight came nearest to anything, and where it was lowest.
+std::set<TrackPlace> places_of(const Track& track, const std::set<std::size_t>& points,
+                               TruthAlong truth) {
+  std::set<TrackPlace> places{nearest_place(track, truth)};
+  for (const std::size_t i : points) {
+    places.emplace(i, 0);
+  }
+  Route route;
+  for (const auto& [t, p] : track) {
+    route.push_back(p);
+  }
+  truth.go_to(track.size() - 1);
+  if (const auto lowest = lowest_leg(truth.truth(), route)) {
+    const Vec3& a = route[lowest->leg];
+    const double share = lowest_share(truth.truth(), a, route[lowest->leg + 1], lowest->distance);
+    places.insert(share == 1 ? TrackPlace{lowest->leg + 1, 0} : TrackPlace{lowest->leg, share});
+  }
+  return places;
+}
+
+/// The flight in numbers at those places: height, clearance in the true world, and the speed and
 /// turn that were flown.
 Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAlong truth) {
   Json profile;
-  for (const char* key : {"t", "s", "altitude", "ground", "clearance", "speed", "turn"}) {
+  for (const char* key : {"t", "s", "altitude", "ground", "speed", "turn"}) {
     profile[key] = Json::array();
   }
+  ClearanceProfile clearance;
   double s = 0;
-  for (std::size_t i = 0; i < track.size(); ++i) {
-    const auto& [t, p] = track[i];
-    const bool is_last = i + 1 == track.size();
-    const Vec3 before = i > 0 ? Vec3(p - track[i - 1].second) : Vec3::Zero();
-    const Vec3 after = is_last ? Vec3::Zero() : Vec3(track[i + 1].second - p);
-    s += before.norm();
-    if (points.count(i) == 0) {
-      continue;
+  std::size_t reached = 0;
+  for (const TrackPlace& place : places_of(track, points, truth)) {
+    const auto [i, share] = place;
+    for (; reached < i; ++reached) {
+      s += (track[reached + 1].second - track[reached].second).norm();
     }
+    const auto [t, p] = at(track, place);
+    const bool is_last = i + 1 == track.size();
+    const Vec3 before = i > 0 ? Vec3(track[i].second - track[i - 1].second) : Vec3::Zero();
+    const Vec3 after = is_last ? Vec3::Zero() : Vec3(track[i + 1].second - track[i].second);
     const std::size_t from = is_last && i > 0 ? i - 1 : i;  // of the leg whose speed is shown
     const double takes = from + 1 < track.size() ? track[from + 1].first - track[from].first : 0;
     truth.go_to(i);
+    clearance.add(truth.clearance(t, p));
     profile["t"].push_back(rounded(t));
-    profile["s"].push_back(rounded(s));
+    profile["s"].push_back(rounded(s + share * after.norm()));
     profile["altitude"].push_back(rounded(p.z()));
     profile["ground"].push_back(rounded(truth.ground(p)));
-    profile["clearance"].push_back(rounded(truth.clearance(t, p)));
     profile["speed"].push_back(takes > 0 ? rounded((is_last ? before : after).norm() / takes)
                                          : Json(nullptr));
-    profile["turn"].push_back(
-        i > 0 && !is_last ? rounded(degrees(turn_angle_horizontal(before, after))) : Json(nullptr));
+    profile["turn"].push_back(i > 0 && !is_last && share == 0
+                                  ? rounded(degrees(turn_angle_horizontal(before, after)))
+                                  : Json(nullptr));
   }
+  clearance.write(profile);
   return profile;
 }
 
@@ -180,7 +252,7 @@ Json recounted(Json check, const std::set<std::size_t>& shown) {
 }  // namespace
 
 Json flight_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, SceneNotes& notes) {
+                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
   if (!stored.track) {
     return nullptr;
   }
@@ -213,7 +285,7 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
     json["event_times"].push_back(point ? rounded(track[*point].first) : Json(nullptr));
   }
   json["profile"] =
-      profile_of(track, thinned(track, must, kMostSamples), TruthAlong(mission, events, points));
+      profile_of(track, thinned(track, must, samples), TruthAlong(mission, events, points));
   return json;
 }
 }  // namespace altiplan::host

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -47,12 +48,33 @@ void add_solids(Json& scene, const Mission& mission, const std::vector<FlightEve
 /// the box, a little too large rather than without what is thin.
 Drawing drawing_by_cells(const Layer& layer, const Box& box, SceneNotes& notes);
 
-/// A route in numbers, sampled at its waypoints and evenly between them.
-Json route_profile(const Route& route, const Request& request);
+/// The clearance of a place from the layers of each kind (their plugin), as the judge has it,
+/// within 1 mm.
+std::map<std::string, double> clearances(const World& world, const Vec3& p);
 
-/// The stored flight, its track thinned to what can be seen.
+/// The part of a profile that tells how near the route is to what: `clearance`, and `to`, an array
+/// for each kind, null where there is none.
+class ClearanceProfile {
+ public:
+  void add(const std::map<std::string, double>& each);
+  /// The least that was added last.
+  double least() const { return least_; }
+  void write(Json& profile) const;
+
+ private:
+  std::size_t count_ = 0;
+  double least_ = kInfinity;
+  Json clearance_ = Json::array();
+  Json to_ = Json::object();
+};
+
+/// A route in numbers, sampled at its waypoints, evenly between them, and where it comes nearest to
+/// each kind of layer and lowest above the ground; `samples` of them unless it has more waypoints.
+Json route_profile(const Route& route, const Request& request, std::size_t samples);
+
+/// The stored flight, its track thinned to what can be seen, its profile to so many samples.
 Json flight_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, SceneNotes& notes);
+                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 
 /// The search as its trace tells it, thinned evenly, or null.
 Json trace_scene(const StoredResult& stored, SceneNotes& notes);
@@ -65,7 +87,8 @@ Json metrics_scene(const Json& metrics);
 /// A verdict with no more violations than can be read; throws a Json::exception where it is none.
 Json check_scene(Json check, const std::string& whose, SceneNotes& notes);
 
-/// One result: what the stored file says, and its profile in the world that was known.
+/// One result: what the stored file says, and its profile, of so many samples, in the world that
+/// was known.
 Json result_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, SceneNotes& notes);
+                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 }  // namespace altiplan::host

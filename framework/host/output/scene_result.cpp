@@ -69,7 +69,7 @@ Json check_scene(Json check, const std::string& whose, SceneNotes& notes) {
 }
 
 Json result_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, SceneNotes& notes) {
+                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
   const Json& result = stored.json;
   Json json{{"name", std::filesystem::path(stored.file).stem().string()}, {"file", stored.file}};
   copy_texts(json, result, {"status", "message"});
@@ -82,8 +82,9 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
   }
   json["route"] = stored.route ? to_json(*stored.route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
-  json["profile"] = stored.route ? route_profile(*stored.route, mission.request) : Json(nullptr);
-  json["flight"] = flight_scene(stored, mission, events, notes);
+  json["profile"] =
+      stored.route ? route_profile(*stored.route, mission.request, samples) : Json(nullptr);
+  json["flight"] = flight_scene(stored, mission, events, samples, notes);
   json["trace"] = trace_scene(stored, notes);
   return json;
 }

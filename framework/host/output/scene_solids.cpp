@@ -21,6 +21,8 @@ const char* name(Role role) {
       return "keep_in";
     case Role::threat:
       return "threat";
+    case Role::unknown:
+      return "unknown";
     case Role::obstacle:
       break;
   }

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <unordered_map>
 
+#include "altiplan/kit/input_file.hpp"
 #include "host/output/base64.hpp"
 #include "host/output/scene_parts.hpp"
 
@@ -201,12 +201,12 @@ Json trace_scene(const StoredResult& stored, SceneNotes& notes) {
     return nullptr;
   }
   const std::filesystem::path file = find_trace(stored, written.get<std::string>());
-  std::ifstream in(file);
-  std::string line;
-  if (!in || !std::filesystem::is_regular_file(file)) {
-    notes.warn(file.string() + ": the trace is not there: the search is not shown");
+  if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+    notes.warn(file.string() + ": " + why + ": the search is not shown");
     return nullptr;
   }
+  kit::InputFile in(file.string());
+  std::string line;
   if (!std::getline(in, line) || !begins_a_trace(line)) {
     notes.warn(file.string() + ":1: expected a trace of altiplan run: the search is not shown");
     return nullptr;

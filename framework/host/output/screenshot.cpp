@@ -10,13 +10,14 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <optional>
 #include <sstream>
 #include <thread>
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/output_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -29,23 +30,23 @@ constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 class TemporaryFolder {
  public:
   TemporaryFolder() {
+    const auto lock = uninterrupted();
     std::string path = (fs::temp_directory_path() / "altiplan_view_XXXXXX").string();
     if (::mkdtemp(path.data()) == nullptr) {
       throw Error("cannot make a folder in '" + fs::temp_directory_path().string() +
                   "': " + std::strerror(errno));
     }
     path_ = path;
+    unfinished_.emplace([path] {
+      std::error_code ignored;
+      fs::remove_all(path, ignored);
+    });
   }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   const fs::path& path() const { return path_; }
 
  private:
   fs::path path_;
+  std::optional<Unfinished> unfinished_;
 };
 
 bool is_program(const fs::path& file) {
@@ -98,6 +99,7 @@ class Child {
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const auto lock = uninterrupted();
     const int error =
         ::posix_spawn(&pid_, pointers[0], &files, &attributes, pointers.data(), ::environ);
     posix_spawnattr_destroy(&attributes);
@@ -105,15 +107,12 @@ class Child {
     if (error != 0) {
       throw Error("cannot start '" + arguments[0] + "': " + std::strerror(error));
     }
+    unfinished_.emplace([pid = pid_] {  // ends what is left of it
+      ::kill(-pid, SIGKILL);
+      while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+      }
+    });
   }
-  /// Ends what is left of it.
-  ~Child() {
-    ::kill(-pid_, SIGKILL);
-    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
 
   bool ends_within(std::chrono::milliseconds patience) const {
     const auto end = std::chrono::steady_clock::now() + patience;
@@ -131,6 +130,7 @@ class Child {
 
  private:
   pid_t pid_ = -1;
+  std::optional<Unfinished> unfinished_;
 };
 }  // namespace
 
@@ -155,12 +155,7 @@ std::string screenshot(const fs::path& chromium, const std::string& page, const 
                        std::chrono::milliseconds patience) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "page.html";
-  std::ofstream out(file, std::ios::binary);
-  out << page;
-  out.close();
-  if (!out) {
-    throw Error("cannot write '" + file.string() + "'");
-  }
+  write_file(file, page);
   {
     const Child child(arguments_of(chromium, folder.path(), file, query));
     if (!child.ends_within(patience)) {
@@ -168,8 +163,8 @@ std::string screenshot(const fs::path& chromium, const std::string& page, const 
                   std::to_string(patience.count() / 1000) + " s");
     }
   }
-  std::ifstream in(folder.path() / "page.png", std::ios::binary);
-  std::string png{std::istreambuf_iterator<char>(in), {}};
+  const std::string drawn = (folder.path() / "page.png").string();
+  std::string png = kit::why_unreadable(drawn).empty() ? kit::read_file(drawn) : "";
   if (!png.starts_with(kPngSignature)) {
     throw Error("'" + chromium.string() + "' did not draw the page");
   }

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "altiplan/kit/input_file.hpp"
 #include "host/output/result_json.hpp"
 
 namespace altiplan::host {
@@ -23,6 +24,9 @@ std::string sha256(const std::filesystem::path& file) {
   const std::lock_guard lock(mutex);
   if (const auto found = known.find(state); is_settled && found != known.end()) {
     return found->second;
+  }
+  if (!kit::why_unreadable(file.string()).empty()) {
+    return "";
   }
   char text[SHA256_DIGEST_STRING_LENGTH];
   const std::string sum = SHA256File(file.c_str(), text) == nullptr ? "" : text;

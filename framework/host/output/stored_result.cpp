@@ -2,9 +2,8 @@
 #include "host/output/stored_result.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+
+#include "altiplan/kit/input_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -48,13 +47,7 @@ Overrides stored_overrides(const Json& json, const std::string& file, Overrides 
 }  // namespace
 
 Json read_json(const std::string& file, const std::string& expected) {
-  if (std::filesystem::is_directory(file)) {
-    throw Error("'" + file + "' is a folder, expected a JSON file");
-  }
-  std::ifstream in(file);
-  if (!in) {
-    throw Error("cannot read '" + file + "': " + std::strerror(errno));
-  }
+  kit::InputFile in(file);
   try {
     return Json::parse(in);
   } catch (const Json::parse_error& error) {

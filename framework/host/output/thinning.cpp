@@ -68,11 +68,25 @@ class Thinning {
     return best;
   }
 
-  /// The leg past the point and the one after it, whose turn is another one then.
+  /// The leg past the point and the one after it, whose turn is another one then; past a leg
+  /// without a heading those after it too.
   bool can_go(std::size_t k) const {
-    const std::optional<Vec3> before = k >= 2 ? std::optional(at(k - 2)) : request_.before_start();
-    return leg_ok(before, at(k - 1), at(k + 1), request_) &&
-           (k + 2 >= left_.size() || leg_ok(at(k - 1), at(k + 1), at(k + 2), request_));
+    std::optional<Approach> before = request_.before_start();
+    for (std::size_t i = 0; i + 1 < k; ++i) {
+      before = onward(before, at(i));
+    }
+    std::size_t from = k - 1;
+    for (std::size_t to = k + 1; to < left_.size(); ++to) {
+      if (!leg_ok(before, at(from), at(to), request_)) {
+        return false;
+      }
+      if (from > k && has_heading(at(to) - at(from))) {
+        break;
+      }
+      before = onward(before, at(from));
+      from = to;
+    }
+    return true;
   }
 
   const Route& route_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/registry/elf_file.hpp"
 
-#include <elf.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -23,14 +22,6 @@ constexpr int kMachine = EM_AARCH64;
 
 // A plugin library holds a few dozen sections and notes of a hundred bytes.
 constexpr std::uint64_t kMaxRead = std::uint64_t{1} << 20;
-
-/// The struct at `offset` of bytes known to be long enough.
-template <class T>
-T at(const std::string& bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
 
 void check_identity(const Elf64_Ehdr& header) {
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) {
@@ -83,6 +74,7 @@ void ElfFile::read_headers() {
   for (std::size_t i = 0; i < header.e_phnum; ++i) {
     const auto segment = at<Elf64_Phdr>(segments, i * sizeof(Elf64_Phdr));
     check_range(segment.p_offset, segment.p_filesz, "a segment");
+    segments_.push_back(segment);
   }
 
   const std::string table =
@@ -116,6 +108,10 @@ std::string ElfFile::read(std::uint64_t offset, std::uint64_t size, const char* 
   if (size > kMaxRead) {
     throw ElfError(std::string("damaged: ") + what + " of " + std::to_string(size) + " bytes");
   }
+  return read_all(offset, size);
+}
+
+std::string ElfFile::read_all(std::uint64_t offset, std::uint64_t size) const {
   std::string bytes(size, '\0');
   std::size_t done = 0;
   while (done < size) {
@@ -125,7 +121,8 @@ std::string ElfFile::read(std::uint64_t offset, std::uint64_t size, const char* 
       continue;
     }
     if (got <= 0) {
-      throw ElfError("cannot be read");
+      throw ElfError(std::string("cannot be read: ") +
+                     (got < 0 ? std::strerror(errno) : "it has become shorter"));
     }
     done += static_cast<std::size_t>(got);
   }
@@ -141,6 +138,28 @@ const ElfFile::Section* ElfFile::find(std::string_view name) const {
 std::string ElfFile::section(std::string_view name) const {
   const Section* found = find(name);
   return found == nullptr ? "" : read(found->offset, found->size, "a section");
+}
+
+std::string ElfFile::loaded_bytes() const {
+  std::uint64_t end = 0;
+  for (const Elf64_Phdr& segment : segments_) {
+    end = segment.p_type == PT_LOAD ? std::max(end, segment.p_offset + segment.p_filesz) : end;
+  }
+  return read_all(0, end);
+}
+
+std::vector<std::string> ElfFile::dynamic_texts(std::int64_t tag) const {
+  const std::string entries = section(".dynamic");
+  const std::string names = section(".dynstr");
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i + sizeof(Elf64_Dyn) <= entries.size(); i += sizeof(Elf64_Dyn)) {
+    const auto entry = at<Elf64_Dyn>(entries, i);
+    const std::size_t end = names.find('\0', entry.d_un.d_val);
+    if (entry.d_tag == tag && end != names.npos) {
+      texts.push_back(names.substr(entry.d_un.d_val, end - entry.d_un.d_val));
+    }
+  }
+  return texts;
 }
 
 std::vector<std::string> ElfFile::exported_symbols() const {

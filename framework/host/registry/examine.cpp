@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 
-#include "host/registry/elf_file.hpp"
+#include "host/registry/checksum.hpp"
 #include "host/registry/registry.hpp"
 
 namespace altiplan::host {
@@ -133,7 +134,10 @@ void read_manifest(const std::string& bytes, Library& library) {
 
 std::string hash_of(const std::filesystem::path& file) {
   std::array<char, SHA256_DIGEST_STRING_LENGTH> digest;
-  return SHA256File(file.c_str(), digest.data()) == nullptr ? "" : digest.data();
+  if (SHA256File(file.c_str(), digest.data()) == nullptr) {
+    throw ElfError(std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return digest.data();
 }
 }  // namespace
 
@@ -161,6 +165,9 @@ Library examine_library(const std::filesystem::path& file) {
       if (library.refused.empty()) {
         library.refused = mismatch(plugin);
       }
+    }
+    if (library.refused.empty()) {
+      library.checksum = hexadecimal(stated_checksum(elf).sum);
     }
   } catch (const ElfError& error) {
     library.refused = error.what();

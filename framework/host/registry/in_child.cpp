@@ -1,43 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/registry/in_child.hpp"
 
-#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <memory>
+#include <new>
 
-#include "altiplan/error.hpp"
+#include "host/registry/machine_fault.hpp"
 
 namespace altiplan::host {
 namespace {
 
 constexpr unsigned kPatienceSeconds = 20;
-constexpr const char* kWell = "well";
 
-[[noreturn]] void report(const std::function<void()>& use, int to) {
-  std::string text = kWell;
-  try {
-    use();
-  } catch (const std::exception& error) {
-    text = error.what();
-  } catch (...) {
-    text = "throws something that is not a std::exception";
-  }
-  const ssize_t written = ::write(to, text.data(), text.size());
-  ::_exit(written == static_cast<ssize_t>(text.size()) ? 0 : 1);
+enum class Said { nothing, well, refused, machine_fault };
+
+/// What the child says, in memory that both have: unlike what it would write into a pipe it cannot
+/// fail to arrive, which would look as if the library had ended the process.
+struct Report {
+  Said said = Said::nothing;
+  std::array<char, 1 << 16> text{};
+};
+
+void say(Report& report, Said said, std::string_view text) {
+  std::copy_n(text.begin(), std::min(text.size(), report.text.size() - 1), report.text.begin());
+  report.said = said;
 }
 
-std::string read_all(int from) {
-  std::string text;
-  char buffer[1024];
-  ssize_t got = 0;
-  while ((got = ::read(from, buffer, sizeof buffer)) > 0 || (got < 0 && errno == EINTR)) {
-    text.append(buffer, got > 0 ? static_cast<std::size_t>(got) : 0);
+[[noreturn]] void be_child(const std::function<void()>& use, Report& report) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::signal(SIGALRM, SIG_DFL);
+  ::alarm(kPatienceSeconds);
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);  // results alone stand on stdout
+  try {
+    use();
+    report.said = Said::well;
+  } catch (const MachineFault& fault) {
+    say(report, Said::machine_fault, fault.what());
+  } catch (const std::exception& error) {
+    say(report, Said::refused, error.what());
+  } catch (...) {
+    say(report, Said::refused, "throws something that is not a std::exception");
   }
-  return text;
+  ::_exit(0);
 }
 
 /// How a child ended that has not reported.
@@ -50,36 +63,53 @@ std::string ending(int status) {
   }
   return "loading it ends the process with exit code " + std::to_string(WEXITSTATUS(status));
 }
-}  // namespace
 
-void in_child(const std::string& prefix, const std::function<void()>& use) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) {
-    throw Error(std::string("no pipe for examining a library: ") + std::strerror(errno));
-  }
+[[noreturn]] void fail(const std::string& prefix, const char* what) {
+  throw MachineFault(prefix + "cannot be examined: no " + what + ": " + std::strerror(errno));
+}
+
+/// Runs a child to its end.
+int status_of_child(const std::function<void()>& run, const std::string& prefix) {
   const pid_t child = ::fork();
   if (child < 0) {
-    ::close(ends[0]);
-    ::close(ends[1]);
-    throw Error(std::string("no process for examining a library: ") + std::strerror(errno));
+    fail(prefix, "process");
   }
   if (child == 0) {
-    ::signal(SIGALRM, SIG_DFL);
-    ::alarm(kPatienceSeconds);
-    ::dup2(STDERR_FILENO, STDOUT_FILENO);  // results alone stand on stdout
-    report(use, ends[1]);
+    run();
   }
-  ::close(ends[1]);
-  const std::string text = read_all(ends[0]);
-  ::close(ends[0]);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFSIGNALED(status) || text.empty()) {
+  return status;
+}
+}  // namespace
+
+void in_child(const std::string& prefix, const std::function<void()>& use) {
+  void* const shared =
+      ::mmap(nullptr, sizeof(Report), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) {
+    fail(prefix, "memory");
+  }
+  const auto unmap = [](Report* report) { ::munmap(report, sizeof(Report)); };
+  const std::unique_ptr<Report, decltype(unmap)> report(new (shared) Report);
+  int status = 0;
+  // SIGKILL mostly comes from elsewhere, as when memory is short: a library that is killed so every
+  // time is refused.
+  constexpr int kTries = 3;
+  for (int tries = 0;
+       tries == 0 || (tries < kTries && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+       ++tries) {
+    *report = {};
+    status = status_of_child([&] { be_child(use, *report); }, prefix);
+  }
+  if (WIFSIGNALED(status) || report->said == Said::nothing) {
     throw PluginError(prefix + ending(status));
   }
-  if (text != kWell) {
-    throw PluginError(text);
+  if (report->said == Said::machine_fault) {
+    throw MachineFault(report->text.data());
+  }
+  if (report->said == Said::refused) {
+    throw PluginError(report->text.data());
   }
 }
 }  // namespace altiplan::host

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/registry/registry.hpp"
 
-#include <dlfcn.h>
+#include <sys/stat.h>
 
 #include <algorithm>
-#include <boost/dll/shared_library.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <set>
 
 #include "altiplan/error.hpp"
-#include "host/registry/in_child.hpp"
 #include "host/registry/install_root.hpp"
+#include "host/registry/machine_fault.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
-
-/// A library that is open, with its entries in the manifest's order.
-struct Registry::Loaded {
-  std::vector<const PluginEntry*> entries;
-};
 
 namespace {
 
@@ -38,6 +32,9 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
     if (it->path().extension() == ".so") {
       files.push_back(it->path());
     }
+  }
+  if (is_machine_fault(error.value())) {  // else a folder that is not there
+    throw MachineFault(unreadable(folder, error.value()));
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -77,6 +74,7 @@ void refuse_conflicts(std::vector<Library>& libraries) {
 /// libraries whose manifests are read without complaint count.
 bool same_build(const Library& a, const Library& b) {
   return a.refused.empty() && b.refused.empty() && !a.build.empty() && a.build == b.build &&
+         a.checksum == b.checksum &&
          std::equal(a.plugins.begin(), a.plugins.end(), b.plugins.begin(), b.plugins.end(),
                     [](const Manifest& x, const Manifest& y) {
                       return std::strcmp(x.kind, y.kind) == 0 && std::strcmp(x.name, y.name) == 0;
@@ -90,94 +88,15 @@ std::string joined(const std::vector<std::string>& words) {
   }
   return text.empty() ? "none" : text;
 }
-
-/// The library, open from now to the end of the process: objects, and exceptions, of a plugin must
-/// never outlive its code.
-boost::dll::shared_library& open_for_ever(const fs::path& file) {
-  static std::vector<std::unique_ptr<boost::dll::shared_library>>& open =
-      *new std::vector<std::unique_ptr<boost::dll::shared_library>>;
-  auto library = std::make_unique<boost::dll::shared_library>();
-  boost::dll::fs::error_code error;
-  library->load(file, error, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
-  if (error) {
-    // Boost's own text ends in an unrelated "Bad file descriptor".
-    const char* reason = ::dlerror();
-    throw PluginError(file.string() + " cannot be loaded: " +
-                      (reason != nullptr ? reason : error.message().c_str()));
-  }
-  return *open.emplace_back(std::move(library));
-}
-
-bool has_maker(const PluginEntry& entry) {
-  const std::string_view kind = entry.kind;
-  return entry.describe != nullptr &&
-         ((kind == "environment" && entry.environment != nullptr) ||
-          (kind == "constraint" && entry.constraint != nullptr) ||
-          (kind == "planner" && entry.planner != nullptr) ||
-          (kind == "local_planner" && entry.local_planner != nullptr) ||
-          (kind == "smoother" && entry.smoother != nullptr) ||
-          (kind == "tuner" && entry.tuner != nullptr));
-}
-
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
-
-/// Whether files can hold these parameters: names that lie in damaged data are no names.
-void check_names(const FieldSpec& spec) {
-  for (const FieldSpec& field : spec.children) {
-    const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
-                          field.type == FieldType::plugin;
-    if (!is_snake_case(field.name) && !(nameless && field.name.empty())) {
-      throw PluginError("a parameter is named '" + printable(field.name) +
-                        "', expected lower-case letters, digits and '_'");
-    }
-    check_names(field);
-  }
-}
-
-/// Uses the library as reading a file will, as far as that goes without one.
-void try_out(const Library& library) {
-  for (const PluginEntry* entry : load_library(library)) {
-    try {
-      FieldSpec all;
-      for (const ParamReport report = entry->describe(nullptr, "");
-           const BoundField& field : report.fields) {
-        all.children.push_back(field.spec);
-      }
-      check_names(all);
-    } catch (const std::exception& error) {
-      throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
-                        entry->name + "': " + error.what());
-    }
-  }
-}
 }  // namespace
 
-std::vector<const PluginEntry*> load_library(const Library& library) {
-  boost::dll::shared_library& opened = open_for_ever(fs::absolute(library.file));
-  if (!opened.has(kPluginListSymbol)) {
-    throw PluginError(library.file.string() + " does not export " + kPluginListSymbol);
+FileStamp::FileStamp(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) == 0) {
+    numbers_ = {std::int64_t(status.st_dev), std::int64_t(status.st_ino), status.st_size,
+                status.st_mtim.tv_sec,       status.st_mtim.tv_nsec,      status.st_ctim.tv_sec,
+                status.st_ctim.tv_nsec};
   }
-  std::size_t count = 0;
-  const PluginEntry* const* list =
-      opened.get<std::remove_pointer_t<PluginList>>(kPluginListSymbol)(&count);
-  std::vector<const PluginEntry*> entries;
-  for (const Manifest& plugin : library.plugins) {
-    const auto found = std::find_if(list, list + count, [&](const PluginEntry* entry) {
-      return entry != nullptr && entry->kind != nullptr && entry->name != nullptr &&
-             std::strcmp(entry->kind, plugin.kind) == 0 &&
-             std::strcmp(entry->name, plugin.name) == 0 && has_maker(*entry);
-    });
-    if (found == list + count) {
-      throw PluginError(library.file.string() + " announces the " + plugin.kind + " '" +
-                        plugin.name + "', but does not hold it");
-    }
-    entries.push_back(*found);
-  }
-  return entries;
 }
 
 Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders)) {
@@ -202,8 +121,6 @@ Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders))
   }
   refuse_conflicts(libraries_);
 }
-
-Registry::~Registry() = default;
 
 std::vector<fs::path> Registry::search_path(const std::vector<fs::path>& extra) {
   std::vector<fs::path> folders = extra;
@@ -242,9 +159,15 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
 
 const Library* Registry::offering(std::string_view kind, std::string_view name) const {
   const auto refuse = [&](const Library& library) {
-    throw PluginError("the library of the " + std::string(kind) + " '" + std::string(name) +
-                      "' is refused: " + library.file.string() + ": " + library.refused);
+    fail_to_use("the library of the " + std::string(kind) + " '" + std::string(name) +
+                "' is refused: " + library.file.string() + ": " + library.refused);
   };
+  const std::string file = "libaltiplan_" + std::string(kind) + "_" + std::string(name) + ".so";
+  for (const Library& library : libraries_) {
+    if (library.file.filename() == file && names_machine_fault(library.refused)) {
+      refuse(library);  // a copy of it would be another build, maybe
+    }
+  }
   for (const Library& library : libraries_) {
     for (const Manifest& plugin : library.plugins) {
       if (plugin.kind != kind || plugin.name != name) {
@@ -257,7 +180,6 @@ const Library* Registry::offering(std::string_view kind, std::string_view name) 
     }
   }
   // Where a damaged library no longer says what it offers, its file's name still does.
-  const std::string file = "libaltiplan_" + std::string(kind) + "_" + std::string(name) + ".so";
   for (const Library& library : libraries_) {
     if (!library.refused.empty() && library.file.filename() == file) {
       refuse(library);
@@ -271,16 +193,28 @@ const PluginEntry& Registry::get(std::string_view kind, std::string_view name) {
   if (library == nullptr) {
     throw Error(not_offered(kind, name));
   }
-  const std::lock_guard lock(mutex_);
-  std::unique_ptr<Loaded>& loaded = loaded_[library->file];
-  if (!loaded) {
-    // A damaged library can crash the dynamic loader, whose checks are few: a child goes first.
-    in_child(library->file.string() + ": ", [&] { try_out(*library); });
-    loaded = std::make_unique<Loaded>(Loaded{load_library(*library)});
+  {
+    const std::lock_guard lock(mutex_);
+    used_.try_emplace(library, FileStamp(library->file));
   }
-  return **std::find_if(
-      loaded->entries.begin(), loaded->entries.end(),
-      [&](const PluginEntry* entry) { return entry->kind == kind && entry->name == name; });
+  const std::vector<const PluginEntry*> entries = load_library(*library);
+  return **std::find_if(entries.begin(), entries.end(), [&](const PluginEntry* entry) {
+    return entry->kind == kind && entry->name == name;
+  });
+}
+
+std::vector<fs::path> Registry::changed() {
+  const std::lock_guard lock(mutex_);
+  std::vector<fs::path> files;
+  for (auto& [library, stamp] : used_) {
+    if (const FileStamp now(library->file); now != stamp) {
+      stamp = now;
+      if (!is_unchanged(*library)) {
+        files.push_back(library->file);
+      }
+    }
+  }
+  return files;
 }
 
 std::string Registry::not_offered(std::string_view kind, std::string_view name) const {

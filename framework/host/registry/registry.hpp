@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -17,8 +18,19 @@ namespace altiplan::host {
 struct Library {
   std::filesystem::path file;
   std::string build;              ///< GNU build id, else a hash of the file; hexadecimal
+  std::string checksum;           ///< of what is loaded, as the file states it; hexadecimal
   std::vector<Manifest> plugins;  ///< empty where refused before the manifest could be read
   std::string refused;            ///< why, with both sides; "" when it may be loaded
+};
+
+/// By which a file that was written to, or put in another's place, is told at a glance.
+class FileStamp {
+ public:
+  explicit FileStamp(const std::filesystem::path& file);
+  bool operator==(const FileStamp&) const = default;
+
+ private:
+  std::array<std::int64_t, 7> numbers_{};
 };
 
 /// A second copy of one build: the one that comes first in search order is used.
@@ -28,13 +40,12 @@ struct LibraryCopy {
 };
 
 /// Knows which library offers which plugin, and loads one when it is first asked for. Libraries are
-/// read as ELF files first; only one whose manifest fits this host is ever opened (rtld_now,
-/// local), and none is unloaded.
+/// read as ELF files first; only one whose manifest fits this host, and whose bytes fit its
+/// checksum, is ever opened (rtld_now, local), and none is unloaded.
 class Registry {
  public:
   /// Folders in search order; missing ones are passed over.
   explicit Registry(std::vector<std::filesystem::path> folders);
-  ~Registry();
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
@@ -59,25 +70,31 @@ class Registry {
   /// the nearest name).
   const PluginEntry& get(std::string_view kind, std::string_view name);
 
+  /// Files of libraries that were asked for and are no longer what was loaded; each change once.
+  std::vector<std::filesystem::path> changed();
+
  private:
   std::string not_offered(std::string_view kind, std::string_view name) const;
 
   std::vector<std::filesystem::path> folders_;
   std::vector<Library> libraries_;
   std::vector<LibraryCopy> copies_;
-  struct Loaded;
-  std::mutex mutex_;  ///< of loaded_
-  std::map<std::filesystem::path, std::unique_ptr<Loaded>> loaded_;
+  std::mutex mutex_;  ///< of used_
+  std::map<const Library*, FileStamp> used_;
 };
 
 /// Reads a library's ELF headers, manifest and build id without running any of its code; never
 /// throws: what is wrong stands in `refused`.
 Library examine_library(const std::filesystem::path& file);
 
-/// Opens the library in this process, for ever: its entries, in the manifest's order. Throws
-/// PluginError where it cannot be opened, or does not hold what its manifest announces. A damaged
-/// one can end the process.
+/// The library's entries, in the manifest's order. At the first call it is copied, verified, tried
+/// in a child process (a damaged one can end the process) and opened in this one, for ever. Throws
+/// PluginError where it cannot be opened, has changed since it was examined, or does not hold what
+/// its manifest announces; Error where the system has no room for it.
 std::vector<const PluginEntry*> load_library(const Library& library);
+
+/// Whether the file still holds what was examined.
+bool is_unchanged(const Library& library);
 
 /// Lower-case letters, digits and '_', the first a letter: a plugin, and a parameter, are so named.
 bool is_snake_case(std::string_view name);

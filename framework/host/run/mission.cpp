@@ -72,6 +72,7 @@ Vehicle vehicle_of(const VehicleEntry& entry) {
   vehicle.radius_m = entry.radius_m;
   vehicle.speed_mps = entry.speed_mps;
   vehicle.sensing_m = entry.sensing_m.value_or(kInfinity);
+  vehicle.turns_on_the_spot = entry.turns_on_the_spot;
   for (const SpeedNearEntry& near : entry.speed_near) {
     vehicle.speed_near.push_back({near.within_m, near.speed_mps});
   }

@@ -14,10 +14,14 @@ Run::Run(const Config& config, const RunOptions& options)
     : config_(config),
       options_(options),
       watchdog_([this](const std::string& why) { give_up(why); },
-                [&options] { return options.process ? options.process->kept_mb() : 0; }) {
+                [&options] { return options.process ? options.process->kept_mb() : 0; }),
+      interrupt_(options.stop, [this] { watchdog_.stop_now(); }) {
   if (options.trace) {
     trace_ = std::make_unique<TraceFile>(*options.trace);
     result_.trace = options.trace->string();
+    if (options.process != nullptr) {
+      options.process->keep_as_it_is(trace_->file().beside(), trace_->file().absolute_place());
+    }
   }
 }
 
@@ -151,7 +155,15 @@ void Run::name_caller(std::string who) {
 
 void Run::enter(std::string who, std::optional<double> memory_mb) {
   name_caller(std::move(who));
-  watchdog_.arm(options_.patience_s, memory_mb);
+  arm(options_.patience_s, memory_mb);
+}
+
+std::stop_token Run::arm(double seconds, std::optional<double> memory_mb) {
+  std::stop_token token = watchdog_.arm(seconds, memory_mb);
+  if (interrupted()) {
+    watchdog_.stop_now();
+  }
+  return token;
 }
 
 std::string Run::leave() {
@@ -192,10 +204,7 @@ Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
   request.trace = trace_.get();
   set_budget(request.budget, entry);
   name_caller(named(entry));
-  request.budget.stop =
-      watchdog_.arm(entry.within_s.value_or(options_.patience_s), entry.within_mb);
-  interrupt_ = std::make_unique<std::stop_callback<std::function<void()>>>(
-      options_.stop, [this] { watchdog_.stop_now(); });
+  request.budget.stop = arm(entry.within_s.value_or(options_.patience_s), entry.within_mb);
   return request;
 }
 
@@ -265,12 +274,19 @@ void Run::give_up(const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (!result_.steps.empty()) {
     StepResult& step = result_.steps.back();
-    step.status = Status::failed;
+    step.status = interrupted() ? Status::cancelled : Status::failed;
     step.message = caller_ + " " + why;
   }
-  result_.status = Status::failed;
   result_.message =
       (result_.steps.empty() ? "" : result_.steps.back().id + ": ") + caller_ + " " + why;
+  result_.status = Status::failed;
+  if (interrupted()) {
+    conclude();
+  }
+  if (trace_) {  // as far as it goes: the step may still write to it
+    std::error_code ignored;
+    std::filesystem::rename(trace_->file().beside(), trace_->file().absolute_place(), ignored);
+  }
   options_.on_stuck(result_);
   std::abort();  // on_stuck does not return
 }

@@ -48,6 +48,8 @@ class Run {
   void name_caller(std::string who);
   /// The same for work without a budget: under the watchdog, with the patience of the options.
   void enter(std::string who, std::optional<double> memory_mb = std::nullopt);
+  /// The watchdog's; stopped at once where the user has interrupted.
+  std::stop_token arm(double seconds, std::optional<double> memory_mb);
   /// Ends what enter or request_for began; what the plugin changed of the process, "" if nothing.
   std::string leave();
   /// The same; throws PluginError where there is something.
@@ -141,6 +143,6 @@ class Run {
   std::vector<std::unique_ptr<PlanPlugin>> plan_plugins_;
   std::map<std::string, std::unique_ptr<Session>> sessions_;  ///< by step
   Watchdog watchdog_;
-  std::unique_ptr<std::stop_callback<std::function<void()>>> interrupt_;
+  std::stop_callback<std::function<void()>> interrupt_;  // last: calls the watchdog
 };
 }  // namespace altiplan::host

@@ -19,9 +19,11 @@
 #include <locale>
 #include <memory>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "altiplan/error.hpp"
+#include "host/base/output_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -64,35 +66,43 @@ struct State {
   std::unique_ptr<const ProcessGuard::LastWords> kept;
   std::unique_ptr<const ProcessGuard::LastWords> before;  ///< a handler may still read it
   std::string file_beside;
+  std::string kept_beside;  ///< a file that is still written
+  std::string kept_place;
 };
 State* the_state = nullptr;
 
 // What follows, up to the ProcessGuard, runs in signal handlers: system calls alone.
 
-void write_all(int to, std::string_view text) {
+bool write_all(int to, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(to, text.data(), text.size());
     if (written <= 0 && errno != EINTR) {
-      return;
+      return false;
     }
     text.remove_prefix(written > 0 ? std::size_t(written) : 0);
   }
+  return true;
 }
 
-void write_with_cause(int to, std::string_view text, std::string_view cause) {
+bool write_with_cause(int to, std::string_view text, std::string_view cause) {
   // In JSON text the mark stands as an escape.
   constexpr std::string_view kEscaped = "\\u0001";
   while (!text.empty()) {
     const std::size_t escaped = text.find(kEscaped);
     const std::size_t plain = text.find(ProcessGuard::LastWords::kCause);
     const std::size_t at = std::min(escaped, plain);
-    write_all(to, text.substr(0, at));
-    if (at == text.npos) {
-      return;
+    if (!write_all(to, text.substr(0, at))) {
+      return false;
     }
-    write_all(to, cause);
+    if (at == text.npos) {
+      return true;
+    }
+    if (!write_all(to, cause)) {
+      return false;
+    }
     text.remove_prefix(at + (at == escaped ? kEscaped.size() : 1));
   }
+  return true;
 }
 
 bool drain(State& state) {
@@ -110,6 +120,21 @@ bool drain(State& state) {
   return any;
 }
 
+/// As OutputFile writes, which a handler cannot call.
+void write_file_with_cause(const ProcessGuard::LastWords& words, std::string_view cause) {
+  const char* beside = the_state->file_beside.c_str();
+  const int file = ::open(beside, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file < 0) {
+    write_all(STDERR_FILENO, "altiplan: the result cannot be written\n");
+    return;
+  }
+  const bool whole = write_with_cause(file, words.result, cause) && ::fsync(file) == 0;
+  if (::close(file) != 0 || !whole || ::rename(beside, words.file.c_str()) != 0) {
+    ::unlink(beside);
+    write_all(STDERR_FILENO, "altiplan: the result cannot be written\n");
+  }
+}
+
 [[noreturn]] void say_last_words(const ProcessGuard::LastWords& words, std::string_view cause) {
   State& state = *the_state;
   drain(state);
@@ -117,16 +142,11 @@ bool drain(State& state) {
   if (words.on_stdout) {
     write_with_cause(state.out, words.result, cause);
   }
+  if (!state.kept_beside.empty()) {
+    ::rename(state.kept_beside.c_str(), state.kept_place.c_str());
+  }
   if (!words.file.empty()) {
-    const char* name = words.in_place ? words.file.c_str() : state.file_beside.c_str();
-    const int file = ::open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file >= 0) {
-      write_with_cause(file, words.result, cause);
-      ::close(file);
-      if (!words.in_place) {
-        ::rename(name, words.file.c_str());
-      }
-    }
+    write_file_with_cause(words, cause);
   }
   ::_exit(words.exit_code);
 }
@@ -219,13 +239,16 @@ void add(std::string& all, const char* what) {
 ProcessGuard::ProcessGuard() {
   auto state = std::make_unique<State>();
   std::fflush(stdout);
-  state->out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  state->out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);  // none where the caller has closed it
+  if (state->out < 0 && errno != EBADF) {
+    throw std::system_error(errno, std::generic_category(), "cannot set stdout apart");
+  }
   state->capture = ::memfd_create("altiplan stdout", MFD_CLOEXEC);
   state->folder = ::open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   struct stat captured {};
   if (state->capture < 0 || ::fcntl(state->capture, F_SETFL, O_APPEND) != 0 ||
       ::fstat(state->capture, &captured) != 0 || ::dup2(state->capture, STDOUT_FILENO) < 0) {
-    throw Error("cannot set stdout apart");
+    throw std::system_error(errno, std::generic_category(), "cannot set stdout apart");
   }
   state->capture_inode = captured.st_ino;
   state->locale = std::setlocale(LC_ALL, nullptr);
@@ -274,7 +297,8 @@ std::string ProcessGuard::restore() {
   struct stat here {};
   struct stat there {};
   if (state.folder >= 0 && ::fstat(state.folder, &there) == 0 &&
-      (::stat(".", &here) != 0 || here.st_ino != there.st_ino || here.st_dev != there.st_dev)) {
+      ::stat(".", &here) == 0 &&  // else the system fails, not the plugin
+      (here.st_ino != there.st_ino || here.st_dev != there.st_dev)) {
     if (::fchdir(state.folder) == 0) {
       add(changed, "the working folder");
     }
@@ -298,7 +322,8 @@ std::string ProcessGuard::restore() {
     add(changed, "a signal handler");
   }
   struct stat out {};
-  if (::fstat(STDOUT_FILENO, &out) != 0 || out.st_ino != state.capture_inode) {
+  const bool is_closed = ::fstat(STDOUT_FILENO, &out) != 0 && errno == EBADF;
+  if (is_closed || (out.st_ino != 0 && out.st_ino != state.capture_inode)) {
     ::dup2(state.capture, STDOUT_FILENO);
     add(changed, "stdout");
   }
@@ -322,8 +347,13 @@ bool ProcessGuard::pass_on_output() {
 void ProcessGuard::set_last_words(LastWords words) {
   State& state = *the_state;
   state.words = nullptr;
-  state.file_beside = words.file + ".partial";
+  state.file_beside = words.file.empty() ? "" : name_beside(words.file).string();
   state.before = std::exchange(state.kept, std::make_unique<const LastWords>(std::move(words)));
   state.words = state.kept.get();
+}
+
+void ProcessGuard::keep_as_it_is(std::string beside, std::string place) {
+  the_state->kept_beside = std::move(beside);
+  the_state->kept_place = std::move(place);
 }
 }  // namespace altiplan::host

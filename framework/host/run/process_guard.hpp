@@ -36,10 +36,11 @@ class ProcessGuard {
     std::string for_user;  ///< on stderr
     std::string result;    ///< on stdout and in `file`; "" where none is wanted
     bool on_stdout = false;
-    std::string file;       ///< absolute; "" where none is wanted
-    bool in_place = false;  ///< a pipe or a device: no file beside it that takes its place
+    std::string file;  ///< absolute; "" where none is wanted
     int exit_code = 4;
   };
   void set_last_words(LastWords words);
+  /// The same moment puts this file in its place as far as it is written; absolute names.
+  void keep_as_it_is(std::string beside, std::string place);
 };
 }  // namespace altiplan::host

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/run/trace_file.hpp"
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "altiplan/error.hpp"
@@ -39,17 +37,17 @@ const char* kind_name(TraceEvent::Kind kind) {
 }  // namespace
 
 TraceFile::TraceFile(std::filesystem::path file)
-    : path_(std::move(file)), file_(std::fopen(path_.c_str(), "w")) {
-  if (file_ == nullptr) {
-    throw Error("cannot write the trace '" + path_.string() + "': " + std::strerror(errno));
-  }
-  std::fputs("{\"altiplan_trace\": 1}\n", file_);
-}
+    : file_(std::move(file)), lines_("{\"altiplan_trace\": 1}\n") {}
 
-TraceFile::~TraceFile() {
-  if (file_ != nullptr) {
-    std::fclose(file_);
+void TraceFile::flush() {
+  try {
+    if (error_.empty()) {
+      file_.write(lines_);
+    }
+  } catch (const Error& error) {  // a search does not end for want of its trace
+    error_ = error.what();
   }
+  lines_.clear();
 }
 
 void TraceFile::add(const TraceEvent& event) {
@@ -68,15 +66,18 @@ void TraceFile::add(const TraceEvent& event) {
     line += ", \"alive\": " + std::to_string(event.alive);
   }
   line += "}\n";
-  std::fputs(line.c_str(), file_);
+  lines_ += line;
+  constexpr std::size_t kBlock = 4096;
+  if (lines_.size() >= kBlock) {
+    flush();
+  }
 }
 
 void TraceFile::close() {
-  const bool bad = std::ferror(file_) != 0;
-  const bool not_closed = std::fclose(file_) != 0;
-  file_ = nullptr;
-  if (bad || not_closed) {
-    throw Error("cannot write the trace '" + path_.string() + "': the disk may be full");
+  flush();
+  if (!error_.empty()) {
+    throw Error("the trace: " + error_);
   }
+  file_.put_in_place();
 }
 }  // namespace altiplan::host

@@ -62,26 +62,34 @@ void Watchdog::stop_now() {
   const std::lock_guard lock(mutex_);
   interrupted_ = true;
   stop_at_ = Clock::now();
+  interrupted_at_ = interrupted_at_.value_or(stop_at_);
   changed_.notify_all();
+}
+
+Watchdog::Clock::time_point Watchdog::due() const {
+  const auto after = [](Clock::time_point from, double seconds) {
+    return from +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  };
+  return !stopped_      ? stop_at_
+         : interrupted_ ? after(*interrupted_at_, kInterruptedSeconds)
+                        : after(stopped_at_, kGraceSeconds);
 }
 
 void Watchdog::watch(const std::stop_token& done) {
   constexpr auto kMemoryPoll = std::chrono::milliseconds(20);
-  const auto grace =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kGraceSeconds));
   std::unique_lock lock(mutex_);
   while (!done.stop_requested()) {
     if (!armed_) {
       changed_.wait(lock, done, [this] { return armed_; });
       continue;
     }
-    Clock::time_point wake = stopped_ ? stopped_at_ + grace : stop_at_;
+    Clock::time_point wake = due();
     if (memory_mb_) {
       wake = std::min(wake, Clock::now() + kMemoryPoll);
     }
     const std::uint64_t step = step_;
-    changed_.wait_until(lock, done, wake,
-                        [&] { return !armed_ || step_ != step || (!stopped_ && stop_at_ < wake); });
+    changed_.wait_until(lock, done, wake, [&] { return !armed_ || step_ != step || due() < wake; });
     if (!armed_ || step_ != step || done.stop_requested()) {
       continue;
     }
@@ -101,10 +109,10 @@ void Watchdog::watch(const std::stop_token& done) {
       stopped_ = true;
       stopped_at_ = now;
       stop_.request_stop();
-    } else if (stopped_ && now >= stopped_at_ + grace) {
+    } else if (stopped_ && now >= due()) {
       last_words_(out_of_memory_
                       ? "used more memory than its within_mb and did not stop when told to"
-                  : interrupted_ ? "did not stop within two seconds of the interruption"
+                  : interrupted_ ? "did not stop within half a second of the interruption"
                                  : "did not stop within two seconds of the end of its time");
     }
   }

@@ -15,7 +15,8 @@ namespace altiplan::host {
 
 /// Ends a step that outstays its welcome. While armed, it fires the stop token when the time is
 /// over (or the process has grown by more memory than allowed), and two seconds later, when the
-/// step has still not returned, it calls `last_words`, which does not return.
+/// step has still not returned, it calls `last_words`, which does not return. A user who interrupts
+/// waits for half a second.
 class Watchdog {
  public:
   /// `last_words` gets the sentence that says why; `held_mb` tells of memory that does not count as
@@ -29,7 +30,8 @@ class Watchdog {
   /// Watches until disarm. The token stops the step when time or memory is used up.
   std::stop_token arm(double seconds, std::optional<double> memory_mb);
   void disarm();
-  /// Stops the step as if its time were over.
+  /// Stops the step as if its time were over: it was interrupted. What is armed again after that
+  /// has what is left of the half second.
   void stop_now();
   /// Whether the last step was stopped for its memory.
   bool out_of_memory() const { return out_of_memory_; }
@@ -38,6 +40,8 @@ class Watchdog {
   void watch(const std::stop_token& done);
   double memory_mb() const;
   using Clock = std::chrono::steady_clock;
+  /// When the step is stopped, or given up where it has been.
+  Clock::time_point due() const;
 
   std::function<void(const std::string&)> last_words_;
   std::function<double()> held_mb_;
@@ -52,6 +56,7 @@ class Watchdog {
   Clock::time_point stopped_at_;
   bool out_of_memory_ = false;
   bool interrupted_ = false;
+  std::optional<Clock::time_point> interrupted_at_;  ///< for the first time
   std::stop_source stop_;
   std::jthread thread_;  // last: starts when all else is there
 };
@@ -60,4 +65,6 @@ class Watchdog {
 inline constexpr double kDefaultStepSeconds = 60;
 /// What a step has after its budget before the process is ended.
 inline constexpr double kGraceSeconds = 2;
+/// The same after an interruption: all ends within a second.
+inline constexpr double kInterruptedSeconds = 0.5;
 }  // namespace altiplan::host

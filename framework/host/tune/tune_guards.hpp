@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include <array>
-#include <csignal>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -14,33 +13,6 @@
 #include "host/output/result_json.hpp"
 
 namespace altiplan::host {
-
-/// Whether a signal has come that StopSignals watches for.
-inline volatile std::sig_atomic_t stop_asked = 0;
-
-/// Signals that end a tuning while no pool is at work, which takes them itself.
-class StopSignals {
- public:
-  StopSignals() {
-    stop_asked = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { stop_asked = 1; };
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      ::sigaction(kSignals[i], &action, &before_[i]);
-    }
-  }
-  ~StopSignals() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      ::sigaction(kSignals[i], &before_[i], nullptr);
-    }
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
- private:
-  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, kSignals.size()> before_{};
-};
 
 /// The files of a tuning, by what a change of them would change at least.
 class FileWatch {

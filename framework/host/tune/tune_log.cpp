@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <limits>
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/output_file.hpp"
 #include "host/study/pool/job_record.hpp"
 
 namespace altiplan::host {
@@ -37,9 +39,12 @@ std::string line_of(const RunId& id, const std::string& parameters, const Scored
   return text + " " + check_sum(text) + "\n";
 }
 
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+/// "" where it is not there.
+std::string text_of(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored)
+             ? kit::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
+             : "";
 }
 
 /// Where two settings differ, in words.
@@ -100,7 +105,7 @@ TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
       fs::remove(folder_ / ours, error);
     }
   } else if (fs::exists(file_, error)) {  // else nothing has been run that could be lost
-    const Json before = Json::parse(read_file(described), nullptr, false);
+    const Json before = Json::parse(text_of(described), nullptr, false);
     if (!before.is_object()) {
       refuse(folder_, "holds a damaged settings.json: give another folder, or --fresh");
     }
@@ -114,7 +119,7 @@ TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
 }
 
 void TuneLog::read() {
-  const std::string text = read_file(file_);
+  const std::string text = text_of(file_);
   std::size_t begin = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
     const std::string line = text.substr(begin, end - begin);

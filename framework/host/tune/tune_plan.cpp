@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/base/input.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
 #include "host/study/plan/study_grid.hpp"
@@ -57,10 +58,8 @@ std::vector<Variant> scenarios_of(const std::string& entry, const std::string& o
   const std::size_t bracket =
       fs::exists(entry, error) || !entry.ends_with(']') ? std::string::npos : entry.find('[');
   const std::string file = entry.substr(0, bracket);
-  if (!fs::is_regular_file(file, error)) {
-    throw ConfigError(where, "",
-                      fs::exists(file, error) ? "'" + file + "' is not a file"
-                                              : "there is no file '" + file + "'");
+  if (const std::string why = file_problem(file); !why.empty()) {
+    throw ConfigError(where, "", why);
   }
   const std::string of = fs::path(file).stem().string();
   const fs::path path = fs::absolute(file).lexically_normal();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/base/output_file.hpp"
 #include "host/study/report/tables.hpp"
 #include "host/study/report/text.hpp"
 #include "host/study/statistics/statistics.hpp"

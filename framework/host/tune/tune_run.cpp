@@ -35,8 +35,7 @@ auto of_tuner(const TunePlan& plan, const Call& call) {
   }
 }
 
-/// How many points the tuner asks for when nothing is better than anything; fewer where a signal
-/// ends the tuning meanwhile.
+/// How many points the tuner asks for when nothing is better than anything.
 std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
   constexpr std::size_t kMost = 1'000'000;
   const auto limit = std::size_t(plan.request.evaluations.value_or(kMost));
@@ -44,7 +43,7 @@ std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
   std::size_t points = 0;
   while (points < limit) {
     const std::size_t asked = search->ask().size();
-    if (asked == 0 || stop_asked != 0) {
+    if (asked == 0) {
       break;
     }
     points += asked;
@@ -95,6 +94,12 @@ class TuningRun {
     pool.limits = job_limits(plan_.request.limits);
     pool.key = [this](std::size_t i) {
       return std::to_string(wanted_[i].evaluation) + " " + std::to_string(wanted_[i].scenario);
+    };
+    pool.appraise = [this](const Ended& ended) {
+      const Wanted& wanted = wanted_[ended.job];
+      return appraisal_of(
+          ended, plan_.request.limits,
+          plan_.scenarios[wanted.scenario].name + " with " + parameters_of(wanted.evaluation));
     };
     return pool;
   }
@@ -203,9 +208,6 @@ class TuningRun {
   }
 
   void run(const std::vector<std::size_t>& jobs) {
-    if (stop_asked != 0) {
-      throw Interrupted();
-    }
     if (jobs.empty()) {
       return;
     }
@@ -233,17 +235,13 @@ class TuningRun {
       tell_progress();
     };
     const WorkerPool::Finish finish = pool_.run(jobs, work, keep);
-    if (finish == WorkerPool::Finish::interrupted || stop_asked != 0) {
+    if (finish == WorkerPool::Finish::interrupted) {
       throw Interrupted();
     }
   }
 
   ScoredRun scored(const Ended& ended) const {
     const RunOutcome outcome = outcome_of(ended, plan_.request.limits);
-    if (outcome.outcome == kNotDone) {
-      throw Error(outcome.message +
-                  "; what had been run before is kept, and the same call goes on");
-    }
     if (outcome.outcome != "solved") {
       return {outcome.outcome, std::nullopt, outcome.message};
     }
@@ -294,7 +292,6 @@ class TuningRun {
   const TunePlan& plan_;
   const TuneOptions& options_;
   const Clock::time_point began_ = Clock::now();
-  const StopSignals signals_;
   WorkFolder folder_;  ///< locked before the log is looked at
   TuneLog log_;
   const FileWatch files_;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <optional>
 
+#include "altiplan/kit/input_file.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
@@ -236,8 +236,7 @@ std::string scalar_text(const std::string& text) {
 
 std::string tuned_text(const Config& config, const std::vector<std::string>& assignments,
                        const fs::path& folder) {
-  std::ifstream in(config.pipeline_path, std::ios::binary);
-  Document document(std::string(std::istreambuf_iterator<char>(in), {}));
+  Document document(kit::read_file(config.pipeline_path.string()));
   const fs::path from = config.pipeline_path.parent_path();
   const fs::path to = fs::absolute(folder / "").lexically_normal().parent_path();
   std::vector<std::string> all = assignments;

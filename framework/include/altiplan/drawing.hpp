@@ -11,7 +11,8 @@ namespace altiplan {
 
 /// A solid of a layer, as viewers show it and mission files hold it.
 struct Drawn {
-  enum class Role { obstacle, keep_out, keep_in, threat };
+  /// unknown: blocked because nobody knows what is there; a page hides it until it is asked for.
+  enum class Role { obstacle, keep_out, keep_in, threat, unknown };
   Shape shape;
   Role role = Role::obstacle;
   std::string name;  ///< for the reader; "" where it has none

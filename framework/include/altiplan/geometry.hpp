@@ -58,8 +58,13 @@ struct Box {
 /// The box of the leg a–b.
 inline Box leg_box(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
-/// Angle between the horizontal projections of two directions, in [0, pi]; 0 where one is vertical,
-/// within kAngleTolerance.
+/// Whether a leg in that direction and of that length has a heading: its horizontal length is at
+/// least kLengthTolerance.
+inline bool has_heading(const Vec3& leg) {
+  return leg.head<2>().squaredNorm() >= kLengthTolerance * kLengthTolerance;
+}
+
+/// Angle between the headings of two legs, in [0, pi]; 0 where one of them has none.
 ALTIPLAN_API double turn_angle_horizontal(const Vec3& before, const Vec3& after);
 
 /// Angle between two directions in space, in [0, pi]; 0 where one has no length.
@@ -70,6 +75,10 @@ ALTIPLAN_API double climb_angle(const Vec3& direction);
 
 /// Radius of the circle through three points; infinite where they lie on a line.
 ALTIPLAN_API double radius_through(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Radius of the largest circular fillet between two legs that takes at most half of each; infinite
+/// where they go straight on or one has no length, 0 where they go straight back.
+ALTIPLAN_API double fillet_radius(const Vec3& before, const Vec3& after);
 
 /// Least distance between the point p and the leg a–b.
 ALTIPLAN_API double point_leg_distance(const Vec3& p, const Vec3& a, const Vec3& b);

@@ -26,7 +26,7 @@ struct Limits {
   double max_leg = kInfinity;
   double max_turn_horizontal = kPi;
   double max_turn_space = kPi;
-  double min_turn_radius = 0;  ///< of the circle through a waypoint and its neighbours
+  double min_turn_radius = 0;  ///< of a route's corners (fillet_radius), of a track's curvature
   double max_climb = kPi / 2;
   double max_route_length = kInfinity;
 

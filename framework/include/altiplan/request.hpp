@@ -82,12 +82,17 @@ struct Request {
   RandomStream random;
   Trace* trace = nullptr;
 
-  /// A point that the vehicle comes from, where it has a heading: one second back.
-  std::optional<Vec3> before_start() const {
+  /// How the vehicle comes to the start, where it has a velocity: from a point one second back.
+  std::optional<Approach> before_start() const {
     if (start.velocity.squaredNorm() == 0) {
       return std::nullopt;
     }
-    return Vec3(start.position - start.velocity);
+    return Approach(start.position - start.velocity);
+  }
+  /// Whether headings last through legs that have none, and some limit looks at that.
+  bool headings_last() const {
+    return !vehicle.turns_on_the_spot &&
+           (limits.max_turn_horizontal < kPi || limits.min_turn_radius > 0);
   }
 };
 }  // namespace altiplan

@@ -19,6 +19,7 @@ struct ALTIPLAN_API Vehicle {
   double speed_mps = 10;
   double sensing_m = kInfinity;
   std::vector<SpeedNear> speed_near;  ///< by ascending within_m
+  bool turns_on_the_spot = false;     ///< to any heading, where it climbs or sinks on the spot
 
   /// Speed at a distance to the nearest obstacle (paper 002, eq. 6, is one such law).
   double speed_at(double distance_m) const;

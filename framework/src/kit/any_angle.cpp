@@ -319,6 +319,21 @@ bool AnyAngleSearch::may_take(Node a, Node b) {
   return settings_.angles == AngleRule::printed || keeps_limits(a, b);
 }
 
+/// How the vehicle comes to a node.
+std::optional<Approach> AnyAngleSearch::before(Node n) const {
+  const std::optional<Approach> first = request_.before_start();
+  if (n == start_.node) {
+    return first;
+  }
+  const Vec3 from = position(parent(n));
+  for (n = parent(n); n != start_.node; n = parent(n)) {
+    if (const Vec3 leg = position(n) - position(parent(n)); has_heading(leg)) {
+      return Approach(from, leg);
+    }
+  }
+  return Approach(from, onward(first, start_.position).heading);
+}
+
 bool AnyAngleSearch::keeps_limits(Node a, Node b) {
   return cells_decide_ || rules_.keeps_limits(before(a), position(a), position(b));
 }

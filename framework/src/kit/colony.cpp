@@ -236,11 +236,11 @@ void Colony::lay_all() {
   settle();
 }
 
-std::optional<Vec3> Colony::before(const Ant& ant, std::size_t place) const {
+std::optional<Approach> Colony::before(const Ant& ant, std::size_t place) const {
   if (place > 0) {
-    return position(ant.way[place - 1]);
+    return position(ant.way[place - 1]);  // level legs have headings
   }
-  return start_link_ == 0 ? request_.before_start() : std::optional(request_.start.position);
+  return start_link_ == 0 ? request_.before_start() : request_.start.position;
 }
 
 bool Colony::keeps_rules(Walker& walker, std::uint32_t to) const {

@@ -32,6 +32,15 @@ bool Excess::within(const Excess& other) const {
   });
 }
 
+double radius_margin(double leg, double turn) {
+  // How far rounding may move a point: half of 1e-7 degree on two axes, half a centimetre up.
+  constexpr double kMoved = 0.0095;
+  constexpr double kMost = 0.05;
+  // The radius is leg / 2 / tan(turn / 2): both ends of a leg move, and both legs of a turn.
+  return turn > 0 ? std::min(kMost, 2 * kMoved / leg * (1 + 2 / std::sin(std::min(turn, kPi / 2))))
+                  : 0;
+}
+
 double Corner::fair_reach() const { return std::min(leg_into, leg_out_of) / 2; }
 
 namespace {
@@ -53,14 +62,14 @@ class Rounding {
         request_(request),
         curve_of_(curve_of),
         watch_(request.budget) {
-    std::optional<Vec3> before = request.before_start();
+    std::optional<Approach> before = request.before_start();
     for (std::size_t i = 0; i + 1 < route_.size() && !budget_ended(); ++i) {
       LegExcess leg{Excess(leg_violations(before, route_[i], route_[i + 1], request, i)), {}};
       if (!leg.with_turn.none()) {
         leg.alone = Excess(leg_violations(std::nullopt, route_[i], route_[i + 1], request, i));
       }
       legs_.push_back(std::move(leg));
-      before = route_[i];
+      before = onward(before, route_[i]);
     }
   }
 
@@ -90,6 +99,7 @@ class Rounding {
 
  private:
   static constexpr int kStays = -1;
+  static constexpr std::size_t kNone = ~std::size_t{0};
 
   bool budget_ended() {
     result_.budget_hit = result_.budget_hit || watch_.spent(std::uint64_t(result_.attempts));
@@ -106,6 +116,7 @@ class Rounding {
     int first = 0;         ///< choices before this one are ruled out
     int chosen = kStays;   ///< the choice that stands
     std::size_t done = 1;  ///< points of the route before this corner
+    std::size_t from = 0;  ///< the waypoint that is the last of these; kNone: a curve's end is
     bool turns = false;    ///< whether it is a corner at all
     bool offered = false;  ///< whether there was a choice
   };
@@ -116,6 +127,12 @@ class Rounding {
     for (next_ = 1; next_ + 1 < route_.size();) {
       State& state = states_[next_];
       state.done = done_.size();
+      if (next_ > 1) {
+        const State& before = states_[next_ - 1];
+        state.from = before.chosen == kStays       ? next_ - 1
+                     : before.done == done_.size() ? before.from  // it was left out
+                                                   : kNone;
+      }
       state.chosen = choose();
       if (state.chosen == kStays && states_[next_ - 1].chosen != kStays &&
           !stands(part_with({route_[next_]}))) {
@@ -180,6 +197,9 @@ class Rounding {
             into.norm(),
             out_of.norm(),
             (route_[next_] - done_.back()).norm(),
+            done_.size() > 1 ? turn_angle_in_space(done_.back() - done_[done_.size() - 2],
+                                                   route_[next_] - done_.back())
+                             : 0,
             next_ + 2 == route_.size()};
   }
 
@@ -204,35 +224,37 @@ class Rounding {
   /// Calls judge(before, a, b) for the legs of a part until it says false.
   template <class Judge>
   bool all_legs(const Route& part, const Judge& judge) const {
-    std::optional<Vec3> before =
-        done_.size() > 1 ? std::optional(done_[done_.size() - 2]) : request_.before_start();
+    std::optional<Approach> before = approach(done_, done_.size() - 1, request_.before_start());
     for (std::size_t i = 0; i + 1 < part.size(); ++i) {
       if (!judge(before, part[i], part[i + 1])) {
         return false;
       }
-      before = part[i];
+      before = onward(before, part[i]);
     }
     return true;
   }
 
   bool sound(const Route& part) const {
-    return all_legs(part, [&](const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+    return all_legs(part, [&](const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
       return leg_ok(before, a, b, request_);
     });
   }
 
   /// Whether the part breaks no rule by more than the two legs of the corner: its first leg, in
-  /// turning into it, by no more than the leg into the corner; the others by no more than the
-  /// corner.
+  /// turning into it, by no more than the leg into the corner, or the one that began where it does;
+  /// the others by no more than the corner.
   bool stands(const Route& part) const {
     const LegExcess& into = legs_[next_ - 1];
     const LegExcess& out_of = legs_[next_];
     Excess first = into.with_turn;
     first.add(out_of.alone);
+    if (states_[next_].from != kNone) {
+      first.add(legs_[states_[next_].from].with_turn);
+    }
     Excess others = into.alone;
     others.add(out_of.with_turn);
     const Excess* allowed = &first;
-    return all_legs(part, [&](const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+    return all_legs(part, [&](const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
       const bool ok =
           leg_ok(before, a, b, request_) ||
           (!allowed->none() && Excess(leg_violations(before, a, b, request_, 0)).within(*allowed));

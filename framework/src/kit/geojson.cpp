@@ -8,6 +8,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "text_file.hpp"
 
 namespace altiplan::kit {
@@ -20,8 +21,8 @@ std::string text_of(const Json& value) {
 }
 
 Ring read_ring(const Json& points) {
-  if (!points.is_array() || points.size() < 4) {
-    throw Error("a ring needs at least four positions, found " + short_text(points));
+  if (!points.is_array()) {
+    throw Error("a ring needs a list of positions, found " + short_text(points));
   }
   Ring ring;
   for (const Json& point : points) {
@@ -35,15 +36,16 @@ Ring read_ring(const Json& points) {
     }
     ring.push_back(p);
   }
-  if (ring.front() != ring.back()) {
+  if (!ring.empty() && ring.front() != ring.back()) {
     throw Error("a ring must end where it starts, " + short_text(points.front()) + "; it ends at " +
                 short_text(points.back()));
   }
   return without_repeats(ring);
 }
 
-Polygon read_polygon(const Json& rings) {
-  if (!rings.is_array() || rings.empty()) {
+/// Nothing where it is flat.
+std::optional<Polygon> read_polygon(const Json& rings) {
+  if (!rings.is_array()) {
     throw Error("a Polygon needs a list of rings, found " + short_text(rings));
   }
   Polygon polygon;
@@ -54,6 +56,9 @@ Polygon read_polygon(const Json& rings) {
     } else {
       polygon.holes.push_back(std::move(ring));
     }
+  }
+  if (is_flat(polygon)) {
+    return std::nullopt;
   }
   if (const std::string problem = polygon_problem(polygon); !problem.empty()) {
     throw Error(problem);
@@ -85,7 +90,7 @@ std::string id_of(const Json& feature, std::size_t n) {
 }
 
 // Takes the feature's areas; false where it has none.
-bool read_feature(const Json& feature, const std::string& id, std::vector<GeoFeature>& features) {
+bool read_feature(const Json& feature, const std::string& id, GeoJson& to) {
   const auto geometry = feature.find("geometry");
   if (geometry == feature.end() || geometry->is_null()) {
     return false;
@@ -104,21 +109,27 @@ bool read_feature(const Json& feature, const std::string& id, std::vector<GeoFea
   }
   const Json none;
   const Json& coordinates = geometry->contains("coordinates") ? (*geometry)["coordinates"] : none;
-  std::vector<Polygon> polygons;
+  const std::size_t before = to.features.size();
+  bool has_flat = false;
+  const auto take = [&](const Json& rings) {
+    if (std::optional<Polygon> polygon = read_polygon(rings)) {
+      to.features.push_back({id, std::move(*polygon), properties_of(feature)});
+    } else {
+      has_flat = true;
+    }
+  };
   if (type == "Polygon") {
-    polygons.push_back(read_polygon(coordinates));
+    take(coordinates);
+  } else if (coordinates.is_array()) {
+    std::for_each(coordinates.begin(), coordinates.end(), take);
   } else {
-    if (!coordinates.is_array()) {
-      throw Error("a MultiPolygon needs a list of polygons, found " + short_text(coordinates));
-    }
-    for (const Json& rings : coordinates) {
-      polygons.push_back(read_polygon(rings));
-    }
+    throw Error("a MultiPolygon needs a list of polygons, found " + short_text(coordinates));
   }
-  for (Polygon& polygon : polygons) {
-    features.push_back({id, std::move(polygon), properties_of(feature)});
+  const bool has_area = to.features.size() > before;
+  if (has_flat || !has_area) {
+    to.flat.push_back(id);
   }
-  return true;
+  return has_area;
 }
 
 }  // namespace
@@ -142,6 +153,11 @@ std::optional<double> GeoFeature::metres(const std::string& property) const {
   return number;
 }
 
+std::string GeoJson::skipped_text() const {
+  return std::to_string(skipped) + " features without an area skipped" +
+         (flat.empty() ? "" : " (" + names_text(flat) + ")");
+}
+
 void expect_properties(const std::string& file, const GeoJson& json,
                        const std::vector<std::string>& names) {
   std::set<std::string> present;
@@ -163,7 +179,7 @@ void expect_properties(const std::string& file, const GeoJson& json,
 }
 
 GeoJson read_geojson(const std::string& file) {
-  const Json document = parse_json(file, read_text(file));
+  const Json document = parse_json(file, read_file(file));
   const std::string type = document.is_object() && document.contains("type")
                                ? text_of(document["type"])
                                : short_text(document);
@@ -185,7 +201,7 @@ GeoJson read_geojson(const std::string& file) {
     }
     const std::string id = id_of(feature, n);
     try {
-      result.skipped += !read_feature(feature, id, result.features);
+      result.skipped += !read_feature(feature, id, result);
     } catch (const std::exception& error) {
       throw Error(file + ": features." + std::to_string(n) + " ('" + id + "'): " + error.what());
     }

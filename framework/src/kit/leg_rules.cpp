@@ -54,7 +54,7 @@ std::optional<GridSpec> LegRules::cells_that_decide() const {
   return one_grid ? spec : std::nullopt;
 }
 
-bool LegRules::ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+bool LegRules::ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
   ++checked_;
   if (leg_kept(before, a, b)) {
     return true;
@@ -63,7 +63,7 @@ bool LegRules::ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& 
   return false;
 }
 
-bool LegRules::leg_kept(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) const {
+bool LegRules::leg_kept(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) const {
   if (grid_ == nullptr) {
     return leg_ok(before, a, b, request_);
   }
@@ -79,14 +79,14 @@ bool LegRules::leg_kept(const std::optional<Vec3>& before, const Vec3& a, const 
   }
 }
 
-bool LegRules::follows(const Vec3& before, const Vec3& a, const Vec3& b) {
+bool LegRules::follows(const Approach& before, const Vec3& a, const Vec3& b) {
   if (!looks_back_) {
     return true;
   }
-  if (turn_kept(a - before, b - a, request_.limits) &&
+  if (turn_ok(before, a, b, request_) &&
       std::all_of(request_.constraints.begin(), request_.constraints.end(),
                   [&](const NamedConstraint& named) {
-                    return named.admits({before, a, b});
+                    return named.admits({before.from, a, b});
                   })) {
     return true;
   }

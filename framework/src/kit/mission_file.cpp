@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "altiplan/kit/input_file.hpp"
 #include "mission_parts.hpp"
 #include "text_file.hpp"
 
@@ -167,7 +168,7 @@ bool is_mission_file(const std::string& file) {
   return ending == ".plan" || ending == ".waypoints" || ending == ".txt" || ending == ".kml";
 }
 
-MissionFile read_mission(const std::string& file) { return read_mission(file, read_text(file)); }
+MissionFile read_mission(const std::string& file) { return read_mission(file, read_file(file)); }
 
 MissionFile read_mission(const std::string& file, const std::string& text) {
   const std::string mark = "\xEF\xBB\xBF";  // some editors begin UTF-8 with it

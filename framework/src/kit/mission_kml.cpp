@@ -151,10 +151,7 @@ class KmlReader {
 
   static Ring ring_of(const pugi::xml_node& boundary, std::vector<double>& heights) {
     const std::vector<Coordinate> corners = coordinates_of(child(boundary, "LinearRing"));
-    if (corners.size() < 4) {
-      throw Error("a ring needs at least four positions, found " + std::to_string(corners.size()));
-    }
-    if (corners.front().lonlat != corners.back().lonlat) {
+    if (!corners.empty() && corners.front().lonlat != corners.back().lonlat) {
       throw Error("a ring must end where it starts");
     }
     Ring ring;
@@ -171,18 +168,24 @@ class KmlReader {
     MissionZone zone;
     zone.name = placemark.name;
     std::vector<double> heights;
+    bool has_outline = false;
     for (const pugi::xml_node& boundary : node.children()) {
       if (local_name(boundary) == "outerBoundaryIs") {
-        if (!zone.polygon.outline.empty()) {
+        if (has_outline) {
           throw Error("a Polygon has one outerBoundaryIs");
         }
+        has_outline = true;
         zone.polygon.outline = ring_of(boundary, heights);
       } else if (local_name(boundary) == "innerBoundaryIs") {
         zone.polygon.holes.push_back(ring_of(boundary, heights));
       }
     }
-    if (zone.polygon.outline.empty()) {
+    if (!has_outline) {
       throw Error("the Polygon has no outerBoundaryIs");
+    }
+    if (is_flat(zone.polygon)) {
+      mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
+      return;
     }
     zone.floor_m = placemark.metres("floor_m");
     zone.ceiling_m = placemark.metres("ceiling_m");

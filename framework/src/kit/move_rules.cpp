@@ -9,14 +9,6 @@
 
 namespace altiplan::kit {
 
-bool turn_kept(const Vec3& incoming, const Vec3& outgoing, const Limits& limits) {
-  return turn_angle_horizontal(incoming, outgoing) <=
-             limits.max_turn_horizontal + kAngleTolerance &&
-         turn_angle_in_space(incoming, outgoing) <= limits.max_turn_space + kAngleTolerance &&
-         (limits.min_turn_radius <= 0 || radius_through(-incoming, Vec3::Zero(), outgoing) >=
-                                             limits.min_turn_radius - kLengthTolerance);
-}
-
 namespace {
 bool length_kept(double length, const Limits& limits) {
   return length >= limits.min_leg - kLengthTolerance && length <= limits.max_leg + kLengthTolerance;
@@ -88,15 +80,45 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
     constraints_.push_back(named);
   }
   steps_ = directions_kept();
-  for (int in = 0; in < kDirections; ++in) {
-    for (int out = 0; out < kDirections; ++out) {
-      if (in == kHere || out == kHere || !limits.turns() ||
-          turn_kept(lattice.step(in), lattice.step(out), limits)) {
-        after_[std::size_t(in)] |= DirectionMask{1} << out;
-        before_[std::size_t(out)] |= DirectionMask{1} << in;
+  headings_last_ = request.headings_last();
+  find_turns();
+}
+
+void MoveRules::find_turns() {
+  const bool limited = request_.limits.turns();
+  for (int in = 0; in < (headings_last_ ? kSteps : kDirections); ++in) {
+    for (int d = 0; d < kDirections; ++d) {
+      const int out = step_after(in, d);
+      const Approach before(-lattice_.step(direction_of(in)), heading_vector(in));
+      if (in == kHere || d == kHere || !limited ||
+          turn_ok(before, Vec3::Zero(), lattice_.step(d), request_)) {
+        after_[std::size_t(in)] |= StepMask{1} << out;
+        before_[std::size_t(out)] |= StepMask{1} << in;
       }
     }
   }
+}
+
+Vec3 MoveRules::heading_vector(int step) const {
+  const int heading = heading_of(step);
+  if (heading < 0) {
+    return Vec3::Zero();
+  }
+  const Cell o = heading_offset(heading);
+  return lattice_.spec().cell.cwiseProduct(Vec3(o[0], o[1], 0));
+}
+
+std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_start) const {
+  const std::optional<Approach> first = request_.before_start();
+  if (step == kHere) {
+    return at_start ? first : std::optional(onward(first, request_.start.position));
+  }
+  const Vec3 from = here - lattice_.step(direction_of(step));
+  if (heading_of(step) >= 0) {
+    return Approach(from, heading_vector(step));
+  }
+  // Straight up or down from the start, or from the cell that a link led to, in the same column.
+  return Approach(from, onward(first, request_.start.position).heading_at(here));
 }
 
 void MoveRules::sort_layers() {
@@ -196,9 +218,10 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
   return true;
 }
 
-bool MoveRules::admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+bool MoveRules::admitted(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    if (!constraints_[i].admits({before, a, b})) {
+    const auto from = before ? std::optional(before->from) : std::nullopt;
+    if (!constraints_[i].admits({from, a, b})) {
       ++refused_[by_constraint];
       refused_constraint_ = request_.constraints[i].name;
       admit_needed_parent_ =
@@ -284,7 +307,7 @@ bool MoveRules::place_free(const Cell& c, int d, const Vec3& a, const Vec3& b,
          (!wants_clearance_ || keeps_off(d, a, b, near_a, near_b));
 }
 
-bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b) {
+bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const Cell& b) {
   ++moves_checked_;
   if (grid_ != nullptr && !line_of_sight(*grid_, a, b)) {
     ++refused_[by_cells];
@@ -293,13 +316,13 @@ bool MoveRules::sees(const std::optional<Vec3>& before, const Cell& a, const Cel
   return keeps_rules(before, lattice_.position(a), lattice_.position(b));
 }
 
-bool MoveRules::keeps_rules(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
   return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
          (constraints_.empty() || admitted(before, a, b)) &&
          (!asks_world_ || keeps_off(*request_.world, a, b));
 }
 
-bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b,
+bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
                              double length) {
   const Limits& limits = request_.limits;
   if (!length_kept(length, limits)) {
@@ -314,20 +337,22 @@ bool MoveRules::keeps_limits(const std::optional<Vec3>& before, const Vec3& a, c
       return false;
     }
   }
-  if (before && limits.turns() && !keeps_turn(a - *before, leg)) {
+  if (before && limits.turns() && !keeps_turn(*before, a, leg)) {
     ++refused_[by_turn];
     return false;
   }
   return true;
 }
 
-bool MoveRules::keeps_turn(const Vec3& incoming, const Vec3& outgoing) const {
+bool MoveRules::keeps_turn(const Approach& before, const Vec3& a, const Vec3& outgoing) const {
   const Limits& limits = request_.limits;
+  const Vec3 incoming = a - before.from;
   const double runs = incoming.head<2>().squaredNorm() * outgoing.head<2>().squaredNorm();
   constexpr double kUpright = 1e-9;  // of the squares: beyond it a leg has a heading
   const double all = incoming.squaredNorm() * outgoing.squaredNorm();
-  if (limits.min_turn_radius > 0 || runs < kUpright * all) {
-    return turn_kept(incoming, outgoing, limits);
+  if (limits.min_turn_radius > 0 || runs < kUpright * all || !has_heading(incoming) ||
+      !has_heading(outgoing)) {
+    return turn_ok(before, a, a + outgoing, request_);
   }
   const Told flat =
       limits.max_turn_horizontal >= kPi
@@ -339,10 +364,10 @@ bool MoveRules::keeps_turn(const Vec3& incoming, const Vec3& outgoing) const {
   return flat == Told::kept && space == Told::kept
              ? true
              : flat != Told::broken && space != Told::broken &&
-                   turn_kept(incoming, outgoing, limits);
+                   turn_ok(before, a, a + outgoing, request_);
 }
 
-bool MoveRules::any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+bool MoveRules::any_leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
   ++moves_checked_;
   if (leg_ok(before, a, b, request_)) {
     return true;

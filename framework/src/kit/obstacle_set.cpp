@@ -11,6 +11,7 @@
 #include "altiplan/kit/solid.hpp"
 
 #include "../multiversion.hpp"
+#include "../shape_parts.hpp"
 #include "box_tree.hpp"
 
 // A tree of boxes finds the shapes near a point or a leg, closed forms decide: see
@@ -21,7 +22,20 @@ namespace {
 // Distances below this are rounding: the leg meets the solid.
 constexpr double kMeets = 1e-9;
 
-bool meets(const Shape& shape, const Vec3& a, const Vec3& b, double r) {
+using shape_parts::Indexed;
+using Trees = std::vector<std::unique_ptr<EdgeTree>>;
+
+// The shapes, and the trees of those that have many edges; none where none has.
+struct Solids {
+  const Shape* shapes;
+  const std::unique_ptr<EdgeTree>* trees;
+
+  Indexed operator[](std::size_t n) const {
+    return {shapes[n], trees == nullptr ? nullptr : trees[n].get()};
+  }
+};
+
+bool meets(const Indexed& shape, const Vec3& a, const Vec3& b, double r) {
   const double limit = r - kLengthTolerance;
   if (limit > kMeets) {
     return comes_within(shape, a, b, limit);
@@ -31,7 +45,9 @@ bool meets(const Shape& shape, const Vec3& a, const Vec3& b, double r) {
     return false;
   }
   const double distance = leg_distance(shape, a, b);
-  return distance < limit || (distance <= kMeets && -leg_depth(shape, a, b) < limit);
+  // leg_depth may be half of what the leg's deepest place is.
+  return distance < limit ||
+         (distance <= kMeets && -leg_depth(shape, a, b) < r - kLengthTolerance / 2);
 }
 
 bool is_in_reach(const Vec3& p) { return p.cwiseAbs().maxCoeff() <= kTreeReach; }
@@ -44,7 +60,7 @@ struct Open {
 };
 
 // Down to the nearest leaf first, so that on the way back little is still near enough.
-ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Shape* shapes, const Vec3& p) {
+ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Solids& shapes, const Vec3& p) {
   std::array<Open, kMostLevels> way;
   std::size_t depth = 0;
   const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
@@ -64,7 +80,7 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Shape* shapes,
         continue;
       }
       for (std::uint32_t lanes = here.lanes;;) {
-        least = std::min(least, signed_distance(shapes[node->box[lane]], p));
+        least = std::min(least, signed_distance(shapes[std::size_t(node->box[lane])], p));
         limit = key_of(least);
         lanes &= lanes_within(here.keys, limit);
         if (lanes == 0) {
@@ -89,7 +105,7 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Shape* shapes,
   }
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, const Shape* shapes, const Vec3& a,
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, const Solids& shapes, const Vec3& a,
                                const Vec3& b, double r) {
   std::array<std::int32_t, kMostOpen> open{0};
   std::size_t waiting = 1;
@@ -100,7 +116,7 @@ ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, const Shape* shapes, const 
       const int lane = std::countr_zero(lanes);
       if (!node.is_leaf()) {
         open[waiting++] = node.first + lane;
-      } else if (meets(shapes[node.box[lane]], a, b, r)) {
+      } else if (meets(shapes[std::size_t(node.box[lane])], a, b, r)) {
         return true;
       }
     }
@@ -155,10 +171,36 @@ void check(const Shape& shape, std::size_t index) {
   }
 }
 
+Trees trees_of(const std::vector<Shape>& shapes) {
+  Trees trees;
+  for (std::size_t n = 0; n < shapes.size(); ++n) {
+    const auto* prism = std::get_if<Prism>(&shapes[n]);
+    if (prism == nullptr) {
+      continue;
+    }
+    std::vector<const std::vector<Point2>*> rings{&prism->outline};
+    std::size_t edges = prism->outline.size();
+    for (const std::vector<Point2>& hole : prism->holes) {
+      rings.push_back(&hole);
+      edges += hole.size();
+    }
+    if (edges >= kManyEdges) {
+      trees.resize(shapes.size());
+      trees[n] = std::make_unique<EdgeTree>(rings);
+    }
+  }
+  return trees;
+}
+
 }  // namespace
 
 struct ObstacleSet::Impl {
   std::vector<BoxNode> nodes;
+  Trees trees;
+
+  Solids solids(const std::vector<Shape>& shapes) const {
+    return {shapes.data(), trees.empty() ? nullptr : trees.data()};
+  }
 };
 
 ObstacleSet::ObstacleSet(std::vector<Shape> shapes)
@@ -171,6 +213,7 @@ ObstacleSet::ObstacleSet(std::vector<Shape> shapes)
     bounds_ = bounds_.united(boxes.back());
   }
   impl_->nodes = box_tree(boxes);
+  impl_->trees = trees_of(shapes_);
 }
 
 ObstacleSet::~ObstacleSet() = default;
@@ -178,25 +221,31 @@ ObstacleSet::ObstacleSet(ObstacleSet&&) noexcept = default;
 ObstacleSet& ObstacleSet::operator=(ObstacleSet&&) noexcept = default;
 
 double ObstacleSet::clearance(const Vec3& p) const {
+  const Solids solids = impl_->solids(shapes_);
   if (!shapes_.empty() && is_in_reach(p)) {
-    return least_distance(impl_->nodes.data(), shapes_.data(), p);
+    return least_distance(impl_->nodes.data(), solids, p);
   }
   double least = kInfinity;
-  for (const Shape& shape : shapes_) {
-    least = std::min(least, signed_distance(shape, p));
+  for (std::size_t n = 0; n < shapes_.size(); ++n) {
+    least = std::min(least, signed_distance(solids[n], p));
   }
   return least;
 }
 
 bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
+  const Solids solids = impl_->solids(shapes_);
   if (!shapes_.empty() && is_in_reach(a) && is_in_reach(b) && std::abs(r) <= kTreeReach) {
-    return any_meets(impl_->nodes.data(), shapes_.data(), a, b, r);
+    return any_meets(impl_->nodes.data(), solids, a, b, r);
   }
-  return std::any_of(shapes_.begin(), shapes_.end(),
-                     [&](const Shape& shape) { return meets(shape, a, b, r); });
+  bool meet = false;
+  for (std::size_t n = 0; n < shapes_.size() && !meet; ++n) {
+    meet = meets(solids[n], a, b, r);
+  }
+  return meet;
 }
 
 void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const {
+  const Solids solids = impl_->solids(shapes_);
   std::vector<int> ids(shapes_.size());
   if (!shapes_.empty() && is_in_reach(p) && std::abs(reach) <= kTreeReach) {
     ids = shapes_within(impl_->nodes.data(), p, reach);
@@ -204,7 +253,7 @@ void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const 
     std::iota(ids.begin(), ids.end(), 0);
   }
   for (const int id : ids) {
-    const Shape& shape = shapes_[std::size_t(id)];
+    const Indexed shape = solids[std::size_t(id)];
     const double distance = signed_distance(shape, p);
     if (distance > reach) {
       continue;
@@ -248,10 +297,13 @@ std::vector<Threat> threats_of(const std::vector<Shape>& shapes) {
 }
 
 void ObstacleSet::rasterize(VoxelGrid& grid) const {
-  for (const Shape& shape : shapes_) {
+  const Solids solids = impl_->solids(shapes_);
+  for (std::size_t n = 0; n < shapes_.size(); ++n) {
+    const Indexed solid = solids[n];
     kit::rasterize(
-        grid, altiplan::bounds(shape), [&](const Vec3& p) { return signed_distance(shape, p); },
-        [&](const Box& box, double by) { return overlaps(shape, box, by); });
+        grid, altiplan::bounds(shapes_[n]),
+        [&](const Vec3& p) { return signed_distance(solid, p); },
+        [&](const Box& box, double by) { return overlaps(solid, box, by); });
   }
 }
 }  // namespace altiplan::kit

@@ -15,7 +15,7 @@ double horizontal(const Vec3& v) { return std::hypot(v.x(), v.y()); }
 /// Turned about the vertical until it makes at most that angle with `incoming`.
 Vec3 turned_level(const Vec3& incoming, const Vec3& way, double most) {
   const double run = horizontal(way);
-  if (run == 0 || horizontal(incoming) == 0 || turn_angle_horizontal(incoming, way) <= most) {
+  if (turn_angle_horizontal(incoming, way) <= most) {
     return way;
   }
   const double before = std::atan2(incoming.y(), incoming.x());
@@ -44,19 +44,19 @@ Vec3 levelled(const Vec3& way, double most) {
 }
 }  // namespace
 
-Vec3 bent(const std::optional<Vec3>& incoming, const Vec3& wanted, double range,
+Vec3 bent(const std::optional<Approach>& before, const Vec3& at, const Vec3& wanted, double range,
           const Limits& limits) {
   Vec3 way = wanted;
-  if (incoming) {
-    way = turned_level(*incoming, way, limits.max_turn_horizontal);
+  if (before) {
+    const Vec3 incoming = at - before->from;
+    way = turned_level(before->heading_at(at), way, limits.max_turn_horizontal);
     double most = limits.max_turn_space;
     if (limits.min_turn_radius > 0) {
-      // Of two legs of one length, which the shorter of these makes sure of.
-      const double leg = std::min({wanted.norm(), range, incoming->norm()});
-      most = std::min(most, 2 * std::asin(std::min(1.0, leg / (2 * limits.min_turn_radius))));
+      const double leg = std::min({wanted.norm(), range, incoming.norm()});
+      most = std::min(most, 2 * std::atan(leg / (2 * limits.min_turn_radius)));
     }
-    if (most < kPi) {
-      way = turned_in_space(*incoming, way, most);
+    if (most < kPi && !incoming.isZero(0)) {
+      way = turned_in_space(incoming, way, most);
     }
   }
   return limits.max_climb < kPi / 2 ? levelled(way, limits.max_climb) : way;

@@ -172,14 +172,9 @@ void StarSearch::rewire(Node x_new, Node x_near) {
   LegTree& legs = memory_.legs;
   const Vec3& a = legs.point(x_new);
   const Vec3& b = legs.point(x_near);
-  if (!rules_.ok(behind(x_new), a, b)) {
+  if (const auto before = behind(x_new);
+      !rules_.ok(before, a, b) || !turns_follow(onward(before, a), x_near)) {
     return;
-  }
-  for (Node child = legs.first_child(x_near); child != LegTree::kNone;
-       child = legs.sibling(child)) {
-    if (!rules_.follows(a, b, legs.point(child))) {
-      return;
-    }
   }
   legs.move(x_near, x_new);
   ++rewired_;
@@ -211,13 +206,23 @@ double StarSearch::near_radius() {
   return radius_;
 }
 
-/// The point before the node, where a rule asks for it.
-std::optional<Vec3> StarSearch::behind(Node node) const {
-  if (!rules_.looks_back()) {
-    return std::nullopt;
+/// How the vehicle comes to the node, where a rule asks for it.
+std::optional<Approach> StarSearch::behind(Node node) const {
+  return rules_.looks_back() ? memory_.legs.approach(node, 0, before_start_) : std::nullopt;
+}
+
+/// Whether the turns into the legs below a node hold for a vehicle that comes to it by `before`;
+/// past a leg without a heading, those that follow too.
+bool StarSearch::turns_follow(const Approach& before, Node node) {
+  const LegTree& legs = memory_.legs;
+  const Vec3& at = legs.point(node);
+  for (Node child = legs.first_child(node); child != LegTree::kNone; child = legs.sibling(child)) {
+    if (!rules_.follows(before, at, legs.point(child)) ||
+        (!has_heading(legs.point(child) - at) && !turns_follow(onward(before, at), child))) {
+      return false;
+    }
   }
-  const Node parent = memory_.legs.parent(node);
-  return parent == LegTree::kNone ? before_start_ : std::optional<Vec3>(memory_.legs.point(parent));
+  return true;
 }
 
 void StarSearch::add_root() {

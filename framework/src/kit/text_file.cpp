@@ -2,10 +2,6 @@
 #include "text_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "altiplan/error.hpp"
 
@@ -15,28 +11,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMaxDepth = 64;
-constexpr std::uintmax_t kMaxBytes = 64'000'000;
 }  // namespace
-
-std::string read_text(const std::string& file) {
-  if (std::filesystem::is_directory(file)) {
-    throw Error(file + ": is a folder, expected a file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Error(file + ": cannot be read: " + std::strerror(errno));
-  }
-  // A device or a pipe has no size: it is read up to the limit.
-  std::string text;
-  char block[65536];
-  while (stream.read(block, sizeof block), stream.gcount() > 0) {
-    text.append(block, std::size_t(stream.gcount()));
-    if (text.size() > kMaxBytes) {
-      throw Error(file + ": is larger than 64 MB");
-    }
-  }
-  return text;
-}
 
 std::size_t line_at(const std::string& text, std::size_t offset) {
   const auto end = text.begin() + std::ptrdiff_t(std::min(offset, text.size()));

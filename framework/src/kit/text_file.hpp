@@ -6,9 +6,6 @@
 
 namespace altiplan::kit {
 
-/// The whole file; throws Error where it cannot be read or is over 64 MB.
-std::string read_text(const std::string& file);
-
 /// Throws Error with the line where the text is not JSON; `file` is for messages.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 

@@ -14,7 +14,7 @@ struct Params {
         .unit("m")
         .range(0, 1000000)
         .required()
-        .doc("least radius of the circle through a waypoint and its two neighbours");
+        .doc("least radius of the turn at a waypoint, and along a track");
   }
 };
 

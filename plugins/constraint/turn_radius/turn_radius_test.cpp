@@ -29,15 +29,16 @@ TEST(TurnRadius, OnlyTightens) {
   EXPECT_EQ(limits.min_turn_radius, 200);
 }
 
-TEST(TurnRadius, TheJudgeMeasuresTheCircleThroughThreePoints) {
-  // A right angle over a chord of 1000 m: by Thales' theorem the radius is 500 m.
+TEST(TurnRadius, TheJudgeMeasuresTheFilletOfHalfOfEachLeg) {
+  // A right angle between legs of 500 sqrt(2) m: the circle that touches both at their middles.
+  const double radius = 250 * std::sqrt(2);
   const Route route{{0, 0, 100}, {500, 500, 100}, {1000, 0, 100}};
-  EXPECT_TRUE(check(route, problem("{min_m: 500}")).ok());
-  const CheckResult result = check(route, problem("{min_m: 501}"));
+  EXPECT_TRUE(check(route, problem("{min_m: 353.5}")).ok());
+  const CheckResult result = check(route, problem("{min_m: 354}"));
   ASSERT_EQ(result.violations.size(), 1u);
   EXPECT_EQ(result.violations[0].constraint, "turn_radius");
-  EXPECT_NEAR(result.violations[0].value, 500, 1e-6);
-  EXPECT_NEAR(result.violations[0].limit, 501, 1e-6);
+  EXPECT_NEAR(result.violations[0].value, radius, 1e-6);
+  EXPECT_NEAR(result.violations[0].limit, 354, 1e-6);
 }
 
 TEST(TurnRadius, HoldsForTracksToo) {

@@ -2,10 +2,10 @@
 // CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by their number.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "altiplan/kit/input_file.hpp"
 #include "altiplan/kit/polygon.hpp"
 #include "buildings.hpp"
 
@@ -15,14 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMaxDepth = 64;
-
-std::string read(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Error(file + ": cannot be read");
-  }
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
+constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
 Json parse(const std::string& file, const std::string& text) {
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
@@ -241,7 +234,7 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 }  // namespace
 
 bool is_city_json(const std::string& file) {
-  const std::string text = read(file);
+  const std::string text = kit::read_file(file, kAnySize);
   if (text.find("CityJSON") == text.npos) {
     return false;  // other files are parsed by their reader alone
   }
@@ -251,7 +244,7 @@ bool is_city_json(const std::string& file) {
 
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m) {
-  const Json json = parse(file, read(file));
+  const Json json = parse(file, kit::read_file(file, kAnySize));
   Buildings buildings;
   std::size_t others = 0;
   std::string at = "it";

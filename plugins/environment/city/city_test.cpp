@@ -7,6 +7,7 @@
 #include "altiplan/random.hpp"
 #include "altiplan/world.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::testing {
@@ -187,7 +188,7 @@ TEST(City, CollidersAreNorthEastUp) {
 }
 
 std::string sample(const char* name) {
-  return std::string(ALTIPLAN_SOURCE_DIR) + "/plugins/environment/city/" + name;
+  return altiplan::folders::source().string() + "/plugins/environment/city/" + name;
 }
 
 TEST(City, CityJsonIsNeverSmallerThanItsModel) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
+#include "altiplan/kit/input_file.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {
@@ -62,10 +62,7 @@ std::optional<std::array<double, 6>> box_of(std::string_view line) {
 }  // namespace
 
 Buildings read_colliders(const std::string& file, const Site& site) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Error(file + ": cannot be read");
-  }
+  kit::InputFile stream(file);
   std::string line;
   int number = 0;
   const auto next = [&] {

@@ -112,8 +112,7 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
       throw Error(file + ": '" + feature.id + "': " + error.what());
     }
   }
-  buildings.notes = {std::to_string(buildings.list.size()) + " buildings, " +
-                         std::to_string(json.skipped) + " features without an area skipped",
+  buildings.notes = {std::to_string(buildings.list.size()) + " buildings, " + json.skipped_text(),
                      rule.note()};
   if (!json.copyright.empty()) {
     buildings.notes.push_back("attribution: " + json.copyright);

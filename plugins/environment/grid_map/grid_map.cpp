@@ -3,9 +3,9 @@
 // Pathfinding", IEEE Trans. Computational Intelligence and AI in Games 4(2), 2012 (.map): rows of
 // characters, the first row northernmost.
 #include <charconv>
-#include <fstream>
 
 #include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -33,11 +33,8 @@ struct Params {
 /// The file's lines, with their numbers for messages.
 class Lines {
  public:
-  explicit Lines(const std::string& file) : file_(file), stream_(file, std::ios::binary) {
-    if (!stream_) {
-      throw ParameterError("file", file + ": cannot be read");
-    }
-  }
+  /// Throws InputError where it is no file to be read.
+  explicit Lines(const std::string& file) : file_(file), stream_(file) {}
   [[noreturn]] void refuse(const std::string& why) const {
     throw ParameterError("file", file_ + ":" + std::to_string(number_) + ": " + why);
   }
@@ -77,7 +74,7 @@ class Lines {
 
  private:
   std::string file_;
-  std::ifstream stream_;
+  kit::InputFile stream_;
   int number_ = 0;
 };
 
@@ -89,7 +86,11 @@ std::string printable(char c) {
 }
 
 VoxelGrid read(const Params& params) {
-  Lines lines(params.file.text);
+  const std::string& file = params.file.text;
+  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+    throw ParameterError("file", file + ": " + why);
+  }
+  Lines lines(file);
   if (const std::string type = lines.next("'type octile'"); type != "type octile") {
     lines.refuse("expected 'type octile', found " + excerpt(type));
   }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "altiplan/kit/ground.hpp"
+#include "altiplan/kit/ground_within.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
 #include "surface.hpp"
@@ -99,8 +100,8 @@ class Hills final : public Environment {
  public:
   Hills(const Params& params, const Site& site)
       : ground_(make(params, site)),
-        count_(params.peaks.empty() ? std::size_t(params.count.value_or(16)) : params.peaks.size()),
-        vehicle_radius_(site.vehicle.radius_m) {}
+        count_(params.peaks.empty() ? std::size_t(params.count.value_or(16))
+                                    : params.peaks.size()) {}
 
  private:
   // The ground goes on for ever; a scenario says how much of it is flown over (volume).
@@ -145,8 +146,17 @@ class Hills final : public Environment {
       const double half = std::hypot(to.x() - from.x(), to.y() - from.y()) / 2;
       return ground_.max_slope(middle.x(), middle.y(), half + within);
     };
+    const auto meets = [&](const Vec3& from, const Vec3& to, double keep) {
+      const Box box = leg_box(from, to).grown(keep);
+      kit::GroundWithin ground(from, to, keep);
+      ground.search(box.min.x(), box.min.y(), box.max.x(), box.max.y(),
+                    [this](double x0, double y0, double x1, double y1) {
+                      return ground_.piece(x0, y0, x1, y1);
+                    });
+      return ground.found();
+    };
     const double enough = kit::height_for(r - kLengthTolerance, ground_.max_slope());
-    return kit::too_near_ground(a, b, r, {ground_.top(), enough}, kShortest, gap, slope);
+    return kit::too_near_ground(a, b, r, {ground_.top(), enough}, kShortest, gap, slope, meets);
   }
 
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
@@ -184,11 +194,8 @@ class Hills final : public Environment {
     });
   }
 
-  // As the terrain's: a sphere of the vehicle's size may be kept off by the slope though the ground
-  // is a little farther away than its radius.
-  double do_slack() const override {
-    return vehicle_radius_ * (std::hypot(1, ground_.max_slope()) - 1);
-  }
+  // The search beside the edge of the plateau ends there.
+  double do_slack() const override { return 1e-5; }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   std::vector<std::string> do_notes() const override {
@@ -198,7 +205,6 @@ class Hills final : public Environment {
 
   hills::Surface ground_;
   std::size_t count_;
-  double vehicle_radius_;
 };
 }  // namespace
 

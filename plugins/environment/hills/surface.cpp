@@ -230,6 +230,14 @@ double Surface::height_bound(double x0, double y0, double x1, double y1) const {
                             bend(x, y, r) * r * r / 2);
 }
 
+altiplan::kit::GroundPiece Surface::piece(double x0, double y0, double x1, double y1) const {
+  const double x = (x0 + x1) / 2;
+  const double y = (y0 + y1) / 2;
+  const Local at = local(x, y);
+  const double r = std::hypot(x1 - x0, y1 - y0) / 2;
+  return {x, y, at.sum, at.dx, at.dy, r > 0 ? bend(x, y, r) * r * r / 2 : 0, cap_};
+}
+
 namespace {
 
 /// Factors along one axis of a bell, over nodes and intervals. Its middle is m, its width s, and

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "altiplan/geometry.hpp"
+#include "altiplan/kit/ground_within.hpp"
 
 namespace hills {
 
@@ -31,6 +32,8 @@ class Surface {
   double max_slope(double x, double y, double r) const;
   /// No ground in the closed box is higher; one evaluation, loose in a large box.
   double height_bound(double x0, double y0, double x1, double y1) const;
+  /// The ground over the closed box.
+  altiplan::kit::GroundPiece piece(double x0, double y0, double x1, double y1) const;
   /// Intervals along an axis: middles `step` apart from `first`, each `half` to both sides.
   struct Intervals {
     double first, step, half;

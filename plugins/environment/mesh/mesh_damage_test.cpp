@@ -231,9 +231,11 @@ TEST_F(DamagedMesh, WhatIsNoModelIsRefused) {
   expect_refused("a.stl", obj(), "is no STL file");
   expect_refused("a.obj", stl(), ".obj:1: expected a statement of an OBJ file");
   std::filesystem::create_directory(folder_ / "folder.stl");
-  EXPECT_NE(mesh_refusal(folder_ / "folder.stl").find("cannot be read"), std::string::npos);
+  EXPECT_NE(mesh_refusal(folder_ / "folder.stl").find("is a folder, expected a file"),
+            std::string::npos);
   std::filesystem::create_symlink("/dev/zero", folder_ / "endless.obj");
-  EXPECT_NE(mesh_refusal(folder_ / "endless.obj").find("cannot be read"), std::string::npos);
+  EXPECT_NE(mesh_refusal(folder_ / "endless.obj").find("is a device, expected a file"),
+            std::string::npos);
 }
 
 TEST_F(DamagedMesh, EveryTruncationIsRefusedOrASolid) {

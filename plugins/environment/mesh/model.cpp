@@ -11,9 +11,9 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "text_check.hpp"
 
 namespace altiplan::mesh {
@@ -31,22 +31,17 @@ constexpr std::size_t kStlTriangle = 50;
 }
 
 std::string read(const std::string& file, std::int64_t max_triangles) {
-  std::error_code error;
-  const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || error || !fs::is_regular_file(file, error)) {
-    refuse(file, "cannot be read");
+  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+    refuse(file, why);
   }
+  const std::uintmax_t size = fs::file_size(file);
   if (size / kBytesOfTriangle > std::uintmax_t(max_triangles)) {
     throw ParameterError("max_triangles",
                          file + ": has " + std::to_string(size) + " bytes, more than " +
                              std::to_string(kBytesOfTriangle) + " for each of max_triangles (" +
                              std::to_string(max_triangles) + ")");
   }
-  std::string bytes(size, '\0');
-  stream.read(bytes.data(), std::streamsize(size));
-  bytes.resize(std::size_t(stream.gcount()));
-  return bytes;
+  return kit::read_file(file, kBytesOfTriangle * (std::uintmax_t(max_triangles) + 1));
 }
 
 /// A binary file is told by its length, as `solid` may stand at its beginning too.

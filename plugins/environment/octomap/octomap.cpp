@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Occupancy maps of OctoMap as the finest voxels of their octree.
 #include <algorithm>
+#include <mutex>
 
 #include "altiplan/kit/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/what_blocks.hpp"
 #include "octree.hpp"
 
 namespace altiplan::octomap {
@@ -31,7 +33,8 @@ struct Params {
 };
 
 struct Read {
-  VoxelGrid cells;
+  VoxelGrid cells;     ///< what is blocked
+  VoxelGrid occupied;  ///< what of it was measured
   std::vector<std::string> notes;
 };
 
@@ -68,9 +71,9 @@ GridSpec spec_of(const Octree& tree, const Params& params) {
 
 Read read(const Params& params) {
   const Octree tree(params.file.text);
-  Read result{VoxelGrid(spec_of(tree, params)), {}};
+  const GridSpec spec = spec_of(tree, params);
+  Read result{VoxelGrid(spec), VoxelGrid(spec), {}};
   VoxelGrid& cells = result.cells;
-  const GridSpec& spec = cells.spec();
   Cell low{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     low[axis] = int(std::lround(spec.origin[Eigen::Index(axis)] / tree.resolution())) + kOriginKey;
@@ -86,14 +89,12 @@ Read read(const Params& params) {
   tree.leaves(params.occupied_from, [&](const Leaf& leaf) {
     ++leaves[leaf.occupied];
     voxels[leaf.occupied] += std::int64_t(leaf.edge) * leaf.edge * leaf.edge;
-    if (leaf.occupied == unknown_blocked) {
-      return;  // as it is already
-    }
     const int i = leaf.key[0] - low[0];
     for (int k = leaf.key[2] - low[2]; k < leaf.key[2] - low[2] + leaf.edge; ++k) {
       for (int j = leaf.key[1] - low[1]; j < leaf.key[1] - low[1] + leaf.edge; ++j) {
         if (leaf.occupied) {
           cells.block_run(i, i + leaf.edge - 1, j, k);
+          result.occupied.block_run(i, i + leaf.edge - 1, j, k);
         } else {
           cells.free_run(i, i + leaf.edge - 1, j, k);
         }
@@ -113,12 +114,15 @@ Read read(const Params& params) {
   return result;
 }
 
-class OctoMap final : public kit::CellLayer {
+class OctoMap final : public kit::CellLayer, public WhatBlocks {
  public:
   OctoMap(const Params& params, const Site&) : OctoMap(checked(params)) {}
 
  private:
-  explicit OctoMap(Read map) : CellLayer(std::move(map.cells)), notes_(std::move(map.notes)) {}
+  explicit OctoMap(Read map)
+      : CellLayer(std::move(map.cells)),
+        occupied_(std::move(map.occupied)),
+        notes_(std::move(map.notes)) {}
 
   static Read checked(const Params& params) {
     try {
@@ -131,8 +135,31 @@ class OctoMap final : public kit::CellLayer {
   }
 
   std::vector<std::string> do_notes() const override { return notes_; }
+  std::optional<Drawing> do_drawing() const override {
+    Drawing drawing = kit::drawing_of(kit::boxes_of(occupied_));
+    VoxelGrid unknown = cells();
+    for (int k = 0; k < unknown.spec().counts[2]; ++k) {
+      for (int j = 0; j < unknown.spec().counts[1]; ++j) {
+        occupied_.for_each_run(j, k,
+                               [&](int first, int last) { unknown.free_run(first, last, j, k); });
+      }
+    }
+    Drawing rest = kit::drawing_of(kit::boxes_of(unknown), Drawn::Role::unknown);
+    std::move(rest.shapes.begin(), rest.shapes.end(), std::back_inserter(drawing.shapes));
+    return drawing;
+  }
+  std::string do_what_blocks(const Vec3& a, const Vec3& b, double distance) const override {
+    std::call_once(asked_, [&] { measured_.emplace(occupied_); });
+    const bool is_measured = measured_->blocked(a, b, distance < 0 ? 0 : distance + kNearer);
+    return is_measured ? "" : "unknown space, treated as blocked";
+  }
 
+  static constexpr double kNearer = 1e-5;  ///< m: what is no nearer than that is as near
+
+  VoxelGrid occupied_;
   std::vector<std::string> notes_;
+  mutable std::once_flag asked_;  ///< for a message, seldom
+  mutable std::optional<kit::CellLayer> measured_;
 };
 }  // namespace
 }  // namespace altiplan::octomap

@@ -6,6 +6,7 @@
 
 #include <cstring>
 
+#include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/world.hpp"
@@ -139,6 +140,83 @@ TEST(OctoMap, RealMapsHaveTheirVoxels) {
   EXPECT_EQ(known("mbzirc_challenge3.bt"),
             "137342 occupied leaves (148633 voxels), 224494 free (1970679)");
   EXPECT_EQ(known("laberynth.bt"), "93888 occupied leaves (469886 voxels), 0 free (0)");
+}
+
+/// A floor of 10 x 10 occupied voxels of 1 m with free ones above it, in a box whose upper half
+/// nobody has measured.
+std::filesystem::path half_known(const TempFolder& folder) {
+  octomap::OcTree tree(1);
+  for (float x = 0.5F; x < 10; ++x) {
+    for (float y = 0.5F; y < 10; ++y) {
+      tree.updateNode(x, y, 0.5F, true);
+      for (float z = 1.5F; z < 5; ++z) {
+        tree.updateNode(x, y, z, false);
+      }
+    }
+  }
+  tree.updateNode(9.5F, 9.5F, 9.5F, false);
+  auto file = folder / "half.bt";
+  EXPECT_TRUE(tree.writeBinary(file.string()));
+  return file;
+}
+
+/// An occupied voxel of 1 m in unknown space, between two rows of free ones.
+std::filesystem::path touching(const TempFolder& folder) {
+  octomap::OcTree tree(1);
+  for (float x = 0.5F; x < 4; ++x) {
+    tree.updateNode(x, 0.5F, 0.5F, false);
+    tree.updateNode(x, 3.5F, 0.5F, false);
+  }
+  tree.updateNode(0.5F, 2.5F, 0.5F, true);
+  auto file = folder / "touching.bt";
+  EXPECT_TRUE(tree.writeBinary(file.string()));
+  return file;
+}
+
+TEST(OctoMap, UnknownSpaceIsDrawnApart) {
+  const TempFolder folder;
+  const auto volume = [](const Environment& layer, altiplan::Drawn::Role role) {
+    double sum = 0;
+    const std::optional<Drawing> drawing = layer.drawing();
+    for (const altiplan::Drawn& drawn : drawing->shapes) {
+      const Box& box = std::get<BoxShape>(drawn.shape).box;
+      sum += drawn.role == role ? (box.max - box.min).prod() : 0;
+    }
+    return sum;
+  };
+  const auto blocked = load(half_known(folder));
+  EXPECT_NEAR(volume(*blocked, altiplan::Drawn::Role::obstacle), 100, 1e-6);
+  EXPECT_NEAR(volume(*blocked, altiplan::Drawn::Role::unknown), 499, 1e-6);
+  const auto free = load(half_known(folder), ", unknown: free");
+  EXPECT_NEAR(volume(*free, altiplan::Drawn::Role::obstacle), 100, 1e-6);
+  EXPECT_EQ(volume(*free, altiplan::Drawn::Role::unknown), 0);
+}
+
+TEST(OctoMap, TheJudgeSaysWhereUnknownSpaceBlocks) {
+  const TempFolder folder;
+  World world = World().with({"map", "octomap", load(half_known(folder)), true});
+  const Request request =
+      request_in(std::move(world), {1, 1, 3}, {8, 8, 3}, {{0, 0, 0}, {10, 10, 10}});
+  const auto said = [&](const Vec3& a, const Vec3& b, double clearance) {
+    Request asked = request;
+    asked.limits.min_clearance = clearance;
+    const auto found = leg_violations(std::nullopt, a, b, asked, 0);
+    return found.empty() ? "" : found.front().message;
+  };
+  const std::string why = "(unknown space, treated as blocked)";
+  EXPECT_EQ(said({1, 1, 3}, {8, 8, 3}, 0.5), "");
+  EXPECT_EQ(said({1, 1, 4.75}, {8, 8, 4.75}, 0.5),
+            "comes to 0.25 m of 'map' " + why + ", where 0.50 m of clearance are needed");
+  EXPECT_EQ(said({1, 1, 3}, {8, 8, 7}, 0.5), "lies up to 2.00 m inside what 'map' blocks " + why +
+                                                 ", where 0.50 m of clearance are needed");
+  EXPECT_EQ(said({1, 1, 1.25}, {8, 8, 1.25}, 0.5),
+            "comes to 0.25 m of 'map', where 0.50 m of clearance are needed");
+  EXPECT_NE(point_problem({5, 5, 7}, request).find(why), std::string::npos);
+  // Inside of unknown space, where it touches what was measured.
+  const Request beside = request_in(World().with({"map", "octomap", load(touching(folder)), true}),
+                                    {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {{0, 0, 0}, {10, 10, 10}});
+  EXPECT_NE(point_problem({1, 2.5, 0.5}, beside).find(why), std::string::npos);
+  EXPECT_EQ(point_problem({5, 5, 0.5}, request).find(why), std::string::npos);
 }
 
 std::string header(const std::string& kind, const std::string& lines) {

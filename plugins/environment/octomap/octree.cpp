@@ -4,30 +4,18 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 
 namespace altiplan::octomap {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
-std::string read(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) {
-    throw Error(file + ": cannot be read");
-  }
-  if (const auto size = stream.tellg(); size < 0 || std::size_t(size) > kMaxBytes) {
-    throw Error(file + ": has more than " + std::to_string(kMaxBytes >> 20) + " MiB");
-  }
-  stream.seekg(0);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 }  // namespace
 
-Octree::Octree(const std::string& file) : file_(file), bytes_(read(file)) {
+Octree::Octree(const std::string& file) : file_(file), bytes_(kit::read_file(file, kMaxBytes)) {
   std::string id;
   int number = 0;
   const auto refuse = [&](const std::string& why) {

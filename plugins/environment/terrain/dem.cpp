@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "whole.hpp"
 
 namespace terrain {
@@ -27,19 +28,31 @@ namespace {
 
 using gdal::api;
 
+/// GDAL also opens what stands beside the file under its name (.hdr, .prj, .aux.xml …).
+void expect_files_beside(const Params& params) {
+  const std::filesystem::path file = std::filesystem::absolute(params.file.text);
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), ignored)) {
+    const std::filesystem::path& beside = entry.path();
+    if ((beside.stem() == file.stem() || beside.stem() == file.filename() ||
+         beside.stem().stem() == file.filename()) &&
+        entry.is_other(ignored)) {
+      refuse(params, "'" + beside.filename().string() + "' beside it " +
+                         altiplan::kit::why_unreadable(beside.string()));
+    }
+  }
+}
+
 gdal::Dataset open(const Params& params) {
   const std::string& file = params.file.text;
   if (file.rfind("/vsi", 0) == 0 || file.find("://") != std::string::npos ||
       file.find(":/") != std::string::npos) {
     refuse(params, "expected a file of this machine, found a URL or one of GDAL's virtual files");
   }
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    refuse(params, "no such file");
+  if (const std::string why = altiplan::kit::why_unreadable(file); !why.empty()) {
+    refuse(params, why);
   }
-  if (!std::filesystem::is_regular_file(file, error)) {
-    refuse(params, "expected a file, found a folder or a device");
-  }
+  expect_files_beside(params);
   const char* const drivers[] = {"GTiff", "SRTMHGT", "AAIGrid", "DTED", "ENVI", nullptr};
   gdal::Dataset dataset(api().GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
                                          drivers, nullptr, nullptr));

@@ -13,6 +13,7 @@
 
 #include "altiplan/kit/ground.hpp"
 #include "altiplan/plugin.hpp"
+#include "ground_search.hpp"
 #include "model.hpp"
 
 namespace {
@@ -126,8 +127,12 @@ class Terrain final : public Environment {
       return false;
     }
     // From here on only what is near the leg counts.
+    const auto meets = [&](const Vec3& from, const Vec3& to, double within) {
+      return terrain::is_within(field, from, to, within);
+    };
     return kit::too_near_ground(a, b, r, {top_near(field, a, b, r), enough},
-                                std::max(field.spacing()[0], field.spacing()[1]), gap, slope);
+                                std::max(field.spacing()[0], field.spacing()[1]), gap, slope,
+                                meets);
   }
 
   /// Whether a leg beyond one side or corner of the posts is too near to their edge or the ground

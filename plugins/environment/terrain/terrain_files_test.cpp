@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/stat.h>
+
 #include <algorithm>
 
 #include "terrain_files_test.hpp"
@@ -115,6 +117,17 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
   const auto undeclared = grid("10 10 10 10 10\n10 -9999 5 10 10\n1 1 1 1 1\n1 1 1 1 1\n");
   EXPECT_SAYS(refusal(undeclared), "-9999 at column 1, row 1");
   EXPECT_EQ(refusal(undeclared, "nodata: -9999, voids: neighbours"), "");
+}
+
+TEST_F(MadeFiles, PipesAreNeverWaitedFor) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.tif").c_str(), 0600), 0);
+  EXPECT_SAYS(refusal(folder_ / "pipe.tif"), "is a pipe, expected a file");
+  for (const char* beside : {"heights.prj", "heights.asc.aux.xml"}) {
+    const auto file = write("heights.asc", "nothing");
+    ASSERT_EQ(::mkfifo((folder_ / beside).c_str(), 0600), 0);
+    EXPECT_SAYS(refusal(file), "'" + std::string(beside) + "' beside it is a pipe");
+    std::filesystem::remove(folder_ / beside);
+  }
 }
 
 TEST_F(MadeFiles, DamagedAndForeignFilesAreRefused) {

@@ -2,9 +2,9 @@
 // Voxel maps in the format of D. Brewer and N. Sturtevant, "Benchmarks for Pathfinding in 3D Voxel
 // Space", SoCS 2018 (.3dmap): the counts, then one blocked voxel a line.
 #include <charconv>
-#include <fstream>
 
 #include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/input_file.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -43,10 +43,10 @@ std::optional<Cell> three(std::string_view text) {
 
 VoxelGrid read(const Params& params) {
   const std::string file = params.file.text;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw ParameterError("file", file + ": cannot be read");
+  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+    throw ParameterError("file", file + ": " + why);
   }
+  kit::InputFile stream(file);
   std::string line;
   std::int64_t number = 1;
   const auto refuse = [&](const std::string& expected) {

@@ -11,11 +11,24 @@ using Point2 = std::array<double, 2>;
 // Rounding of a depth, metres.
 constexpr double kRounding = 1e-9;
 
+// Of the greatest coordinate: far more than distances in plan may err.
+constexpr double kBeside = 1e-12;
+
 // Shares of the leg at which its depth in a zone may pass through `depth`: where it crosses the
 // floor and ceiling moved inward by it, and where it is as far from an edge of the outline.
 class Breaks {
  public:
-  Breaks(const Vec3& a, const Vec3& b, double depth) : a_(a), b_(b), depth_(depth) {}
+  Breaks(const Vec3& a, const Vec3& b, double depth)
+      : a_(a),
+        b_(b),
+        depth_(depth),
+        reach_(std::abs(depth) + kBeside * (1 + a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff())),
+        near_(leg_box(a, b).grown(reach_)) {
+    const double length = std::hypot(b.x() - a.x(), b.y() - a.y());
+    if (length > 0) {
+      across_ = {(a.y() - b.y()) / length, (b.x() - a.x()) / length};
+    }
+  }
 
   void add(const Shape& shape) {
     if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
@@ -57,10 +70,25 @@ class Breaks {
     add_share(middle - half);
     add_share(middle + half);
   }
+  // Whether the edge is farther from the leg than it would have to be for a break.
+  bool is_far(const Point2& e, const Point2& f) const {
+    const auto beside = [&](const Point2& p) {
+      return across_[0] * (p[0] - a_.x()) + across_[1] * (p[1] - a_.y());
+    };
+    const auto both_beyond = [](double one, double other, double low, double high) {
+      return (one < low && other < low) || (one > high && other > high);
+    };
+    return both_beyond(e[0], f[0], near_.min.x(), near_.max.x()) ||
+           both_beyond(e[1], f[1], near_.min.y(), near_.max.y()) ||
+           both_beyond(beside(e), beside(f), -reach_, reach_);
+  }
   void add_ring(const std::vector<Point2>& ring) {
     for (std::size_t n = 0; n < ring.size(); ++n) {
       const Point2& e = ring[n];
-      const Point2& f = ring[(n + 1) % ring.size()];
+      const Point2& f = ring[n + 1 < ring.size() ? n + 1 : 0];
+      if (is_far(e, f)) {
+        continue;
+      }
       const double ex = f[0] - e[0];
       const double ey = f[1] - e[1];
       const double length = std::sqrt(ex * ex + ey * ey);
@@ -75,6 +103,9 @@ class Breaks {
   const Vec3& a_;
   const Vec3& b_;
   double depth_;
+  double reach_;
+  Box near_;
+  Point2 across_{0, 0};
   std::vector<double> shares_{0, 1};
 };
 
@@ -99,11 +130,11 @@ bool is_convex(const Shape& shape) {
 
 // Whether a convex zone is at least `depth` deep all over the box: depth is a concave function, so
 // the corners decide.
-bool holds_box(const Shape& shape, const Box& box, double depth) {
+bool holds_box(const kit::ObstacleSet& zone, const Box& box, double depth) {
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 p((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
                  (corner & 4 ? box.max : box.min).z());
-    if (-signed_distance(shape, p) < depth - kRounding) {
+    if (-zone.clearance(p) < depth - kRounding) {
       return false;
     }
   }
@@ -147,10 +178,10 @@ void KeepIn::rasterize(VoxelGrid& grid) const {
   const double inflation = spec.inflation;
   const bool centre_rule = spec.rule == GridSpec::Rule::centre;
   const double half_diagonal = spec.cell.norm() / 2;
-  std::vector<const Shape*> convex;
+  std::vector<kit::ObstacleSet> convex;
   for (const Shape& zone : zones_.shapes()) {
     if (is_convex(zone)) {
-      convex.push_back(&zone);
+      convex.emplace_back(std::vector<Shape>{zone});
     }
   }
   const auto is_free = [&](const Cell& c) {
@@ -162,7 +193,7 @@ void KeepIn::rasterize(VoxelGrid& grid) const {
     return depth >= inflation + half_diagonal ||
            (depth >= inflation - kRounding &&
             std::any_of(convex.begin(), convex.end(),
-                        [&](const Shape* zone) { return holds_box(*zone, box, inflation); }));
+                        [&](const auto& zone) { return holds_box(zone, box, inflation); }));
   };
   for (int k = 0; k < spec.counts[2]; ++k) {
     for (int j = 0; j < spec.counts[1]; ++j) {

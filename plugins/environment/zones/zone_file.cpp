@@ -61,6 +61,9 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
     kit::expect_properties(file, json,
                            {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
   }
+  if (json.features.empty() && !json.flat.empty()) {
+    throw Error(file + ": there is no zone in it: " + json.skipped_text());
+  }
   FileZones result;
   std::map<std::string, std::size_t> types;
   std::size_t skipped = 0;
@@ -80,7 +83,7 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
   }
   result.notes.push_back(std::to_string(json.features.size()) + " polygons read" +
                          (rules.type.empty() ? "" : " (" + counted(types) + ")") + ", " +
-                         std::to_string(json.skipped) + " features without an area skipped" +
+                         json.skipped_text() +
                          (skipped > 0 ? ", " + std::to_string(skipped) + " by their type" : ""));
   return result;
 }
@@ -95,7 +98,8 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   }
   const kit::MissionFile mission = kit::read_mission(file);
   if (mission.zones.empty()) {
-    throw Error(file + ": there is no zone in it");
+    throw Error(file + ": there is no zone in it" +
+                (mission.flat.empty() ? "" : ": no area in " + kit::names_text(mission.flat)));
   }
   FileZones result;
   for (const MissionZone& zone : mission.zones) {
@@ -106,8 +110,10 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
     }
     expect_limits(read);
   }
-  result.notes.push_back(std::to_string(mission.zones.size()) + " zones read, " +
-                         std::to_string(mission.items.size()) + " places of a route let be");
+  result.notes.push_back(
+      std::to_string(mission.zones.size()) + " zones read, " +
+      std::to_string(mission.items.size()) + " places of a route let be" +
+      (mission.flat.empty() ? "" : "; skipped, without an area: " + kit::names_text(mission.flat)));
   result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
   return result;
 }

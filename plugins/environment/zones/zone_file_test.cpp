@@ -102,6 +102,84 @@ TEST_F(ZoneFile, TypesAreCheckedBeforeTheyMislead) {
             std::string::npos);
 }
 
+/// A Feature of that name whose geometry has these coordinates.
+std::string polygon(const std::string& id, const std::string& coordinates,
+                    const std::string& type = "Polygon") {
+  return R"({"type": "Feature", "id": ")" + id + R"(", "properties": {}, "geometry": {"type": ")" +
+         type + R"(", "coordinates": )" + coordinates + "}}";
+}
+
+std::string collection(const std::vector<std::string>& features) {
+  std::string text;
+  for (const std::string& one : features) {
+    text += (text.empty() ? "" : ",") + one;
+  }
+  return R"({"type": "FeatureCollection", "features": [)" + text + "]}";
+}
+
+const std::vector<std::string> kFlat = {
+    "[]",
+    "[[]]",
+    "[[[25, 60]]]",
+    "[[[25, 60], [25, 60], [25, 60], [25, 60]]]",
+    "[[[25, 60], [25.1, 60], [25, 60]]]",
+    "[[[25, 60], [25.1, 60.1], [25.1, 60.1], [25, 60]]]",
+    "[[[25.1, 60.1], [25.2, 60.2], [25.3, 60.3], [25.15, 60.15], [25.1, 60.1]]]"};
+
+TEST_F(ZoneFile, APolygonWithoutAnAreaIsSkippedByName) {
+  const std::string whole = feature("whole", 25.0, "{}");
+  for (const std::string& flat : kFlat) {
+    SCOPED_TRACE(flat);
+    const auto layer = zones("f.geojson", collection({polygon("pier", flat), whole}));
+    EXPECT_LT(layer->clearance(at(25.05, 60.05, 10)), 0);
+    EXPECT_EQ(layer->drawing()->shapes.size(), 1U);
+    EXPECT_TRUE(says(*layer, "1 polygons read, 1 features without an area skipped ('pier')"));
+    EXPECT_TRUE(says(
+        *zones("f.geojson", collection({polygon("pier", flat), polygon("jetty", flat), whole})),
+        "2 features without an area skipped ('pier', 'jetty')"));
+    const std::string said = refusal("f.geojson", collection({polygon("pier", flat)}));
+    EXPECT_NE(said.find("f.geojson: there is no zone in it: 1 features without an area skipped "
+                        "('pier')"),
+              std::string::npos)
+        << said;
+  }
+}
+
+TEST_F(ZoneFile, OfAMultiPolygonThePartsWithAnAreaCount) {
+  const std::string square = "[[[25, 60], [25.1, 60], [25.1, 60.1], [25, 60.1], [25, 60]]]";
+  const auto layer = zones(
+      "m.geojson", collection({polygon("both", "[" + kFlat[5] + "," + square + "]", "MultiPolygon"),
+                               polygon("none", "[" + kFlat[5] + "]", "MultiPolygon"),
+                               polygon("empty", "[]", "MultiPolygon")}));
+  EXPECT_LT(layer->clearance(at(25.05, 60.05, 10)), 0);
+  EXPECT_TRUE(says(*layer,
+                   "1 polygons read, 2 features without an area skipped ('both', 'none', "
+                   "'empty')"));
+}
+
+TEST_F(ZoneFile, WhatCannotBeReadOrContradictsItselfIsRefused) {
+  const std::string whole = feature("whole", 25.0, "{}");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"[[[25, 60], [25.1, 60.1], [25.1, 60], [25, 60.1], [25, 60]]]", "meets itself"},
+      {"[[[25, 60], [25.1, 60], [25.1, 60.1]]]", "must end where it starts"},
+      {"[[[25, 60], [25.1, 60]]]", "must end where it starts"},
+      {"[[[25, 60], [25, 160], [25, 60]]]", "expected longitude in"},
+      {"[[[25, 60], [25, \"x\"], [25, 60]]]", "expected a position"},
+      {"[[7]]", "expected a position"},
+      {"[7]", "a ring needs a list of positions"},
+      {"7", "a Polygon needs a list of rings"},
+      {"null", "a Polygon needs a list of rings"},
+      {"[[[25, 60], [25.1, 60], [25, 60]],"
+       " [[25, 60], [25.1, 60], [25.1, 60.1], [25, 60.1], [25, 60]]]",
+       "the outline needs at least three different points"}};
+  for (const auto& [coordinates, why] : cases) {
+    const std::string said =
+        refusal("f.geojson", collection({whole, polygon("pier", coordinates)}));
+    EXPECT_NE(said.find("('pier'): "), std::string::npos) << said;
+    EXPECT_NE(said.find(why), std::string::npos) << said;
+  }
+}
+
 const std::string kKml =
     "<kml><Placemark><name>park</name><Polygon><extrude>1</extrude>"
     "<altitudeMode>absolute</altitudeMode><outerBoundaryIs><LinearRing><coordinates>"
@@ -120,6 +198,24 @@ TEST_F(ZoneFile, KmlPolygonsReachUpToWhereTheyAreExtrudedFrom) {
   EXPECT_NE(refusal("p.kml", kKml, ", floor_property: low").find("properties are GeoJSON's"),
             std::string::npos);
   EXPECT_NE(refusal("p.kml", "<kml/>").find("there is no zone in it"), std::string::npos);
+}
+
+TEST_F(ZoneFile, AKmlPolygonWithoutAnAreaIsSkippedByName) {
+  const std::string park = kKml.substr(5, kKml.size() - 11);
+  for (const char* flat : {"", "25,60", "25,60 25,60 25,60 25,60", "25,60 25.1,60 25,60",
+                           "25.1,60.1 25.2,60.2 25.3,60.3 25.1,60.1"}) {
+    SCOPED_TRACE(flat);
+    const std::string pier =
+        "<Placemark><name>pier</name><Polygon><outerBoundaryIs><LinearRing><coordinates>" +
+        std::string(flat) + "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>";
+    const auto layer = zones("p.kml", "<kml>" + pier + park + "</kml>");
+    EXPECT_NEAR(layer->clearance(at(25.05, 60.05, 230)), 30, 1e-6);
+    EXPECT_TRUE(says(*layer,
+                     "1 zones read, 0 places of a route let be; skipped, without an area: "
+                     "'pier'"));
+    EXPECT_NE(refusal("p.kml", "<kml>" + pier + "</kml>").find("no area in 'pier'"),
+              std::string::npos);
+  }
 }
 
 TEST_F(ZoneFile, FencesSayThemselvesWhatIsKeptInAndOut) {

@@ -183,7 +183,7 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
   const auto refused = [](const std::string& name, const std::string& text) {
     return refusal("{file: " + written(name, text) + ", floor_property: low}");
   };
-  EXPECT_TRUE(says(refusal("{file: /nowhere.geojson}"), "cannot be read"));
+  EXPECT_TRUE(says(refusal("{file: /nowhere.geojson}"), "there is no such file"));
   EXPECT_TRUE(says(refused("cut", R"({"type": "Feat)"), "not JSON"));
   EXPECT_TRUE(says(refused("kind", R"({"type": "Topology"})"), "Topology"));
   EXPECT_TRUE(

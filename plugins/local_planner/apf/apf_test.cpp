@@ -243,8 +243,36 @@ TEST(Apf, PlainFieldReportsTheLocalMinimumOfATrap) {
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
   EXPECT_EQ(flown.counter("local_minima"), 1);
   EXPECT_GT(flown.counter("oscillations"), 30);
-  EXPECT_NE(flown.why.find("local minimum"), std::string::npos) << flown.why;
+  EXPECT_NE(flown.why.find("a local minimum of the field "), std::string::npos) << flown.why;
+  EXPECT_NE(flown.why.find("'shapes' ("), std::string::npos) << flown.why;
   EXPECT_GT(flown.route.back().x(), 10000);
+}
+
+TEST(Apf, SaysBetweenWhichObstaclesItIsStuck) {
+  World world;
+  for (const auto& [id, box] : {std::pair("north", Box{{9000, 15300, 0}, {14500, 18000, 4000}}),
+                                std::pair("south", Box{{9000, 12000, 0}, {14500, 14700, 4000}}),
+                                std::pair("end", Box{{14000, 12000, 0}, {14500, 18000, 4000}})}) {
+    world = world.with(
+        {id, "box", std::make_shared<kit::ShapeLayer>(std::vector<Shape>{BoxShape{box}}), true});
+  }
+  Request request = problem(std::move(world), {2000, 15000, 500}, {28000, 15000, 500});
+  request.level_m = 500;
+  const Flown flown = flight(request, "{variant: plain}");
+  ASSERT_EQ(flown.outcome, PilotStep::Outcome::stuck);
+  EXPECT_NE(flown.why.find("a local minimum of the field between '"), std::string::npos)
+      << flown.why;
+  EXPECT_NE(flown.why.find(" m off) and '"), std::string::npos) << flown.why;
+}
+
+TEST(Apf, SaysWhyNoHeadingIsFree) {
+  const Request request =
+      problem(world_of({Sphere{{2000, 15000, 500}, 40}}), {2000, 15000, 500}, {28000, 15000, 500});
+  const Flown inside = flight(request, "{}");
+  ASSERT_EQ(inside.outcome, PilotStep::Outcome::stuck);
+  EXPECT_NE(inside.why.find("no heading is free of obstacles for one step of "), std::string::npos);
+  EXPECT_NE(inside.why.find("of 360 tried, 360 come too near to 'shapes'"), std::string::npos)
+      << inside.why;
 }
 
 TEST(Apf, ContinuesFromTheObservedState) {

@@ -48,8 +48,7 @@ PilotStep FieldPilot::do_step(const Observation& seen) {
     trap_ = here_;
     if (again) {
       passing_ = Passing::nothing;
-      return {seen.state, PilotStep::Outcome::stuck,
-              "a local minimum of the field: many steps, hardly any way"};
+      return {seen.state, PilotStep::Outcome::stuck, why_trapped(seen)};
     }
   }
   if (const auto last = last_leg(seen)) {
@@ -58,7 +57,7 @@ PilotStep FieldPilot::do_step(const Observation& seen) {
   const Vec3 wish = wished_direction(seen);
   const auto step = choose(seen, wish);
   if (!step) {
-    return {seen.state, PilotStep::Outcome::stuck, "no heading is free of obstacles for one step"};
+    return {seen.state, PilotStep::Outcome::stuck, why_no_heading(seen)};
   }
   return fly(seen, *step);
 }

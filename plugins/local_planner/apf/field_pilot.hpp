@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 #include "altiplan/local_planner.hpp"
 #include "apf_field.hpp"
@@ -61,6 +62,12 @@ class FieldPilot final : public Pilot {
   void swing(const Vec3& way);
   /// Whether the last places lie close together; begins to count anew when they do.
   bool no_progress();
+
+  // Why it is stuck, until the next step: field_reason.cpp.
+  /// Where the field holds it: between which obstacles, or by its turn limit.
+  std::string_view why_trapped(const Observation& seen);
+  /// What the headings of the fan come to.
+  std::string_view why_no_heading(const Observation& seen);
 
   // The force: field_force.cpp.
   /// The field's direction, eq. (20), no steeper than the climb limit.
@@ -160,6 +167,7 @@ class FieldPilot final : public Pilot {
   std::int64_t clamp_yielded_ = 0;
   std::int64_t limits_yielded_ = 0;
   std::int64_t escapes_ = 0;
+  std::array<char, 512> why_{};
 
   // Of the present step.
   Vec3 here_{0, 0, 0};

@@ -75,6 +75,14 @@ inline double most_turn(double step, double least_radius) {
   return half < 1 ? 2 * std::asin(half) : kPi;
 }
 
+/// The least circle of whose chords steps of that length are made: of R_min, and wide enough that
+/// the judge's fillet between two steps has the radius of a turn_radius constraint (0: there is
+/// none).
+inline double least_circle(double step, double least_radius, double least_fillet) {
+  return least_fillet > 0 ? std::max(least_radius, std::hypot(least_fillet, step / 2))
+                          : least_radius;
+}
+
 /// A bound on the change of heading, made once for many steps.
 class TurnLimit {
  public:

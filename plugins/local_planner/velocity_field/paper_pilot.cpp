@@ -13,6 +13,7 @@ PaperPilot::PaperPilot(const Params& params, const Request& request)
       field_(params.field()),
       vehicle_(request.vehicle),
       least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
+      least_fillet_(request.limits.min_turn_radius),
       most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
       most_step_(request.limits.max_leg),
       turn_limit_(kPi),
@@ -95,7 +96,8 @@ Vec2 PaperPilot::flyable(const Vec2& wish, double step) {
     return wish;
   }
   if (step != limit_step_) {
-    turn_limit_ = TurnLimit(std::min(most_turn(step, least_radius_), most_turn_));
+    turn_limit_ = TurnLimit(
+        std::min(most_turn(step, least_circle(step, least_radius_, least_fillet_)), most_turn_));
     limit_step_ = step;
   }
   const Vec2 held = turn_limit_.held(*heading_, wish);

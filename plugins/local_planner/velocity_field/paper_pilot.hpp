@@ -43,6 +43,7 @@ class PaperPilot final : public Pilot {
   Field field_;
   Vehicle vehicle_;
   double least_radius_;
+  double least_fillet_;
   double most_turn_;
   double most_step_;
   TurnLimit turn_limit_;

@@ -40,6 +40,7 @@ RobustPilot::RobustPilot(const Params& params, const Request& request)
       field_(params.field()),
       speed_(request.vehicle.speed_mps),
       least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
+      least_fillet_(request.limits.min_turn_radius),
       most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
       most_step_(request.limits.max_leg),
       feed_(request, std::max(params.ring_m, Freedom::reach_m(steps_of(params.step_s)))),
@@ -53,7 +54,8 @@ RobustPilot::RobustPilot(const Params& params, const Request& request)
 }
 
 Steps RobustPilot::steps_of(double step_s) const {
-  return {std::min(speed_ * step_s, most_step_), least_radius_, most_turn_};
+  const double length = std::min(speed_ * step_s, most_step_);
+  return {length, least_circle(length, least_radius_, least_fillet_), most_turn_};
 }
 
 PilotStep RobustPilot::do_step(const Observation& seen) {

@@ -31,6 +31,7 @@ class RobustPilot final : public Pilot {
   Field field_;
   double speed_;
   double least_radius_;
+  double least_fillet_;
   double most_turn_;
   double most_step_;
   ThreatFeed feed_;

@@ -44,6 +44,7 @@ double distance_level(const Vec3& a, const Vec3& b) { return (a - b).head<2>().n
 TerrainFlight::TerrainFlight(const Params& params, const Request& request)
     : volume_(request.volume),
       least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
+      least_fillet_(request.limits.min_turn_radius),
       most_turn_level_(request.limits.max_turn_horizontal),
       most_turn_space_(request.limits.max_turn_space),
       // A hair less, so that rounding keeps the judge's limit.
@@ -178,7 +179,8 @@ TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& w
 
 TerrainFlight::Attitude TerrainFlight::within_radius(const Vec3& here, const Attitude& now,
                                                      const Vec2& wish, double length) {
-  const double most = std::min(most_turn(length, least_radius_), most_turn_space_);
+  const double most = std::min(
+      most_turn(length, least_circle(length, least_radius_, least_fillet_)), most_turn_space_);
   if (!climbs()) {
     return turned(now, wish, 0, most);
   }
@@ -223,7 +225,8 @@ Vec3 TerrainFlight::step(const State& state, const std::vector<Disc>& threats, c
   const Attitude now = fast > 0
                            ? Attitude{velocity.head<2>() / fast, std::atan2(velocity.z(), fast)}
                            : Attitude{wish, 0};
-  const double most = std::min(most_turn(length, least_radius_), most_turn_space_);
+  const double most = std::min(
+      most_turn(length, least_circle(length, least_radius_, least_fillet_)), most_turn_space_);
   last_leg_ = climbs() && is_last_leg(here, threats, now, most);
   Attitude next;
   if (last_leg_) {

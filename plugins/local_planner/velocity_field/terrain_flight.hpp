@@ -63,6 +63,7 @@ class TerrainFlight {
   // What is asked.
   Box volume_;
   double least_radius_;
+  double least_fillet_;
   double most_turn_level_;
   double most_turn_space_;
   double max_climb_;

@@ -16,7 +16,7 @@ struct Node {
   double g;  ///< cost of the way from the start
   kit::MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
-  std::uint8_t in;  ///< direction of the step that led here; kHere: linked to the start
+  std::uint8_t in;  ///< the step that led here; kHere: linked to the start
   bool closed;
 };
 inline constexpr Node kFresh = {kInfinity, {}, 0, 0, false};
@@ -109,7 +109,7 @@ class Search : kit::GoalSearch {
   void expand(std::uint32_t index, Node& node) {
     const Cell c = lattice_.cell(index);
     const Vec3 here = node.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
-    const std::optional<Vec3> from = before(node.in, here);
+    const std::optional<Approach> from = before(node.in, here);
     const double length_here = length_to(index, node);
     ++progress_.expanded;
     remember_nearest(here);
@@ -118,7 +118,7 @@ class Search : kit::GoalSearch {
     }
     try_goal(index, node.g, length_here, c, here, from);
     // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
-    const bool judged_whole = node.in == kit::kHere && from;
+    const bool judged_whole = rules_.is_first(node.in) && from;
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
       const auto next = std::uint32_t(std::int64_t(index) + lattice_.stride(d));
@@ -136,7 +136,7 @@ class Search : kit::GoalSearch {
           (judged_whole && !rules_.any_leg_ok(from, here, there))) {
         continue;
       }
-      reach(next, g, length, d);
+      reach(next, g, length, rules_.step_after(node.in, d));
       push(next, to, there);
     }
   }
@@ -149,7 +149,8 @@ class Search : kit::GoalSearch {
 
   Route route_to(std::uint32_t last, bool at_goal) const {
     Route route = kit::route_to(
-        last, request_, lattice_, [&](std::uint32_t index, int) { return int(nodes_[index].in); },
+        last, request_, lattice_,
+        [&](std::uint32_t index, int) { return kit::direction_of(nodes_[index].in); },
         [&](std::uint32_t) { return at_start_; });
     if (at_goal) {
       kit::end_at_goal(route, goal_, to_goal_.link_of(lattice_.cell(last))->length == 0);
@@ -159,7 +160,8 @@ class Search : kit::GoalSearch {
 
   void add_to_trace(std::uint32_t index, const Node& node, const Cell& c, const Vec3& here) const {
     const std::int64_t parent =
-        node.in == kit::kHere ? -1 : std::int64_t(index) - lattice_.stride(node.in);
+        node.in == kit::kHere ? -1
+                              : std::int64_t(index) - lattice_.stride(kit::direction_of(node.in));
     request_.trace->add({TraceEvent::Kind::expanded, std::int64_t(index), parent, here,
                          evaluation(node.g, c, here)});
   }

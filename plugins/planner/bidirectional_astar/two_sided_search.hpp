@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -12,24 +13,24 @@
 
 namespace altiplan::bidirectional {
 
-/// A node of one side: a cell, and the direction of the step that leads to it (forward) or away
-/// from it (backward) on the way to that side's end.
+/// A node of one side: a cell, and the step that leads to it (forward) or away from it (backward)
+/// on the path to that side's end.
 struct Arrival {
   double g;       ///< cost of the way to that end
   double length;  ///< of that way
   std::uint32_t cell;
   std::uint32_t from;    ///< the arrival before, toward that end
   std::uint32_t beside;  ///< another arrival of this side at the cell
-  std::uint8_t along;    ///< that direction; kHere: linked to the end
+  std::uint8_t along;    ///< that step; kHere: linked to the end
 };
 
 /// What one side knows of a cell.
 struct Reached {
-  double g;                  ///< of its cheapest arrival
-  kit::DirectionMask taken;  ///< directions on from the cell that need no further arrival
-  std::uint32_t newest;      ///< of its arrivals
-  std::uint8_t along;        ///< of the cheapest
-  bool is_open;              ///< steps that no arrival may take are among `taken`
+  double g;              ///< of its cheapest arrival
+  kit::StepMask taken;   ///< steps on from the cell that need no further arrival
+  std::uint32_t newest;  ///< of its arrivals
+  std::uint8_t along;    ///< of the cheapest
+  bool is_open;          ///< steps that no arrival may take are among `taken`
 };
 
 struct Node {
@@ -126,8 +127,8 @@ class TwoSidedSearch : kit::LatticeSearch {
 
   /// Of the way that a side has to go.
   const kit::Estimate& estimate(Side side) const { return side == forward ? to_goal_ : to_start_; }
-  /// Directions that may go on from an arrival.
-  kit::DirectionMask onward(Side side, int along) const {
+  /// Steps that may go on from an arrival.
+  kit::StepMask steps_on(Side side, int along) const {
     return side == forward ? rules_.after(along) : rules_.before(along);
   }
 
@@ -209,22 +210,40 @@ class TwoSidedSearch : kit::LatticeSearch {
     if (away.along == kit::kHere && centred_[backward]) {
       return true;
     }
-    const std::optional<Vec3> from = before(to, here);
-    const Vec3 next = away.along == kit::kHere ? goal_ : Vec3(here + lattice_.step(away.along));
-    if (to.along == kit::kHere || away.along == kit::kHere) {
-      return rules_.any_leg_ok(from, here, next);
+    const std::optional<Approach> from = before(to, here);
+    if (rules_.is_first(to.along) || away.along == kit::kHere) {
+      return (rules_.after(to.along) >> away.along & 1) != 0 && first_legs_ok(from, away, here);
     }
-    const bool may_turn = (rules_.after(to.along) >> away.along & 1) != 0;
-    rules_.count_turns(kit::DirectionMask(!may_turn));
-    return may_turn && rules_.admits(from, here, next);
+    const kit::StepMask next = kit::StepMask{1} << away.along;
+    rules_.count_turns(next, next & rules_.after(to.along));
+    return (rules_.after(to.along) & next) != 0 &&
+           rules_.admits(from, here, here + lattice_.step(kit::direction_of(away.along)));
   }
 
-  /// Where the vehicle comes from at an arrival of the forward side.
-  std::optional<Vec3> before(const Arrival& arrival, const Vec3& here) const {
-    if (arrival.along != kit::kHere) {
-      return Vec3(here - lattice_.step(arrival.along));
+  /// Whether the leg of a backward arrival may be flown by a vehicle that comes to it so; and,
+  /// while it has no heading by its steps, those after it, to the first that has one.
+  bool first_legs_ok(std::optional<Approach> from, Arrival away, Vec3 here) {
+    while (true) {
+      const bool to_goal = away.along == kit::kHere;
+      if (to_goal && centred_[backward]) {
+        return true;
+      }
+      const Vec3 next = to_goal ? goal_ : Vec3(here + lattice_.step(kit::direction_of(away.along)));
+      if (!rules_.any_leg_ok(from, here, next)) {
+        return false;
+      }
+      if (to_goal || !rules_.is_first(away.along)) {
+        return true;
+      }
+      from = onward(from, here);
+      here = next;
+      away = arrivals_[backward][away.from];
     }
-    return centred_[forward] ? request_.before_start() : std::optional<Vec3>(start_);
+  }
+
+  /// How the vehicle comes to an arrival of the forward side.
+  std::optional<Approach> before(const Arrival& arrival, const Vec3& here) const {
+    return rules_.approach(arrival.along, here, centred_[forward]);
   }
 
   /// Whether nothing is left that the arrival may take, or the other side has opened its node.
@@ -233,14 +252,14 @@ class TwoSidedSearch : kit::LatticeSearch {
     const Node& node = nodes_[arrival.cell];
     const Reached& own = node.by[side];
     const Reached& there = node.by[other(side)];
-    if (own.is_open && (onward(side, arrival.along) & ~own.taken) == 0) {
+    if (own.is_open && (steps_on(side, arrival.along) & ~own.taken) == 0) {
       return true;
     }
     // What the other side has opened has met this arrival, in a route that may be too long.
     if (!there.is_open || arrival.along == kit::kHere || meeting_[forward] == kNone) {
       return false;
     }
-    const kit::DirectionMask opened = by_heading_ ? there.taken : onward(other(side), there.along);
+    const kit::StepMask opened = by_heading_ ? there.taken : steps_on(other(side), there.along);
     return (opened >> arrival.along & 1) != 0;
   }
 
@@ -274,24 +293,24 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
     if (!own.is_open) {
       own.is_open = true;
-      own.taken = ~(side == forward ? rules_.out_of(c) : rules_.into(c));
+      own.taken = ~kit::steps_in(side == forward ? rules_.out_of(c) : rules_.into(c));
     }
-    const kit::DirectionMask left = ~own.taken;
-    rules_.count_turns(left & ~onward(side, arrival.along));
-    for (kit::DirectionMask open = left & onward(side, arrival.along); open != 0;
-         open &= open - 1) {
-      take(side, index, arrival, node, c, here, __builtin_ctz(open));
+    const kit::StepMask left = ~own.taken;
+    rules_.count_turns(left, steps_on(side, arrival.along));
+    for (kit::StepMask open = left & steps_on(side, arrival.along); open != 0; open &= open - 1) {
+      take(side, index, arrival, node, c, here, std::countr_zero(open));
     }
     if (!by_heading_) {
-      own.taken = ~kit::DirectionMask{0};
+      own.taken = ~kit::StepMask{0};
       own.along = arrival.along;
     }
   }
 
-  /// Goes on from an arrival along the step of direction d, which the backward side takes back.
+  /// Goes on from an arrival along a step, which the backward side takes back.
   void take(Side side, std::uint32_t index, const Arrival& arrival, Node& node, const Cell& c,
-            const Vec3& here, int d) {
+            const Vec3& here, int step) {
     const int sign = side == forward ? 1 : -1;
+    const int d = kit::direction_of(step);
     const Cell o = kit::offset(d);
     const Cell to = {c[0] + sign * o[0], c[1] + sign * o[1], c[2] + sign * o[2]};
     const Vec3 there = lattice_.position(to);
@@ -300,7 +319,7 @@ class TwoSidedSearch : kit::LatticeSearch {
                     std::uint32_t(std::int64_t(arrival.cell) + sign * lattice_.stride(d)),
                     index,
                     kNone,
-                    std::uint8_t(d)};
+                    std::uint8_t(step)};
     if (is_too_long(side, next.length, there) ||
         !is_better(settings_.weight_g * (next.g + estimate(side).at_least(there)))) {
       return;
@@ -310,10 +329,10 @@ class TwoSidedSearch : kit::LatticeSearch {
         side == forward
             ? rules_.place_free(c, d, here, there, node.clearance, neighbour.clearance)
             : rules_.place_free(to, d, there, here, neighbour.clearance, node.clearance);
-    if (is_free && !admits(side, arrival, here, there)) {
+    if (is_free && !admits(side, arrival, here, there, step)) {
       return;  // another arrival may take it
     }
-    node.by[side].taken |= kit::DirectionMask{1} << d;
+    node.by[side].taken |= kit::StepMask{1} << step;
     if (is_free && !is_needless(side, neighbour.by[side], next)) {
       push(side, to, there, next);
     }
@@ -330,16 +349,18 @@ class TwoSidedSearch : kit::LatticeSearch {
 
   /// What two legs in a row must keep beside the turn: forward the leg to `there` comes after the
   /// arrival, backward the leg of the arrival comes after the one from `there`.
-  bool admits(Side side, const Arrival& arrival, const Vec3& here, const Vec3& there) {
+  bool admits(Side side, const Arrival& arrival, const Vec3& here, const Vec3& there, int step) {
     if (side == forward) {
-      const std::optional<Vec3> from = before(arrival, here);
+      const std::optional<Approach> from = before(arrival, here);
       return rules_.admits(from, here, there) &&
-             (arrival.along != kit::kHere || !from || rules_.any_leg_ok(from, here, there));
+             (!rules_.is_first(arrival.along) || !from || rules_.any_leg_ok(from, here, there));
     }
     if (arrival.along == kit::kHere) {
-      return centred_[backward] || rules_.any_leg_ok(there, here, goal_);
+      // Of a vehicle without a heading by its steps it is judged where the sides meet.
+      return centred_[backward] || rules_.is_first(step) ||
+             rules_.any_leg_ok(rules_.approach(step, here, false), here, goal_);
     }
-    return rules_.admits(there, here, here + lattice_.step(arrival.along));
+    return rules_.admits(there, here, here + lattice_.step(kit::direction_of(arrival.along)));
   }
 
   /// Whether another arrival at the cell can do all that this one can, as cheaply.
@@ -347,10 +368,10 @@ class TwoSidedSearch : kit::LatticeSearch {
     if (!by_heading_) {
       return reached.g <= arrival.g || reached.is_open;
     }
-    const kit::DirectionMask left = onward(side, arrival.along) & ~reached.taken;
+    const kit::StepMask left = steps_on(side, arrival.along) & ~reached.taken;
     return left == 0 ||
-           (reached.g <= arrival.g && reached.along != kit::kHere && !rules_.looks_beyond_turns() &&
-            (left & ~onward(side, reached.along)) == 0);
+           (reached.g <= arrival.g && !rules_.is_first(reached.along) &&
+            !rules_.looks_beyond_turns() && (left & ~steps_on(side, reached.along)) == 0);
   }
 
   void try_fallback(std::uint32_t index, const Arrival& arrival, const Vec3& here) {

@@ -12,12 +12,12 @@ namespace altiplan::dstar_lite {
 
 /// The rule that a leg of the route does not keep, or "".
 inline std::string first_broken(const Route& route, const Request& request) {
-  std::optional<Vec3> before = request.before_start();
+  std::optional<Approach> before = request.before_start();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     if (!leg_ok(before, route[i], route[i + 1], request)) {
       return leg_violations(before, route[i], route[i + 1], request, i).front().constraint;
     }
-    before = route[i];
+    before = onward(before, route[i]);
   }
   return "";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <optional>
@@ -10,11 +11,13 @@
 
 namespace altiplan::dstar_lite {
 
-/// The graph whose vertices are cells with the direction of the step that led there, for rules that
-/// look at two legs; kHere: the vehicle has come there from where it is now.
+/// The graph whose vertices are cells with the step that led there, for rules that look at two
+/// legs; kHere: the vehicle has come there from where it is now. Steps straight up or down without
+/// a heading are those of the vehicle before any other: in the columns of the cells that it is
+/// linked to.
 class HeadingGraph {
  public:
-  static constexpr std::uint32_t kPerCell = kit::kDirections;
+  static constexpr std::uint32_t kPerCell = kit::kSteps;
 
   HeadingGraph(const Problem& problem, Legs& legs, const ToStart& to_start)
       : problem_(problem), lattice_(problem.lattice), legs_(legs), to_start_(to_start) {}
@@ -24,20 +27,22 @@ class HeadingGraph {
 
   template <class Visit>
   void predecessors(std::uint32_t u, const Cell& c, kit::DirectionMask, const Visit& visit) {
-    const int in = heading(u);
-    if (in != kit::kHere && (legs_.into(u / kPerCell, c) >> kit::opposite(in) & 1) != 0) {
-      visit_before(c, in, [&](std::uint32_t s, const Cell& from, int d) {
-        if (follows(from, d, in)) {
-          visit(s, problem_.costs[in], from);
+    const int in = step_of(u);
+    const int d = kit::direction_of(in);
+    if (in != kit::kHere && (legs_.into(u / kPerCell, c) >> kit::opposite(d) & 1) != 0) {
+      visit_before(c, in, [&](std::uint32_t s, const Cell& from, int before) {
+        if (follows(from, before, d)) {
+          visit(s, problem_.costs[d], from);
         }
       });
     }
   }
   template <class Visit>
   void successors(std::uint32_t s, int likely, const Visit& visit) {
-    const int in = heading(s);
+    const int in = step_of(s);
     const Cell c = cell(s);
-    kit::DirectionMask open = legs_.steps() & legs_.rules().after(in) & lattice_.inside(c);
+    kit::DirectionMask open =
+        legs_.steps() & kit::directions_of(legs_.rules().after(in)) & lattice_.inside(c);
     open &= legs_.judges() ? ~kit::DirectionMask{0} : legs_.into(s / kPerCell, c);
     while (open != 0) {
       const int d = take_direction(open, likely);
@@ -45,13 +50,13 @@ class HeadingGraph {
         return (!legs_.judges() || legs_.leads(s / kPerCell, c, d)) && follows(c, in, d);
       };
       const auto next = std::uint32_t(s / kPerCell + lattice_.stride(d));
-      if (!visit(node(next, d), problem_.costs[d], is_free)) {
+      if (!visit(node(next, legs_.rules().step_after(in, d)), problem_.costs[d], is_free)) {
         return;
       }
     }
   }
 
-  static int direction(std::uint32_t, std::uint32_t n) { return heading(n); }
+  static int direction(std::uint32_t, std::uint32_t n) { return kit::direction_of(step_of(n)); }
 
   std::uint32_t goal_cost(std::uint32_t s) const {
     const std::uint32_t cost = goal_.cost(s / kPerCell);
@@ -59,7 +64,7 @@ class HeadingGraph {
       return cost;
     }
     const Cell c = cell(s);
-    return legs_.rules().any_leg_ok(before(c, heading(s)), lattice_.position(c),
+    return legs_.rules().any_leg_ok(before(c, step_of(s)), lattice_.position(c),
                                     problem_.request.goal.position)
                ? cost
                : kNever;
@@ -77,11 +82,25 @@ class HeadingGraph {
   }
   template <class Visit>
   void for_each_at(const Cell& c, const Visit& visit) const {
-    for (kit::DirectionMask all = legs_.steps(); all != 0; all &= all - 1) {
-      visit(node(lattice_.index(c), std::countr_zero(all)));
+    for (kit::StepMask all = kit::steps_in(legs_.steps()); all != 0; all &= all - 1) {
+      visit_step(c, std::countr_zero(all), visit);
     }
-    if (const std::uint32_t s = node(lattice_.index(c), kit::kHere); start_.cost(s) != kNever) {
-      visit(s);
+    visit_step(c, kit::kHere, visit);
+  }
+  /// Calls visit(s) for the vertices whose legs depend on where the vehicle is.
+  template <class Visit>
+  void for_each_first(const Visit& visit) const {
+    for (const Link& link : start_.all()) {
+      visit(link.node);
+    }
+    if (legs_.rules().headings_last()) {
+      for (const Link& link : start_.all()) {
+        Cell c = cell(link.node);
+        for (c[2] = 0; c[2] < lattice_.spec().counts[2]; ++c[2]) {
+          visit_step(c, kit::kDown, visit);
+          visit_step(c, kit::kUp, visit);
+        }
+      }
     }
   }
 
@@ -99,48 +118,57 @@ class HeadingGraph {
   }
 
  private:
-  static std::uint32_t node(std::uint32_t cell, int heading) {
-    return cell * kPerCell + std::uint32_t(heading);
+  static int step_of(std::uint32_t node) { return int(node % kPerCell); }
+  static std::uint32_t node(std::uint32_t cell, int step) {
+    return cell * kPerCell + std::uint32_t(step);
   }
-  static int heading(std::uint32_t node) { return int(node % kPerCell); }
 
-  /// Calls visit(s, cell, heading) for the vertices from which a step `in` to the cell keeps the
+  /// Calls visit(s) for the vertex of a cell and step, if it is one.
+  template <class Visit>
+  void visit_step(const Cell& c, int step, const Visit& visit) const {
+    const std::uint32_t s = node(lattice_.index(c), step);
+    const bool is_vertex = step == kit::kHere             ? start_.cost(s) != kNever
+                           : legs_.rules().is_first(step) ? is_in_start_column(c)
+                                                          : true;
+    if (is_vertex) {
+      visit(s);
+    }
+  }
+  bool is_in_start_column(const Cell& c) const {
+    return std::any_of(start_.all().begin(), start_.all().end(), [&](const Link& link) {
+      const Cell linked = cell(link.node);
+      return linked[0] == c[0] && linked[1] == c[1];
+    });
+  }
+
+  /// Calls visit(s, cell, step) for the vertices from which a step `in` to the cell keeps the
   /// limits on turns.
   template <class Visit>
   void visit_before(const Cell& c, int in, const Visit& visit) {
-    const Cell o = kit::offset(in);
+    const Cell o = kit::offset(kit::direction_of(in));
     const Cell from = {c[0] - o[0], c[1] - o[1], c[2] - o[2]};
-    const std::uint32_t index = lattice_.index(from);
-    for (kit::DirectionMask all = legs_.rules().before(in) & legs_.steps(); all != 0;
-         all &= all - 1) {
-      const int d = std::countr_zero(all);
-      visit(node(index, d), from, d);
-    }
-    if (const std::uint32_t s = node(index, kit::kHere); start_.cost(s) != kNever) {
-      visit(s, from, kit::kHere);
+    const kit::StepMask steps = kit::steps_in(legs_.steps()) | kit::StepMask{1} << kit::kHere;
+    for (kit::StepMask all = legs_.rules().before(in) & steps; all != 0; all &= all - 1) {
+      const int before = std::countr_zero(all);
+      visit_step(from, before, [&](std::uint32_t s) { visit(s, from, before); });
     }
   }
-  /// What led to a place at the cell.
-  std::optional<Vec3> before(const Cell& c, int in) const {
-    const Request& request = problem_.request;
-    if (in != kit::kHere) {
-      return Vec3(lattice_.position(c) - lattice_.step(in));
-    }
-    return lattice_.nearest(request.start.position).length == 0
-               ? request.before_start()
-               : std::optional<Vec3>(request.start.position);
+  /// How the vehicle comes to a cell by a step.
+  std::optional<Approach> before(const Cell& c, int in) const {
+    const bool at_start = lattice_.nearest(problem_.request.start.position).length == 0;
+    return legs_.rules().approach(in, lattice_.position(c), at_start);
   }
   /// Whether the step `out` keeps what depends on the leg before, beside limits on turns where that
   /// was a step.
   bool follows(const Cell& c, int in, int out) {
-    if (in != kit::kHere && !legs_.rules().looks_beyond_turns()) {
+    if (!legs_.rules().is_first(in) && !legs_.rules().looks_beyond_turns()) {
       return true;
     }
     const Cell o = kit::offset(out);
     const Vec3 here = lattice_.position(c);
     const Vec3 there = lattice_.position({c[0] + o[0], c[1] + o[1], c[2] + o[2]});
-    return in == kit::kHere ? legs_.rules().any_leg_ok(before(c, in), here, there)
-                            : legs_.rules().admits(before(c, in), here, there);
+    return legs_.rules().is_first(in) ? legs_.rules().any_leg_ok(before(c, in), here, there)
+                                      : legs_.rules().admits(before(c, in), here, there);
   }
 
   const Problem& problem_;

@@ -151,17 +151,16 @@ class Plan {
     const bool goes_on = at.search.move_start(
         links.empty() ? std::vector<kit::Lattice::Link>{lattice_.nearest(start)} : links);
     if constexpr (Graph::kPerCell > 1) {
-      const Links before = at.graph.start();
+      std::vector<std::uint32_t> first;
+      at.graph.for_each_first([&](std::uint32_t s) { first.push_back(s); });
       at.graph.find_start({});
-      for (const Link& link : before.all()) {
-        at.search.remove(link.node);
+      for (const std::uint32_t s : first) {
+        at.search.remove(s);
       }
     }
     at.graph.find_start(links);
     if constexpr (Graph::kPerCell > 1) {
-      for (const Link& link : at.graph.start().all()) {
-        at.search.touch(link.node);
-      }
+      at.graph.for_each_first([&](std::uint32_t s) { at.search.touch(s); });
     }
     return goes_on;
   }

@@ -90,9 +90,8 @@ class Growth {
   /// where a rule forbids the leg.
   Node steer(Node near, const Vec3& toward) {
     const Vec3& from = tree_.point(near);
-    const auto last = before(near);
-    const auto incoming = last ? std::optional<Vec3>(from - *last) : std::nullopt;
-    return extend(near, kit::bent(incoming, toward - from, settings_.step, request_.limits));
+    return extend(near,
+                  kit::bent(before(near), from, toward - from, settings_.step, request_.limits));
   }
 
   /// Hangs a branch under a node, if the leg between them and a leg after it keep the rules.
@@ -101,13 +100,15 @@ class Growth {
     const Vec3& from = tree_.point(under);
     const Vec3& at = tree_.point(branch);
     // A leg without length would hide the turn into the next one.
-    if (at == from || !leg_ok(before(under), from, at, request_)) {
+    const std::optional<Approach> to_under = before(under);
+    if (at == from || !leg_ok(to_under, from, at, request_)) {
       return false;
     }
+    const Approach to_branch = onward(to_under, from);
     const std::vector<Node> children = tree_.children(branch);
     std::vector<Node> failing;
     for (const Node child : children) {
-      if (!leg_ok(from, at, tree_.point(child), request_)) {
+      if (!follows(to_branch, branch, child)) {
         failing.push_back(child);
       }
     }
@@ -177,8 +178,23 @@ class Growth {
     return true;
   }
 
-  std::optional<Vec3> before(Node node) const {
-    return node == root_ ? request_.before_start() : tree_.before(node);
+  std::optional<Approach> before(Node node) const {
+    return tree_.approach(node, root_, request_.before_start());
+  }
+
+  /// Whether the leg to a child may be flown by a vehicle that comes to its parent by `to_node`,
+  /// and past a leg without a heading those after it.
+  bool follows(const Approach& to_node, Node node, Node child) const {
+    const Vec3& at = tree_.point(node);
+    if (!leg_ok(to_node, at, tree_.point(child), request_)) {
+      return false;
+    }
+    if (has_heading(tree_.point(child) - at)) {
+      return true;
+    }
+    const std::vector<Node> next = tree_.children(child);
+    return std::all_of(next.begin(), next.end(),
+                       [&](Node below) { return follows(onward(to_node, at), child, below); });
   }
 
   /// A new node one step from `near` in a direction, or kNone where a rule forbids the leg.

@@ -162,7 +162,8 @@ class TreeSession final : public Session {
   }
 
   bool keeps_leg(Node node) const {
-    return leg_ok(tree_.before(tree_.parent(node)), tree_.point(tree_.parent(node)),
+    const Node above = tree_.parent(node);
+    return leg_ok(tree_.approach(above, growth_.root(), std::nullopt), tree_.point(above),
                   tree_.point(node), request_);
   }
 

@@ -51,10 +51,10 @@ class Tree {
   Place place(Node node) const { return marks_[std::size_t(node)].place; }
   bool is_rooted(Node node) const { return place(node) < Place::loose; }
   Route way_to(Node node) const { return legs_.way_to(node); }
-  /// Where the vehicle comes from at a node; none at a root.
-  std::optional<Vec3> before(Node node) const {
-    const Node above = parent(node);
-    return above == kNone ? std::nullopt : std::optional(point(above));
+  /// How the vehicle comes to a node from `root`, to which it comes by `to_root`.
+  std::optional<Approach> approach(Node node, Node root,
+                                   const std::optional<Approach>& to_root) const {
+    return legs_.approach(node, root, to_root);
   }
   /// No leg is longer.
   double longest_leg() const { return longest_leg_; }

@@ -103,26 +103,39 @@ class TwoTrees {
     return !ended_;
   }
 
-  /// The point next to the node on the way to its root; before the start, where it has a heading.
-  /// None where no rule asks for it.
-  std::optional<Vec3> behind(int side, Node node) {
-    if (!rules_.looks_back()) {
-      return std::nullopt;
+  /// How a leg from the node comes to it, where a rule asks for it: of the start's tree as the
+  /// vehicle does, of the goal's as one that flies back from the goal.
+  std::optional<Approach> behind(int side, Node node) {
+    return rules_.looks_back()
+               ? tree(side).legs.approach(node, 0, side == kStart ? before_start_ : std::nullopt)
+               : std::nullopt;
+  }
+
+  /// Whether a vehicle that comes to a node of the goal's tree by `before` may turn into the leg
+  /// from it, and past a leg without a heading into those after it.
+  bool goes_on(std::optional<Approach> before, Node node) {
+    for (Node next = tree(kGoal).legs.parent(node);
+         rules_.looks_back() && next != kit::LegTree::kNone;
+         node = next, next = tree(kGoal).legs.parent(node)) {
+      const Vec3& at = point(kGoal, node);
+      if (!rules_.follows(*before, at, point(kGoal, next))) {
+        return false;
+      }
+      if (has_heading(point(kGoal, next) - at)) {
+        break;
+      }
+      before = onward(before, at);
     }
-    const Node parent = tree(side).legs.parent(node);
-    if (parent != kit::LegTree::kNone) {
-      return point(side, parent);
-    }
-    return side == kStart ? before_start_ : std::nullopt;
+    return true;
   }
 
   /// EXTEND: a leg from the node toward q.
   Growth extend(int side, Node near, const Vec3& q) {
     ++expanded_;
     const Vec3& q_near = point(side, near);
-    const std::optional<Vec3> before = behind(side, near);
+    const std::optional<Approach> before = behind(side, near);
     const Vec3 q_new = kit::steer(before, q_near, q, settings_.range, request_.limits);
-    if (q_new == q_near || !may_add(side, near, q_new) || !leg_kept(side, before, q_near, q_new)) {
+    if (q_new == q_near || !may_add(side, near, q_new) || !leg_kept(side, before, near, q_new)) {
       return Growth::trapped;
     }
     add(side, q_new, near);
@@ -171,9 +184,9 @@ class TwoTrees {
     const double metres = (b - a).norm();
     const double total =
         tree(kStart).metres[std::size_t(from)] + metres + tree(kGoal).metres[std::size_t(to)];
-    const std::optional<Vec3> after = behind(kGoal, to);
-    if (total > request_.limits.max_route_length || !rules_.ok(behind(kStart, from), a, b) ||
-        (after && !rules_.follows(a, b, *after))) {
+    const std::optional<Approach> before = behind(kStart, from);
+    if (total > request_.limits.max_route_length || !rules_.ok(before, a, b) ||
+        !goes_on(onward(before, a), to)) {
       return false;
     }
     route_ = tree(kStart).legs.way_to(from);
@@ -194,11 +207,10 @@ class TwoTrees {
     return least <= request_.limits.max_route_length;
   }
 
-  bool leg_kept(int side, const std::optional<Vec3>& behind, const Vec3& q_near,
-                const Vec3& q_new) {
-    return side == kStart ? rules_.ok(behind, q_near, q_new)
-                          : rules_.ok(std::nullopt, q_new, q_near) &&
-                                (!behind || rules_.follows(q_new, q_near, *behind));
+  bool leg_kept(int side, const std::optional<Approach>& before, Node near, const Vec3& q_new) {
+    const Vec3& q_near = point(side, near);
+    return side == kStart ? rules_.ok(before, q_near, q_new)
+                          : rules_.ok(std::nullopt, q_new, q_near) && goes_on(q_new, near);
   }
 
   void add(int side, const Vec3& p, Node parent) {
@@ -260,7 +272,7 @@ class TwoTrees {
   std::array<Tree, 2>& trees_;
   kit::LegRules rules_;
   BudgetWatch watch_;
-  std::optional<Vec3> before_start_;
+  std::optional<Approach> before_start_;
   Box box_;
   RandomStream random_;
   Route route_;

@@ -106,7 +106,7 @@ class Search {
     if (!is_last(plane)) {
       return true;
     }
-    if (!is_too_long(way) && (p == goal_ || leg_free(from, p, goal_))) {
+    if (!is_too_long(way) && (p == goal_ || leg_free(onward(before(), from), p, goal_))) {
       return true;
     }
     if (!within_tolerance_ && request_.goal.reached_at(p) && !is_too_long(length)) {
@@ -123,7 +123,7 @@ class Search {
 
   /// Whether a leg keeps every rule, and where it joins the centres of two cells meets no blocked
   /// one.
-  bool leg_free(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+  bool leg_free(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     const kit::Lattice::Link from = lattice_.nearest(a);
     const kit::Lattice::Link to = lattice_.nearest(b);
     if (from.length == 0 && to.length == 0 && !kit::line_of_sight(*grid_, from.cell, to.cell)) {
@@ -219,8 +219,8 @@ class Search {
     }
   }
 
-  std::optional<Vec3> before() const {
-    return route_.size() > 1 ? route_[route_.size() - 2] : request_.before_start();
+  std::optional<Approach> before() const {
+    return approach(route_, route_.size() - 1, request_.before_start());
   }
 
   /// Leaves out the points that lie on the straight way from the point before to the one after,
@@ -229,11 +229,12 @@ class Search {
     Route kept = {route_.front()};
     for (std::size_t i = 1; i + 1 < route_.size(); ++i) {
       const Vec3& a = kept.back();
-      const std::optional<Vec3> before =
-          kept.size() > 1 ? kept[kept.size() - 2] : request_.before_start();
-      const bool idle = point_leg_distance(route_[i], a, route_[i + 1]) <= kLengthTolerance / 2 &&
-                        rules_.ok(before, a, route_[i + 1]) &&
-                        (i + 2 == route_.size() || rules_.ok(a, route_[i + 1], route_[i + 2]));
+      const std::optional<Approach> before =
+          approach(kept, kept.size() - 1, request_.before_start());
+      const bool idle =
+          point_leg_distance(route_[i], a, route_[i + 1]) <= kLengthTolerance / 2 &&
+          rules_.ok(before, a, route_[i + 1]) &&
+          (i + 2 == route_.size() || rules_.ok(onward(before, a), route_[i + 1], route_[i + 2]));
       if (!idle) {
         kept.push_back(route_[i]);
       }

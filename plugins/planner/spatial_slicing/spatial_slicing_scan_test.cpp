@@ -82,16 +82,13 @@ Route full_scan(const Request& request, int axis, int apart) {
     return p;
   };
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    std::optional<Vec3> before = request.before_start();
-    if (i > 0) {
-      before = route[i - 1];
-    }
-    const auto free = [&](const std::optional<Vec3>& from, const Vec3& a, const Vec3& b) {
+    const auto before = approach(route, i, request.before_start());
+    const auto free = [&](const std::optional<Approach>& from, const Vec3& a, const Vec3& b) {
       return leg_ok(from, a, b, request) && (!is_centre(a) || !is_centre(b) || in_sight(a, b));
     };
     const auto reached = [&](const Vec3& p) {
       return free(before, route.back(), p) &&
-             (i + 1 < planes.size() || free(route.back(), p, goal));
+             (i + 1 < planes.size() || free(onward(before, route.back()), p, goal));
     };
     std::optional<Vec3> best;
     double least = kInfinity;

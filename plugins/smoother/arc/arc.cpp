@@ -4,19 +4,17 @@
 // Citation: the fillet of two lines; as paths of a vehicle with a least turn radius: L. E. Dubins,
 //   On curves of minimal length with a constraint on average curvature, American Journal of
 //   Mathematics 79, 1957, pp. 497-516, doi:10.2307/2372560 (arcs and tangents, in a plane).
-// Guarantees: where every corner is filleted, the route keeps the turn radius; for no rule does the
-//   worst excess grow; the route never gets longer. As far as obstacles allow, no choice of corners
-//   leaves fewer of them.
-// Complexity: O(corners · chords) leg checks.
+// Guarantees: where every corner is filleted, the route keeps the turn radius, also when it is
+//   written with the digits that autopilots keep; for no constraint does the worst excess grow; the
+//   route never gets longer.
+// Complexity: O(corners · tangents) leg checks.
 // Deviations: each arc lies in the plane of its two legs, so that it climbs and turns at once; it
-//   is flown as chords, whose corners lie on the arc. Waypoints on straight stretches are left
-//   out first: a leg is as long as it is straight.
-// Why the chords keep the radius, as the judge measures it: three corners of one arc lie on its
-//   circle. Where an arc meets a straight piece, or another arc in another plane, the legs turn by
-//   no more than two such chords would (of at most a quarter turn each), so that their far ends
-//   lie further apart and on a larger circle.
+//   is written as equal tangents, whose own fillets are the arc itself: a vehicle that rounds each
+//   waypoint with the radius flies the arc. Waypoints on straight stretches are left out first: a
+//   leg is as long as it is straight.
 // Symbols: C a corner, u and v the directions into and out of it, R the radius, alpha the turn,
-//   t = R tan(alpha / 2) the stretch of each leg that the arc replaces.
+//   t = R tan(alpha / 2) the stretch of each leg that the arc replaces, s = R tan(alpha / 2n) half
+//   of each of its n - 1 tangents.
 #include <algorithm>
 #include <charconv>
 
@@ -41,40 +39,42 @@ struct Params {
     f("sag_m", sag_m)
         .unit("m")
         .greater_than(0)
-        .doc("how far a chord may leave its arc; auto: a hundredth of the radius");
+        .doc("how far a waypoint may lie outside its arc; auto: a hundredth of the radius");
   }
 };
 
 /// Stretch of each leg that an arc takes.
 double tangent_length(double radius, double turn) { return radius * std::tan(turn / 2); }
 
-/// The arc that touches both legs, as the ends of `chords` equal chords.
-Route arc_at(const Corner& corner, double radius, int chords) {
+/// The arc that touches both legs, as the waypoints at which `turns` equal turns are made: those of
+/// its circle's circumscribed polygon.
+Route arc_at(const Corner& corner, double radius, int turns) {
   const double t = tangent_length(radius, corner.turn);
+  const double half = corner.turn / turns / 2;
   const Vec3& u = corner.into;
   const Vec3 inward = (corner.out_of - corner.out_of.dot(u) * u).normalized();
   const Vec3 begin = corner.at - t * u;
-  Route arc = {begin};
-  for (int n = 1; n < chords; ++n) {
-    const double angle = n * corner.turn / chords;
-    const double versine = 2 * std::pow(std::sin(angle / 2), 2);
-    arc.push_back(begin + radius * (std::sin(angle) * u + versine * inward));
+  Route arc;
+  for (int n = 0; n < turns; ++n) {
+    const double angle = (2 * n + 1) * half;
+    const double outside = radius / std::cos(half);
+    arc.push_back(begin + outside * std::sin(angle) * u +
+                  (radius - outside * std::cos(angle)) * inward);
   }
-  arc.push_back(corner.at + t * corner.out_of);
   return arc;
 }
 
-/// Attempts at an arc, each with chords half as long: they come nearer to the corner.
+/// Attempts at an arc, each with twice the turns: they come nearer to it.
 constexpr int kTries = 3;
 
-/// Chords of an arc at first: they keep the sag and the limits on turns, and are no shorter than a
-/// leg may be.
-int chords_of(double radius, double sag, double turn, const Limits& limits) {
-  const double step = std::min({2 * std::acos(std::max(0.0, 1 - sag / radius)), kPi / 2,
+/// Turns of an arc at first: they keep the sag and the limits on turns, and legs between them are
+/// no shorter than legs may be.
+int turns_of(double radius, double sag, double turn, const Limits& limits) {
+  const double step = std::min({2 * std::acos(radius / (radius + sag)), kPi / 2,
                                 limits.max_turn_space, limits.max_turn_horizontal});
   constexpr double kMost = 1000;
   const double wanted = std::min(std::ceil(turn / std::max(step, turn / kMost)), kMost);
-  const double least_angle = 2 * std::asin(std::min(1.0, limits.min_leg / (2 * radius)));
+  const double least_angle = 2 * std::atan(limits.min_leg / (2 * radius));
   const double allowed = least_angle > 0 ? std::floor(turn / least_angle) : kMost;
   return int(std::max(1.0, std::min(wanted, allowed)));
 }
@@ -89,11 +89,14 @@ Route straightened(const Route& route, const Request& request) {
       .route;
 }
 
-/// Whether the legs have room for the arc beside those before it. (Taking the corners in order
-/// leaves the fewest: each has to do with its two neighbours alone.)
-bool fits(const Corner& corner, double radius) {
-  const double t = tangent_length(radius, corner.turn) - kLengthTolerance;
-  return t <= corner.room_into && t <= corner.leg_out_of;
+/// Whether the legs hold the arc beside those before it, each in its half of the leg that is left
+/// between them. (Taking the corners in order leaves the fewest: each has to do with its two
+/// neighbours alone.)
+bool fits(const Corner& corner, double radius, int turns) {
+  const double s = tangent_length(radius, corner.turn / turns);
+  const double taken = tangent_length(radius, corner.turn) - s - kLengthTolerance;
+  const double before = tangent_length(radius, corner.turn_into);  // that the arc before needs
+  return taken + 2 * std::max(s, before) <= corner.room_into && taken + 2 * s <= corner.leg_out_of;
 }
 
 std::string summary(const kit::RoundedRoute& rounded, double radius) {
@@ -127,17 +130,19 @@ class Arc final : public Smoother {
           "arc has no radius: give it radius_m, or the problem a turn_radius constraint";
       return result;
     }
-    constexpr double kAboveRounding = 1 + 1e-9;
-    const double radius = wanted * kAboveRounding;
+    const double sag = params_.sag_m.value.value_or(wanted / 100);
     kit::RoundedRoute rounded = kit::round_corners(
         straightened(route, request), request,
         [&](const Corner& corner, int attempt) -> std::optional<Route> {
-          if (corner.turn == 0 || attempt >= kTries || !fits(corner, radius)) {
+          if (corner.turn == 0 || attempt >= kTries) {
             return std::nullopt;
           }
-          const double sag = params_.sag_m.value.value_or(radius / 100);
-          return arc_at(corner, radius,
-                        chords_of(radius, sag, corner.turn, request.limits) << attempt);
+          const int turns = turns_of(wanted, sag, corner.turn, request.limits) << attempt;
+          const double each = corner.turn / turns;
+          const double radius =
+              wanted * (1 + kit::radius_margin(2 * tangent_length(wanted, each), each));
+          return fits(corner, radius, turns) ? std::optional(arc_at(corner, radius, turns))
+                                             : std::nullopt;
         });
     result.status = Status::solved;
     result.message = summary(rounded, wanted);

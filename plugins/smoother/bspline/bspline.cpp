@@ -51,16 +51,25 @@ Route curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int sample
   return curve;
 }
 
-/// The least reach at which every circle through three points of the curve has the radius. (The
-/// curve leaves its legs in their direction, so that nothing bends where it begins and ends.)
+/// The least reach at which every corner of the curve has the radius, with the margin that the
+/// digits of autopilots need. (The curve leaves its legs in their direction, so that nothing bends
+/// where it begins and ends.)
 double reach_for(double radius, const kit::Corner& corner, int samples) {
   const Route curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
   double least = kInfinity;
+  double tightest = 0;  // leg and turn of the tightest corner
+  double turn = 0;
   for (std::size_t i = 0; i + 2 < curve.size(); ++i) {
-    least = std::min(least, radius_through(curve[i], curve[i + 1], curve[i + 2]));
+    const Vec3 in = curve[i + 1] - curve[i];
+    const Vec3 out = curve[i + 2] - curve[i + 1];
+    if (const double its = fillet_radius(in, out); its < least) {
+      least = its;
+      tightest = std::min(in.norm(), out.norm());
+      turn = turn_angle_in_space(in, out);
+    }
   }
-  constexpr double kAboveRounding = 1 + 1e-9;
-  return radius / least * kAboveRounding;
+  const double reach = radius / least;
+  return reach * (1 + kit::radius_margin(reach * tightest, turn));
 }
 
 class BSpline final : public Smoother {

@@ -64,7 +64,7 @@ class Fitting {
         curve_(without_repeats(route), params.tangents),
         legs_(curve_.legs()),
         allowed_(check(route, request).violations) {
-    std::optional<Vec3> before = request.before_start();
+    std::optional<Approach> before = request.before_start();
     for (std::size_t i = 0; i < legs_.size(); ++i) {
       if (curve_.length(i) < least_span()) {
         curve_.straighten(i);
@@ -78,7 +78,7 @@ class Fitting {
         if (i > 0) {
           legs_[i - 1].allowed.add(excess);  // the curve turns before the waypoint too
         }
-        before = from;
+        before = onward(before, from);
       }
     }
     for (std::size_t i = 0; i < legs_.size(); ++i) {
@@ -181,7 +181,7 @@ class Fitting {
   }
 
   std::optional<Fault> first_fault(std::size_t i) {
-    std::optional<Vec3> before = before_leg(i);
+    std::optional<Approach> before = before_leg(i);
     Vec3 from = curve_.waypoints()[i];
     auto to = legs_[i].points.begin();
     for (const Span& span : curve_.spans(i)) {
@@ -196,23 +196,29 @@ class Fitting {
           return Fault{i, span, stands(i, std::nullopt, from, *to), k == 0 && span.from == 0,
                        2 * k < n};
         }
-        before = from;
+        before = onward(before, from);
         from = *to;
       }
     }
     return std::nullopt;
   }
 
-  /// Where the vehicle comes from to waypoint i.
-  std::optional<Vec3> before_leg(std::size_t i) const {
-    if (i == 0) {
-      return request_.before_start();
+  /// How the vehicle comes to waypoint i.
+  std::optional<Approach> before_leg(std::size_t i) const {
+    // From the last waypoint that a leg with a heading leads to.
+    std::size_t first = i;
+    while (first > 0 && (first == i ||
+                         !has_heading(curve_.waypoints()[first + 1] - curve_.waypoints()[first]))) {
+      --first;
     }
-    const Route& points = legs_[i - 1].points;
-    return points.size() > 1 ? points[points.size() - 2] : curve_.waypoints()[i - 1];
+    Route flown = {curve_.waypoints()[first]};
+    for (std::size_t leg = first; leg < i; ++leg) {
+      flown.insert(flown.end(), legs_[leg].points.begin(), legs_[leg].points.end());
+    }
+    return approach(flown, flown.size() - 1, request_.before_start());
   }
 
-  bool stands(std::size_t i, const std::optional<Vec3>& before, const Vec3& from,
+  bool stands(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
               const Vec3& to) const {
     const kit::Excess& allowed = legs_[i].allowed;
     return leg_ok(before, from, to, request_) ||

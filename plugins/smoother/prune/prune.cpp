@@ -10,6 +10,7 @@
 // Symbols: a state (i, j) is the leg between waypoints i and j; legs and metres are compared in
 //   that order.
 #include <algorithm>
+#include <compare>
 #include <map>
 #include <queue>
 
@@ -47,41 +48,38 @@ class Thinning {
     struct Entry {
       Cost estimate;
       Cost cost;
-      std::size_t i, j;
+      State state;
     };
     const auto later = [](const Entry& a, const Entry& b) {
       if (a.estimate < b.estimate || b.estimate < a.estimate) {
         return b.estimate < a.estimate;
       }
-      return std::pair(a.i, a.j) > std::pair(b.i, b.j);
+      return b.state < a.state;
     };
     std::priority_queue<Entry, std::vector<Entry>, decltype(later)> open(later);
     std::map<State, std::pair<Cost, State>> best;  // cost, and the state before
     const std::size_t last = count_ - 1;
     const auto reach = [&](const State& from, std::size_t k, const Cost& cost) {
-      const State state = {from.second, k};
-      const Cost total = {cost.legs + 1, cost.metres + distance(from.second, k)};
+      const State state = after(from, k);
+      const Cost total = {cost.legs + 1, cost.metres + distance(from.to, k)};
       const auto [known, fresh] = best.try_emplace(state, total, from);
       if (fresh || total < known->second.first) {
         known->second = {total, from};
-        open.push({{total.legs + legs_to_go_[k], total.metres + distance(k, last)},
-                   total,
-                   state.first,
-                   state.second});
+        open.push({{total.legs + legs_to_go_[k], total.metres + distance(k, last)}, total, state});
       }
     };
-    reach_from(State{0, 0}, Cost{}, reach);
+    reach_from(State{}, Cost{}, reach);
     while (!open.empty() && !budget_hit_) {
       const Entry entry = open.top();
       open.pop();
-      const State state = {entry.i, entry.j};
+      const State state = entry.state;
       if (best.at(state).first < entry.cost) {
         continue;
       }
-      if (entry.j == last) {
+      if (state.to == last) {
         std::vector<std::size_t> kept = {last};
-        for (State at = state; at != State{0, 0}; at = best.at(at).second) {
-          kept.push_back(at.first);
+        for (State at = state; at != State{}; at = best.at(at).second) {
+          kept.push_back(at.from);
         }
         std::reverse(kept.begin(), kept.end());
         return kept;
@@ -97,7 +95,13 @@ class Thinning {
   bool budget_hit() const { return budget_hit_; }
 
  private:
-  using State = std::pair<std::size_t, std::size_t>;
+  /// The last leg, by its waypoints; where that has no heading, also the last leg that has one
+  /// (both 0: there is none).
+  struct State {
+    std::size_t from = 0, to = 0;
+    std::size_t heading_from = 0, heading_to = 0;
+    auto operator<=>(const State&) const = default;
+  };
   enum class Visible : char { unknown, yes, no };
 
   /// The leg j–k by itself.
@@ -138,9 +142,9 @@ class Thinning {
 
   template <class Reach>
   void reach_from(const State& state, const Cost& cost, const Reach& reach) {
-    const auto [i, j] = state;
-    const std::optional<Vec3> before =
-        cost.legs == 0 ? request_.before_start() : std::optional<Vec3>(route_[i]);
+    const std::size_t j = state.to;
+    const std::optional<Approach> before =
+        cost.legs == 0 ? request_.before_start() : std::optional(approach_by(state));
     for (std::size_t k = j + 1; k < count_; ++k) {
       if (legs_to_go_[k] <= int(count_) && follows(before, j, k) && visible(j, k)) {
         reach(state, k, cost);
@@ -148,15 +152,31 @@ class Thinning {
     }
   }
 
+  State after(const State& state, std::size_t k) const {
+    if (has_heading(route_[k] - route_[state.to]) || !request_.headings_last()) {
+      return {state.to, k};
+    }
+    return has_heading(route_[state.to] - route_[state.from])
+               ? State{state.to, k, state.from, state.to}
+               : State{state.to, k, state.heading_from, state.heading_to};
+  }
+
+  Approach approach_by(const State& state) const {
+    if (state.heading_to > 0) {
+      return {route_[state.from], route_[state.heading_to] - route_[state.heading_from]};
+    }
+    return onward(request_.before_start(), route_[state.from]);
+  }
+
   /// The rules of the leg j–k that look at the point before it.
-  bool follows(const std::optional<Vec3>& before, std::size_t j, std::size_t k) const {
+  bool follows(const std::optional<Approach>& before, std::size_t j, std::size_t k) const {
     if (!before) {
       return true;
     }
-    return kit::turn_kept(route_[j] - *before, route_[k] - route_[j], request_.limits) &&
+    return turn_ok(*before, route_[j], route_[k], request_) &&
            std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
-                         return named.admits({before, route_[j], route_[k]});
+                         return named.admits({before->from, route_[j], route_[k]});
                        });
   }
 

@@ -25,10 +25,9 @@ Route random_route(SplitMix64& random, Request& request, std::size_t points) {
   Route route;
   for (int attempt = 0; attempt < 3000 && route.size() < points; ++attempt) {
     const Vec3 p(random.uniform() * 100, random.uniform() * 100, random.uniform() * 100);
-    const auto before =
-        route.size() > 1 ? std::optional(route[route.size() - 2]) : request.before_start();
     if (route.empty() ? point_problem(p, request).empty()
-                      : leg_ok(before, route.back(), p, request)) {
+                      : leg_ok(approach(route, route.size() - 1, request.before_start()),
+                               route.back(), p, request)) {
       route.push_back(p);
     }
   }

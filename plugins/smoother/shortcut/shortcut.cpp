@@ -60,12 +60,17 @@ class Shortening {
     }
     const bool straight_already = a.after >= b.before;
     const double gain = b.from_start - a.from_start - (b.at - a.at).norm();
-    if (straight_already || gain <= kLeastGain * from_start_.back() || !keeps_rules(a, b)) {
+    if (straight_already || gain <= kLeastGain * from_start_.back()) {
       return false;
     }
     Route shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
     shorter.insert(shorter.end(), {a.at, b.at});
     shorter.insert(shorter.end(), pi_.begin() + std::ptrdiff_t(b.after), pi_.end());
+    // The leg a-b, and those beside it that are cut, or whose turn is another.
+    if (!legs_kept(shorter, a.before - (a.is_waypoint() ? 0 : 1),
+                   a.before + (b.is_waypoint() ? 1 : 2))) {
+      return false;
+    }
     pi_ = std::move(shorter);
     measure();
     return true;
@@ -104,21 +109,20 @@ class Shortening {
     return {pi_[i - 1] + into / leg * (pi_[i] - pi_[i - 1]), metres, i, i};
   }
 
-  /// The leg a-b, and those beside it that are cut, or whose turn is another.
-  bool keeps_rules(const Place& a, const Place& b) {
-    return (a.is_waypoint() || leg_kept(point(a.before, 2), pi_[a.before - 1], a.at)) &&
-           leg_kept(point(a.before, 1), a.at, b.at) &&
-           (b.after == pi_.size() || leg_kept(a.at, b.at, pi_[b.after])) &&
-           (b.is_waypoint() || b.after + 1 == pi_.size() ||
-            leg_kept(b.at, pi_[b.after], pi_[b.after + 1]));
-  }
-  bool leg_kept(const std::optional<Vec3>& before, const Vec3& from, const Vec3& to) {
-    ++legs_checked_;
-    return leg_ok(before, from, to, request_);
-  }
-  /// The waypoint that many before number i, or where the vehicle comes from.
-  std::optional<Vec3> point(std::size_t i, std::size_t many) const {
-    return i < many ? request_.before_start() : std::optional(pi_[i - many]);
+  /// The legs from number `first` to `last`, and past one without a heading those after it.
+  bool legs_kept(const Route& route, std::size_t first, std::size_t last) {
+    std::optional<Approach> before = approach(route, first, request_.before_start());
+    for (std::size_t i = first; i + 1 < route.size(); ++i) {
+      if (i > last && has_heading(route[i] - route[i - 1])) {
+        break;
+      }
+      ++legs_checked_;
+      if (!leg_ok(before, route[i], route[i + 1], request_)) {
+        return false;
+      }
+      before = onward(before, route[i]);
+    }
+    return true;
   }
 
   Route pi_;

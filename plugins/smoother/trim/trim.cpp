@@ -42,11 +42,23 @@ class Trimming {
   bool budget_hit() const { return budget_hit_; }
 
  private:
-  /// The stride from one node to another, and the leg behind it, which it turns into.
+  /// The stride from one node to another, and the legs behind it that it turns into.
   bool keeps_rules(std::size_t from, std::size_t to) const {
-    const auto before = from == 0 ? request_.before_start() : std::optional(nodes_[from - 1]);
-    return leg_ok(before, nodes_[from], nodes_[to], request_) &&
-           (to + 1 == nodes_.size() || leg_ok(nodes_[from], nodes_[to], nodes_[to + 1], request_));
+    std::optional<Approach> before = approach(nodes_, from, request_.before_start());
+    if (!leg_ok(before, nodes_[from], nodes_[to], request_)) {
+      return false;
+    }
+    before = onward(before, nodes_[from]);
+    for (std::size_t i = to; i + 1 < nodes_.size(); ++i) {
+      if (!leg_ok(before, nodes_[i], nodes_[i + 1], request_)) {
+        return false;
+      }
+      if (has_heading(nodes_[i + 1] - nodes_[i])) {
+        break;  // what follows has not changed
+      }
+      before = onward(before, nodes_[i]);
+    }
+    return true;
   }
 
   Route nodes_;

@@ -56,15 +56,15 @@ TEST(Trim, GoesOnByOneWaypointWhereAStrideIsNotFree) {
 Route trimmed_plainly(Route route, const Request& request, const std::vector<std::size_t>& rounds) {
   route = without_repeats(route);
   for (const std::size_t stride : rounds) {
-    std::optional<Vec3> before = request.before_start();
+    std::optional<Approach> before = request.before_start();
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       const std::size_t ahead = std::min(i + stride, route.size() - 1);
       if (ahead > i + 1 && leg_ok(before, route[i], route[ahead], request) &&
           (ahead + 1 == route.size() ||
-           leg_ok(route[i], route[ahead], route[ahead + 1], request))) {
+           leg_ok(onward(before, route[i]), route[ahead], route[ahead + 1], request))) {
         route.erase(route.begin() + std::ptrdiff_t(i) + 1, route.begin() + std::ptrdiff_t(ahead));
       }
-      before = route[i];
+      before = onward(before, route[i]);
     }
   }
   return route;

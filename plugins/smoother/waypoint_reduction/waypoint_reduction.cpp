@@ -39,11 +39,11 @@ class Reduction {
   /// The points that stay; cut short where the budget ended.
   Route reduced() {
     Route kept{route_.front()};
-    std::optional<Vec3> before = request_.before_start();  // past a via point, the leg to it
+    std::optional<Approach> before = request_.before_start();  // past a via point, the leg to it
     std::size_t begin = 0;
     while (begin + 1 < route_.size() && !budget_hit_) {
       const std::size_t end = farthest_end(before, begin);
-      before = route_[begin];
+      before = onward(before, route_[begin]);
       begin = end;
       kept.push_back(route_[end]);
     }
@@ -55,7 +55,7 @@ class Reduction {
   bool budget_hit() const { return budget_hit_; }
 
  private:
-  std::size_t farthest_end(const std::optional<Vec3>& before, std::size_t begin) {
+  std::size_t farthest_end(const std::optional<Approach>& before, std::size_t begin) {
     for (std::size_t end = route_.size() - 1; end > begin && !budget_hit_; --end) {
       if (is_admissible(before, route_[begin], route_[end])) {
         return end;
@@ -65,13 +65,14 @@ class Reduction {
     return begin + 1;
   }
 
-  bool is_admissible(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+  bool is_admissible(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     budget_hit_ = watch_.spent(legs_checked_);
     if (budget_hit_) {
       return false;
     }
     ++legs_checked_;
-    return (!before || turn_angle_in_space(a - *before, b - a) <= max_turn_ + kAngleTolerance) &&
+    return (!before ||
+            turn_angle_in_space(a - before->from, b - a) <= max_turn_ + kAngleTolerance) &&
            leg_ok(before, a, b, request_);
   }
 

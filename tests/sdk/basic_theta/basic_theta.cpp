@@ -90,7 +90,8 @@ struct Search {
   }
 
   bool line_of_sight(std::uint32_t a, std::uint32_t b) {
-    const auto before = a == start ? request.before_start() : place(nodes[a].parent);
+    const Route flown = route_to(a);
+    const auto before = approach(flown, flown.size() - 1, request.before_start());
     return b == goal || (a == start && first.length > 0)  // no centre of a cell
                ? rules.any_leg_ok(before, place(a), place(b))
                : rules.sees(before, lattice.cell(a), lattice.cell(b));

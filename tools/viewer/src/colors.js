@@ -5,17 +5,22 @@ const kRoutes = {
   light: ['#0072b2', '#e69f00', '#009e73', '#56b4e9', '#f0e442', '#000000'],
   dark: ['#56b4e9', '#e69f00', '#009e73', '#f0e442', '#0072b2', '#ffffff'],
 };
-const kRoles = {obstacle: '#7d8590', keep_out: '#cc79a7', keep_in: '#009e73', threat: '#d55e00'};
+const kRoles = {obstacle: '#7d8590', keep_out: '#cc79a7', keep_in: '#009e73', threat: '#d55e00',
+  unknown: '#b3a369'};
 export const kViolation = '#d55e00';
 export const kKinds = ['#56b4e9', '#009e73', '#999999', '#e69f00', '#f0e442'];
 export const kKindNames = ['expanded', 'added', 'removed', 'rewired', 'iteration'];
 export const kRoleNames = {obstacle: 'Obstacle', keep_out: 'Keep-out zone',
-  keep_in: 'Keep-in zone', threat: 'Threat'};
+  keep_in: 'Keep-in zone', threat: 'Threat', unknown: 'Unknown space, treated as blocked'};
 
 export function route_color(index, theme) {
   const palette = kRoutes[theme];
   return palette[index % palette.length];
 }
+
+/** Of the kinds of obstacles beside a line of that colour. */
+export const kind_colors = (color) => ['#cc79a7', '#009e73', '#e69f00', '#56b4e9', '#8a6d3b',
+  '#0072b2'].filter((other) => other !== color);
 
 export const role_color = (role) => kRoles[role] ?? kRoles.obstacle;
 

@@ -2,7 +2,7 @@
 import {read_scene} from './scene.js';
 import {by_id} from './dom.js';
 import {Store} from './store.js';
-import {Frame, lines_of} from './world.js';
+import {Frame, hidden_at_first, lines_of} from './world.js';
 import {build_panels} from './ui/panels.js';
 import {follow_theme} from './ui/theme.js';
 import {View2} from './view2/view.js';
@@ -34,7 +34,7 @@ function first_state(scene, lines) {
   const selected = scene.selected ?? Math.max(0, with_route);
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
-  return {shown, hidden: new Set(), selected, source: 'route', time: 0, playing: false, speed: 1,
+  return {shown, hidden: hidden_at_first(scene), selected, source: 'route', time: 0, playing: false, speed: 1,
     cursor: null, exaggeration, cut, grid: true, everything: false, theme: 'light', tab: 'profiles',
     search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
 }

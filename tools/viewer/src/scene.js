@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Ground} from './ground.js';
+import {bytes, parse_packed} from './packed.js';
 
 const kVersion = 1;
-
-function bytes(text) {
-  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
-  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-}
 
 function floats(text, count, what) {
   const raw = bytes(text);
@@ -21,7 +17,7 @@ export function read_scene(text) {
   if (text.trim() === '' || text.trimStart().startsWith('/*')) {
     throw new Error('This page holds no scene: make one with `altiplan view RESULT -o page.html`.');
   }
-  const scene = JSON.parse(text);
+  const scene = parse_packed(text);
   if (scene.altiplan_scene !== kVersion) {
     throw new Error(`This page reads scenes of version ${kVersion}, found ` +
       `${JSON.stringify(scene.altiplan_scene)}.`);

@@ -73,6 +73,10 @@ export function layers_of(scene) {
   return [...layers.values()];
 }
 
+/** Unknown space would hide all that is known: it is shown when asked for. */
+export const hidden_at_first = (scene) =>
+  new Set(layers_of(scene).filter(({role}) => role === 'unknown').map(({key}) => key));
+
 /** Whether something is in the world at `time` of the flight whose events happened at `times`;
  *  before and without a flight the world is as it was at the start. */
 export function present(thing, times, {time, everything}) {

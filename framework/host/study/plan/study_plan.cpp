@@ -3,9 +3,11 @@
 
 #include <dlfcn.h>
 
+#include <cerrno>
 #include <map>
 
 #include "host/output/result_json.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "host/registry/registry.hpp"
 #include "host/study/plan/study_grid.hpp"
 #include "host/study/plan/study_reading.hpp"
@@ -16,6 +18,24 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
+/// Of a folder there is none. A key without it would be another run's.
+std::string hash_of(const fs::path& file) {
+  errno = 0;
+  const std::string hash = sha256(file);
+  if (const int error = errno; hash.empty() && error != EISDIR) {
+    throw MachineFault(unreadable(file, error));
+  }
+  return hash;
+}
+
+std::string build_of(const fs::path& file) {
+  const Library library = examine_library(file);
+  if (library.build.empty()) {
+    throw MachineFault(file.string() + ": " + library.refused);
+  }
+  return library.build;
+}
+
 /// What the result of a pair depends on, but for the seed.
 std::string pair_text(const Config& config, const StudyBudget& budget) {
   std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
@@ -23,7 +43,7 @@ std::string pair_text(const Config& config, const StudyBudget& budget) {
   for (const fs::path& file : config.files) {
     // Comments of the two files change nothing, and their trees stand above.
     if (file != config.pipeline_path && file != config.scenario_path) {
-      text += sha256(file) + "\n";
+      text += hash_of(file) + "\n";
     }
   }
   text += plugins_json(config).dump() + "\n";
@@ -40,8 +60,7 @@ const std::string& host_build() {
   static const std::string kBuild = [] {
     Dl_info info{};
     const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
-    return examine_library("/proc/self/exe").build +
-           (is_found ? " " + examine_library(info.dli_fname).build : std::string());
+    return build_of("/proc/self/exe") + (is_found ? " " + build_of(info.dli_fname) : std::string());
   }();
   return kBuild;
 }
@@ -77,7 +96,10 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
       try {
         const Config config = load_config(plan.pipelines[run.pipeline].file,
                                           overrides_of(plan, run, plugin_path), plan.registry);
-        plan.registry = config.registry;
+        if (config.registry != plan.registry) {
+          plan.registry = config.registry;
+          plan.registries.push_back(config.registry);
+        }
         text = pair_text(config, plan.file.budget);
       } catch (const PluginError& error) {
         text = error.what();  // its runs are refused, one by one; the others need not wait for it

@@ -38,9 +38,10 @@ struct StudyPlan {
   StudyFile file;
   std::vector<Variant> scenarios;
   std::vector<Variant> pipelines;
-  std::vector<PlannedRun> runs;  ///< those selected, as they are run: interleaved at random
-  std::size_t planned = 0;       ///< how many there are in all
-  std::shared_ptr<Registry> registry;
+  std::vector<PlannedRun> runs;        ///< those selected, as they are run: interleaved at random
+  std::size_t planned = 0;             ///< how many there are in all
+  std::shared_ptr<Registry> registry;  ///< of the run planned last
+  std::vector<std::shared_ptr<Registry>> registries;  ///< all: files may name folders of plugins
 };
 
 /// "PIPELINE SCENARIO #REPETITION"

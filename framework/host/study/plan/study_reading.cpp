@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/study/plan/study_reading.hpp"
 
-#include <fstream>
-
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/input.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
@@ -87,14 +87,11 @@ std::string set_twice(const Value& set) {
 /// Whether there is such a file; if not, it is said.
 bool is_file(StudyProblems& problems, const Path& file, const Location& where,
              const std::string& key) {
-  std::error_code error;
-  if (fs::is_regular_file(file.text, error)) {
-    return true;
+  const std::string why = file_problem(file.text);
+  if (!why.empty()) {
+    problems.add(where, key, why);
   }
-  problems.add(where, key,
-               fs::exists(file.text, error) ? "'" + file.text + "' is not a file"
-                                            : "there is no file '" + file.text + "'");
-  return false;
+  return why.empty();
 }
 
 void read_scenarios(StudyPlan& plan, const Value& tree, StudyProblems& problems,
@@ -223,17 +220,12 @@ Problem StudyVariants::placed(const Problem& problem) const {
 StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVariants& variants) {
   StudyPlan plan;
   plan.path = fs::absolute(study).lexically_normal();
-  std::error_code error;
-  if (fs::exists(plan.path, error) && !fs::is_regular_file(plan.path, error)) {
-    throw ConfigError(Location{plan.path.string(), 0, 0, ""}, "", "is not a file");
-  }
   const Value tree = load_yaml(plan.path);
   if (tree.kind != Value::Kind::map || kind_of(tree) != FileKind::study) {
     throw ConfigError(tree.where, "", "expected a study: a file with 'scenarios' and 'pipelines'");
   }
   plan.text = flow_text(tree);
-  std::ifstream in(plan.path);
-  plan.source.assign(std::istreambuf_iterator<char>(in), {});
+  plan.source = kit::read_file(plan.path.string());
   for (const Problem& problem : bind(plan.file, &tree).problems) {
     problems.add(problem);
   }

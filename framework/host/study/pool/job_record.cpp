@@ -102,21 +102,31 @@ int append_file(const std::string& file, std::string_view text) {
   return error;
 }
 
-std::optional<std::string> read_from(const std::string& file, std::size_t offset,
-                                     std::size_t at_most) {
+ReadText read_from(const std::string& file, std::size_t offset, std::size_t at_most) {
   const int from = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  struct stat status {};
   if (from < 0) {
-    return std::nullopt;
+    return {"", errno};
   }
-  std::optional<std::string> text;
-  if (::fstat(from, &status) == 0 && S_ISREG(status.st_mode) &&
-      std::size_t(status.st_size) >= offset) {
-    text.emplace(std::min(std::size_t(status.st_size) - offset, at_most), '\0');
-    const ssize_t got = ::pread(from, text->data(), text->size(), off_t(offset));
-    text->resize(std::size_t(std::max<ssize_t>(got, 0)));
+  ReadText read;
+  struct stat status {};
+  if (::fstat(from, &status) != 0) {
+    read.error = errno;
+  } else if (!S_ISREG(status.st_mode)) {
+    read.error = EINVAL;
+  } else {
+    const std::size_t size = std::size_t(status.st_size);
+    read.text.resize(std::min(size - std::min(size, offset), at_most));
+    std::size_t there = 0;
+    ssize_t got = 1;
+    while (there < read.text.size() && got != 0 && read.error == 0) {
+      got =
+          ::pread(from, read.text.data() + there, read.text.size() - there, off_t(offset + there));
+      there += std::size_t(std::max<ssize_t>(got, 0));
+      read.error = got < 0 && errno != EINTR ? errno : 0;
+    }
+    read.text.resize(there);
   }
   ::close(from);
-  return text;
+  return read;
 }
 }  // namespace altiplan::host

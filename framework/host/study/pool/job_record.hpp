@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,7 +20,11 @@ RecordState take_record(std::string_view& text, Ended& ended);
 /// Appends to a file, which is made where there is none. 0, or the error's number.
 int append_file(const std::string& file, std::string_view text);
 
-/// A regular file's text from that offset on; nullopt where it cannot be read, or ends before.
-std::optional<std::string> read_from(const std::string& file, std::size_t offset,
-                                     std::size_t at_most);
+/// What could be read of a file.
+struct ReadText {
+  std::string text;
+  int error = 0;  ///< why that was not all; EINVAL for what is no regular file
+};
+/// A file's text from that offset on: "" where it ends before.
+ReadText read_from(const std::string& file, std::size_t offset, std::size_t at_most);
 }  // namespace altiplan::host

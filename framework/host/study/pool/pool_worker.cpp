@@ -13,6 +13,7 @@
 #include <new>
 
 #include "altiplan/error.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "host/study/pool/job_record.hpp"
 
 namespace altiplan::host {
@@ -20,11 +21,7 @@ namespace {
 
 constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are told
 constexpr off_t kSaidAtMost = 1 << 20;  ///< … that are kept
-
-std::string small_file(const std::string& file) {
-  constexpr std::size_t kAtMost = 256 << 20;
-  return read_from(file, 0, kAtMost).value_or("");
-}
+constexpr std::size_t kLastWordsAtMost = 256 << 20;
 }  // namespace
 
 PoolWorker::PoolWorker() {
@@ -66,6 +63,7 @@ bool PoolWorker::start(const WorkFolder& folder, std::size_t serial, WorkerTask 
   family_ = folder.processes();
   known_ = 0;
   read_ = 0;
+  unread_.clear();
   seen_ = 0;
   reaped_cpu_s_ = 0;
   return process_ > 0;
@@ -111,12 +109,18 @@ std::optional<Ending> PoolWorker::watch(const JobLimits& limits) {
   return std::nullopt;
 }
 
+std::string PoolWorker::read(const std::string& file, std::size_t offset, std::size_t at_most) {
+  ReadText read = read_from(file, offset, at_most);
+  unread_ = is_machine_fault(read.error) ? unreadable(file, read.error) : "";
+  return std::move(read.text);
+}
+
 std::vector<Ended> PoolWorker::take_records() {
   std::vector<Ended> all;
   const std::size_t at_most =
       std::size_t(task_.limits.file_mb * double(1 << 20)) * (task_.batch.size() + 1);
-  const std::optional<std::string> text = read_from(task_.records, read_, at_most);
-  std::string_view rest = text ? *text : std::string_view();
+  const std::string text = read(task_.records, read_, at_most);
+  std::string_view rest = text;
   while (!rest.empty()) {
     Ended ended;
     if (host::take_record(rest, ended) != RecordState::whole || known_ >= task_.batch.size() ||
@@ -130,8 +134,15 @@ std::vector<Ended> PoolWorker::take_records() {
     ended.job = task_.batch[known_++];
     all.push_back(std::move(ended));
   }
-  read_ += (text ? text->size() : 0) - rest.size();
+  read_ += text.size() - rest.size();
+  if (!lost_record()) {
+    unread_.clear();  // there was nothing to be read
+  }
   return all;
+}
+
+std::string PoolWorker::note() const {
+  return {board_->note.begin(), std::find(board_->note.begin(), board_->note.end() - 1, '\0')};
 }
 
 std::string PoolWorker::said() const {
@@ -143,7 +154,7 @@ std::string PoolWorker::said() const {
   return text;
 }
 
-std::optional<Ended> PoolWorker::unfinished(Ending how) const {
+std::optional<Ended> PoolWorker::unfinished(Ending how) {
   const bool at_limit = how == Ending::wall_limit || how == Ending::cpu_limit ||
                         how == Ending::memory_limit || how == Ending::process_limit;
   if (known_ >= task_.batch.size() || board_->begun <= known_ ||
@@ -155,9 +166,10 @@ std::optional<Ended> PoolWorker::unfinished(Ending how) const {
   ended.key = task_.keys[known_];
   ended.how = how;
   ended.place = int(known_);
-  ended.last_words = small_file(task_.last_words);
-  const auto end = std::find(board_->note.begin(), board_->note.end() - 1, '\0');
-  ended.note.assign(board_->note.begin(), end);
+  if (unread_.empty()) {
+    ended.last_words = read(task_.last_words, 0, kLastWordsAtMost);
+  }
+  ended.note = note();
   ended.said = said();
   ended.wall_s = std::max(0.0, double(steady_ns() - board_->began_ns) * 1e-9);
   ended.cpu_s = std::max(cpu_s_, reaped_cpu_s_ - board_->base_cpu_s);

@@ -45,6 +45,8 @@ Warden::Warden(const WorkFolder& folder) : folder_(folder) { start(); }
 
 void Warden::start() {
   int ends[2];
+  leash_ = -1;
+  process_ = -1;
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw Error(std::string("no socket to the warden of the workers: ") + std::strerror(errno));
   }
@@ -52,12 +54,13 @@ void Warden::start() {
   if (process_ == 0) {
     keep_watch(folder_, ends[0]);
   }
+  const int error = errno;
   ::close(ends[0]);
-  leash_ = ends[1];
   if (process_ < 0) {
-    ::close(leash_);
-    throw Error(std::string("no process for the warden of the workers: ") + std::strerror(errno));
+    ::close(ends[1]);
+    throw Error(std::string("no process for the warden of the workers: ") + std::strerror(error));
   }
+  leash_ = ends[1];
 }
 
 void Warden::replace() {
@@ -66,6 +69,9 @@ void Warden::replace() {
 }
 
 Warden::~Warden() {
+  if (process_ < 0) {
+    return;  // the machine had none to replace the one that has ended
+  }
   const char farewell = '.';
   if (::send(leash_, &farewell, 1, MSG_NOSIGNAL) == 1) {  // else it is gone already
     while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "altiplan/error.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "host/study/pool/job_record.hpp"
 #include "host/study/pool/process_tree.hpp"
 
@@ -115,10 +116,14 @@ std::uint64_t mark_of(const fs::path& folder) {
 std::vector<fs::path> files_of_workers(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().filename().string().starts_with("worker-")) {
-      files.push_back(entry.path());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().filename().string().starts_with("worker-")) {
+      files.push_back(entry->path());
     }
+  }
+  if (is_machine_fault(error.value())) {
+    throw MachineFault(unreadable(folder, error.value()));
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -139,20 +144,30 @@ WorkFolder::WorkFolder(const fs::path& folder)
   try {
     sign(path_, lock_);
   } catch (...) {
+    std::error_code ignored;
+    fs::remove(path_ / "lock", ignored);
+    fs::remove(path_, ignored);  // not where an earlier call has left records in it
     ::close(lock_);
     throw;
   }
   mark_ = mark_of(path_);
   processes().kill();
+  unfinished_.emplace([this] {
+    try {
+      if (records().empty()) {
+        clear();
+        std::error_code error;
+        fs::remove(path_ / "lock", error);
+        fs::remove(path_, error);  // not where somebody else has put something into it
+      }
+    } catch (const MachineFault&) {
+      // The next call looks again.
+    }
+  });
 }
 
 WorkFolder::~WorkFolder() {
-  if (records().empty()) {
-    clear();
-    std::error_code error;
-    fs::remove(path_ / "lock", error);
-    fs::remove(path_, error);  // not where somebody else has put something into it
-  }
+  unfinished_.reset();
   ::close(lock_);
 }
 
@@ -162,9 +177,11 @@ std::vector<Ended> WorkFolder::records() const {
     if (file.extension() != ".records") {
       continue;
     }
-    const std::optional<std::string> all =
-        read_from(file.string(), 0, std::numeric_limits<std::size_t>::max());
-    std::string_view text = all ? *all : std::string_view();
+    const ReadText all = read_from(file.string(), 0, std::numeric_limits<std::size_t>::max());
+    if (is_machine_fault(all.error)) {
+      throw MachineFault(unreadable(file, all.error));
+    }
+    std::string_view text = all.text;
     for (Ended ended; !text.empty() && take_record(text, ended) == RecordState::whole;) {
       records.push_back(ended);
     }

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/base/unfinished.hpp"
 #include "host/study/pool/process_tree.hpp"
 
 namespace altiplan::host {
@@ -61,7 +63,7 @@ class WorkFolder {
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
 
-  /// All whole records, of jobs that were done.
+  /// All whole records, of jobs that were done. Throws MachineFault where one cannot be read.
   std::vector<Ended> records() const;
   /// Removes the records: to be called when they have been stored.
   void clear();
@@ -80,5 +82,6 @@ class WorkFolder {
   int lock_ = -1;
   std::uint64_t mark_ = 0;
   pid_t owner_;  ///< the parent, also when a worker asks
+  std::optional<Unfinished> unfinished_;
 };
 }  // namespace altiplan::host

@@ -123,7 +123,7 @@ class Worker {
       write_system_file("/proc/self/clear_refs", "5");  // resets the peak
       [[maybe_unused]] const int cut = ::ftruncate(STDERR_FILENO, 0);
     }
-    before_ = use_of(::getpid());
+    before_ = own_use();
     board_.base_memory_mb = before_.memory_mb;
     board_.base_cpu_s = before_.cpu_s;
     cpu_before_s_ = cpu_s();
@@ -149,7 +149,7 @@ class Worker {
   }
 
   void measure(Ended& ended) {
-    const ProcessUse now = use_of(::getpid());
+    const ProcessUse now = own_use();
     ended.wall_s = double(steady_ns() - began_ns_) * 1e-9;
     ended.left_behind = children_left();
     ended.cpu_s = cpu_s() - cpu_before_s_;
@@ -164,22 +164,46 @@ class Worker {
                   std::max(kHoardMb, task_.limits.memory_mb.value_or(0) / 4);
   }
 
+  /// What a plugin has left open is not to stand in the way of what follows.
+  void close_descriptors() {
+    ::close_range(3, ~0U, 0);
+    retire_ = true;
+  }
+
+  /// Measurements without which limits and the record would be wrong.
+  ProcessUse own_use() {
+    ProcessUse use = use_of(::getpid());
+    if (!use.alive || use.memory_mb <= 0) {
+      close_descriptors();
+      use = use_of(::getpid());
+    }
+    if (!use.alive || use.memory_mb <= 0) {
+      give_up(errno != 0 ? errno : EIO, "/proc/self: cannot be read");
+    }
+    return use;
+  }
+
   /// By the file's name, as the plugin may have closed or taken any descriptor.
   void hand_in(const Ended& ended) {
     ::signal(SIGXFSZ, SIG_IGN);
     const std::string text = record_text(ended);
     int error = append_file(task_.records, text);
     if (error == EMFILE || error == ENFILE) {
-      ::close_range(3, ~0U, 0);
-      retire_ = true;
+      close_descriptors();
       error = append_file(task_.records, text);
     }
     ::signal(SIGXFSZ, SIG_DFL);
     if (error != 0) {
-      board_.error = error;
-      ::_exit(1);
+      give_up(error, task_.records + ": cannot be written");
     }
     board_.handed_in = board_.begun.load();
+  }
+
+  /// The job has no outcome, for no fault of its own.
+  [[noreturn]] void give_up(int error, const std::string& why) {
+    job_.note(why);
+    board_.error = error;
+    ::_exit(1);
   }
 
   const WorkerTask& task_;

@@ -21,7 +21,7 @@ struct Blackboard {
   std::atomic<std::int64_t> began_ns = 0;    ///< when the last of them has, on the steady clock
   std::atomic<double> base_cpu_s = 0;        ///< what the process had used before it
   std::atomic<double> base_memory_mb = 0;
-  std::atomic<int> error = 0;  ///< why a record could not be written
+  std::atomic<int> error = 0;  ///< why there is no record; `note` says of what
   std::array<char, 512> note{};
 };
 

@@ -15,19 +15,18 @@
 #include <cstring>
 #include <deque>
 #include <fstream>
-#include <map>
 #include <utility>
 
 #include "altiplan/error.hpp"
 #include "host/study/pool/cgroup.hpp"
 #include "host/study/pool/pool_worker.hpp"
+#include "host/study/pool/retries.hpp"
 #include "host/study/pool/warden.hpp"
 
 namespace altiplan::host {
 namespace {
 
 constexpr double kWatchEveryS = 0.02;
-constexpr int kTries = 3;
 
 double now_s() { return double(steady_ns()) * 1e-9; }
 
@@ -121,6 +120,7 @@ class PoolRun {
         keep_(keep),
         serial_(serial),
         waiting_(jobs.begin(), jobs.end()),
+        retries_(options),
         warden_(folder),
         workers_(std::size_t(options.jobs)) {}
 
@@ -132,6 +132,10 @@ class PoolRun {
         stop = signals_.wait(next_look_s_ - now_s());
         reap();
         look();
+        if (!retries_.failure().empty()) {
+          throw Error(retries_.failure() +
+                      "; what was done before is kept, and the same call goes on");
+        }
         keep_now_and_then();
       }
     } catch (...) {
@@ -142,6 +146,7 @@ class PoolRun {
       throw;
     }
     kill_all();
+    records_.insert(records_.end(), unread_.begin(), unread_.end());  // done again since
     keep();
     return waiting_.empty() ? WorkerPool::Finish::all : WorkerPool::Finish::interrupted;
   }
@@ -160,19 +165,21 @@ class PoolRun {
     do {
       batch.push_back(waiting_.front());
       waiting_.pop_front();
-    } while (batch.size() < size && !waiting_.empty() && !tries_.contains(batch.back()) &&
-             !tries_.contains(waiting_.front()));
+    } while (batch.size() < size && !waiting_.empty() && !retries_.knows(batch.back()) &&
+             !retries_.knows(waiting_.front()));
     return batch;
   }
 
   void start_workers() {
+    if (retries_.is_paused()) {
+      return;
+    }
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       PoolWorker& worker = workers_[i];
       if (worker.busy() || waiting_.empty()) {
         continue;
       }
-      const bool last_try =
-          tries_.contains(waiting_.front()) && tries_[waiting_.front()] == kTries - 1;
+      const bool last_try = retries_.is_last_try(waiting_.front());
       if ((last_try || undisturbed_) && std::ranges::any_of(workers_, &PoolWorker::busy)) {
         return;
       }
@@ -185,9 +192,10 @@ class PoolRun {
       task.limits = options_.limits;
       task.group = groups_ != nullptr ? groups_->entrance(i) : "";
       if (!worker.start(folder_, ++serial_, task, work_)) {
+        const int error = errno;
         waiting_.insert(waiting_.begin(), task.batch.begin(), task.batch.end());
         if (std::ranges::none_of(workers_, &PoolWorker::busy)) {
-          throw Error(std::string("no process for a worker: ") + std::strerror(errno));
+          retries_.fault(std::string("no process for a worker: ") + std::strerror(error));
         }
         return;  // again when one has ended
       }
@@ -233,8 +241,17 @@ class PoolRun {
 
   void take_records(PoolWorker& worker) {
     for (Ended& ended : worker.take_records()) {
-      ended_.push_back(std::move(ended));
       stillborn_ = 0;
+      take(std::move(ended));
+    }
+  }
+
+  /// Has the job done again, after the others, or keeps its end.
+  void take(Ended ended) {
+    if (retries_.try_again(ended)) {
+      waiting_.push_back(ended.job);
+    } else {
+      ended_.push_back(std::move(ended));
     }
   }
 
@@ -254,16 +271,6 @@ class PoolRun {
                                                                        : Ending::killed;
   }
 
-  /// Whether that may have been the work of another, and the job deserves another try: after the
-  /// others, and the last one while no other runs, so that what is of this job alone is told apart.
-  bool try_again(const Ended& ended) {
-    constexpr std::array kFromOutside = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
-    const bool outside =
-        ended.how == Ending::garbled ||
-        (ended.how == Ending::killed && std::ranges::count(kFromOutside, ended.signal) > 0);
-    return outside && ++tries_[ended.job] < kTries;
-  }
-
   /// After the worker's process was reaped: the job that was under way has its end, or is done
   /// again; those that had not begun wait for another worker.
   void settle(PoolWorker& worker, const Reaped& reaped, std::optional<Ending> beyond) {
@@ -276,13 +283,9 @@ class PoolRun {
       last->signal = WIFSIGNALED(reaped.status) ? WTERMSIG(reaped.status) : 0;
       last->exit_code = WIFEXITED(reaped.status) ? WEXITSTATUS(reaped.status) : 0;
       const bool study_error = worker.error() != 0 && last->how != Ending::too_large;
-      if (!study_error) {
+      if (!study_error && worker.unread().empty()) {
         ++known;
-        if (try_again(*last)) {
-          waiting_.push_back(last->job);
-        } else {
-          ended_.push_back(std::move(*last));
-        }
+        take(std::move(*last));
       }
     }
     const std::vector<std::size_t>& batch = worker.task().batch;
@@ -296,10 +299,12 @@ class PoolRun {
   void expect_well(const PoolWorker& worker, std::size_t known) {
     constexpr int kAtMost = 20;
     if (const int error = worker.error(); error != 0 && error != EFBIG) {
-      throw Error(worker.task().records + ": cannot be written: " + std::strerror(error));
+      retries_.fault(worker.note() + ": " + std::strerror(error));
+    } else if (!worker.unread().empty()) {
+      retries_.fault(worker.unread());
     }
     if (known == 0 && !worker.born() && ++stillborn_ > kAtMost) {
-      throw Error("the processes for the runs end before they have begun");
+      retries_.give_up("the processes for the runs end before they have begun");
     }
   }
 
@@ -312,7 +317,7 @@ class PoolRun {
       }
     }
     const std::size_t left = worker.clear_away(others);
-    records_.push_back(worker.task().records);
+    (worker.unread().empty() ? records_ : unread_).push_back(worker.task().records);
     if (left > 0 && between_jobs && worker.known() > 0 && !ended_.empty() &&
         ended_.back().job == worker.task().batch[worker.known() - 1]) {
       ended_.back().left_behind = std::max(ended_.back().left_behind, int(left));
@@ -354,9 +359,10 @@ class PoolRun {
   const Keep& keep_;
   std::size_t& serial_;
   std::deque<std::size_t> waiting_;
-  std::map<std::size_t, int> tries_;  ///< of jobs whose process was ended from outside
+  Retries retries_;
   std::vector<Ended> ended_;          ///< and not yet kept
   std::vector<std::string> records_;  ///< files that are of no use when those are kept
+  std::vector<std::string> unread_;   ///< that may hold jobs which the next call finds
   const Signals signals_;
   Warden warden_;
   std::deque<PoolWorker> workers_;

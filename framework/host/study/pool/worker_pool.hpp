@@ -46,12 +46,27 @@ using Work = std::function<std::string(const Job&)>;
 /// are removed. What it throws ends the pool and goes to the caller of run.
 using Keep = std::function<void(std::vector<Ended>)>;
 
+/// What the caller makes of a job's end.
+struct Appraisal {
+  enum {
+    final,     ///< it is the job's own
+    doubtful,  ///< a fault of the machine that has passed may have caused it: it is final when the
+               ///< next try ends alike, or the third
+    fault,     ///< the machine's fault caused it: the job is done again, some times
+    hopeless,  ///< no job can be done any more
+  } verdict = final;
+  std::string cause;  ///< ends are alike that have the same; told where the call ends by it
+};
+
 struct PoolOptions {
   int jobs = 1;   ///< workers at a time
   int reuse = 1;  ///< jobs that a worker does, one after another, before it ends
   JobLimits limits;
   std::function<std::string(std::size_t)> key;  ///< of a job: names its record for the next parent
   double keep_every_s = 0.25;                   ///< how often `keep` is called
+  /// All ends are final where this is not given. One that is done again is not kept.
+  std::function<Appraisal(const Ended&)> appraise;
+  std::function<void(const std::string&)> say;  ///< likewise: a fault of the machine, now and then
 };
 
 /// Runs jobs in processes that may crash, hang, or eat what they can get.
@@ -60,7 +75,9 @@ struct PoolOptions {
 /// a session of its own, keeps no descriptor of the parent's, and is killed when the parent ends;
 /// processes that it has started are then ended by the warden. One that gets a signal that the pool
 /// has not sent, and that somebody else may have sent (SIGKILL, SIGTERM …), or whose record is
-/// damaged, is not blamed for it at once: its job is done again, up to three times.
+/// damaged, is not blamed for it at once: its job is done again, up to three times. Where the
+/// machine fails (no process, no file), the pool waits a little and tries again, for two seconds or
+/// so.
 class WorkerPool {
  public:
   WorkerPool(WorkFolder& folder, PoolOptions options);
@@ -71,7 +88,7 @@ class WorkerPool {
   enum class Finish { all, interrupted };
   /// Runs the jobs in this order, and calls `keep` now and then. On SIGINT, SIGTERM and SIGHUP the
   /// jobs under way are killed, without an outcome, and what had ended before is kept. Throws Error
-  /// where the folder cannot be written to, or no process can be made; then likewise.
+  /// where the machine goes on failing, and what failed; then likewise.
   Finish run(const std::vector<std::size_t>& jobs, const Work& work, const Keep& keep);
 
   /// How limits are kept: "process tree, every 20 ms", and cgroup v2 where there is one.

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/study/report/report.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <fstream>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <set>
 #include <tuple>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/output_file.hpp"
 #include "host/study/report/page.hpp"
 #include "host/study/report/text.hpp"
 
@@ -178,15 +183,7 @@ void write_tables(const Content& content, const fs::path& folder) {
   write_file(folder / "scenarios.csv", csv_text(grid));
 }
 
-constexpr const char* kBeside = ".partial";
-
-void drop(const fs::path& folder) {
-  std::error_code ignored;
-  fs::remove_all(folder, ignored);
-}
-
 void write_parts(const Content& content, const std::string& page, const fs::path& folder) {
-  drop(folder);
   fs::create_directories(folder / "figures");
   fs::create_directories(folder / "tables");
   for (const Figure& figure : all_figures(content)) {
@@ -198,17 +195,46 @@ void write_parts(const Content& content, const std::string& page, const fs::path
   write_file(folder / "index.html", page);
 }
 
-/// An earlier report goes when the new one is whole.
-void put_in_place(const fs::path& beside, const fs::path& folder) {
-  for (const char* part : {"figures", "tables", "runs.csv", "index.html"}) {
-    fs::remove_all(folder / part);
-    fs::rename(beside / part, folder / part);
+/// Each takes the other's place, also where one of them is not there; again, and all is as it was.
+void exchange(const fs::path& a, const fs::path& b) {
+  if (!fs::exists(b)) {
+    fs::rename(a, b);
+  } else if (!fs::exists(a)) {
+    fs::rename(b, a);
+  } else if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS) {
+      throw fs::filesystem_error("rename", b, std::error_code(errno, std::generic_category()));
+    }
+    const fs::path aside = a.string() + ".earlier";  // a file system that knows no exchange
+    fs::rename(b, aside);
+    fs::rename(a, b);
+    fs::rename(aside, a);
   }
-  drop(beside);
+}
+
+/// An earlier report goes when all of the new one is in its place.
+void put_in_place(const fs::path& beside, const fs::path& folder) {
+  const auto lock = uninterrupted();
+  std::vector<const char*> done;
+  try {
+    for (const char* part : {"figures", "tables", "runs.csv", "index.html"}) {
+      exchange(beside / part, folder / part);
+      done.push_back(part);
+    }
+  } catch (const fs::filesystem_error&) {
+    for (const char* part : done) {
+      exchange(beside / part, folder / part);
+    }
+    throw;
+  }
 }
 
 bool is_report(const fs::path& folder) {
-  std::ifstream page(folder / "index.html");
+  const std::string file = (folder / "index.html").string();
+  if (!kit::why_unreadable(file).empty()) {
+    return false;
+  }
+  kit::InputFile page(file);
   std::string start(1000, '\0');
   page.read(start.data(), std::streamsize(start.size()));
   return start.find(kMark) != std::string::npos;
@@ -249,16 +275,18 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   expect_report_folder(folder);
   const Content content = content_of(source, options);
   const std::string page = page_text(content);
-  const fs::path beside = folder / kBeside;
+  const fs::path beside = name_beside(fs::absolute(folder) / "report");
+  // What has taken its place is not in it any more, and the folder goes where nothing has.
+  const Unfinished unfinished([beside] {
+    std::error_code ignored;
+    fs::remove_all(beside, ignored);
+    fs::remove(beside.parent_path(), ignored);
+  });
   try {
     write_parts(content, page, beside);
     put_in_place(beside, folder);
   } catch (const fs::filesystem_error& error) {
-    drop(beside);
     throw Error("-o: cannot write into '" + folder.string() + "': " + error.code().message());
-  } catch (...) {
-    drop(beside);
-    throw;
   }
   Written written;
   written.page_bytes = page.size();

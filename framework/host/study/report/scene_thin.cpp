@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <set>
 
 #include "host/output/base64.hpp"
 #include "host/study/report/scenes.hpp"
@@ -53,7 +55,32 @@ void thin_ground(Json& scene) {
   ground["heights"] = base64_of(kept);
 }
 
-/// Every n-th sample, the last, and, where there is room, all that have a turn.
+/// Adds the sample with the least value.
+void keep_least(const Json& values, std::set<std::size_t>& kept) {
+  std::optional<std::size_t> least;
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    if (values[at].is_number() && (!least || values[at] < values[*least])) {
+      least = at;
+    }
+  }
+  if (least) {
+    kept.insert(*least);
+  }
+}
+
+Json heights_over_ground(const Json& profile) {
+  Json heights = Json::array();
+  for (std::size_t at = 0; at < profile.at("ground").size(); ++at) {
+    const Json& ground = profile.at("ground")[at];
+    heights.push_back(ground.is_null()
+                          ? ground
+                          : Json(profile.at("altitude")[at].get<double>() - ground.get<double>()));
+  }
+  return heights;
+}
+
+/// Every n-th sample, the last, the lowest and nearest ones, and, where there is room, all that
+/// have a turn.
 void thin_profile(Json& profile) {
   if (profile.is_null()) {
     return;
@@ -67,16 +94,31 @@ void thin_profile(Json& profile) {
       std::count_if(turns.begin(), turns.end(), [](const Json& turn) { return !turn.is_null(); }));
   const bool keep_corners = corners <= kMostSamples / 2;
   const std::size_t every = (count - 1) / (kMostSamples - (keep_corners ? corners : 0)) + 1;
-  Json thin;
-  for (const auto& [key, values] : profile.items()) {
-    thin[key] = Json::array();
-    for (std::size_t at = 0; at < count; ++at) {
-      if (at % every == 0 || at + 1 == count || (keep_corners && !turns[at].is_null())) {
-        thin[key].push_back(values[at]);
-      }
+  std::set<std::size_t> kept{count - 1};
+  for (std::size_t at = 0; at < count; ++at) {
+    if (at % every == 0 || (keep_corners && !turns[at].is_null())) {
+      kept.insert(at);
     }
   }
-  profile = std::move(thin);
+  keep_least(heights_over_ground(profile), kept);
+  for (const Json& clearances : profile.at("to")) {
+    keep_least(clearances, kept);
+  }
+  const auto thin = [&](Json& values) {
+    Json some = Json::array();
+    for (const std::size_t at : kept) {
+      some.push_back(std::move(values[at]));
+    }
+    values = std::move(some);
+  };
+  for (auto& [key, values] : profile.items()) {
+    if (values.is_array()) {
+      thin(values);
+    }
+  }
+  for (Json& values : profile.at("to")) {
+    thin(values);
+  }
 }
 }  // namespace
 

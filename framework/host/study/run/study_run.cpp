@@ -81,6 +81,10 @@ class Study {
     pool.reuse = options_.reuse;
     pool.limits = job_limits(plan_.file.budget);
     pool.key = [this](std::size_t i) { return record_key(plan_.runs[i]); };
+    pool.appraise = [this](const Ended& ended) {
+      return appraisal_of(ended, plan_.file.budget, name_of_run(plan_, plan_.runs[ended.job]));
+    };
+    pool.say = options_.say;
     return pool;
   }
 
@@ -183,6 +187,20 @@ class Study {
   std::map<std::string, std::size_t> by_key_;
 };
 
+/// Runs are made with the libraries that the plan has loaded, whatever becomes of their files.
+/// A file that is written slowly changes more than once: it is named once.
+void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs::path>& said) {
+  for (const std::shared_ptr<Registry>& registry : plan.registries) {
+    for (const fs::path& file : registry->changed()) {
+      if (said.insert(file).second) {
+        options.say(file.string() +
+                    " has changed since the study began: the runs of this call are made with the "
+                    "library of its beginning; call the study again to run them with the new one");
+      }
+    }
+  }
+}
+
 /// What a killed call had run and not stored, of this selection or another; one that is out of date
 /// is found out by its key when it is asked for again.
 std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder& folder,
@@ -203,12 +221,10 @@ std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder&
   for (const Ended& ended : records) {
     const std::size_t space = ended.key.find(' ');
     const auto run = by_name.find(ended.key.substr(std::min(ended.key.size(), space + 1)));
-    if (run != by_name.end() && there.insert(run->first).second) {
+    const bool is_final = appraisal_of(ended, plan.file.budget, "").verdict == Appraisal::final;
+    if (run != by_name.end() && is_final && there.insert(run->first).second) {
       run->second.key = ended.key.substr(0, space);
-      StoredRun row = study.stored(run->second, ended, session);
-      if (row.outcome != kNotDone) {
-        found.push_back(std::move(row));
-      }
+      found.push_back(study.stored(run->second, ended, session));
     }
   }
   store.add(found);
@@ -242,25 +258,17 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   progress.runs = plan.runs.size();
   progress.before = plan.runs.size() - left.size();
   options.progress(progress);
+  std::set<fs::path> changed;
   const auto keep = [&](const std::vector<Ended>& ended) {
     std::vector<StoredRun> rows;
-    std::string not_done;
     for (const Ended& one : ended) {
-      const PlannedRun& run = plan.runs[one.job];
-      StoredRun row = study.stored(run, one, session_id);
-      if (row.outcome == kNotDone) {
-        not_done = name_of_run(plan, run) + ": " + row.message;
-        continue;
-      }
-      ++progress.outcomes[row.outcome];
-      rows.push_back(std::move(row));
+      rows.push_back(study.stored(plan.runs[one.job], one, session_id));
+      ++progress.outcomes[rows.back().outcome];
     }
     store.add(rows);
     progress.done += rows.size();
-    if (!not_done.empty()) {
-      throw Error(not_done + "; what had been run before is stored, and the same call goes on");
-    }
     progress.elapsed_s = since(start);
+    say_changes(plan, options, changed);
     options.progress(progress);
   };
   const WorkerPool::Finish finish = pool.run(left, study.work(), keep);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <limits>
 #include <new>
@@ -13,7 +14,9 @@
 #include <system_error>
 
 #include "altiplan/error.hpp"
+#include "host/base/output_file.hpp"
 #include "host/output/result_json.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/study/pool/job_record.hpp"
 
@@ -38,28 +41,44 @@ std::string payload_of(const RunOutcome& run) {
 
 RunOutcome bad_output(const std::string& why) { return {"bad_output", why, "", ""}; }
 
-RunOutcome outcome_of_payload(const std::string& payload) {
-  const std::size_t end = payload.find('\n');
-  const Json head = Json::parse(payload.substr(0, end), nullptr, false);
-  RunOutcome run;
+struct PayloadHead {
+  RunOutcome run;  ///< without result and trace
+  std::size_t bytes = 0;
   std::size_t result_bytes = 0;
   std::size_t trace_bytes = 0;
+};
+
+/// nullopt where it is not as it was written.
+std::optional<PayloadHead> head_of(const std::string& payload) {
+  const std::size_t end = payload.find('\n');
+  const Json json = Json::parse(payload.substr(0, end), nullptr, false);
+  PayloadHead head;
   try {
-    run.outcome = head.at("outcome");
-    run.message = head.at("message");
-    result_bytes = head.at("result_bytes");
-    trace_bytes = head.at("trace_bytes");
+    head.run.outcome = json.at("outcome");
+    head.run.message = json.at("message");
+    head.result_bytes = json.at("result_bytes");
+    head.trace_bytes = json.at("trace_bytes");
   } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+  head.bytes = end + 1;
+  return head;
+}
+
+RunOutcome outcome_of_payload(const std::string& payload) {
+  const std::optional<PayloadHead> head = head_of(payload);
+  if (!head) {
     return bad_output("the run's record is not as it was written");
   }
-  if (result_bytes > kResultAtMost || trace_bytes > kResultAtMost) {
+  if (head->result_bytes > kResultAtMost || head->trace_bytes > kResultAtMost) {
     return bad_output("its result or its trace is larger than 256 MB");
   }
-  if (payload.size() - end - 1 != result_bytes + trace_bytes) {
+  if (payload.size() - head->bytes != head->result_bytes + head->trace_bytes) {
     return bad_output("the run's record is not as it was written");
   }
-  run.result = payload.substr(end + 1, result_bytes);
-  run.trace = payload.substr(end + 1 + result_bytes);
+  RunOutcome run = head->run;
+  run.result = payload.substr(head->bytes, head->result_bytes);
+  run.trace = payload.substr(head->bytes + head->result_bytes);
   if (!run.result.empty() && !Json::accept(run.result)) {
     return bad_output("its result is not JSON");
   }
@@ -134,7 +153,11 @@ RunOutcome run_pipeline(const Job& job, const Config& config, const StudyBudget&
   RunOutcome outcome = outcome_of_result(result, budget);
   if (trace) {
     result.trace.reset();  // it is not where the run has put it
-    outcome.trace = read_from(job.scratch, 0, kResultAtMost + 1).value_or("");
+    ReadText read = read_from(job.scratch, 0, kResultAtMost + 1);
+    if (read.error != 0 && read.error != ENOENT) {
+      throw MachineFault(unreadable(job.scratch, read.error));
+    }
+    outcome.trace = std::move(read.text);
     std::error_code error;
     std::filesystem::remove(job.scratch, error);
   }
@@ -142,12 +165,14 @@ RunOutcome run_pipeline(const Job& job, const Config& config, const StudyBudget&
   return outcome;
 }
 
+/// `files` become those of the run.
 RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
-                       bool trace) {
+                       bool trace, std::vector<std::filesystem::path>& files) {
   try {
     job.note("reading the files of the run");
     const Config config = planned.load();
-    const RunOutcome changed{kNotDone, "its files have changed since the runs were planned", "",
+    files = config.files;
+    const RunOutcome changed{kChanged, "its files have changed since the runs were planned", "",
                              ""};
     if (!planned.is_current(config)) {
       return changed;
@@ -155,7 +180,10 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     RunOutcome run = run_pipeline(job, config, budget, trace);
     return planned.is_current(config) ? run : changed;  // what plugins read may have changed since
   } catch (const std::system_error& error) {
-    return {kNotDone, std::string("the system gives it no thread: ") + error.what(), "", ""};
+    return {kNotDone, std::string("the system refuses a run what it needs: ") + error.what(), "",
+            ""};
+  } catch (const MachineFault& fault) {
+    return {kNotDone, fault.what(), "", ""};
   } catch (const PluginError& error) {
     return {"refused", error.what(), "", ""};
   } catch (const ConfigError& error) {
@@ -167,12 +195,18 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
       return {kBadParameters, all, "", ""};
     }
     // All was read and checked when the study began.
-    return {kNotDone, "its files have changed since the runs were planned: " + all, "", ""};
+    return {kNotDone, all + " (unlike when the runs were planned)", "", ""};
   } catch (const std::bad_alloc&) {
     return {"out_of_memory", "no memory was left", "", ""};
   } catch (const std::exception& error) {
     return {"failed", error.what(), "", ""};
   }
+}
+
+/// A failure that nothing but the plugin explains, unless the machine had failed.
+bool is_unexplained(const std::string& outcome) {
+  return outcome == "failed" || outcome == "crashed" || outcome == "out_of_memory" ||
+         outcome == "bad_output" || outcome == "refused" || outcome == kBadParameters;
 }
 
 /// "SIGSEGV"
@@ -248,9 +282,14 @@ JobLimits job_limits(const StudyBudget& budget) {
 
 std::string study_run(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
                       bool trace) {
-  const RunOutcome run = run_guarded(job, planned, budget, trace);
-  if (run.outcome == "failed" || run.outcome == "refused" || run.outcome == "out_of_memory") {
+  std::vector<std::filesystem::path> files;
+  RunOutcome run = run_guarded(job, planned, budget, trace, files);
+  if (is_unexplained(run.outcome) || run.outcome == kNotDone || run.outcome == kChanged) {
     job.retire();
+    ::close_range(3, ~0U, 0);  // whatever a plugin has left open
+    if (const std::string why = first_unreadable(files); !why.empty()) {
+      run = {kNotDone, why, "", ""};
+    }
   }
   return payload_of(run);
 }
@@ -296,6 +335,32 @@ RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
   return {};
 }
 }  // namespace
+
+Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std::string& name) {
+  switch (ended.how) {
+    case Ending::too_large:
+    case Ending::wall_limit:
+    case Ending::cpu_limit:
+    case Ending::memory_limit:
+    case Ending::process_limit:
+      return {};
+    default:
+      break;
+  }
+  const std::optional<PayloadHead> head =
+      ended.how == Ending::done ? head_of(ended.payload) : std::nullopt;
+  const RunOutcome run = head ? head->run : outcome_of(ended, budget);
+  if (run.outcome == kNotDone) {
+    return {Appraisal::fault, in_utf8(run.message)};
+  }
+  if (run.outcome == kChanged) {
+    return {Appraisal::hopeless, name + ": " + run.message};
+  }
+  if (is_unexplained(run.outcome) && ended.left_behind == 0) {
+    return {Appraisal::doubtful, run.outcome + ": " + run.message};
+  }
+  return {};
+}
 
 RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget) {
   RunOutcome run = outcome_as_told(ended, budget);

@@ -20,9 +20,11 @@ struct RunOutcome {
 
 JobLimits job_limits(const StudyBudget& budget);
 
-/// In place of an outcome where the run could not be done as planned, which says nothing about its
-/// pipeline: its files have changed, or the system gives no thread. Not to be stored.
+/// In place of an outcome where the machine did not let the run be done as planned, which says
+/// nothing about its pipeline: a file cannot be read, the system gives no thread. Not to be stored.
 inline constexpr const char* kNotDone = "not done";
+/// Likewise: its files are others than those that were planned with.
+inline constexpr const char* kChanged = "changed";
 
 /// The configuration of a run, and whether it is still what was planned.
 struct PlannedConfig {
@@ -39,6 +41,10 @@ inline constexpr const char* kBadParameters = "bad_parameters";
 /// outcome_of reads.
 std::string study_run(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
                       bool trace = false);
+
+/// In the parent, for the pool: whether to do the run again. An unexplained failure that no limit
+/// has brought about is doubtful. `name` is that of the run.
+Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std::string& name);
 
 /// In the parent: the outcome, whichever way the run ended.
 RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget);

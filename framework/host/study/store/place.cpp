@@ -6,10 +6,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <string>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -21,7 +21,7 @@ enum class Kind { absent, empty, store, database, other };
 /// The first bytes, fewer where the file is shorter.
 std::string head_of(const fs::path& file) {
   constexpr std::size_t kHeader = 100;  // of a database, by SQLite's file format
-  std::ifstream in(file, std::ios::binary);
+  kit::InputFile in(file.string());
   std::string head(kHeader, '\0');
   in.read(head.data(), std::streamsize(kHeader));
   if (in.bad() || (!in && in.gcount() == 0 && !in.eof())) {
@@ -156,8 +156,15 @@ void remove_journal(const fs::path& database) {
   }
 }
 
-NewDatabase::NewDatabase(const fs::path& place)
-    : place_(place_of(place)), file_(new_file_in(place_.parent_path())) {
+NewDatabase::NewDatabase(const fs::path& place) : place_(place_of(place)) {
+  const auto lock = uninterrupted();
+  file_ = new_file_in(place_.parent_path());
+  unfinished_.emplace([file = file_.string()] {
+    for (const char* suffix : {"", "-journal"}) {
+      std::error_code ignored;
+      fs::remove(file + suffix, ignored);
+    }
+  });
   std::error_code ignored;
   const fs::file_status status = fs::status(place_, ignored);
   if (fs::exists(status)) {
@@ -165,14 +172,8 @@ NewDatabase::NewDatabase(const fs::path& place)
   }
 }
 
-NewDatabase::~NewDatabase() {
-  for (const char* suffix : {"", "-journal"}) {
-    std::error_code ignored;
-    fs::remove(file_.string() + suffix, ignored);
-  }
-}
-
 void NewDatabase::put_in_place() {
+  const auto lock = uninterrupted();
   remove_journal(place_);
   std::error_code error;
   fs::rename(file_, place_, error);

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+
+#include "host/base/unfinished.hpp"
 
 namespace altiplan::host {
 
@@ -33,9 +36,6 @@ void remove_journal(const std::filesystem::path& database);
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& place);
-  ~NewDatabase();
-  NewDatabase(const NewDatabase&) = delete;
-  NewDatabase& operator=(const NewDatabase&) = delete;
 
   const std::filesystem::path& file() const { return file_; }
   /// To be called when the database is closed.
@@ -44,5 +44,6 @@ class NewDatabase {
  private:
   std::filesystem::path place_;
   std::filesystem::path file_;
+  std::optional<Unfinished> unfinished_;
 };
 }  // namespace altiplan::host

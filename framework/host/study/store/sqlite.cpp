@@ -48,7 +48,8 @@ std::string meaning(int code, int error, const char* words) {
     case SQLITE_NOTADB:
       return "it is no database";
     case SQLITE_CORRUPT:
-      return std::string("it is damaged (") + words + ")";
+      // The same word for a file whose reading the system refuses.
+      return std::string("it is damaged, or cannot be read (") + words + ")";
     case SQLITE_BUSY:
       return "another program is writing to it";
     case SQLITE_IOERR:

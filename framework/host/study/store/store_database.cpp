@@ -5,6 +5,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/output/deflate.hpp"
+#include "host/registry/machine_fault.hpp"
 #include "host/study/store/place.hpp"
 
 namespace altiplan::host {
@@ -107,15 +108,21 @@ Sqlite opened(const fs::path& file, StoreMode mode) {
     undo_half_a_write(file);
     return {file, SQLITE_OPEN_READONLY};
   }
-  std::error_code absent;
-  if (!fs::exists(file, absent) || fs::is_empty(file, absent)) {
+  std::error_code error;
+  const bool is_absent = !fs::exists(file, error);
+  if (is_absent && error) {
+    throw MachineFault(unreadable(file, error.value()));  // its journal may be all that saves it
+  }
+  if (is_absent || fs::is_empty(file, error)) {
     remove_journal(file);
   }
   return {file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};
 }
 }  // namespace
 
-StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode) : sqlite(opened(file, mode)) {
+StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode)
+    : sqlite(opened(file, mode)),
+      lock_(mode == StoreMode::write ? std::make_unique<StoreLock>(file) : nullptr) {
   if (mode == StoreMode::write && is_new()) {
     create();
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "host/study/store/sqlite.hpp"
 #include "host/study/store/store.hpp"
+#include "host/study/store/store_lock.hpp"
 
 namespace altiplan::host {
 
@@ -34,6 +36,7 @@ class StoreDatabase {
   const Sqlite sqlite;
 
  private:
+  const std::unique_ptr<const StoreLock> lock_;  ///< of a writer
   /// SQLite takes a file of a few bytes for a new database too.
   bool is_new() const;
   void create() const;

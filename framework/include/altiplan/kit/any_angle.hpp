@@ -203,9 +203,7 @@ class ALTIPLAN_API AnyAngleSearch {
   std::uint32_t apart(const Place& a, const Place& b) const;
   std::uint32_t distance(Node a, Node b) const { return apart(place(a), place(b)); }
   std::uint32_t heuristic(Node n) const;
-  std::optional<Vec3> before(Node n) const {
-    return n == start_.node ? request_.before_start() : position(parent(n));
-  }
+  std::optional<Approach> before(Node n) const;
   bool is_end(Node n) const { return n >= numbers_.size(); }
   bool memory_full() const;
   void close(Node n);

@@ -37,12 +37,18 @@ struct ALTIPLAN_API Corner {
   double leg_into;    ///< lengths of the two legs, metres
   double leg_out_of;  ///< metres
   double room_into;   ///< of the leg before it, what the curve of the corner before left free
+  double turn_into;   ///< radians, in space; at the beginning of that, 0 at the route's
   bool last;          ///< the leg after it ends the route
 
   /// The longest stretches of both legs that leave half of each leg to the corner beyond, and all
   /// of it to none.
   double fair_reach() const;
 };
+
+/// By how much, as a share of it, the radius of a corner may shrink when its points are written
+/// with the digits that autopilots keep (1e-7 degree, 1 cm), for legs of that length that turn by
+/// `turn`; at most a twentieth. Makers of radii leave that margin.
+ALTIPLAN_API double radius_margin(double leg, double turn);
 
 /// The attempt-th choice (0, 1, …) of a curve in place of a corner: points from its leg before to
 /// its leg after; none to leave the corner out; nothing when no choice is left.

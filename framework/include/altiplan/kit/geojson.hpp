@@ -22,10 +22,14 @@ struct ALTIPLAN_API GeoFeature {
   std::optional<double> metres(const std::string& property) const;
 };
 
-struct GeoJson {
+struct ALTIPLAN_API GeoJson {
   std::vector<GeoFeature> features;
-  std::size_t skipped = 0;  ///< features without an area: points, lines, no geometry
-  std::string copyright;    ///< what the file says of its makers, "" where nothing
+  std::size_t skipped = 0;        ///< features without an area: points, lines, no geometry
+  std::vector<std::string> flat;  ///< names of polygons that are flat, wholly or in part
+  std::string copyright;          ///< what the file says of its makers, "" where nothing
+
+  /// "3 features without an area skipped ('pier')"
+  std::string skipped_text() const;
 };
 
 /// Reads GeoJSON (RFC 7946). Throws Error, with the feature to blame, for what is not: damaged

@@ -20,19 +20,16 @@ class GoalSearch : protected LatticeSearch {
              double best_cost, OpenList& open)
       : LatticeSearch(request, settings, lattice, best_cost), open_(open) {}
 
-  /// Where the vehicle comes from at a cell reached by a step of direction `in`; nothing when it
-  /// starts there without heading.
-  std::optional<Vec3> before(int in, const Vec3& here) const {
-    if (in != kHere) {
-      return Vec3(here - lattice_.step(in));
-    }
-    return at_start_ ? request_.before_start() : std::optional<Vec3>(start_);
+  /// How the vehicle comes to a cell reached by the step `in`; nothing when it starts there without
+  /// a velocity.
+  std::optional<Approach> before(int in, const Vec3& here) const {
+    return rules_.approach(in, here, at_start_);
   }
 
   /// Reaches the goal from a node at cell c if that has a link to it, at the cost g and the length
   /// of the way to the node.
   void try_goal(std::uint32_t node, double g, double length, const Cell& c, const Vec3& here,
-                const std::optional<Vec3>& from) {
+                const std::optional<Approach>& from) {
     if (const Lattice::Link* link = to_goal_.link_of(c)) {
       if (length + link->length <= longest_ &&
           (link->length == 0 || rules_.any_leg_ok(from, here, goal_))) {

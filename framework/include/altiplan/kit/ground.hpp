@@ -87,14 +87,14 @@ struct GroundBounds {
   double enough;
 };
 
-/// Whether the leg is lower than the ground's slope allows for a sphere of radius r: true wherever
-/// the ground is nearer than r - 1e-6 m. The leg is halved, down to parts of `shortest` metres, for
-/// as long as a part may be free by the slope near it; what lies r above the top is free for
-/// certain. gap(a, b, enough): as Environment::ground_gap; slope(a, b, r): at least the steepest
-/// within r of the leg, and no less than for any part of it.
-template <class Gap, class Slope>
+/// Whether the ground is nearer to the leg than r - 1e-6 m. The leg is halved, down to parts of
+/// `shortest` metres, for as long as the slope near a part leaves that in doubt; what lies r above
+/// the top is free for certain. gap(a, b, enough): as Environment::ground_gap; slope(a, b, r): at
+/// least the steepest within r of the leg, and no less than for any part of it; meets(a, b, keep):
+/// whether the ground is nearer than that to a part which is at least so high above it.
+template <class Gap, class Slope, class Meets>
 bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds& ground,
-                     double shortest, const Gap& gap, const Slope& slope) {
+                     double shortest, const Gap& gap, const Slope& slope, const Meets& meets) {
   const double keep = r - kLengthTolerance;
   const auto low = part_below(a, b, ground.top + keep);
   const double height = low ? gap(low->first, low->second, ground.enough) : ground.enough;
@@ -105,13 +105,16 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds&
   if (height >= need) {
     return false;
   }
-  if (height < keep || std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(r, shortest)) {
+  if (height < keep) {
     return true;
+  }
+  if (std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(r, shortest)) {
+    return meets(a, b, keep);
   }
   const Vec3 middle = (a + b) / 2;
   const GroundBounds least{ground.top, std::min(ground.enough, need)};
-  return too_near_ground(a, middle, r, least, shortest, gap, slope) ||
-         too_near_ground(middle, b, r, least, shortest, gap, slope);
+  return too_near_ground(a, middle, r, least, shortest, gap, slope, meets) ||
+         too_near_ground(middle, b, r, least, shortest, gap, slope, meets);
 }
 
 /// A point of the ground, within `over` (horizontally), whose distance from p is the least there is

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -13,20 +14,20 @@ namespace altiplan::kit {
 
 /// What a search by cell and heading knows of a cell.
 struct HeadingCell {
-  double g;             ///< of the cheapest arrival that waits, or waited
-  DirectionMask taken;  ///< directions out of the cell that need no further arrival
+  double g;        ///< of the cheapest arrival that waits, or waited
+  StepMask taken;  ///< steps out of the cell that need no further arrival
   MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
-  std::uint8_t in;  ///< direction of that arrival
+  std::uint8_t in;  ///< step of that arrival
   bool is_open;     ///< steps that no arrival may take are among `taken`
 };
 inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kHere, false};
 
-/// A node of the search: a cell, reached in a direction.
+/// A node of the search: a cell, reached by a step.
 struct Arrival {
   std::uint32_t cell;
   std::uint32_t from;  ///< the arrival before
-  std::uint8_t in;     ///< direction of the step that led here; kHere: linked to the start
+  std::uint8_t in;     ///< the step that led here; kHere: linked to the start
 };
 
 struct HeadingMemory {
@@ -36,11 +37,11 @@ struct HeadingMemory {
   std::vector<double> lengths;  ///< of the ways to them, where costs are others
 };
 
-/// A* over (cell, direction in which it is reached): complete where rules look at two legs, and
-/// optimal under them.
+/// A* over (cell, step by which it is reached): complete where rules look at two legs, and optimal
+/// under them.
 ///
 /// What follows a step depends on the step alone. So the cheapest arrival at a cell that may take a
-/// direction takes it for good, and arrivals later on, none of them cheaper, take what is left:
+/// step takes it for good, and arrivals later on, none of them cheaper, take what is left:
 /// each step is judged, and each node opened, once at most. An arrival that has nothing left to
 /// take, or may take nothing that a cheaper one at the cell could not, is dropped.
 class HeadingSearch : GoalSearch {
@@ -112,17 +113,17 @@ class HeadingSearch : GoalSearch {
            to_goal_.link_of(lattice_.cell(arrival.cell)) == nullptr;
   }
 
-  /// Whether an arrival at the cell in direction d can do nothing that another cannot, as cheaply.
-  bool is_needless(HeadingCell& cell, const Cell& c, int d, double g) const {
-    const DirectionMask left = rules_.after(d) & ~cell.taken;
-    const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 && cell.in != kHere &&
-                          !rules_.looks_beyond_turns();
+  /// Whether an arrival at the cell by a step can do nothing that another cannot, as cheaply.
+  bool is_needless(HeadingCell& cell, const Cell& c, int step, double g) const {
+    const StepMask left = rules_.after(step) & ~cell.taken;
+    const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 &&
+                          !rules_.is_first(cell.in) && !rules_.looks_beyond_turns();
     if ((left == 0 || by_other) && to_goal_.link_of(c) == nullptr) {
       return true;
     }
     if (g < cell.g) {
       cell.g = g;
-      cell.in = std::uint8_t(d);
+      cell.in = std::uint8_t(step);
     }
     return false;
   }
@@ -131,7 +132,7 @@ class HeadingSearch : GoalSearch {
     const Arrival arrival = arrivals_[index];  // pushes move it
     const Cell c = lattice_.cell(arrival.cell);
     const Vec3 here = arrival.in == kHere && at_start_ ? start_ : lattice_.position(c);
-    const std::optional<Vec3> from = before(arrival.in, here);
+    const std::optional<Approach> from = before(arrival.in, here);
     const double length_here = keeps_lengths() ? lengths_[index] : g_here;
     ++progress_.expanded;
     remember_nearest(here);
@@ -143,14 +144,15 @@ class HeadingSearch : GoalSearch {
     try_goal(index, g_here, length_here, c, here, from);
     if (!cell.is_open) {
       cell.is_open = true;
-      cell.taken = ~rules_.out_of(c);
+      cell.taken = ~steps_in(rules_.out_of(c));
     }
     // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
-    const bool judged_whole = arrival.in == kHere && from;
-    const DirectionMask left = ~cell.taken;
-    rules_.count_turns(left & ~rules_.after(arrival.in));
-    for (DirectionMask open = left & rules_.after(arrival.in); open != 0; open &= open - 1) {
-      const int d = __builtin_ctz(open);
+    const bool judged_whole = rules_.is_first(arrival.in) && from;
+    const StepMask left = ~cell.taken;
+    rules_.count_turns(left, rules_.after(arrival.in));
+    for (StepMask open = left & rules_.after(arrival.in); open != 0; open &= open - 1) {
+      const int step = std::countr_zero(open);
+      const int d = direction_of(step);
       const Cell o = offset(d);
       const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
       const Vec3 there = lattice_.position(to);
@@ -167,9 +169,9 @@ class HeadingSearch : GoalSearch {
                       (judged_whole && !rules_.any_leg_ok(from, here, there)))) {
         continue;  // another arrival may take it
       }
-      cell.taken |= DirectionMask{1} << d;
-      if (is_free && !is_needless(successor, to, d, g)) {
-        push({next, index, std::uint8_t(d)}, to, there, g, length);
+      cell.taken |= StepMask{1} << step;
+      if (is_free && !is_needless(successor, to, step, g)) {
+        push({next, index, std::uint8_t(step)}, to, there, g, length);
       }
     }
   }

@@ -21,11 +21,11 @@ class ALTIPLAN_API LegRules {
   explicit LegRules(const Request& request);
 
   /// leg_ok.
-  bool ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+  bool ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   /// Whether a rule looks at the point before a leg.
   bool looks_back() const { return looks_back_; }
   /// The rules of the leg a–b, known to be free, that look at the point before it.
-  bool follows(const Vec3& before, const Vec3& a, const Vec3& b);
+  bool follows(const Approach& before, const Vec3& a, const Vec3& b);
   /// Whether a vehicle may be at p at all, by obstacles, ground and heights.
   bool point_ok(const Vec3& p) const;
 
@@ -37,14 +37,14 @@ class ALTIPLAN_API LegRules {
  private:
   enum class Answer { free, blocked, unsure };
   struct Refused {
-    std::optional<Vec3> before;
+    std::optional<Approach> before;
     Vec3 a;
     Vec3 b;
   };
   struct CellLeg;
   static constexpr std::size_t kRemembered = 64;
 
-  bool leg_kept(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) const;
+  bool leg_kept(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) const;
   Answer by_cells(const Vec3& a, const Vec3& b) const;
   // Of places and legs in cells of the grid, from its lower corner.
   bool in_grid(const Vec3& p) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "altiplan/route.hpp"
@@ -62,6 +63,24 @@ class LegTree {
         found.push_back(child);
       }
     }
+  }
+
+  /// How a vehicle comes to the node by the legs from `root`, to which it comes by `to_root`; from
+  /// the root of another tree, to which nothing is known to lead.
+  std::optional<Approach> approach(Node node, Node root,
+                                   const std::optional<Approach>& to_root) const {
+    const Node last = parent(node);
+    if (node == root || last == kNone) {
+      return node == root ? to_root : std::nullopt;
+    }
+    Node n = last;
+    for (; n != root && parent(n) != kNone; n = parent(n)) {
+      if (const Vec3 leg = point(n) - point(parent(n)); has_heading(leg)) {
+        return Approach(point(last), leg);
+      }
+    }
+    const bool is_known = n == root && to_root;
+    return Approach(point(last), is_known ? to_root->heading_at(point(n)) : Vec3::Zero());
   }
 
   /// The points from its root to the node.

@@ -50,6 +50,7 @@ struct MissionFile {
   std::vector<MissionItem> items;
   std::string route_problem;  ///< what keeps the items from being a route, "" where nothing
   std::vector<MissionZone> zones;
+  std::vector<std::string> flat;  ///< names of KML's polygons without an area, which are skipped
   /// What was left out, a line each ("4 commands that are no places were skipped: 177, 178").
   std::vector<std::string> notes;
 };

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/lattice.hpp"
 #include "altiplan/kit/step_ground.hpp"
+#include "altiplan/kit/steps.hpp"
 
 namespace altiplan::kit {
 
@@ -19,9 +19,6 @@ enum class MoveCheck {
   exact,  ///< the straight leg, by the world's exact queries
   cells,  ///< by the cells that it leads through: cells that an obstacle overlaps are closed
 };
-
-/// Whether the limits on turns hold where a leg in direction `outgoing` follows one of `incoming`.
-ALTIPLAN_API bool turn_kept(const Vec3& incoming, const Vec3& outgoing, const Limits& limits);
 
 /// What blocks moves by cells: the cells of the lattice that an obstacle, grown by the clearance
 /// needed, overlaps; the layers' own cells where nothing else is in the world and no clearance is
@@ -43,12 +40,13 @@ class ALTIPLAN_API MoveRules {
   /// at the ground, at two legs or at the whole route, and there are no constraints.
   static bool cells_decide(const Request& request);
 
-  /// Directions out of c, reached in direction `in` (kHere: not by a step), that keep the rules
+  /// Directions out of c, reached by the step `in` (kHere: not by a step), that keep the rules
   /// answered from masks; the others still have to pass `leg_free`.
   DirectionMask candidates(const Cell& c, int in) {
     const DirectionMask open = out_of(c);
-    refused_[by_turn] += __builtin_popcount(open & ~after(in));
-    return open & after(in);
+    const DirectionMask kept = directions_of(after(in));
+    refused_[by_turn] += __builtin_popcount(open & ~kept);
+    return open & kept;
   }
   /// Those that keep the rules whatever led to c.
   DirectionMask out_of(const Cell& c) {
@@ -62,15 +60,29 @@ class ALTIPLAN_API MoveRules {
   }
   /// Directions of steps to c that keep them: a step back keeps what the step keeps.
   DirectionMask into(const Cell& c) { return reversed(out_of(c)); }
-  /// Directions that may follow one of `in` by the limits on turns, and those that one may follow.
-  DirectionMask after(int in) const { return after_[std::size_t(in)]; }
-  DirectionMask before(int out) const { return before_[std::size_t(out)]; }
+  /// Steps that may follow the step `in` by the limits on turns, and those that one may follow.
+  StepMask after(int in) const { return after_[std::size_t(in)]; }
+  StepMask before(int out) const { return before_[std::size_t(out)]; }
+  /// The step in direction d after the step `in`, by its number for `after`.
+  int step_after(int in, int d) const { return headings_last_ ? kit::step_after(in, d) : d; }
+  /// Whether headings last through steps straight up and down, and some limit looks at that.
+  bool headings_last() const { return headings_last_; }
+  /// Whether a leg after the step has to be held to what came before the steps: the masks know a
+  /// vehicle's heading by its steps alone.
+  bool is_first(int step) const {
+    return step == kHere || (headings_last_ && heading_of(step) < 0);
+  }
+  /// How the vehicle comes to a cell, where it is at `here`, by a step; with kHere by the link from
+  /// the start, or (`at_start`) by being there.
+  std::optional<Approach> approach(int step, const Vec3& here, bool at_start) const;
   /// Whether a step may be refused for what led to its first cell, beside the turn.
   bool looks_beyond_turns() const { return !constraints_.empty(); }
   /// Counts moves that blocked cells have ruled out.
   void count_blocked(std::int64_t refused) { refused_[by_cells] += refused; }
-  /// Counts directions that a turn has ruled out.
-  void count_turns(DirectionMask refused) { refused_[by_turn] += __builtin_popcount(refused); }
+  /// Counts what limits on turns have ruled out of steps that are left.
+  void count_turns(StepMask left, StepMask kept) {
+    refused_[by_turn] += __builtin_popcount(directions_of(left) & ~directions_of(kept));
+  }
 
   /// What is known of a cell's distance to obstacles: a lower bound, sharpened while a search asks
   /// for steps around the cell. (Of the ground StepGround knows more.)
@@ -89,10 +101,10 @@ class ALTIPLAN_API MoveRules {
   bool place_free(const Cell& c, int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
                   KnownClearance& near_b);
   /// Whether the constraints admit the leg after what led to it.
-  bool admits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+  bool admits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     return constraints_.empty() || admitted(before, a, b);
   }
-  bool leg_free(const std::optional<Vec3>& before, const Cell& c, int d, const Vec3& a,
+  bool leg_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
     return place_free(c, d, a, b, near_a, near_b) && admits(before, a, b);
   }
@@ -101,12 +113,12 @@ class ALTIPLAN_API MoveRules {
   /// `before`, keeps the rules of a leg: as leg_ok says, and with moves by cells if line_of_sight
   /// says so too. The world is then asked for ground and constraints alone, where there are any,
   /// never for obstacles: none reaches into free cells.
-  bool sees(const std::optional<Vec3>& before, const Cell& a, const Cell& b);
+  bool sees(const std::optional<Approach>& before, const Cell& a, const Cell& b);
 
   /// What `sees` asks for beside the cells.
-  bool keeps_rules(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+  bool keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   /// Whether the leg keeps the limits on length, climb and the turn before it.
-  bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b) {
+  bool keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     return keeps_limits(before, a, b, (b - a).norm());
   }
 
@@ -118,7 +130,7 @@ class ALTIPLAN_API MoveRules {
 
   /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
   /// that has a heading), counted by rule.
-  bool any_leg_ok(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+  bool any_leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
 
   /// Whether a rule that looks at the leg before refused anything: then one parent a cell may be
   /// too few, and finding nothing proves nothing.
@@ -149,8 +161,11 @@ class ALTIPLAN_API MoveRules {
     rule_count
   };
   DirectionMask directions_kept();
-  bool keeps_limits(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b, double length);
-  bool keeps_turn(const Vec3& incoming, const Vec3& outgoing) const;
+  void find_turns();
+  Vec3 heading_vector(int step) const;
+  bool keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+                    double length);
+  bool keeps_turn(const Approach& before, const Vec3& a, const Vec3& leg) const;
   bool keeps_ground(const Vec3& a, const Vec3& b);
   bool keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b);
   bool keeps_off(const World& layers, const Vec3& a, const Vec3& b);
@@ -159,7 +174,7 @@ class ALTIPLAN_API MoveRules {
   void ask(KnownClearance& known, const Vec3& at) const;
   void sort_layers();
   void find_gaps();
-  bool admitted(const std::optional<Vec3>& before, const Vec3& a, const Vec3& b);
+  bool admitted(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
 
   const Request& request_;
   const Lattice& lattice_;
@@ -184,8 +199,9 @@ class ALTIPLAN_API MoveRules {
   Rule too_low_ = by_ground;        ///< the rule that then refuses
   bool has_ceiling_over_ground_ = false;
   DirectionMask steps_ = 0;
-  std::array<DirectionMask, kDirections> after_{};   ///< by incoming direction
-  std::array<DirectionMask, kDirections> before_{};  ///< by outgoing direction
+  bool headings_last_ = false;
+  std::array<StepMask, kSteps> after_{};   ///< by incoming step
+  std::array<StepMask, kSteps> before_{};  ///< by outgoing step
   std::array<std::int64_t, rule_count> refused_{};
   std::string refused_constraint_;
   std::string refused_layer_;

@@ -74,15 +74,16 @@ class ALTIPLAN_API InformedSet {
   Vec3 beside_;
 };
 
-/// `wanted` bent as little as keeps the limits on climb, and on turns after `incoming`.
-ALTIPLAN_API Vec3 bent(const std::optional<Vec3>& incoming, const Vec3& wanted, double range,
-                       const Limits& limits);
+/// The direction `wanted` from `at`, bent as little as keeps the limits on climb, and on turns for
+/// a vehicle that comes there by `before`.
+ALTIPLAN_API Vec3 bent(const std::optional<Approach>& before, const Vec3& at, const Vec3& wanted,
+                       double range, const Limits& limits);
 
 /// The end of a leg from `at` toward `target`, at most `range` long: bent, where it would break the
-/// limits on climb, or on turns after a leg from `before`, as little as keeps them, and no shorter
+/// limits on climb, or on turns after coming by `before`, as little as keeps them, and no shorter
 /// than legs must be. `target` itself where nothing is in the way of that. What the limits together
 /// ask for, only leg_ok knows.
-inline Vec3 steer(const std::optional<Vec3>& before, const Vec3& at, const Vec3& target,
+inline Vec3 steer(const std::optional<Approach>& before, const Vec3& at, const Vec3& target,
                   double range, const Limits& limits) {
   const Vec3 wanted = target - at;
   const double run = wanted.norm();
@@ -92,8 +93,7 @@ inline Vec3 steer(const std::optional<Vec3>& before, const Vec3& at, const Vec3&
   Vec3 way = wanted;
   double way_length = run;
   if ((before && limits.turns()) || limits.max_climb < kPi / 2) {
-    const auto incoming = before ? std::optional<Vec3>(at - *before) : std::nullopt;
-    way = bent(incoming, wanted, range, limits);
+    way = bent(before, at, wanted, range, limits);
     way_length = way.norm();
   }
   if (way == wanted && length == run) {

@@ -60,7 +60,8 @@ class ALTIPLAN_API StarSearch {
   void rewire(Node x_new, Node x_near);
   double near_radius();
 
-  std::optional<Vec3> behind(Node node) const;
+  std::optional<Approach> behind(Node node) const;
+  bool turns_follow(const Approach& before, Node node);
   Node add(const Vec3& p, const Candidate& parent);
   void add_root();
   void note_end(Node node);
@@ -74,7 +75,7 @@ class ALTIPLAN_API StarSearch {
   LegRules rules_;
   BudgetWatch watch_;
   RandomStream random_;
-  std::optional<Vec3> before_start_;
+  std::optional<Approach> before_start_;
   Box box_;
   InformedSet set_;
   int axes_;

@@ -10,9 +10,9 @@ import {violations_of} from './violations.js';
 /** What the colours and lines on the picture mean, with units. */
 export function build_legend(world, store) {
   const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
-    ...routes(world, store.state), ...roles(world.scene), ...violations(world, store.state),
+    ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
     grid(world.frame, store.state), ...search(store.state));
-  store.on(['theme', 'shown', 'grid', 'exaggeration', 'cut', 'search'], reflect);
+  store.on(['theme', 'shown', 'hidden', 'grid', 'exaggeration', 'cut', 'search'], reflect);
   reflect();
   const fold = () => {
     by_id('legend').hidden = !store.state.legend;
@@ -37,8 +37,8 @@ function routes({scene, lines}, {shown, theme}) {
   });
 }
 
-function roles(scene) {
-  const seen = new Map(layers_of(scene).map(({role, known}) => [`${role}${known}`, {role, known}]));
+function roles(scene, {hidden}) {
+  const seen = new Map(layers_of(scene).filter(({key}) => !hidden.has(key)).map(({role, known}) => [`${role}${known}`, {role, known}]));
   return [...seen.values()].map(({role, known}) => element('div', {},
     swatch(role_color(role), known ? 'fill' : 'fill unknown'),
     `${kRoleNames[role] ?? role}${known ? '' : ', unknown to the planner'}`));

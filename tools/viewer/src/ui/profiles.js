@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import uPlot from 'uplot';
-import {route_color, style_of} from '../colors.js';
-import {element} from '../dom.js';
+import {kind_colors, route_color, style_of} from '../colors.js';
+import {element, swatch} from '../dom.js';
 import {metres, number} from '../units.js';
 import {last_before} from '../world.js';
 import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
@@ -70,12 +70,12 @@ function draw(chart, profile, charts, world, store) {
   const result = world.scene.results[store.state.selected];
   const limit = chart.limit ? result.limits?.[chart.limit] ?? null : null;
   const color = route_color(store.state.selected, store.state.theme);
-  const {data, series} = curves(chart, profile, limit, color, result.limits);
+  const {data, series, names} = curves(chart, profile, limit, color, result.limits);
   const link = {silent: false};
   const made = {};
   // The cursor's dot is for the curve itself, not for ground and limits beside it.
   const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range: range_of(chart,
-    data)}}, hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
+    seen(chart, data, limit))}}, hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
     if (!link.silent && self.cursor.event) follow(self, profile, store);
   }]}});
   plot.over.addEventListener('click', () => {
@@ -85,7 +85,7 @@ function draw(chart, profile, charts, world, store) {
     }
   });
   plot.over.addEventListener('pointerleave', () => store.set({cursor: null}));
-  Object.assign(made, {plot, cell, value, chart, link});
+  Object.assign(made, {plot, cell, value, chart, link, names});
   return made;
 }
 
@@ -108,12 +108,39 @@ function curves(chart, profile, limit, color, limits) {
       series.push(limit_line());
     }
   }
+  const names = [];
+  if (chart.key === 'clearance') {
+    // Below the least of them, which is seen to be one or the other.
+    for (const {name, color: stroke, values: its, dash} of compared(profile, color)) {
+      names.push([name, stroke, its, dash ? 'line attempt' : 'line']);
+      data.splice(-1, 0, its);
+      series.splice(-1, 0, {stroke, dash, width: 1.5, spanGaps: false, points: {show: false}});
+    }
+  }
   if (limit !== null) {
     data.push(profile.x.map(() => limit));
     series.push(limit_line());
   }
-  return {data, series};
+  return {data, series, names};
 }
+
+/** What the clearance is the least of, and the height above the ground beside it. */
+function compared(profile, color) {
+  const kinds = Object.keys(profile.to ?? {});
+  const colors = kind_colors(color);
+  const made = kinds.map((name, nth) => ({name, color: colors[nth % colors.length],
+    values: profile.to[name]}));
+  if (profile.ground.some((height) => height !== null)) {
+    made.push({name: 'above ground', color: style_of('--ground_line'), dash: [4, 2],
+      values: profile.ground.map((height, index) => height === null ? null :
+        profile.altitude[index] - height)});
+  }
+  return made;
+}
+
+/** The columns that the chart is high enough for: what is far away may leave it. */
+const seen = (chart, data, limit) => chart.key !== 'clearance' ? data :
+  [data[0], data.at(limit === null ? -1 : -2), ...limit === null ? [] : [[limit]]];
 
 const limit_line = () => ({stroke: style_of('--limit'), width: 1.2, dash: [5, 4],
   points: {show: false}});
@@ -126,14 +153,19 @@ function follow(plot, profile, store) {
 }
 
 /** The cursor, or else the flight's time, as a line and a number on every chart. */
-function show_cursor({plot, value, chart, link}, profile, {cursor, time}) {
+function show_cursor({plot, value, chart, link, names}, profile, {cursor, time}) {
   const x = cursor?.x ?? (profile.kind === 'flight' ? time : null);
   put_cursor(plot, link, x);
-  if (x === null) {
+  const index = x === null ? null : cursor?.index ?? last_before(profile.x, x);
+  if (names.length > 0) {
+    value.replaceChildren(...names.map(([name, color, values, line]) => element('span', {},
+      swatch(color, line), ` ${name}${index === null ? '' : ` ${metres(values[index])}`}`)));
+    return;
+  }
+  if (index === null) {
     value.textContent = '';
     return;
   }
-  const index = cursor?.index ?? last_before(profile.x, x);
   const reading = number(profile[chart.key][index], chart.unit);
   const ground = chart.key === 'altitude' ? profile.ground[index] : null;
   value.textContent = ground === null || ground === undefined ? reading :

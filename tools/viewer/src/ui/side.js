@@ -80,7 +80,7 @@ function world_controls(world, store) {
 }
 
 function layer_row(layer, scene, store) {
-  const {input, row} = checkbox(layer.name, true,
+  const {input, row} = checkbox(layer.name, !store.state.hidden.has(layer.key),
     (on) => store.toggle('hidden', layer.key, !on), swatch(role_color(layer.role)));
   input.dataset.layer = layer.key;
   const remarks = [kRoleNames[layer.role]];

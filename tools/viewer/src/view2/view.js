@@ -6,7 +6,8 @@ import {drift, event_times, grid_lines, layer_key, present,
 import {ground_image} from './ground_image.js';
 import {count_below, path_of_many} from './paths.js';
 
-const kOpacity = {obstacle: 0.6, keep_out: 0.25, keep_in: 0.06, threat: 0.25};
+const kOpacity = {obstacle: 0.6, keep_out: 0.25, keep_in: 0.06, threat: 0.25,
+  unknown: 0.15};
 const kLegendPixels = 330;
 const kLabelPixels = 70;
 

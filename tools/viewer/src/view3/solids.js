@@ -7,7 +7,8 @@ import {drift, layer_key, present} from '../world.js';
 import {tinted_by_height} from './shaders.js';
 import {box_field, kMaxEdgedBoxes, merged, obstacle_heights, triangle_mesh} from './shapes3.js';
 
-const kOpacity = {obstacle: 0.72, keep_out: 0.3, keep_in: 0.1, threat: 0.3};
+const kOpacity = {obstacle: 0.72, keep_out: 0.3, keep_in: 0.1, threat: 0.3,
+  unknown: 0.2};
 
 /** Obstacles hide what is inside and behind them in the same layer (a pass that writes depth
  *  alone comes first), so that a city is read as houses; zones and threats are glass, and of a

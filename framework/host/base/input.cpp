@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/base/input.hpp"
+
+#include "altiplan/kit/input_file.hpp"
+
+namespace altiplan::host {
+
+std::string file_problem(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    return "there is no file '" + file.string() + "'";
+  }
+  const std::string why = kit::why_unreadable(file.string());
+  return why.empty() ? "" : "'" + file.string() + "' " + why;
+}
+}  // namespace altiplan::host

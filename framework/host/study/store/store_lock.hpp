@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace altiplan::host {
+
+/// The one writer of a store, by whatever name it is called: the lock is on the file itself, at
+/// bytes that neither it nor SQLite's locks reach, and goes with the process. Closing it gives up
+/// SQLite's locks too, so not in a transaction.
+class StoreLock {
+ public:
+  /// Throws Error where another has it, with that one's process id.
+  explicit StoreLock(const std::filesystem::path& file);
+  ~StoreLock();
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+}  // namespace altiplan::host

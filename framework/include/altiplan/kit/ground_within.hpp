@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/geometry.hpp"
+
+/// \file How near a leg is to the ground below it.
+namespace altiplan::kit {
+
+/// The ground over a rectangle about (x, y): at most `off` metres above or below the plane of
+/// height z and slopes dx, dy, and nowhere above `top`, where it is cut off.
+struct GroundPiece {
+  double x, y, z;
+  double dx, dy;
+  double off;
+  double top = kInfinity;
+};
+
+/// A place of a leg, as a share of it, a place of the map, and how far they are apart.
+struct LegToPlane {
+  double distance;
+  double share;
+  double x, y;
+};
+
+/// The least distance between the leg a–b and the piece's plane over the rectangle that reaches
+/// half_x, half_y to each side of the piece's middle.
+ALTIPLAN_API LegToPlane leg_to_plane(const Vec3& a, const Vec3& b, const GroundPiece& piece,
+                                     double half_x, double half_y);
+
+/// Whether ground is nearer than that to a leg which lies nowhere below it, by branch and bound:
+/// the rectangles searched are halved for as long as that is in doubt, by more than 1e-8 m.
+class GroundWithin {
+ public:
+  GroundWithin(const Vec3& a, const Vec3& b, double distance)
+      : a_(a), b_(b), box_(leg_box(a, b)), distance_(distance) {}
+
+  bool found() const { return found_; }
+
+  /// Whether the search goes on, and ground no higher than `top` over the rectangle may be so near.
+  bool may_be_in(double x0, double y0, double x1, double y1, double top) const {
+    return !found_ && at_least(x0, y0, x1, y1, top) < distance_;
+  }
+
+  /// Searches the rectangle; piece_of(x0, y0, x1, y1) is the ground over a rectangle within it, its
+  /// middle that of the rectangle.
+  template <class PieceOf>
+  void search(double x0, double y0, double x1, double y1, const PieceOf& piece_of) {
+    const double half_x = (x1 - x0) / 2;
+    const double half_y = (y1 - y0) / 2;
+    GroundPiece piece = piece_of(x0, y0, x1, y1);
+    double rise = std::abs(piece.dx) * half_x + std::abs(piece.dy) * half_y + piece.off;
+    if (piece.z - rise >= piece.top) {
+      piece = {piece.x, piece.y, piece.top, 0, 0, 0};
+      rise = 0;
+    }
+    if (!may_be_in(x0, y0, x1, y1, std::min(piece.z + rise, piece.top))) {
+      return;
+    }
+    if (std::min(above(a_, piece), above(b_, piece)) - piece.off >= distance_ &&
+        piece.z + rise <= piece.top) {
+      return;
+    }
+    const LegToPlane found = leg_to_plane(a_, b_, piece, half_x, half_y);
+    double bound = found.distance - piece.off;
+    if (piece.z + rise > piece.top) {  // cut off somewhere
+      const GroundPiece flat{piece.x, piece.y, piece.top, 0, 0, 0};
+      bound = std::min(bound, leg_to_plane(a_, b_, flat, half_x, half_y).distance);
+    }
+    if (bound >= distance_) {
+      return;
+    }
+    const GroundPiece there = piece_of(found.x, found.y, found.x, found.y);
+    const Vec3 point(found.x, found.y, std::min(there.z, there.top));
+    found_ = (a_ + found.share * (b_ - a_) - point).norm() < distance_ + kFine ||
+             std::max(half_x, half_y) < kSmallest;  // where it is cut off the bounds meet slowly
+    if (found_) {
+      return;
+    }
+    const bool east = found.x > piece.x;
+    const bool north = found.y > piece.y;
+    if (half_x > half_y) {
+      search(east ? piece.x : x0, y0, east ? x1 : piece.x, y1, piece_of);
+      search(east ? x0 : piece.x, y0, east ? piece.x : x1, y1, piece_of);
+    } else {
+      search(x0, north ? piece.y : y0, x1, north ? y1 : piece.y, piece_of);
+      search(x0, north ? y0 : piece.y, x1, north ? piece.y : y1, piece_of);
+    }
+  }
+
+ private:
+  static constexpr double kFine = 1e-8;
+  static constexpr double kSmallest = 1e-5;
+
+  /// How far the place is above the piece's plane, at a right angle.
+  static double above(const Vec3& p, const GroundPiece& piece) {
+    return (p.z() - piece.z - piece.dx * (p.x() - piece.x) - piece.dy * (p.y() - piece.y)) /
+           std::sqrt(1 + piece.dx * piece.dx + piece.dy * piece.dy);
+  }
+
+  double at_least(double x0, double y0, double x1, double y1, double top) const {
+    const double dx = std::max({x0 - box_.max.x(), box_.min.x() - x1, 0.0});
+    const double dy = std::max({y0 - box_.max.y(), box_.min.y() - y1, 0.0});
+    const double dz = std::max(box_.min.z() - top, 0.0);
+    return std::sqrt(dx * dx + dy * dy + dz * dz);
+  }
+
+  Vec3 a_, b_;
+  Box box_;
+  double distance_;
+  bool found_ = false;
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The bytes of a text in base64. */
+export function bytes(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+
+/**
+ * A long list as framework/host/output/viewer_page.cpp packs it: thousandths, each as its
+ * difference from what those before it foretell; of points (`per` numbers each) the first numbers
+ * of all, then the second ones. 0 is null, 1 and a number repeat what came last so often.
+ */
+function unpacked({packed, count, per, order}) {
+  const raw = bytes(packed);
+  let at = 0;
+  const read = () => {
+    let value = 0;
+    let scale = 1;
+    for (; raw[at] >= 128; scale *= 128) value += (raw[at++] - 128) * scale;
+    return value + raw[at++] * scale;
+  };
+  let current = 0;
+  let repeats = 0;
+  const token = () => {
+    if (repeats > 0) {
+      --repeats;
+      return current;
+    }
+    const next = read();
+    if (next !== 1) return (current = next);
+    repeats = read() - 1;
+    return current;
+  };
+  const column = () => {
+    const values = new Array(count);
+    let last = 0;
+    let step = 0;
+    for (let n = 0; n < count; ++n) {
+      const next = token();
+      if (next === 0) {
+        values[n] = null;
+        continue;
+      }
+      const now = last + step + (next % 2 === 1 ? -(next - 1) / 2 : (next - 2) / 2);
+      step = order === 2 ? now - last : 0;
+      last = now;
+      values[n] = now / 1000;
+    }
+    return values;
+  };
+  if (per === 0) return column();
+  const columns = Array.from({length: per}, column);
+  return columns[0].map((_, n) => columns.map((values) => values[n]));
+}
+
+/** JSON with such lists in it. */
+export function parse_packed(text) {
+  return JSON.parse(text, (_, value) => (value?.packed === undefined ? value : unpacked(value)));
+}
