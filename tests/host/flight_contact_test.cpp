@@ -167,6 +167,26 @@ TEST(FlightContact, WhatComesDownOnTheGoalIsMetThere) {
   EXPECT_EQ(fly(scene.setup).status, Status::solved);
 }
 
+TEST(FlightContact, APopUpIsMetAtTheNextPointOfTheTrack) {
+  // The route has a point every 0.2 s; the step is 1 s.
+  Scene scene;
+  scene.follow_alone();
+  scene.setup.route.clear();
+  for (int k = 0; k <= 26000 / 6; ++k) {
+    scene.setup.route.emplace_back(2000 + 6 * k, 15000, 500);
+  }
+  scene.setup.route.push_back(scene.setup.request.goal.position);
+  const double due_s = kAt + 0.3;
+  const double met_s = kAt + 0.4;
+  scene.setup.events = {adding(Sphere{{2000 + 30 * met_s, 15000, 500}, 40})};
+  scene.setup.events[0].at_s = due_s;
+  const FlightResult result = fly(scene.setup);
+  EXPECT_EQ(result.status, Status::collided) << result.message;
+  EXPECT_NEAR(result.track.back().first, met_s, kExact);
+  EXPECT_NEAR(result.min_separation_m.value(), -40, kExact);
+  expect_judged_alike(result, scene.setup);
+}
+
 /// Waits where it is.
 class HoveringPlanner final : public LocalPlanner {
   struct HoveringPilot final : Pilot {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Worlds of 200 million cells and an elevation model of 400 million posts: planned through, sound, in
-little memory.
+"""Worlds of 200 million cells, of four million boxes, and an elevation model of 400 million posts:
+planned through, sound, in little memory.
 
 python3 large_worlds_test.py PROGRAM
 """
@@ -93,6 +93,16 @@ class LargeWorlds(unittest.TestCase):
                     self.assertEqual(cell[1:], holes[cell[0]])
                     crossed.add(cell[0])
         self.assertEqual(crossed, set(holes))
+
+    def test_checkerboard(self):
+        """Four million blocked voxels, none beside another: a box each."""
+        with open(os.path.join(self.folder, "checkerboard.3dmap"), "w", encoding="utf-8") as file:
+            file.write("voxel 200 200 200\n")
+            file.writelines(f"{x} {y} {z}\n" for x in range(200) for y in range(200)
+                            for z in range((x + y + 1) % 2, 200, 2))
+        result = self.run_in("voxel_map: {file: checkerboard.3dmap}", [0.5, 0.5, 0.5],
+                             [199.5, 199.5, 198.5], most=300 << 20)
+        self.assertEqual(result["metrics"]["min_clearance_m"], 0)
 
     def test_part_of_an_elevation_model(self):
         """20,000 x 20,000 posts, 800 MB of zeros that the file system need not store."""

@@ -66,11 +66,8 @@ void Flight::fly_to_the_end() {
     hand_over(true, "the pilot flies all the way");
   }
   end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
-  while (!ended_) {
-    meet_events();  // at the goal too: what comes down on it there is met
-    if (ended_ || request_.goal.reached_at(state_.position)) {
-      return;
-    }
+  meet_events();
+  while (!ended_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMostSteps) {
       end_flight(Status::not_reached, (late ? time_out()

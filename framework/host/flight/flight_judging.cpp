@@ -22,6 +22,7 @@ void Flight::fly_leg(const State& next) {
   result_.track.emplace_back(t1, b);
   state_ = next;
   end_on_contact(a, t0, b, t1);
+  meet_events();  // at the goal too: what comes down on it there is met
 }
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {

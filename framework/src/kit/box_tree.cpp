@@ -35,52 +35,108 @@ FloatBox grown(const Box& box) {
   return result;
 }
 
+/// Boxes as the tree has them, and what they are sorted by.
+class SolidBoxes {
+ public:
+  explicit SolidBoxes(const std::vector<Box>& boxes) : boxes_(boxes.size()) {
+    std::transform(boxes.begin(), boxes.end(), boxes_.begin(), grown);
+  }
+  std::size_t count() const { return boxes_.size(); }
+  FloatBox box(std::int32_t index) const { return boxes_[std::size_t(index)]; }
+  float twice_middle(std::int32_t index, int axis) const {
+    constexpr float kFar = 2e15F;  // the sum of two endless sides stays a number
+    const FloatBox& box = boxes_[std::size_t(index)];
+    return std::clamp(box.min[axis], -kFar, kFar) + std::clamp(box.max[axis], -kFar, kFar);
+  }
+
+ private:
+  std::vector<FloatBox> boxes_;
+};
+
+/// The same of cells, of which nothing more is kept.
+class BoxesOfCells {
+ public:
+  explicit BoxesOfCells(const CellBoxes& boxes)
+      : boxes_(boxes), edge_(boxes.spec.cell.cast<float>()) {}
+  std::size_t count() const { return boxes_.boxes.size(); }
+  FloatBox box(std::int32_t index) const { return grown(boxes_[std::size_t(index)].box); }
+  float twice_middle(std::int32_t index, int axis) const {
+    const CellBox& box = boxes_.boxes[std::size_t(index)];
+    return float(box.first[std::size_t(axis)] + box.last[std::size_t(axis)]) * edge_[axis];
+  }
+
+ private:
+  const CellBoxes& boxes_;
+  Eigen::Vector3f edge_;
+};
+
+template <class Boxes>
 struct Builder {
-  const std::vector<FloatBox>& boxes;
+  const Boxes boxes;
   std::vector<std::int32_t> order;  // indices of boxes, the range of a node together
   std::vector<BoxNode> nodes;
 
   using Range = std::array<std::size_t, 2>;
 
-  float twice_middle(std::int32_t index, int axis) const {
-    constexpr float kFar = 2e15F;  // the sum of two endless sides stays a number
-    const FloatBox& box = boxes[std::size_t(index)];
-    return std::clamp(box.min[axis], -kFar, kFar) + std::clamp(box.max[axis], -kFar, kFar);
+  explicit Builder(const auto& of) : boxes(of), order(boxes.count()) {
+    std::iota(order.begin(), order.end(), 0);
+    nodes.reserve(order.size() / (BoxNode::kWidth - 2) + std::bit_width(order.size()));
+    if (!order.empty()) {
+      nodes.resize(1);
+      make(0, {0, order.size()});
+    }
   }
 
-  int longest_axis(const Range& range) const {
-    int longest = 0;
-    float most = -1;
-    for (int axis = 0; axis < 3; ++axis) {
-      float low = twice_middle(order[range[0]], axis);
-      float high = low;
-      for (std::size_t n = range[0]; n < range[1]; ++n) {
-        low = std::min(low, twice_middle(order[n], axis));
-        high = std::max(high, twice_middle(order[n], axis));
+  float twice_middle(std::int32_t index, int axis) const {
+    return boxes.twice_middle(index, axis);
+  }
+
+  // Twice the middles of a range lie within.
+  struct Extent {
+    float low[3];
+    float high[3];
+
+    int longest_axis() const {
+      int longest = 0;
+      for (const int axis : {1, 2}) {
+        if (high[axis] - low[axis] > high[longest] - low[longest]) {
+          longest = axis;
+        }
       }
-      if (high - low > most) {
-        most = high - low;
-        longest = axis;
+      return longest;
+    }
+  };
+
+  Extent extent(const Range& range) const {
+    Extent result{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+    for (std::size_t n = range[0]; n < range[1]; ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float middle = twice_middle(order[n], axis);
+        result.low[axis] = std::min(result.low[axis], middle);
+        result.high[axis] = std::max(result.high[axis], middle);
       }
     }
-    return longest;
+    return result;
   }
 
   // Cuts the range into that many parts of about equal size.
-  void cut(const Range& range, std::size_t parts, std::vector<Range>& into) {
+  void cut(const Range& range, const Extent& within, std::size_t parts, std::vector<Range>& into) {
     if (parts == 1) {
       into.push_back(range);
       return;
     }
     const std::size_t first = parts / 2;
     const std::size_t middle = range[0] + (range[1] - range[0]) * first / parts;
-    const int axis = longest_axis(range);
+    const int axis = within.longest_axis();
     const auto at = [&](std::size_t n) { return order.begin() + std::ptrdiff_t(n); };
     std::nth_element(at(range[0]), at(middle), at(range[1]), [&](auto one, auto other) {
       return twice_middle(one, axis) < twice_middle(other, axis);
     });
-    cut({range[0], middle}, first, into);
-    cut({middle, range[1]}, parts - first, into);
+    Extent below = within;
+    Extent above = within;
+    below.high[axis] = above.low[axis] = twice_middle(order[middle], axis);
+    cut({range[0], middle}, below, first, into);
+    cut({middle, range[1]}, above, parts - first, into);
   }
 
   // Makes the node of a range, and all below it; gives its box.
@@ -93,7 +149,7 @@ struct Builder {
     while (full * kWidth < count) {
       full *= kWidth;
     }
-    cut(range, (count + full - 1) / full, parts);
+    cut(range, extent(range), (count + full - 1) / full, parts);
     const std::size_t first = nodes.size();
     nodes.resize(first + (is_leaf ? 0 : parts.size()));
     BoxNode node{};
@@ -104,7 +160,7 @@ struct Builder {
       FloatBox box = kNothing;
       if (lane < parts.size() && is_leaf) {
         node.box[lane] = order[parts[lane][0]];
-        box = boxes[std::size_t(node.box[lane])];
+        box = boxes.box(node.box[lane]);
       } else if (lane < parts.size()) {
         box = make(first + lane, parts[lane]);
       }
@@ -122,15 +178,10 @@ struct Builder {
 }  // namespace
 
 std::vector<BoxNode> box_tree(const std::vector<Box>& boxes) {
-  std::vector<FloatBox> floats(boxes.size());
-  std::transform(boxes.begin(), boxes.end(), floats.begin(), grown);
-  Builder builder{floats, std::vector<std::int32_t>(boxes.size()), {}};
-  std::iota(builder.order.begin(), builder.order.end(), 0);
-  if (!boxes.empty()) {
-    builder.nodes.resize(1);
-    builder.make(0, {0, boxes.size()});
-  }
-  builder.nodes.shrink_to_fit();
-  return std::move(builder.nodes);
+  return std::move(Builder<SolidBoxes>(boxes).nodes);
+}
+
+std::vector<BoxNode> box_tree(const CellBoxes& boxes) {
+  return std::move(Builder<BoxesOfCells>(boxes).nodes);
 }
 }  // namespace altiplan::kit

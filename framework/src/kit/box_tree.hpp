@@ -9,6 +9,8 @@
 
 #include "altiplan/geometry.hpp"
 
+#include "cell_boxes.hpp"
+
 namespace altiplan::kit {
 
 /// Eight numbers, or yes (all bits) and no, that one vector operation takes at once; compilers make
@@ -32,6 +34,7 @@ static_assert(sizeof(BoxNode) == 512);
 /// Boxes halved at the median of their middles along the longer side, as few parts a node as keep
 /// the nodes below it full. The root is node 0; no boxes, no nodes.
 std::vector<BoxNode> box_tree(const std::vector<Box>& boxes);
+std::vector<BoxNode> box_tree(const CellBoxes& boxes);
 
 /// Levels of a tree of 2^31 boxes, and the nodes of it that can wait at once while it is walked.
 inline constexpr int kMostLevels = 10;

@@ -2,9 +2,10 @@
 #include "altiplan/kit/cell_layer.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "altiplan/error.hpp"
+
+#include "cell_boxes.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -20,77 +21,18 @@ VoxelGrid native(VoxelGrid cells) {
 }
 }  // namespace
 
-namespace {
-
-/// Columns i0 to i1 of rows j0 to j1, both included, of one level.
-using Rectangle = std::array<int, 4>;
-
-using Row = std::array<int, 2>;  ///< j and k
-
-/// Whether so many rows from one on have the same cells blocked as those from another on.
-bool same_words(const VoxelGrid& cells, const Row& a, const Row& b, std::size_t rows) {
-  const std::uint64_t* words = cells.row_words(a[0], a[1]);
-  return std::equal(words, words + rows * cells.words_per_row(), cells.row_words(b[0], b[1]));
-}
-
-/// Rectangles that cover a level's blocked cells.
-std::vector<Rectangle> rectangles_of(const VoxelGrid& cells, int k) {
-  const GridSpec& spec = cells.spec();
-  std::vector<Rectangle> rectangles;
-  using Run = std::pair<int, int>;
-  std::map<Run, int> open;  // and the row that the run began in
-  for (int j = 0; j <= spec.counts[1]; ++j) {
-    if (j > 0 && j < spec.counts[1] && same_words(cells, {j, k}, {j - 1, k}, 1)) {
-      continue;
-    }
-    std::map<Run, int> still;
-    if (j < spec.counts[1]) {
-      cells.for_each_run(j, k, [&](int first, int last) {
-        const auto before = open.find({first, last});
-        still[{first, last}] = before == open.end() ? j : before->second;
-      });
-    }
-    for (const auto& [run, from] : open) {
-      if (still.count(run) == 0) {
-        rectangles.push_back({run.first, run.second, from, j - 1});
-      }
-    }
-    open = std::move(still);
-  }
-  return rectangles;
-}
-}  // namespace
-
 std::vector<Shape> boxes_of(const VoxelGrid& cells) {
-  const GridSpec& spec = cells.spec();
-  std::vector<Shape> boxes;
-  std::map<Rectangle, int> open;  // and the level that the rectangle began in
-  for (int k = 0; k <= spec.counts[2]; ++k) {
-    if (k > 0 && k < spec.counts[2] &&
-        same_words(cells, {0, k}, {0, k - 1}, std::size_t(spec.counts[1]))) {
-      continue;
-    }
-    std::map<Rectangle, int> still;
-    if (k < spec.counts[2]) {
-      for (const Rectangle& rectangle : rectangles_of(cells, k)) {
-        const auto before = open.find(rectangle);
-        still[rectangle] = before == open.end() ? k : before->second;
-      }
-    }
-    for (const auto& [rectangle, from] : open) {
-      if (still.count(rectangle) == 0) {
-        const auto [i0, i1, j0, j1] = rectangle;
-        boxes.emplace_back(
-            BoxShape{{spec.cell_box({i0, j0, from}).min, spec.cell_box({i1, j1, k - 1}).max}});
-      }
-    }
-    open = std::move(still);
+  const CellBoxes boxes = cell_boxes_of(cells);
+  std::vector<Shape> shapes;
+  shapes.reserve(boxes.boxes.size());
+  for (std::size_t n = 0; n < boxes.boxes.size(); ++n) {
+    shapes.emplace_back(boxes[n]);
   }
-  return boxes;
+  return shapes;
 }
 
 CellLayer::CellLayer(VoxelGrid cells)
-    : cells_(native(std::move(cells))), solid_(boxes_of(cells_)) {}
+    : cells_(native(std::move(cells))), solid_(ObstacleSet::of_cells(cell_boxes_of(cells_))) {}
 
 double CellLayer::do_clearance(const Vec3& p) const {
   const double outside = solid_.clearance(p);

@@ -25,14 +25,25 @@ constexpr double kMeets = 1e-9;
 using shape_parts::Indexed;
 using Trees = std::vector<std::unique_ptr<EdgeTree>>;
 
-// The shapes, and the trees of those that have many edges; none where none has.
-struct Solids {
-  const Shape* shapes;
-  const std::unique_ptr<EdgeTree>* trees;
+// The shapes, and the trees of those that have many edges; none where none has. Or boxes of cells,
+// each made a shape when it is asked for.
+class Solids {
+ public:
+  Solids(const std::vector<Shape>& shapes, const Trees& trees, const CellBoxes& cells)
+      : shapes_(shapes.data()), trees_(trees.empty() ? nullptr : trees.data()), cells_(cells) {}
 
-  Indexed operator[](std::size_t n) const {
-    return {shapes[n], trees == nullptr ? nullptr : trees[n].get()};
+  Indexed operator[](std::size_t n) {
+    if (shapes_ == nullptr) {
+      return {box_ = cells_[n], nullptr};
+    }
+    return {shapes_[n], trees_ == nullptr ? nullptr : trees_[n].get()};
   }
+
+ private:
+  const Shape* shapes_;
+  const std::unique_ptr<EdgeTree>* trees_;
+  const CellBoxes& cells_;
+  Shape box_;
 };
 
 bool meets(const Indexed& shape, const Vec3& a, const Vec3& b, double r) {
@@ -60,7 +71,7 @@ struct Open {
 };
 
 // Down to the nearest leaf first, so that on the way back little is still near enough.
-ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Solids& shapes, const Vec3& p) {
+ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, Solids& shapes, const Vec3& p) {
   std::array<Open, kMostLevels> way;
   std::size_t depth = 0;
   const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
@@ -105,7 +116,7 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, const Solids& shapes
   }
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, const Solids& shapes, const Vec3& a,
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a,
                                const Vec3& b, double r) {
   std::array<std::int32_t, kMostOpen> open{0};
   std::size_t waiting = 1;
@@ -196,11 +207,11 @@ Trees trees_of(const std::vector<Shape>& shapes) {
 
 struct ObstacleSet::Impl {
   std::vector<BoxNode> nodes;
+  std::size_t count = 0;
   Trees trees;
+  CellBoxes cells;
 
-  Solids solids(const std::vector<Shape>& shapes) const {
-    return {shapes.data(), trees.empty() ? nullptr : trees.data()};
-  }
+  Solids solids(const std::vector<Shape>& shapes) const { return {shapes, trees, cells}; }
 };
 
 ObstacleSet::ObstacleSet(std::vector<Shape> shapes)
@@ -213,7 +224,20 @@ ObstacleSet::ObstacleSet(std::vector<Shape> shapes)
     bounds_ = bounds_.united(boxes.back());
   }
   impl_->nodes = box_tree(boxes);
+  impl_->count = shapes_.size();
   impl_->trees = trees_of(shapes_);
+}
+
+ObstacleSet ObstacleSet::of_cells(CellBoxes boxes) {
+  ObstacleSet set(std::vector<Shape>{});
+  Impl& impl = *set.impl_;
+  impl.cells = std::move(boxes);
+  impl.count = impl.cells.boxes.size();
+  impl.nodes = box_tree(impl.cells);
+  for (std::size_t n = 0; n < impl.count; ++n) {
+    set.bounds_ = set.bounds_.united(impl.cells[n].box);
+  }
+  return set;
 }
 
 ObstacleSet::~ObstacleSet() = default;
@@ -221,33 +245,33 @@ ObstacleSet::ObstacleSet(ObstacleSet&&) noexcept = default;
 ObstacleSet& ObstacleSet::operator=(ObstacleSet&&) noexcept = default;
 
 double ObstacleSet::clearance(const Vec3& p) const {
-  const Solids solids = impl_->solids(shapes_);
-  if (!shapes_.empty() && is_in_reach(p)) {
+  Solids solids = impl_->solids(shapes_);
+  if (impl_->count > 0 && is_in_reach(p)) {
     return least_distance(impl_->nodes.data(), solids, p);
   }
   double least = kInfinity;
-  for (std::size_t n = 0; n < shapes_.size(); ++n) {
+  for (std::size_t n = 0; n < impl_->count; ++n) {
     least = std::min(least, signed_distance(solids[n], p));
   }
   return least;
 }
 
 bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
-  const Solids solids = impl_->solids(shapes_);
-  if (!shapes_.empty() && is_in_reach(a) && is_in_reach(b) && std::abs(r) <= kTreeReach) {
+  Solids solids = impl_->solids(shapes_);
+  if (impl_->count > 0 && is_in_reach(a) && is_in_reach(b) && std::abs(r) <= kTreeReach) {
     return any_meets(impl_->nodes.data(), solids, a, b, r);
   }
   bool meet = false;
-  for (std::size_t n = 0; n < shapes_.size() && !meet; ++n) {
+  for (std::size_t n = 0; n < impl_->count && !meet; ++n) {
     meet = meets(solids[n], a, b, r);
   }
   return meet;
 }
 
 void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const {
-  const Solids solids = impl_->solids(shapes_);
-  std::vector<int> ids(shapes_.size());
-  if (!shapes_.empty() && is_in_reach(p) && std::abs(reach) <= kTreeReach) {
+  Solids solids = impl_->solids(shapes_);
+  std::vector<int> ids(impl_->count);
+  if (impl_->count > 0 && is_in_reach(p) && std::abs(reach) <= kTreeReach) {
     ids = shapes_within(impl_->nodes.data(), p, reach);
   } else {
     std::iota(ids.begin(), ids.end(), 0);
@@ -297,11 +321,11 @@ std::vector<Threat> threats_of(const std::vector<Shape>& shapes) {
 }
 
 void ObstacleSet::rasterize(VoxelGrid& grid) const {
-  const Solids solids = impl_->solids(shapes_);
-  for (std::size_t n = 0; n < shapes_.size(); ++n) {
+  Solids solids = impl_->solids(shapes_);
+  for (std::size_t n = 0; n < impl_->count; ++n) {
     const Indexed solid = solids[n];
     kit::rasterize(
-        grid, altiplan::bounds(shapes_[n]),
+        grid, altiplan::bounds(solid.shape),
         [&](const Vec3& p) { return signed_distance(solid, p); },
         [&](const Box& box, double by) { return overlaps(solid, box, by); });
   }

@@ -11,11 +11,15 @@
 
 namespace altiplan::kit {
 
+struct CellBoxes;
+
 /// A set of solid shapes with exact queries, each O(log n) through a tree of boxes: the answers
 /// are, bit by bit, those of the closed forms asked for every shape in turn.
 class ALTIPLAN_API ObstacleSet {
  public:
   explicit ObstacleSet(std::vector<Shape> shapes);
+  /// Boxes of cells, which take less memory than shapes; shapes() then has none.
+  static ObstacleSet of_cells(CellBoxes boxes);
   ~ObstacleSet();
   ObstacleSet(ObstacleSet&&) noexcept;
   ObstacleSet& operator=(ObstacleSet&&) noexcept;
