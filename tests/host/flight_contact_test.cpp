@@ -2,6 +2,7 @@
 // What touches the vehicle ends the flight at once, whoever commands, and says how deep it lies
 // inside.
 #include <algorithm>
+#include <set>
 
 #include "flight_scene.hpp"
 #include "host/flight/track_judge.hpp"
@@ -40,8 +41,17 @@ FlightEvent moving_in(Scene& scene, const Vec3& place) {
   return event;
 }
 
+std::multiset<std::string> broken_in(const CheckResult& check) {
+  std::multiset<std::string> names;
+  for (const Violation& violation : check.violations) {
+    names.insert(violation.constraint);
+  }
+  return names;
+}
+
 void expect_judged_alike(const FlightResult& flown, const FlightSetup& setup) {
   const TrackVerdict verdict = judge_track(flown.track, setup);
+  EXPECT_EQ(broken_in(verdict.check), broken_in(flown.check));
   EXPECT_EQ(verdict.collisions, flown.collisions);
   EXPECT_EQ(verdict.reached, flown.reached);
 }

@@ -75,9 +75,10 @@ std::string Flight::blame() const {
 void Flight::judge_whole(const Route& track) {
   const Request& request = truth_request_;
   std::vector<Violation>& found = result_.check.violations;
-  if (!result_.reached) {
-    found.push_back({"goal", track.size() - 1, (track.back() - request.goal.position).norm(),
-                     request.goal.tolerance_m, "the flight ended " + away() + " from the goal"});
+  const Goal& goal = request_.goal;  // as it is now
+  if (!goal.reached_at(track.back())) {
+    found.push_back({"goal", track.size() - 1, (track.back() - goal.position).norm(),
+                     goal.tolerance_m, "the flight ended " + away() + " from the goal"});
   }
   for (Violation& violation :
        whole_track_violations(track, request, request_.limits.min_turn_radius)) {

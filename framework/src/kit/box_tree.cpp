@@ -87,9 +87,7 @@ struct Builder {
     }
   }
 
-  float twice_middle(std::int32_t index, int axis) const {
-    return boxes.twice_middle(index, axis);
-  }
+  float twice_middle(std::int32_t index, int axis) const { return boxes.twice_middle(index, axis); }
 
   // Twice the middles of a range lie within.
   struct Extent {
