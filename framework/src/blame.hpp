@@ -15,6 +15,8 @@ auto blamed(const Who& who, const Call& call) {
     return call();
   } catch (const ParameterError&) {
     throw;
+  } catch (const BudgetSpent&) {
+    throw;
   } catch (const std::exception& error) {
     throw PluginError(who() + " threw: " + error.what());
   } catch (...) {

@@ -132,6 +132,7 @@ void Environment::do_rasterize(VoxelGrid& grid) const {
   const bool centre_rule = spec.rule == GridSpec::Rule::centre;
   for (int k = 0; k < spec.counts[2]; ++k) {
     for (int j = 0; j < spec.counts[1]; ++j) {
+      grid.ask_watch();
       for (int i = 0; i < spec.counts[0]; ++i) {
         const double clearance = do_clearance(spec.centre({i, j, k}));
         if (centre_rule ? clearance <= spec.inflation

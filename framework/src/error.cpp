@@ -30,6 +30,7 @@ Error::~Error() = default;
 ConfigError::~ConfigError() = default;
 ParameterError::~ParameterError() = default;
 PluginError::~PluginError() = default;
+BudgetSpent::~BudgetSpent() = default;
 
 namespace {
 std::string joined(const std::vector<Problem>& problems) {

@@ -44,6 +44,14 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
     return call();
   } catch (const ParameterError&) {
     throw;
+  } catch (const BudgetSpent& spent) {
+    PlanResult result;
+    result.status = spent.cancelled() ? Status::cancelled : Status::timed_out;
+    result.budget_hit = true;
+    result.message =
+        (spent.cancelled() ? "cancelled: " : "the budget was used up: ") + std::string(spent.what());
+    result.counters = {{"expanded", 0}};
+    return result;
   } catch (const std::exception& error) {
     return failed(std::string("threw: ") + error.what());
   } catch (...) {
@@ -149,15 +157,19 @@ class HeldSession final : public Session {
 const PlanResult& Session::update(const State& state, const Goal& goal,
                                   std::shared_ptr<const World> world,
                                   std::span<const Change> changes, const Budget& budget) {
-  const PlanResult said =
-      guarded([&] { return do_update(state, goal, std::move(world), changes, budget); });
+  bool answered = false;
+  const PlanResult said = guarded([&] {
+    PlanResult result = do_update(state, goal, std::move(world), changes, budget);
+    answered = true;
+    return result;
+  });
   const PlanResult shown = guarded([&] { return do_result(); });
   PlanResult held = held_to_law(said, state.position, goal);
-  if (held.status != Status::failed && !same(said, shown)) {
+  if (answered && held.status != Status::failed && !same(said, shown)) {
     held = failed("the session broke a law of its interface: result() is not what update returned");
   }
   broken_.reset();
-  if (held.status == Status::failed) {
+  if (!answered || held.status == Status::failed) {
     broken_ = std::move(held);
   }
   return result();

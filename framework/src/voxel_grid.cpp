@@ -75,6 +75,7 @@ void VoxelGrid::set(const Cell& c, bool is_blocked) {
 }
 
 void VoxelGrid::set_run(int i0, int i1, int j, int k, bool is_blocked) {
+  ask_watch();
   i0 = std::max(i0, 0);
   i1 = std::min(i1, spec_.counts[0] - 1);
   if (i0 <= i1 && spec_.holds({i0, j, k})) {

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "altiplan/request.hpp"
+
 #include "blame.hpp"
 
 namespace altiplan {
@@ -28,6 +30,12 @@ struct World::Cache {
   std::vector<std::shared_ptr<const VoxelGrid>> grids;
   std::vector<std::shared_ptr<const DistanceField>> distances;
   std::vector<Earlier> earlier;
+
+  std::shared_ptr<const VoxelGrid> keep(std::shared_ptr<VoxelGrid> grid) {
+    grid->watch(nullptr);
+    grids.push_back(std::move(grid));
+    return grids.back();
+  }
 };
 
 World::World() : cache_(std::make_shared<Cache>()) {}
@@ -303,9 +311,11 @@ std::pair<Cell, Cell> cells_touching(const GridSpec& spec, const Box& box) {
 
 /// The earlier grid brought up to date: added layers are drawn over it; where a layer went, the box
 /// that it filled is drawn anew from all layers.
-std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::vector<Layer>& then,
-                                         const std::vector<Layer>& now) {
+std::shared_ptr<VoxelGrid> patched(const VoxelGrid& earlier, const std::vector<Layer>& then,
+                                   const std::vector<Layer>& now,
+                                   const std::function<void()>& watch) {
   auto grid = std::make_shared<VoxelGrid>(earlier);
+  grid->watch(watch);
   const GridSpec& spec = grid->spec();
   Box gone = Box::empty();
   for (const Layer& layer : then) {
@@ -315,6 +325,7 @@ std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::ve
   }
   if (!gone.is_empty()) {
     VoxelGrid fresh(spec);
+    fresh.watch(watch);
     for (const Layer& layer : now) {
       if (layer.environment->bounds().grown(spec.inflation + spec.cell.norm()).overlaps(gone)) {
         answer_of(layer, [&](const Environment& asked) { asked.rasterize(fresh); });
@@ -333,6 +344,16 @@ std::shared_ptr<const VoxelGrid> patched(const VoxelGrid& earlier, const std::ve
 }  // namespace
 
 std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
+  return voxels(spec, Budget());
+}
+
+std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec, const Budget& budget) const {
+  BudgetWatch time(budget);
+  const std::function<void()> watch = [&time] {
+    if (time.spent(0)) {
+      throw BudgetSpent("the occupancy grid was still being built", time.cancelled());
+    }
+  };
   const std::lock_guard lock(cache_->mutex);
   for (const auto& grid : cache_->grids) {
     if (grid->spec() == spec) {
@@ -341,16 +362,15 @@ std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
   }
   for (const Cache::Earlier& earlier : cache_->earlier) {
     if (earlier.grid->spec() == spec) {
-      cache_->grids.push_back(patched(*earlier.grid, earlier.layers, layers_));
-      return cache_->grids.back();
+      return cache_->keep(patched(*earlier.grid, earlier.layers, layers_, watch));
     }
   }
   auto grid = std::make_shared<VoxelGrid>(spec);
+  grid->watch(watch);
   for (const Layer& layer : layers_) {
     answer_of(layer, [&](const Environment& asked) { asked.rasterize(*grid); });
   }
-  cache_->grids.push_back(std::move(grid));
-  return cache_->grids.back();
+  return cache_->keep(std::move(grid));
 }
 
 std::shared_ptr<const DistanceField> World::distances(const GridSpec& spec) const {

@@ -6,6 +6,7 @@
 #include "altiplan/frame.hpp"
 #include "altiplan/kit/iso_time.hpp"
 #include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/planner.hpp"
 #include "support/support.hpp"
 
 namespace altiplan {
@@ -33,6 +34,84 @@ class FlatTile final : public Environment {
   Box box_;
   double height_;
 };
+
+/// Many posts, over which a grid is filled for a while.
+World posts() {
+  std::vector<Shape> list;
+  for (int n = 0; n < 100; ++n) {
+    list.push_back(Cylinder{100.0 * n, 5000, 30});
+  }
+  return World().with(shapes("posts", std::move(list)));
+}
+
+Budget used_up(bool by_stop, std::stop_source& stop) {
+  Budget budget;
+  if (by_stop) {
+    stop.request_stop();
+    budget.stop = stop.get_token();
+  } else {
+    budget.deadline = Budget::Clock::now();
+  }
+  return budget;
+}
+
+TEST(World, FillingAGridEndsWithTheBudget) {
+  GridSpec spec;
+  spec.cell = {10, 10, 10};
+  spec.counts = {1000, 1000, 10};
+  for (const bool by_stop : {false, true}) {
+    SCOPED_TRACE(by_stop);
+    const World world = posts();
+    std::stop_source stop;
+    try {
+      world.voxels(spec, used_up(by_stop, stop));
+      FAIL() << "was filled";
+    } catch (const BudgetSpent& spent) {
+      EXPECT_EQ(spent.cancelled(), by_stop);
+    }
+    // What was begun is not kept.
+    const auto whole = world.voxels(spec);
+    EXPECT_TRUE(VoxelGrid::diff(*whole, *posts().voxels(spec)).empty());
+    EXPECT_EQ(world.voxels(spec, used_up(by_stop, stop)), whole) << "there: no time is needed";
+  }
+}
+
+TEST(World, PlannersAnswerWhereTheGridTakesTheirTime) {
+  for (const char* name : {"theta_star", "lazy_theta_star", "stratified_theta", "spatial_slicing",
+                           "astar", "dstar_lite"}) {
+    SCOPED_TRACE(name);
+    Request request = testing::request_in(posts(), {500, 500, 50}, {9000, 9500, 50},
+                                          {{0, 0, 0}, {10e3, 10e3, 100}});
+    std::stop_source stop;
+    request.budget = used_up(false, stop);
+    const auto planner = testing::make_planner(name, "{cell_m: [10, 10, 10]}");
+    const PlanResult result = planner->plan(request);
+    EXPECT_EQ(result.status, Status::timed_out) << result.message;
+    EXPECT_TRUE(result.budget_hit);
+    const auto session = planner->begin(request);
+    EXPECT_EQ(session->result().status, Status::timed_out) << session->result().message;
+  }
+}
+
+TEST(World, ASessionGoesOnAfterAnUpdateWithoutTime) {
+  const auto planner = testing::make_planner("dstar_lite", "{cell_m: [50, 50, 50]}");
+  Request request = testing::request_in(posts(), {500, 500, 50}, {9000, 9500, 50},
+                                        {{0, 0, 0}, {10e3, 10e3, 100}});
+  const auto session = planner->begin(request);
+  ASSERT_EQ(session->result().status, Status::solved) << session->result().message;
+  const auto changed = std::make_shared<const World>(
+      request.world->with(shapes("more", {Cylinder{5000, 7000, 2000}})));
+  const Change change{Change::Kind::add, "more", changed->layers().back().environment->bounds()};
+  std::stop_source stop;
+  EXPECT_EQ(
+      session->update(request.start, request.goal, changed, {&change, 1}, used_up(false, stop))
+          .status,
+      Status::timed_out);
+  const PlanResult again = session->update(request.start, request.goal, changed, {}, Budget());
+  ASSERT_EQ(again.status, Status::solved) << again.message;
+  request.world = changed;
+  EXPECT_NEAR(length(again.route), length(planner->plan(request).route), 1e-6);
+}
 
 TEST(World, LayersByIdAndRevision) {
   const World empty;

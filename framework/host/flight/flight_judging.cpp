@@ -28,7 +28,7 @@ void Flight::fly_leg(const State& next) {
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
   separation_ = world_.separation_below(separation_, a, t0, b, t1);
   const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
-  if (met == nullptr) {
+  if (met == nullptr || ended_) {  // what happens where a flight has ended changes no verdict
     return;
   }
   ++result_.collisions;

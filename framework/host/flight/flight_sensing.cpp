@@ -7,7 +7,7 @@ namespace altiplan::host {
 
 void Flight::meet_events() {
   bool world_differs = false;
-  for (auto event = events_.begin(); !ended_ && event != events_.end();) {
+  for (auto event = events_.begin(); event != events_.end();) {
     if (!event->is_due(state_.time_s, state_.position)) {
       ++event;
       continue;

@@ -71,6 +71,19 @@ class ALTIPLAN_API PluginError : public Error {
   ~PluginError() override;
 };
 
+/// The time of a budget ended, or its stop was requested, while the framework worked for a planner:
+/// whoever called the planner answers with `timed_out` or `cancelled`.
+class ALTIPLAN_API BudgetSpent : public Error {
+ public:
+  BudgetSpent(const std::string& message, bool cancelled) : Error(message), cancelled_(cancelled) {}
+  ~BudgetSpent() override;
+  /// Whether the stop token, not the deadline, ended it.
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  bool cancelled_;
+};
+
 /// What a file says, as a message quotes it: in quotes, no longer than 60 characters, with '?' for
 /// what is not printable ASCII.
 ALTIPLAN_API std::string excerpt(std::string_view text);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "altiplan/geometry.hpp"
@@ -78,6 +79,13 @@ class ALTIPLAN_API VoxelGrid {
       first = find(end, j, k, true);
     }
   }
+  /// Asked at every run that is set and row that is looked at, from now on; throws to end that.
+  void watch(std::function<void()> asked) { watch_ = std::move(asked); }
+  void ask_watch() const {
+    if (watch_) {
+      watch_();
+    }
+  }
   std::size_t blocked_count() const;
   std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
 
@@ -117,5 +125,6 @@ class ALTIPLAN_API VoxelGrid {
   std::size_t words_per_row_;
   std::size_t rows_per_level_;
   std::vector<std::uint64_t> words_;
+  std::function<void()> watch_;
 };
 }  // namespace altiplan

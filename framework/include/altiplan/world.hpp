@@ -12,6 +12,8 @@
 
 namespace altiplan {
 
+struct Budget;
+
 /// A named environment of a world. A layer that is not known is met in flight.
 struct Layer {
   std::string id;
@@ -100,8 +102,9 @@ class ALTIPLAN_API World {
   std::optional<GridSpec> native_grid() const;
 
   /// Occupancy of all layers under the spec; built once per spec and revision, a change patches it
-  /// inside its box only.
+  /// inside its box only. Ends by BudgetSpent when the time is used up.
   std::shared_ptr<const VoxelGrid> voxels(const GridSpec& spec) const;
+  std::shared_ptr<const VoxelGrid> voxels(const GridSpec& spec, const Budget& budget) const;
   /// Distances between the cells of that grid and its blocked ones; built once per spec and
   /// revision.
   std::shared_ptr<const DistanceField> distances(const GridSpec& spec) const;

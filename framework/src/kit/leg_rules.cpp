@@ -26,7 +26,7 @@ LegRules::LegRules(const Request& request)
       looks_back_(request.limits.turns() || !request.constraints.empty()),
       rest_(request) {
   if (const auto spec = cells_that_decide()) {
-    grid_ = request.world->voxels(*spec);
+    grid_ = request.world->voxels(*spec, request.budget);
     per_cell_ = spec->cell.cwiseInverse();
     rest_.world = open_world();
     const Limits& limits = request.limits;

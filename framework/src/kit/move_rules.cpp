@@ -49,7 +49,7 @@ std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice
   });
   spec.rule = own_cells && !layers.empty() && spec.inflation == 0 ? GridSpec::Rule::native
                                                                   : GridSpec::Rule::touched;
-  return request.world->voxels(spec);
+  return request.world->voxels(spec, request.budget);
 }
 
 MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck check,

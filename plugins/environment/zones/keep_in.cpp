@@ -197,6 +197,7 @@ void KeepIn::rasterize(VoxelGrid& grid) const {
   };
   for (int k = 0; k < spec.counts[2]; ++k) {
     for (int j = 0; j < spec.counts[1]; ++j) {
+      grid.ask_watch();
       for (int i = 0; i < spec.counts[0]; ++i) {
         if (!is_free({i, j, k})) {
           grid.block_run(i, i, j, k);

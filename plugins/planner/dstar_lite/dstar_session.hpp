@@ -46,12 +46,13 @@ class Replanner {
     const kit::MoveCheck moves = settings_.moves;
     settings_ = params_.settings(request_);
     goes_on = goes_on && moves == settings_.moves;
+    auto plan = std::exchange(plan_, nullptr);  // what ends amid a change is planned afresh
     if (goes_on && !(same_world && same_start)) {
       // From elsewhere, or in another world, a leg may lead to the goal itself.
-      goes_on = !plan_->within() && (same_world || plan_->take(changes)) && plan_->find_start();
+      goes_on = !plan->within() && (same_world || plan->take(changes)) && plan->find_start();
     }
-    if (!goes_on) {
-      plan_.reset();
+    if (goes_on) {
+      plan_ = std::move(plan);
     }
     if (auto answer = settled()) {
       return *std::move(answer);

@@ -30,6 +30,7 @@ void block_below(VoxelGrid& grid, const Top& column_top) {
   const bool centre = spec.rule == GridSpec::Rule::centre;
   std::vector<int> blocked_levels(std::size_t(spec.counts[0]));
   for (int j = 0; j < spec.counts[1]; ++j) {
+    grid.ask_watch();
     int most = 0;
     for (int i = 0; i < spec.counts[0]; ++i) {
       const double top = column_top(i, j) + spec.inflation;

@@ -62,6 +62,7 @@ void rasterize(VoxelGrid& grid, const Box& bounds, const Distance& distance,
   }
   for (int k = first[2]; k <= last[2]; ++k) {
     for (int j = first[1]; j <= last[1]; ++j) {
+      grid.ask_watch();
       for (int i = first[0]; i <= last[0];) {
         const double away = distance(spec.centre({i, j, k}));
         if (away <= by) {
