@@ -83,7 +83,8 @@ def parts_of(kind):
 
 def sources():
     """What messages are made of: string literals, those side by side as one."""
-    folders = ["framework/src", "framework/host", "tests/conformance"]
+    folders = ["framework/src", "framework/host", "framework/study", "framework/tune",
+               "framework/conformance"]
     text = "\n".join(file.read_text() for folder in folders
                      for file in sorted((SOURCE / folder).rglob("*.[ch]pp")))
     return re.sub(r'"\s*\n?\s*"', "", text)
