@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "altiplan/blame.hpp"
 #include "altiplan/measures.hpp"
 #include "altiplan/what_blocks.hpp"
-#include "blame.hpp"
 
 namespace altiplan {
 namespace {

@@ -6,9 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "altiplan/blame.hpp"
 #include "altiplan/request.hpp"
-
-#include "blame.hpp"
 
 namespace altiplan {
 namespace {

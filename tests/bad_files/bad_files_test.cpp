@@ -13,7 +13,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
-#include "host/study/plan/study_plan.hpp"
+#include "study/plan/study_plan.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::host {

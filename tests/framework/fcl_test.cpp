@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/kit/obstacle_set.hpp"
-#include "fcl_peer.hpp"
 #include "framework/shape_oracle.hpp"
+#include "reference/fcl_peer.hpp"
 
 namespace altiplan::kit {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "host/study/store/arena_columns.hpp"
+#include "study/arena/arena_columns.hpp"
 
 namespace altiplan::host {
 namespace {

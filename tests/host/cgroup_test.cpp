@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/pool/cgroup.hpp"
+#include "study/pool/cgroup.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "altiplan/error.hpp"
-#include "host/study/pool/worker_pool.hpp"
+#include "study/pool/worker_pool.hpp"
 
 namespace altiplan::host {
 namespace {

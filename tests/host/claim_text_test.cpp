@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/statistics/claim_text.hpp"
+#include "study/claims/claim_text.hpp"
 
 #include <gtest/gtest.h>
 
-#include "host/study/statistics/claim_pairs.hpp"
-#include "host/study/statistics/claims.hpp"
+#include "study/claims/claim_pairs.hpp"
+#include "study/claims/claims.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/statistics/claims.hpp"
+#include "study/claims/claims.hpp"
 
 #include <gtest/gtest.h>
 

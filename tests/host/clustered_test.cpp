@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/statistics/clustered.hpp"
+#include "study/statistics/clustered.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/compare/compare.hpp"
+#include "study/compare/compare.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "altiplan/error.hpp"
-#include "host/study/compare/origin.hpp"
+#include "study/compare/origin.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the iterations of traces come to in a report.
-#include "host/study/report/convergence.hpp"
+#include "study/report/convergence.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "altiplan/limits.hpp"
-#include "host/study/report/figures.hpp"
-#include "host/study/report/report.hpp"
+#include "study/report/figures.hpp"
+#include "study/report/report.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host::report {

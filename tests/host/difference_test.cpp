@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/compare/difference.hpp"
+#include "host/result/difference.hpp"
 
 #include <gtest/gtest.h>
 

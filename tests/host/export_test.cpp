@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is exported, read back by our own reader and judged again; what cannot be said is.
-#include "host/output/export.hpp"
+#include "host/exchange/export.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "altiplan/error.hpp"
-#include "host/input/foreign_route.hpp"
-#include "host/output/thinning.hpp"
-#include "host/run/judge.hpp"
+#include "host/exchange/foreign_route.hpp"
+#include "host/exchange/thinning.hpp"
+#include "host/judge/judge.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"
 

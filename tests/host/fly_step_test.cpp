@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fly step of a pipeline: what the host hands to the flight, and what it makes of the outcome.
 #include "files.hpp"
-#include "host/run/events.hpp"
+#include "host/flight/events.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/store/merge.hpp"
+#include "study/store/merge.hpp"
 
-#include "host/study/pool/work_folder.hpp"
-#include "host/study/store/place.hpp"
 #include "stored_study.hpp"
+#include "study/pool/work_folder.hpp"
+#include "study/store/place.hpp"
 
 namespace altiplan::host {
 namespace {

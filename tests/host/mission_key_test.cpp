@@ -3,8 +3,8 @@
 #include <fstream>
 
 #include "files.hpp"
-#include "host/config/schema.hpp"
-#include "host/output/result_json.hpp"
+#include "host/describe/schema.hpp"
+#include "host/result/result_json.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 
 #include "files.hpp"
-#include "host/run/judge.hpp"
+#include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/error.hpp"
-#include "host/config/schema.hpp"
-#include "host/output/describe.hpp"
+#include "host/describe/describe.hpp"
+#include "host/describe/schema.hpp"
+#include "study/model/study_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
@@ -46,7 +47,7 @@ struct OneLine : ::testing::TestWithParam<bool> {
 
 TEST_P(OneLine, SchemaAndReference) {
   Registry registry({library()});
-  const Json schema = any_file_schema(choices_of(registry));
+  const Json schema = any_file_schema(choices_of(registry), fields_of<StudyFile>());
   const Json& properties = schema["definitions"]["planner_one_line"]["properties"];
   ASSERT_TRUE(properties.contains("first_m")) << schema["definitions"];
   ASSERT_EQ(properties.contains("extra_m"), GetParam());

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "host/output/describe.hpp"
+#include "host/describe/describe.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 #include "support/support.hpp"

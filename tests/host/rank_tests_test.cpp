@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/study/statistics/statistics.hpp"
+#include "study/statistics/statistics.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/params.hpp"
+#include "host/base/in_child.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/registry/checksum.hpp"
-#include "host/registry/in_child.hpp"
-#include "host/registry/machine_fault.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::host {

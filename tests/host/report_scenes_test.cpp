@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene costs the report and its page; and the names of variants.
-#include "host/study/report/scenes.hpp"
+#include "study/report/scenes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "altiplan/error.hpp"
-#include "host/output/base64.hpp"
+#include "host/base/base64.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host::report {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reports of made-up studies: whatever the runs are, the files are there, whole and the same again.
-#include "host/study/report/report.hpp"
+#include "study/report/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/yaml.hpp"
-#include "host/study/report/page.hpp"
-#include "host/study/report/text.hpp"
+#include "study/drawing/text.hpp"
+#include "study/report/page.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::host::report {

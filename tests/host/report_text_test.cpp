@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names and messages hold any bytes; no form of the report may be broken by them.
-#include "host/study/report/text.hpp"
+#include "study/drawing/text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "host/study/report/packed.hpp"
-#include "host/study/report/svg.hpp"
-#include "host/study/report/tables.hpp"
+#include "study/drawing/svg.hpp"
+#include "study/drawing/tables.hpp"
+#include "study/report/packed.hpp"
 
 namespace altiplan::host::report {
 namespace {

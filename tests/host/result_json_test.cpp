@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/output/result_json.hpp"
+#include "host/result/result_json.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/run/run_values.hpp"
+#include "study/model/run_values.hpp"
 
 #include <gtest/gtest.h>
 

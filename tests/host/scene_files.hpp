@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "files.hpp"
-#include "host/output/base64.hpp"
-#include "host/output/scene_parts.hpp"
+#include "host/base/base64.hpp"
+#include "host/view/scene_parts.hpp"
 
 namespace altiplan::host::testing {
 

@@ -6,10 +6,10 @@
 #include <random>
 
 #include "altiplan/error.hpp"
-#include "host/output/base64.hpp"
-#include "host/output/png.hpp"
-#include "host/output/screenshot.hpp"
-#include "host/output/viewer_page.hpp"
+#include "host/base/base64.hpp"
+#include "host/view/png.hpp"
+#include "host/view/screenshot.hpp"
+#include "host/view/viewer_page.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "altiplan/measures.hpp"
-#include "host/run/events.hpp"
+#include "host/flight/events.hpp"
 #include "scene_files.hpp"
 
 namespace altiplan::host {

@@ -5,7 +5,7 @@
 
 #include "altiplan/height_field.hpp"
 #include "altiplan/kit/obstacle_set.hpp"
-#include "host/run/events.hpp"
+#include "host/flight/events.hpp"
 #include "scene_files.hpp"
 #include "support/support.hpp"
 

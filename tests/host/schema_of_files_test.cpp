@@ -7,7 +7,8 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
-#include "host/config/schema.hpp"
+#include "host/describe/schema.hpp"
+#include "study/model/study_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 #include "support/support.hpp"
@@ -27,7 +28,7 @@ class SchemaOfFiles : public ::testing::Test {
       GTEST_SKIP() << "no python3-jsonschema to validate with";
     }
     Registry registry({kPlugins});
-    schema_ = any_file_schema(choices_of(registry));
+    schema_ = any_file_schema(choices_of(registry), fields_of<StudyFile>());
   }
   /// Whether the reader takes the document for a pipeline, or for a scenario.
   bool reads(const Json& document) const {

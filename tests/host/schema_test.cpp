@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/config/schema.hpp"
+#include "host/describe/schema.hpp"
 
 #include <gtest/gtest.h>
 
-#include "host/output/describe.hpp"
+#include "host/describe/describe.hpp"
+#include "study/model/study_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
@@ -136,9 +137,10 @@ TEST_F(SchemaTest, StudyAndTheThreeTogether) {
           [{"id": "c", "that": "share(p.solved)", "is": ">= 0.9"}]
 })json";
   const std::string no_pipelines = R"({"altiplan": 1, "scenarios": [{"file": "s.yaml"}]})";
-  EXPECT_EQ(check(study_schema(), {{true, study}, {false, no_pipelines}}), "");
+  EXPECT_EQ(check(study_schema(fields_of<StudyFile>()), {{true, study}, {false, no_pipelines}}),
+            "");
   EXPECT_EQ(
-      check(any_file_schema(made_up),
+      check(any_file_schema(made_up, fields_of<StudyFile>()),
             {{true, study},
              {false, no_pipelines},
              {true, R"({"altiplan": 1, "steps": [{"plan": "astar"}]})"},
@@ -153,7 +155,7 @@ TEST_F(SchemaTest, OfThePluginsOfThisBuild) {
                      altiplan::folders::build() / "tests/broken_plugins"});
   const Choices choices = choices_of(registry);
   EXPECT_EQ(
-      check(any_file_schema(choices),
+      check(any_file_schema(choices, fields_of<StudyFile>()),
             {{true, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"least_m": 2}}]})"},
              {false, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"least_m": 0}}]})"}}),
       "")

@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "host/study/statistics/statistics.hpp"
+#include "study/statistics/statistics.hpp"
 
 namespace altiplan::host {
 namespace {

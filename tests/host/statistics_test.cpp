@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/statistics/statistics.hpp"
+#include "study/statistics/statistics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/store/store.hpp"
+#include "study/store/store.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "files.hpp"
-#include "host/output/deflate.hpp"
-#include "host/study/store/place.hpp"
-#include "host/study/store/sqlite.hpp"
-#include "host/study/store/study_data.hpp"
+#include "host/base/deflate.hpp"
+#include "study/model/study_data.hpp"
+#include "study/store/load_study.hpp"
+#include "study/store/place.hpp"
+#include "study/store/sqlite.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
-#include "host/study/store/store.hpp"
+#include "study/store/store.hpp"
 
 namespace altiplan::host::testing {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/plan/study_plan.hpp"
+#include "study/plan/study_plan.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include "files.hpp"
 #include "host/config/yaml.hpp"
-#include "host/study/plan/study_grid.hpp"
+#include "study/plan/study_grid.hpp"
 
 namespace altiplan::host {
 namespace {

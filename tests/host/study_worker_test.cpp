@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/run/study_worker.hpp"
+#include "study/run/study_worker.hpp"
 
 #include <map>
 #include <numeric>
 
 #include "files.hpp"
-#include "host/output/result_json.hpp"
+#include "host/result/result_json.hpp"
 #include "support/instrumented.hpp"
 
 namespace altiplan::host {

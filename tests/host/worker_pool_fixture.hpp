@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "host/study/pool/process_tree.hpp"
-#include "host/study/pool/worker_pool.hpp"
+#include "study/pool/process_tree.hpp"
+#include "study/pool/worker_pool.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "host/config/config.hpp"
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 #include "support/support.hpp"
 
 namespace altiplan {

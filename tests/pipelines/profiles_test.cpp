@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "host/output/scene.hpp"
+#include "host/view/scene.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"
 

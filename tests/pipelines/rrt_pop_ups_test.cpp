@@ -6,7 +6,7 @@
 #include <map>
 
 #include "host/config/config.hpp"
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 #include "reference/pop_ups.hpp"
 #include "support/support.hpp"
 

@@ -8,8 +8,8 @@
 #include <exception>
 #include <iostream>
 
-#include "host/output/result_json.hpp"
-#include "host/study/store/store.hpp"
+#include "host/result/result_json.hpp"
+#include "study/store/store.hpp"
 
 namespace altiplan::host {
 namespace {

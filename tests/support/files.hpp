@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/output/result_json.hpp"
+#include "host/result/result_json.hpp"
 
 namespace altiplan::testing {
 

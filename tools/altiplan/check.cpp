@@ -3,12 +3,12 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "host/exchange/foreign_route.hpp"
+#include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
-#include "host/input/foreign_route.hpp"
-#include "host/output/stored_result.hpp"
-#include "host/run/events.hpp"
-#include "host/run/judge.hpp"
-#include "host/run/mission.hpp"
+#include "host/judge/judge.hpp"
+#include "host/mission/mission.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {
 namespace {

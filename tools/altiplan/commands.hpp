@@ -7,7 +7,7 @@
 
 #include "guarded.hpp"
 #include "host/config/config.hpp"
-#include "host/output/stored_result.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {
 

@@ -5,8 +5,9 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "host/study/compare/compare.hpp"
-#include "host/study/compare/origin.hpp"
+#include "study/compare/compare.hpp"
+#include "study/compare/origin.hpp"
+#include "study/store/load_study.hpp"
 
 namespace altiplan::cli {
 namespace {

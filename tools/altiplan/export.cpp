@@ -4,9 +4,9 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/output/export.hpp"
-#include "host/output/stored_result.hpp"
-#include "host/run/events.hpp"
+#include "host/exchange/export.hpp"
+#include "host/flight/events.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "commands.hpp"
-#include "host/study/report/text.hpp"
 #include "interrupt.hpp"
+#include "study/drawing/text.hpp"
 
 namespace altiplan::cli {
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "host/study/store/merge.hpp"
-#include "host/study/store/place.hpp"
+#include "study/store/merge.hpp"
+#include "study/store/place.hpp"
 
 namespace altiplan::cli {
 namespace {

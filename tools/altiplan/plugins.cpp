@@ -3,9 +3,10 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/config/schema.hpp"
-#include "host/output/describe.hpp"
-#include "host/output/result_json.hpp"
+#include "host/describe/describe.hpp"
+#include "host/describe/schema.hpp"
+#include "host/result/result_json.hpp"
+#include "study/model/study_file.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -53,7 +54,8 @@ int describe(const Arguments& arguments) {
 
 int schema(const Arguments& arguments) {
   host::Registry registry = registry_of(arguments);
-  std::cout << host::file_text(host::any_file_schema(host::choices_of(registry)));
+  std::cout << host::file_text(
+      host::any_file_schema(host::choices_of(registry), host::fields_of<host::StudyFile>()));
   return kDone;
 }
 

@@ -5,12 +5,12 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/output/result_json.hpp"
+#include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
-#include "host/study/compare/find_run.hpp"
-#include "host/study/compare/replay.hpp"
-#include "host/study/plan/study_plan.hpp"
 #include "interrupt.hpp"
+#include "study/compare/replay.hpp"
+#include "study/plan/study_plan.hpp"
+#include "study/store/find_run.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/study/report/report.hpp"
+#include "study/report/report.hpp"
 
 #include <cstdio>
 
 #include "commands.hpp"
-#include "host/study/report/text.hpp"
-#include "host/study/store/arena.hpp"
-#include "host/study/store/place.hpp"
+#include "study/arena/arena.hpp"
+#include "study/drawing/text.hpp"
+#include "study/store/load_study.hpp"
+#include "study/store/place.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/output/result_json.hpp"
+#include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
 #include "interrupt.hpp"
 

@@ -7,11 +7,11 @@
 #include "altiplan/kit/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/study/slurm/command.hpp"
-#include "host/study/slurm/slurm.hpp"
-#include "host/study/store/merge.hpp"
-#include "host/study/store/place.hpp"
-#include "host/study/store/store.hpp"
+#include "study/slurm/command.hpp"
+#include "study/slurm/slurm.hpp"
+#include "study/store/merge.hpp"
+#include "study/store/place.hpp"
+#include "study/store/store.hpp"
 
 namespace altiplan::cli {
 namespace fs = std::filesystem;

@@ -8,12 +8,13 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/study/report/analysis.hpp"
-#include "host/study/run/study_run.hpp"
-#include "host/study/statistics/claims.hpp"
-#include "host/study/store/place.hpp"
-#include "host/study/store/study_data.hpp"
 #include "progress_line.hpp"
+#include "study/claims/claims.hpp"
+#include "study/model/study_data.hpp"
+#include "study/report/analysis.hpp"
+#include "study/run/study_run.hpp"
+#include "study/store/load_study.hpp"
+#include "study/store/place.hpp"
 
 namespace altiplan::cli {
 namespace {

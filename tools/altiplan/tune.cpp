@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "host/study/report/text.hpp"
-#include "host/study/run/run_values.hpp"
-#include "host/tune/tune_report.hpp"
 #include "progress_line.hpp"
+#include "study/drawing/text.hpp"
+#include "study/model/run_values.hpp"
+#include "tune/tune_report.hpp"
 
 namespace altiplan::cli {
 namespace {

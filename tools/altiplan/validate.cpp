@@ -5,9 +5,9 @@
 
 #include "commands.hpp"
 #include "host/config/yaml.hpp"
-#include "host/output/result_json.hpp"
-#include "host/run/mission.hpp"
-#include "host/study/plan/study_plan.hpp"
+#include "host/mission/mission.hpp"
+#include "host/result/result_json.hpp"
+#include "study/plan/study_plan.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/output/picture_svg.hpp"
-#include "host/output/scene.hpp"
-#include "host/output/screenshot.hpp"
-#include "host/output/viewer_page.hpp"
+#include "host/view/picture_svg.hpp"
+#include "host/view/scene.hpp"
+#include "host/view/screenshot.hpp"
+#include "host/view/viewer_page.hpp"
 
 namespace altiplan::cli {
 namespace {

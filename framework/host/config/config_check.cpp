@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <tuple>
 
+#include "altiplan/blame.hpp"
 #include "host/base/input.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/config/shapes.hpp"
 #include "host/config/yaml.hpp"
-#include "host/registry/machine_fault.hpp"
-#include "src/blame.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

@@ -7,7 +7,6 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/mission_file.hpp"
 #include "altiplan/params.hpp"
-#include "host/input/foreign_route.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -15,6 +14,7 @@ namespace {
 
 using kit::AltitudeFrame;
 using kit::MissionItem;
+using kit::MissionPoint;
 
 struct Named {
   Path file;
@@ -84,6 +84,12 @@ class Writer {
   std::string file_;
 };
 
+/// Within 2 cm in the plane, as degrees of seven decimals may be.
+bool same_place(const MissionPoint& a, const MissionPoint& b) {
+  constexpr double kDegrees = 2e-7;
+  return std::abs(a.lon - b.lon) <= kDegrees && std::abs(a.lat - b.lat) <= kDegrees;
+}
+
 bool has_place(const Value& map) {
   return map.kind != Value::Kind::map ||
          std::any_of(map.entries.begin(), map.entries.end(), [](const Value::Entry& entry) {
@@ -121,6 +127,22 @@ void add_points(Value& scenario, const kit::MissionFile& mission, const std::str
   }
 }
 }  // namespace
+
+std::vector<MissionItem> route_items(const kit::MissionFile& mission) {
+  if (!mission.route_problem.empty()) {
+    throw Error(mission.route_problem);
+  }
+  if (mission.items.empty()) {
+    throw Error("there is no route in it" +
+                std::string(mission.zones.empty() ? "" : ": it holds zones alone"));
+  }
+  std::vector<MissionItem> items = mission.items;
+  if (items.size() > 1 && items.back().kind == MissionItem::Kind::land &&
+      same_place(items.back().at, items[items.size() - 2].at)) {
+    items.pop_back();
+  }
+  return items;
+}
 
 std::vector<std::string> add_mission(Value& scenario, std::vector<fs::path>& files) {
   const Value* written = scenario.find("mission");

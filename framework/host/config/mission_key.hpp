@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/kit/mission_file.hpp"
 #include "altiplan/value.hpp"
 
 namespace altiplan::host {
@@ -14,4 +15,8 @@ namespace altiplan::host {
 /// difference, and says where each came from. The file is added to `files`. Returns what of it was
 /// left out, a line each. Throws ConfigError at the key.
 std::vector<std::string> add_mission(Value& scenario, std::vector<std::filesystem::path>& files);
+
+/// The items as the points of a route: without a landing straight below the last of them. Throws
+/// Error where the file has none, or they are no route.
+std::vector<kit::MissionItem> route_items(const kit::MissionFile& mission);
 }  // namespace altiplan::host

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "host/run/judge.hpp"
+#include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 

@@ -10,9 +10,9 @@
 #include <mutex>
 
 #include "altiplan/error.hpp"
+#include "host/base/in_child.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/registry/checksum.hpp"
-#include "host/registry/in_child.hpp"
-#include "host/registry/machine_fault.hpp"
 #include "host/registry/private_copy.hpp"
 #include "host/registry/registry.hpp"
 

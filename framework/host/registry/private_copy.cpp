@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "altiplan/error.hpp"
-#include "host/registry/machine_fault.hpp"
+#include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/registry/install_root.hpp"
-#include "host/registry/machine_fault.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

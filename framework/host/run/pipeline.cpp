@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "altiplan/error.hpp"
-#include "host/run/events.hpp"
+#include "host/flight/events.hpp"
 #include "host/run/pipeline_run.hpp"
 
 namespace altiplan::host {

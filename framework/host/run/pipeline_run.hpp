@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "host/mission/mission.hpp"
 #include "host/run/along_via.hpp"
-#include "host/run/mission.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/run/rollout.hpp"
 #include "host/run/trace_file.hpp"

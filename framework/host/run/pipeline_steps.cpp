@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "host/run/judge.hpp"
+#include "host/judge/judge.hpp"
 #include "host/run/pipeline_run.hpp"
 
 namespace altiplan::host {

@@ -7,7 +7,7 @@
 
 #include "altiplan/measures.hpp"
 #include "host/flight/flight.hpp"
-#include "host/run/judge.hpp"
+#include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 

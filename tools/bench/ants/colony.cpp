@@ -10,7 +10,7 @@
 #include "altiplan/route.hpp"
 #include "host/config/config.hpp"
 #include "host/config/yaml.hpp"
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 
 namespace altiplan::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "altiplan/kit/obstacle_set.hpp"
 #include "altiplan/random.hpp"
-#include "fcl_peer.hpp"
+#include "reference/fcl_peer.hpp"
 #include "rows.hpp"
 
 namespace altiplan::bench {

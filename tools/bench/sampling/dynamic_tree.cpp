@@ -6,7 +6,7 @@
 
 #include "altiplan/check.hpp"
 #include "city.hpp"
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 #include "reference/pop_ups.hpp"
 #include "rows.hpp"
 

@@ -13,7 +13,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/route.hpp"
 #include "host/config/config.hpp"
-#include "host/run/mission.hpp"
+#include "host/mission/mission.hpp"
 
 namespace altiplan::bench {
 namespace {

@@ -6,7 +6,7 @@ export function bytes(text) {
 }
 
 /**
- * A long list as framework/host/output/viewer_page.cpp packs it: thousandths, each as its
+ * A long list as framework/host/view/viewer_page.cpp packs it: thousandths, each as its
  * difference from what those before it foretell; of points (`per` numbers each) the first numbers
  * of all, then the second ones. 0 is null, 1 and a number repeat what came last so often.
  */

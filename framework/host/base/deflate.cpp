@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/base/deflate.hpp"
+
+#include <zlib.h>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+std::string compressed(std::string_view bytes, int level) {
+  uLongf size = compressBound(uLong(bytes.size()));
+  std::string out(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), uLong(bytes.size()), level) != Z_OK) {
+    throw Error("memory is too short to compress");
+  }
+  out.resize(size);
+  return out;
+}
+
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t most) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) {
+    throw Error("memory is too short to decompress");
+  }
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = uInt(bytes.size());
+  std::string out;
+  std::string part(1 << 16, '\0');
+  int code = Z_OK;
+  while (code == Z_OK && out.size() <= most) {
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = uInt(part.size());
+    code = inflate(&stream, Z_NO_FLUSH);
+    out.append(part, 0, part.size() - stream.avail_out);
+  }
+  inflateEnd(&stream);
+  if (out.size() > most) {
+    return std::nullopt;
+  }
+  if (code != Z_STREAM_END) {
+    throw Error("what was compressed is damaged");
+  }
+  return out;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace altiplan::host {
+
+/// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.
+std::string sha256(const std::filesystem::path& file);
+std::string sha256_of(std::string_view bytes);
+}  // namespace altiplan::host

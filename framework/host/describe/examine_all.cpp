@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/error.hpp"
+#include "host/base/in_child.hpp"
+#include "host/config/shapes.hpp"
+#include "host/describe/describe.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+}  // namespace
+
+std::vector<Library> examine_all(Registry& registry) {
+  std::vector<Library> libraries = registry.libraries();
+  for (Library& library : libraries) {
+    if (library.refused.empty()) {
+      try {
+        // Getting one tries all; this process itself is to load none.
+        in_child("",
+                 [&] { registry.get(library.plugins.front().kind, library.plugins.front().name); });
+      } catch (const PluginError& error) {
+        library.refused = error.what();
+      }
+    }
+  }
+  return libraries;
+}
+
+std::string plugins_text(const Registry& registry, const std::vector<Library>& libraries) {
+  std::string text;
+  const auto line = [&](const std::string& kind, const std::string& name,
+                        const std::string& sentence) {
+    const std::string head = kind + " " + name;
+    text += head + std::string(head.size() < 32 ? 32 - head.size() : 1, ' ') + sentence + "\n";
+  };
+  for (const PluginEntry& entry : built_in_environments()) {
+    line(entry.kind, entry.name, std::string(entry.sentence) + " (built in)");
+  }
+  std::string refused;
+  for (const Library& library : libraries) {
+    if (!library.refused.empty()) {
+      refused += "refused: " + library.file.string() + ": " + library.refused + "\n";
+      continue;
+    }
+    for (const Manifest& plugin : library.plugins) {
+      line(plugin.kind, plugin.name, plugin.sentence);
+    }
+  }
+  text += refused;
+  for (const LibraryCopy& copy : registry.copies()) {
+    text += "passed over: " + copy.file.string() + ": the same build as " + copy.used.string() +
+            ", which comes first\n";
+  }
+  for (const std::filesystem::path& folder : registry.folders()) {
+    text += "searched: " + folder.string() +
+            (std::filesystem::is_directory(folder) ? "" : " (no such folder)") + "\n";
+  }
+  return text;
+}
+
+Json plugins_json(const Registry& registry, const std::vector<Library>& libraries) {
+  Json json = {{"folders", Json::array()},
+               {"built_in", Json::array()},
+               {"libraries", Json::array()},
+               {"copies", Json::array()}};
+  for (const std::filesystem::path& folder : registry.folders()) {
+    json["folders"].push_back(folder.string());
+  }
+  for (const PluginEntry& entry : built_in_environments()) {
+    json["built_in"].push_back(
+        {{"kind", entry.kind}, {"name", entry.name}, {"sentence", entry.sentence}});
+  }
+  for (const Library& library : libraries) {
+    Json plugins = Json::array();
+    for (const Manifest& plugin : library.plugins) {
+      plugins.push_back(
+          {{"kind", plugin.kind},
+           {"name", plugin.name},
+           {"sentence", plugin.sentence},
+           {"api", std::to_string(plugin.api_major) + "." + std::to_string(plugin.api_minor)},
+           {"compiler", plugin.compiler},
+           {"optimised", plugin.optimised != 0}});
+    }
+    json["libraries"].push_back(
+        {{"file", library.file.string()},
+         {"build", library.build},
+         {"checksum", library.checksum},
+         {"plugins", std::move(plugins)},
+         {"refused", library.refused.empty() ? Json() : Json(library.refused)}});
+  }
+  for (const LibraryCopy& copy : registry.copies()) {
+    json["copies"].push_back({{"file", copy.file.string()}, {"used", copy.used.string()}});
+  }
+  return json;
+}
+}  // namespace altiplan::host

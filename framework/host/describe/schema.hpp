@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/registry/registry.hpp"
+
+namespace altiplan::host {
+
+/// A name that a file may use, and the parameters under it.
+struct Choice {
+  std::string name;
+  std::vector<FieldSpec> parameters;
+};
+
+/// What may be named for a kind ("environment", "moving", "planner" …).
+using Choices = std::function<std::vector<Choice>(std::string_view kind)>;
+
+/// Built-in shapes and the plugins of the registry's libraries; those of libraries that
+/// `examine_all` refuses are left out. Use it while the registry lives.
+Choices choices_of(Registry& registry);
+
+/// The declaration of a struct's fields.
+template <class T>
+std::vector<FieldSpec> fields_of() {
+  T target;
+  std::vector<FieldSpec> specs;
+  for (BoundField& field : bind(target, nullptr).fields) {
+    specs.push_back(std::move(field.spec));
+  }
+  return specs;
+}
+
+/// JSON Schemas (draft-07) of the files that users write; `study` is the declaration of a study's.
+nlohmann::ordered_json scenario_schema(const Choices& choices);
+nlohmann::ordered_json pipeline_schema(const Choices& choices);
+nlohmann::ordered_json study_schema(const std::vector<FieldSpec>& study);
+/// One schema for all three: a file is told by its keys.
+nlohmann::ordered_json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study);
+/// Of a map with these fields; the parameters of plugins that it may name stand in `definitions`.
+nlohmann::ordered_json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices);
+}  // namespace altiplan::host

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/judge/judge.hpp"
+
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr const char* kLayerRule = "layer";
+
+/// Samples of the route at which a layer says two things; law 3 of Environment.
+void cross_examine(const Layer& layer, const Route& route, std::vector<Violation>& found) {
+  constexpr int kSamples = 8;  // a leg; this looks for lies, it does not judge the route
+  const Environment& environment = *layer.environment;
+  const double slack = environment.slack();
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    for (int k = 0; k < kSamples; ++k) {
+      const Vec3 p = route[i] + (route[i + 1] - route[i]) * (double(k) / kSamples);
+      const double clearance = environment.clearance(p);
+      const bool inside = environment.blocked(p, p, 0);
+      const bool solid = clearance < -slack - 1e-3;
+      const bool open = clearance > slack + 1e-3;
+      if (std::isnan(clearance) || (inside && open) || (!inside && solid)) {
+        found.push_back({kLayerRule, i, clearance, 0,
+                         "the layer '" + layer.id + "' (" + layer.plugin +
+                             ") contradicts itself: its clearance is " + std::to_string(clearance) +
+                             " m where its blocked says " + (inside ? "inside" : "free")});
+        return;
+      }
+    }
+  }
+}
+}  // namespace
+
+std::vector<std::size_t> via_indices(const Route& route, const std::vector<Goal>& via) {
+  std::vector<std::size_t> indices;
+  std::size_t from = 0;
+  for (const Goal& point : via) {
+    while (from < route.size() && !point.reached_at(route[from])) {
+      ++from;
+    }
+    if (from == route.size()) {
+      break;
+    }
+    indices.push_back(from);
+  }
+  return indices;
+}
+
+CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via) {
+  CheckResult result = check(route, request);
+  const std::size_t passed = via_indices(route, via).size();
+  if (passed < via.size()) {
+    result.violations.push_back({"via", 0, double(passed), double(via.size()),
+                                 "the route does not pass via point " + std::to_string(passed)});
+  }
+  for (const Layer& layer : request.world->layers()) {
+    try {
+      cross_examine(layer, route, result.violations);
+    } catch (const std::exception& error) {
+      throw PluginError("the layer '" + layer.id + "' (" + layer.plugin +
+                        ") threw: " + error.what());
+    }
+  }
+  return result;
+}
+
+std::string verdict_sentence(const CheckResult& result, const Violation& shown) {
+  const std::size_t count = result.violations.size();
+  return "the judge found " + std::to_string(count) + " violation" +
+         (count == 1 ? "" : "s; the first") + ", at waypoint " + std::to_string(shown.at) + " (" +
+         shown.constraint + "): " + shown.message;
+}
+
+const Violation* blamed_layer(const CheckResult& result) {
+  const auto found = std::find_if(result.violations.begin(), result.violations.end(),
+                                  [](const Violation& v) { return v.constraint == kLayerRule; });
+  return found == result.violations.end() ? nullptr : &*found;
+}
+}  // namespace altiplan::host

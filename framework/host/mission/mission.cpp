@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/mission/mission.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <tuple>
+
+#include "altiplan/blame.hpp"
+#include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
+#include "altiplan/kit/iso_time.hpp"
+#include "host/config/shapes.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Where a key of the scenario stands.
+Location place(const Value& tree, std::string_view key) {
+  for (const Value::Entry& entry : tree.entries) {
+    if (entry.key == key) {
+      return entry.where;
+    }
+  }
+  return tree.where;
+}
+
+/// An optional corner of the volume, completed from the layers' box.
+Box volume_of(const Config& config, const World& truth, const std::optional<double>& level) {
+  const VolumeEntry& entry = config.scenario.volume;
+  Box box = truth.bounds();
+  if (entry.min_m) {
+    box.min = *entry.min_m;
+  }
+  if (entry.max_m) {
+    box.max = *entry.max_m;
+  }
+  if (level) {
+    box.min.z() = *level;
+    box.max.z() = *level;
+  }
+  static constexpr const char* kAxes[] = {"x", "y", "z"};
+  const Location where = place(config.scenario_tree, "volume");
+  std::vector<Problem> problems;
+  for (const auto& [key, side, corner] : {std::tuple("volume.min_m", "below", box.min),
+                                          std::tuple("volume.max_m", "above", box.max)}) {
+    std::string axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(corner[axis])) {
+        axes += (axes.empty() ? "" : ", ") + std::string(kAxes[axis]);
+      }
+    }
+    if (!axes.empty()) {
+      problems.push_back({where, key,
+                          std::string("no layer bounds the volume from ") + side + " on " + axes +
+                              ": give " + key});
+    }
+  }
+  if (!problems.empty()) {
+    throw ConfigError(std::move(problems));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] > box.max[axis]) {
+      throw ConfigError(where, "volume",
+                        std::string("the volume is empty on the ") + kAxes[axis] + " axis");
+    }
+  }
+  return box;
+}
+
+Vehicle vehicle_of(const VehicleEntry& entry) {
+  Vehicle vehicle;
+  vehicle.radius_m = entry.radius_m;
+  vehicle.speed_mps = entry.speed_mps;
+  vehicle.sensing_m = entry.sensing_m.value_or(kInfinity);
+  vehicle.turns_on_the_spot = entry.turns_on_the_spot;
+  for (const SpeedNearEntry& near : entry.speed_near) {
+    vehicle.speed_near.push_back({near.within_m, near.speed_mps});
+  }
+  return vehicle;
+}
+
+std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, const Box& volume,
+                                      bool level) {
+  std::vector<MovingObstacle> all;
+  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
+    const MovingEntry& entry = config.scenario.moving[i];
+    const Value& tree = config.scenario_tree.find("moving")->items[i];
+    if (entry.shape == "random") {
+      RandomMoving random;
+      bind(random, &entry.parameters);
+      RandomStream stream = random.seed ? RandomStream(std::uint64_t(*random.seed)) : site.random;
+      stream = stream.sub("moving:" + entry.id);
+      for (int n = 0; n < random.count; ++n) {
+        RandomStream draw = stream.sub("sphere", std::uint64_t(n));
+        const Vec3 at = draw.in(volume);
+        const double heading = draw.uniform(0, 2 * kPi);
+        const double climb = level ? 0 : draw.uniform(-0.1, 0.1);
+        const Vec3 direction(std::cos(heading) * std::cos(climb),
+                             std::sin(heading) * std::cos(climb), std::sin(climb));
+        all.push_back({entry.id + "_" + std::to_string(n + 1), Sphere{at, random.radius_m},
+                       direction * random.speed_mps, 0, entry.known});
+      }
+      continue;
+    }
+    try {
+      const MovingShape made = make_moving(entry.shape, entry.parameters, site);
+      all.push_back({entry.id, made.shape, made.velocity, 0, entry.known});
+    } catch (const ConfigError&) {
+      throw;
+    } catch (const Error& error) {
+      throw ConfigError(place(tree, entry.shape), "moving." + std::to_string(i), error.what());
+    }
+  }
+  return all;
+}
+
+using Calling = std::function<void(const std::string&)>;
+
+std::vector<NamedConstraint> constraints_of(const Config& config, const Calling& calling) {
+  std::vector<NamedConstraint> all;
+  for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
+    for (const ConstraintEntry& entry : *entries) {
+      const std::string who = "the constraint '" + entry.plugin + "'";
+      calling(who + ": its constructor");
+      try {
+        all.push_back(
+            {entry.plugin,
+             plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
+      } catch (const PluginError& error) {
+        throw PluginError(who + " " + error.what());
+      }
+      if (all.back().constraint == nullptr) {
+        throw PluginError(who + " made no object");
+      }
+    }
+  }
+  return all;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %%", share * 100);
+  return text;
+}
+
+/// A point that needs something that is not there yet is not known yet.
+std::optional<Vec3> maybe_point(const Point& point, const Site& site,
+                                const std::optional<double>& level) {
+  try {
+    return resolve_point(point, site, level, {}, "");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+}  // namespace
+
+Vec3 resolve_point(const Point& point, const Site& site, const std::optional<double>& level_m,
+                   const Location& where, const std::string& key) {
+  try {
+    Vec3 p = site.resolve(point);
+    if (level_m && !point.has_height && !point.above_ground_m) {
+      p.z() = *level_m;
+    }
+    return p;
+  } catch (const Error& error) {
+    throw ConfigError(where, key, error.what());
+  }
+}
+
+namespace {
+using namespace std::string_literals;
+
+/// What every use of a layer rests on.
+void expect_sound(const Layer& layer) {
+  if (layer.environment == nullptr) {
+    throw PluginError("made no object");
+  }
+  const auto [slack, box] =
+      blamed([] { return "when asked for its bounds, ground, cells, threats or notes"s; },
+             [&] {
+               const Environment& asked = *layer.environment;
+               // What throws at all does it here, and not to those who ask later.
+               (void)(asked.has_ground(), asked.native_grid(), asked.frame(), asked.threats(),
+                      asked.notes());
+               return std::pair(asked.slack(), asked.bounds());
+             });
+  if (!(slack >= 0 && std::isfinite(slack))) {
+    throw PluginError("broke a law of its interface: its slack is " + std::to_string(slack) +
+                      ", expected a length of at least 0");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool crossed = std::isfinite(box.min[axis]) && box.max[axis] < box.min[axis];
+    if (crossed || std::isnan(box.min[axis]) || std::isnan(box.max[axis])) {
+      throw PluginError("broke a law of its interface: its bounds reach from " +
+                        std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]) +
+                        " on an axis");
+    }
+  }
+}
+}  // namespace
+
+Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,
+                  const std::string& id, bool known, Site site, const std::string& key) {
+  site.random = RandomStream(std::uint64_t(config.seed)).sub("layer:" + id);
+  const PluginEntry& entry = plugin(*config.registry, "environment", plugin_name);
+  try {
+    Layer layer{id, plugin_name, entry.environment(&parameters, site), known};
+    expect_sound(layer);
+    return layer;
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const PluginError& error) {
+    throw PluginError("the environment '" + plugin_name + "' (" + key + ") " + error.what());
+  } catch (const ParameterError& error) {
+    throw ConfigError(place(parameters, error.key()), key + "." + error.key(), error.what());
+  } catch (const Error& error) {
+    throw ConfigError(parameters.where, key, error.what());
+  }
+}
+
+namespace {
+/// The layers in their order, each built on those before it.
+void build_layers(const Config& config, Mission& mission, const Calling& calling) {
+  const ScenarioFile& file = config.scenario;
+  Site& site = mission.site;
+  World& truth = mission.truth;
+  const std::optional<double>& level = file.level_flight_at_m;
+  for (std::size_t i = 0; i < file.environment.size(); ++i) {
+    const LayerEntry& entry = file.environment[i];
+    site.frame = truth.frame();
+    site.before = &truth;
+    site.start = maybe_point(file.start.point, site, level);
+    site.goal = maybe_point(file.goal.point, site, level);
+    const std::string key = "environment." + std::to_string(i) + "." + entry.plugin;
+    calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
+    Layer layer =
+        build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site, key);
+    for (const std::string& note : layer.environment->notes()) {
+      mission.notes.push_back(entry.id + ": " + note);
+    }
+    const auto frame = layer.environment->frame();
+    truth = truth.with(std::move(layer));
+    if (frame && !truth.frame().has_position()) {
+      truth = truth.with_frame(*frame);
+    }
+  }
+}
+
+/// The frame's error, told and, where it matters, warned of.
+void note_scale(Mission& mission) {
+  const Frame& frame = mission.truth.frame();
+  const double error = frame.scale_error(mission.site.volume);
+  if (error > 0) {
+    mission.notes.push_back("frame: " + frame.crs() + ", greatest scale error " + percent(error));
+  }
+  if (error > 0.005) {
+    mission.warnings.push_back(
+        "lengths in the local frame are off by up to " + percent(error) +
+        (mission.truth.has_ground()
+             ? "; a projected system mends it: frame: {crs: …}"
+             : "; an origin near the flight mends it: frame: {origin_lonlat: [lon, lat]}"));
+  }
+}
+
+/// A layer that touches nothing of the volume protects from nothing: mostly a slip, such as
+/// latitude and longitude swapped in its file.
+void warn_of_distant_layers(Mission& mission) {
+  for (const Layer& layer : mission.truth.layers()) {
+    const Box box = layer.environment->bounds();
+    if (!box.is_empty() && box.intersected(mission.site.volume).is_empty()) {
+      mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin +
+                                 ") touches nothing of the volume: is it where it should be?");
+    }
+  }
+}
+
+/// What may be known at take-off.
+World known_part(const World& truth) {
+  World known = truth;
+  for (const Layer& layer : truth.layers()) {
+    if (!layer.known) {
+      known = known.without(layer.id);
+    }
+  }
+  std::vector<MovingObstacle> moving;
+  for (const MovingObstacle& obstacle : truth.moving()) {
+    if (obstacle.known) {
+      moving.push_back(obstacle);
+    }
+  }
+  return known.with_moving(std::move(moving));
+}
+}  // namespace
+
+Mission build_mission(const Config& config, int threads, const Calling& told) {
+  const Calling calling = told ? told : [](const std::string&) {};
+  const auto began = std::chrono::steady_clock::now();
+  const ScenarioFile& file = config.scenario;
+  const Value& tree = config.scenario_tree;
+  Mission mission;
+  mission.notes = config.notes;
+  Site& site = mission.site;
+  site.vehicle = vehicle_of(file.vehicle);
+  site.frame_crs = file.frame.crs;
+  if (file.frame.origin_lonlat) {
+    const auto [lon, lat] = *file.frame.origin_lonlat;
+    mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
+  }
+  site.random = RandomStream(std::uint64_t(config.seed));
+  if (file.start_time) {
+    site.start_time_s = kit::parse_iso_time(*file.start_time).value();  // checked on reading
+    site.has_start_time = true;
+  }
+  if (file.volume.min_m) {
+    site.volume.min = *file.volume.min_m;
+  }
+  if (file.volume.max_m) {
+    site.volume.max = *file.volume.max_m;
+  }
+  build_layers(config, mission, calling);
+  World& truth = mission.truth;
+  if (!file.frame.crs.empty() && !truth.has_ground()) {
+    throw ConfigError(place(tree, "frame"), "frame.crs",
+                      "only an elevation model (terrain) can be brought into a coordinate system, "
+                      "and the world has none: give origin_lonlat, a place near the flight");
+  }
+  const std::optional<double>& level = file.level_flight_at_m;
+  site.frame = truth.frame();
+  site.before = &truth;
+  site.volume = volume_of(config, truth, level);
+  note_scale(mission);
+  warn_of_distant_layers(mission);
+  truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
+
+  Request& request = mission.request;
+  request.vehicle = site.vehicle;
+  request.volume = site.volume;
+  request.level_m = level;
+  request.threads = threads;
+  request.random = site.random;
+  request.start.position =
+      resolve_point(file.start.point, site, level, place(tree, "start"), "start");
+  request.goal = {resolve_point(file.goal.point, site, level, place(tree, "goal"), "goal"),
+                  file.goal.tolerance_m};
+  site.start = request.start.position;
+  site.goal = request.goal.position;
+  for (std::size_t i = 0; i < file.via.size(); ++i) {
+    const std::string key = "via." + std::to_string(i);
+    mission.via.push_back(
+        {resolve_point(file.via[i].point, site, level, tree.find("via")->items[i].where, key),
+         file.via[i].tolerance_m});
+  }
+  mission.known = known_part(truth);
+  request.world = std::make_shared<const World>(mission.known);
+  const std::vector<NamedConstraint> constraints = constraints_of(config, calling);
+  mission.track_request = request;
+  apply_constraints(request, constraints, AppliesTo::route);
+  apply_constraints(mission.track_request, constraints, AppliesTo::track);
+  calling("");
+  site.before = nullptr;
+  mission.setup_time_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return mission;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/result/result_json.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "host/base/sha256.hpp"
+
+namespace altiplan::host {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+Json counters_json(const Counters& counters) {
+  Json json = Json::object();
+  for (const Counter& counter : counters) {
+    json[counter.name] = counter.value;
+  }
+  return json;
+}
+
+std::int64_t expanded(const StepResult& step) {
+  for (const Counter& counter : step.counters) {
+    if (counter.name == "expanded") {
+      return counter.value;
+    }
+  }
+  return 0;
+}
+
+Json step_json(const StepResult& step) {
+  Json json;
+  json["id"] = step.id;
+  json["verb"] = name(step.verb);
+  json["plugin"] = step.plugin;
+  json["instead_of"] = step.instead_of ? Json(*step.instead_of) : Json(nullptr);
+  json["stands"] = step.stands;
+  json["status"] = name(step.status);
+  json["message"] = step.message;
+  json["proved"] = step.proved;
+  json["budget_hit"] = step.budget_hit;
+  json["time_s"] = step.time_s;
+  json["setup_time_s"] = step.setup_time_s;
+  json["counters"] = counters_json(step.counters);
+  json["route"] = to_json(step.route);
+  json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
+  json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
+  return json;
+}
+
+/// Metrics of the whole run: of the standing route, and of the planning that led to it.
+Json run_metrics(const RunResult& result) {
+  Json json = to_json(Measures{});
+  if (result.standing) {
+    json = to_json(*result.steps[*result.standing].measures);
+  } else {
+    for (auto& [key, value] : json.items()) {
+      value = nullptr;
+    }
+  }
+  double plan_time = 0;
+  double smooth_time = 0;
+  std::int64_t nodes = 0;
+  for (const StepResult& step : result.steps) {
+    if (step.verb == Verb::plan) {
+      plan_time += step.time_s;
+      nodes += expanded(step);
+    } else if (step.verb == Verb::smooth) {
+      smooth_time += step.time_s;
+    }
+  }
+  json["plan_time_s"] = plan_time;
+  json["smooth_time_s"] = smooth_time;
+  json["expanded"] = nodes;
+  return json;
+}
+
+Json flight_json(const FlightResult& flight) {
+  Json json;
+  json["status"] = name(flight.status);
+  json["message"] = flight.message;
+  json["metrics"] = to_json(flight.measures);
+  json["check"] = to_json(flight.check);
+  json["counters"] = counters_json(flight.counters);
+  json["collisions"] = flight.collisions;
+  json["min_separation_m"] = number(flight.min_separation_m);
+  json["reached"] = flight.reached;
+  json["handovers"] = Json::array();
+  for (const Handover& handover : flight.handovers) {
+    json["handovers"].push_back(
+        {{"at_s", handover.at_s}, {"to", handover.to}, {"why", handover.why}});
+  }
+  json["replans"] = Json::array();
+  for (const Replan& replan : flight.replans) {
+    json["replans"].push_back({{"at_s", replan.at_s},
+                               {"step", replan.step},
+                               {"status", name(replan.status)},
+                               {"message", replan.message},
+                               {"time_s", replan.time_s},
+                               {"counters", counters_json(replan.counters)}});
+  }
+  json["track"] = Json::array();
+  for (const auto& [t, p] : flight.track) {
+    json["track"].push_back({t, p.x(), p.y(), p.z()});
+  }
+  return json;
+}
+
+Json lonlat_json(const Route& route, const Frame& frame) {
+  if (!frame.has_position()) {
+    return nullptr;
+  }
+  Json json = Json::array();
+  for (const Vec3& p : route) {
+    const auto at = frame.to_lonlat(p.x(), p.y());
+    json.push_back({at[0], at[1], p.z()});
+  }
+  return json;
+}
+
+Json overrides_json(const Config& config) {
+  Json json = Json::object();
+  if (config.overrides.scenario) {
+    json["scenario"] = config.scenario_path.string();
+  }
+  if (config.overrides.seed) {
+    json["seed"] = *config.overrides.seed;
+  }
+  if (!config.overrides.set.empty()) {
+    Json set = Json::object();
+    for (const std::string& assignment : config.overrides.set) {
+      const std::size_t equals = assignment.find('=');
+      set[assignment.substr(0, equals)] = assignment.substr(equals + 1);
+    }
+    json["set"] = std::move(set);
+  }
+  return json;
+}
+}  // namespace
+
+Json plugins_json(const Config& config) {
+  std::set<std::pair<std::string, std::string>> used;
+  const auto use = [&](const char* kind, const std::string& plugin_name) {
+    used.emplace(kind, plugin_name);
+  };
+  for (const LayerEntry& layer : config.scenario.environment) {
+    use("environment", layer.plugin);
+  }
+  for (const EventEntry& event : config.scenario.events) {
+    if (event.add) {
+      use("environment", event.add->plugin);
+    }
+  }
+  for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
+    for (const ConstraintEntry& entry : *entries) {
+      use("constraint", entry.plugin);
+    }
+  }
+  const auto use_step = [&](const StepEntry& step) {
+    for (const char* kind : {"planner", "local_planner", "smoother"}) {
+      use(kind, step.plugin);
+    }
+    for (const SmootherEntry& smoother : step.fly.smooth) {
+      use("smoother", smoother.plugin);
+    }
+  };
+  for (const StepEntry& step : config.steps) {
+    use_step(step);
+    for (const StepEntry& other : step.otherwise) {
+      use_step(other);
+    }
+  }
+  Json json = Json::array();
+  for (const auto& [kind, plugin_name] : used) {
+    if (const Library* library = config.registry->offering(kind, plugin_name)) {
+      json.push_back({{"kind", kind},
+                      {"name", plugin_name},
+                      {"build", library->build},
+                      {"checksum", library->checksum}});
+    }
+  }
+  return json;
+}
+
+Json to_json(const Route& route) {
+  Json json = Json::array();
+  for (const Vec3& p : route) {
+    json.push_back({number(p.x()), number(p.y()), number(p.z())});
+  }
+  return json;
+}
+
+Json to_json(const CheckResult& check) {
+  Json violations = Json::array();
+  for (const Violation& violation : check.violations) {
+    violations.push_back({{"constraint", violation.constraint},
+                          {"at", violation.at},
+                          {"value", number(violation.value)},
+                          {"limit", number(violation.limit)},
+                          {"message", violation.message}});
+  }
+  return {{"ok", check.ok()}, {"violations", std::move(violations)}};
+}
+
+Json to_json(const Measures& m) {
+  return {{"length_m", number(m.length_m)},
+          {"waypoints", m.waypoints},
+          {"max_turn_deg", number(m.max_turn_deg)},
+          {"max_climb_deg", number(m.max_climb_deg)},
+          {"min_radius_m", number(m.min_radius_m)},
+          {"min_clearance_m", number(m.min_clearance_m)},
+          {"min_ground_clearance_m", number(m.min_ground_clearance_m)},
+          {"smoothness_rad", number(m.smoothness_rad)},
+          {"duration_s", number(m.duration_s)}};
+}
+
+Json result_json(const Config& config, const RunResult& result) {
+  Json json;
+  json["altiplan"] = kFileFormat;
+  json["version"] = ALTIPLAN_VERSION;
+  json["pipeline"] = config.pipeline_path.string();
+  json["scenario"] = config.scenario_path.string();
+  json["files"] = Json::array();
+  for (const auto& file : config.files) {
+    json["files"].push_back({{"path", file.string()}, {"sha256", sha256(file)}});
+  }
+  json["plugins"] = plugins_json(config);
+  json["overrides"] = overrides_json(config);
+  json["seed"] = config.seed;
+  json["status"] = name(result.status);
+  json["message"] = result.message;
+  json["budget_hit"] = result.budget_hit;
+  json["setup_time_s"] = result.setup_time_s;
+  json["steps"] = Json::array();
+  for (const StepResult& step : result.steps) {
+    json["steps"].push_back(step_json(step));
+  }
+  const StepResult* standing = result.standing ? &result.steps[*result.standing] : nullptr;
+  json["route"] = standing ? to_json(standing->route) : Json(nullptr);
+  json["route_lonlat"] = standing ? lonlat_json(standing->route, result.frame) : Json(nullptr);
+  json["metrics"] = run_metrics(result);
+  json["check"] = standing ? to_json(*standing->check) : Json(nullptr);
+  json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
+  json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);
+  return json;
+}
+
+std::string file_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+}  // namespace altiplan::host

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/config/config.hpp"
+#include "host/run/run_result.hpp"
+
+namespace altiplan::host {
+
+using Json = nlohmann::ordered_json;
+
+/// result.json, format 1 (docs/result.md). Wall times stand only in keys that end in time_s.
+Json result_json(const Config& config, const RunResult& result);
+
+/// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
+Json plugins_json(const Config& config);
+
+Json to_json(const Route& route);
+Json to_json(const CheckResult& check);
+Json to_json(const Measures& measures);
+
+/// As files and stdout hold it, indented, with a last line end. What plugins say, damaged ones
+/// above all, need not be UTF-8: U+FFFD stands for what is not.
+std::string file_text(const Json& json);
+
+/// Writes the whole file or, where that fails, throws Error and leaves what was there: how, and
+/// what is refused, is told in host/base/output_file.hpp.
+void write_file(const std::filesystem::path& file, const std::string& text);
+}  // namespace altiplan::host

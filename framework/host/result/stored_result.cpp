@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/result/stored_result.hpp"
+
+#include <algorithm>
+
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/sha256.hpp"
+
+namespace altiplan::host {
+namespace {
+
+Track track_of(const Json& json, const std::string& file) {
+  Track track;
+  if (!json.is_array()) {
+    throw Error(file + ": expected the flight's track as a list of [t, x, y, z]");
+  }
+  for (const Json& point : json) {
+    track.emplace_back(
+        point.at(0).get<double>(),
+        Vec3(point.at(1).get<double>(), point.at(2).get<double>(), point.at(3).get<double>()));
+    expect_reachable({track.back().second}, file);
+    if (track.size() > 1 && track.back().first < track[track.size() - 2].first) {
+      throw Error(file + ": point " + std::to_string(track.size() - 1) +
+                  " of the flight's track is earlier than the one before it");
+    }
+  }
+  if (track.empty()) {
+    throw Error(file + ": the flight has no track");
+  }
+  return track;
+}
+
+/// The overrides with which a stored run was made.
+Overrides stored_overrides(const Json& json, const std::string& file, Overrides overrides) {
+  overrides.scenario = json.at("scenario").get<std::string>();
+  if (json.at("seed").is_number_float()) {
+    throw Error(file + ": seed: expected a whole number, found " + json.at("seed").dump());
+  }
+  overrides.seed = json.at("seed").get<std::int64_t>();
+  const Json& stored = json.at("overrides");
+  if (stored.contains("set")) {
+    for (const auto& [key, value] : stored.at("set").items()) {
+      overrides.set.push_back(key + "=" + value.get<std::string>());
+    }
+  }
+  return overrides;
+}
+}  // namespace
+
+Json read_json(const std::string& file, const std::string& expected) {
+  kit::InputFile in(file);
+  try {
+    return Json::parse(in);
+  } catch (const Json::parse_error& error) {
+    in.clear();
+    in.seekg(0);
+    std::string before(error.byte > 0 ? error.byte - 1 : 0, '\0');
+    in.read(before.data(), std::streamsize(before.size()));
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    throw Error(file + ":" + std::to_string(line) + ": this is not JSON: expected " + expected);
+  } catch (const Json::out_of_range&) {
+    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
+  }
+}
+
+void expect_reachable(const Route& route, const std::string& file) {
+  constexpr double kFarthest = 1e8;  // metres
+  for (std::size_t n = 0; n < route.size(); ++n) {
+    if (!(route[n].cwiseAbs().maxCoeff() <= kFarthest)) {
+      throw Error(file + ": point " + std::to_string(n) +
+                  " lies beyond 1e8 m, farther away than anything flies");
+    }
+  }
+}
+
+Route route_of(const Json& json, const std::string& file) {
+  Route route;
+  try {
+    for (const Json& p : json.get_ref<const Json::array_t&>()) {  // or it throws
+      if (p.is_array() && p.size() != 3) {
+        throw Error(file + ": expected points of three numbers, found one of " +
+                    std::to_string(p.size()));
+      }
+      route.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
+    }
+  } catch (const Json::exception&) {
+    throw Error(file + ": expected a route as a list of [x, y, z] in metres");
+  }
+  if (route.empty()) {
+    throw Error(file + ": there is no route in it");
+  }
+  expect_reachable(route, file);
+  return route;
+}
+
+StoredResult read_result(const std::string& file, const Overrides& overrides) {
+  return stored_result(file, read_json(file, "a result of altiplan run"), overrides);
+}
+
+StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides) {
+  StoredResult stored{file, std::move(content), {}, {}, {}, {}, {}};
+  const Json& json = stored.json;
+  try {
+    if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {
+      throw Error(file + ": expected a result of format 1");
+    }
+    stored.overrides = stored_overrides(json, file, overrides);
+    stored.pipeline = json.at("pipeline").get<std::string>();
+    for (const Json& used : json.at("files")) {
+      const std::string path = used.at("path").get<std::string>();
+      if (sha256(path) != used.at("sha256")) {
+        stored.changed.push_back(path);
+      }
+    }
+    if (!json.at("route").is_null()) {
+      stored.route = route_of(json.at("route"), file);
+    }
+    if (!json.at("flight").is_null()) {
+      stored.track = track_of(json.at("flight").at("track"), file);
+    }
+  } catch (const Json::exception& error) {
+    const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
+    throw Error(file + ": expected a result of altiplan run: " + why.substr(why.find("] ") + 2));
+  }
+  return stored;
+}
+}  // namespace altiplan::host

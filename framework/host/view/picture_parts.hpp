@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/base/base64.hpp"
+#include "host/result/result_json.hpp"
+
+// The parts of the picture from above, a file each. Lengths are pixels from the top left.
+
+namespace altiplan::host::picture {
+
+inline constexpr std::string_view kInk = "#1a2027";
+inline constexpr std::string_view kFaint = "#5b6672";
+inline constexpr std::string_view kPaper = "#ffffff";
+
+/// Okabe and Ito's palette, told apart with every kind of colour vision.
+inline std::string_view route_color(std::size_t result) {
+  constexpr std::array<std::string_view, 6> kColors{"#0072b2", "#e69f00", "#009e73",
+                                                    "#56b4e9", "#f0e442", "#000000"};
+  return kColors[result % kColors.size()];
+}
+inline std::string_view role_color(std::string_view role) {
+  return role == "keep_out"  ? "#cc79a7"
+         : role == "keep_in" ? "#009e73"
+         : role == "threat"  ? "#d55e00"
+                             : "#2f363d";
+}
+
+/// Unknown space would hide all else, and is not drawn.
+inline bool is_drawn(const Json& thing) { return thing.at("role") != "unknown"; }
+
+/// Text and attributes as XML holds them; control characters, which it cannot hold, left out.
+std::string escaped(std::string_view text);
+/// Tenths of a pixel.
+std::string pixels(double value);
+
+struct Area {
+  double left = 0;
+  double top = 0;
+  double width = 0;
+  double height = 0;
+  double right() const { return left + width; }
+  double bottom() const { return top + height; }
+};
+
+enum class Align { start, middle, end };
+std::string text_at(double x, double y, std::string_view text, std::string_view color = kInk,
+                    int size = 14, Align align = Align::start, bool bold = false);
+std::string line(double x0, double y0, double x1, double y1, std::string_view color,
+                 double width = 1);
+std::string rectangle(const Area& area, std::string_view more);
+
+/// The round number (1, 2 or 5 times a power of ten) for about that many steps to `length`.
+double round_step(double length, double steps);
+/// With a comma each three digits: "12,500".
+std::string grouped(double value);
+
+/// Numbers that a scene holds as base64.
+template <class Value>
+std::vector<Value> numbers(const Json& base64_text) {
+  const std::vector<std::byte> bytes = from_base64(base64_text.get_ref<const std::string&>());
+  std::vector<Value> values(bytes.size() / sizeof(Value));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Value));
+  return values;
+}
+
+/// The scene's box from above, fitted into an area.
+class Map {
+ public:
+  Map(const Json& box, const Area& room);
+  double x(double east) const { return area_.left + (east - west_) * scale_; }
+  double y(double north) const { return area_.bottom() - (north - south_) * scale_; }
+  double per_metre() const { return scale_; }
+  const Area& area() const { return area_; }
+
+ private:
+  double west_;
+  double south_;
+  double scale_;
+  Area area_;
+};
+
+/// Colour of a height, `share` of the way from the lowest to the highest.
+std::array<std::uint8_t, 3> height_color(double share);
+/// The lowest and the highest ground; none where the scene has no ground.
+std::optional<std::array<double, 2>> heights_of(const Json& scene);
+
+std::string relief(const Json& scene, const Map& map);
+std::string solids(const Json& scene, const Map& map);
+std::string routes(const Json& scene, const Map& map);
+std::string scale_and_north(const Map& map);
+std::string legend(const Json& scene, const Area& area);
+std::string profiles(const Json& scene, const Area& area);
+}  // namespace altiplan::host::picture

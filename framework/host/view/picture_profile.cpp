@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/geometry.hpp"
+#include "host/view/picture_parts.hpp"
+
+namespace altiplan::host::picture {
+namespace {
+
+/// Distance along the route to the right, a height or a distance upward.
+class Chart {
+ public:
+  Chart(const Json& results, const Area& area, std::initializer_list<const char*> keys)
+      : area_(area) {
+    for (const Json& result : results) {
+      const Json& profile = result.at("profile");
+      if (profile.is_null()) {
+        continue;
+      }
+      longest_ = std::max(longest_, profile.at("s").back().get<double>());
+      for (const char* key : keys) {
+        for (const Json& z : profile.at(key)) {
+          if (z.is_number()) {
+            low_ = std::min(low_, z.get<double>());
+            high_ = std::max(high_, z.get<double>());
+          }
+        }
+      }
+    }
+    const double margin = std::max(1.0, (high_ - low_) * 0.06);
+    low_ -= margin;
+    high_ += margin;
+    longest_ = std::max(longest_, 1e-3);
+  }
+
+  double x(double s) const { return area_.left + s / longest_ * area_.width; }
+  double y(double z) const { return area_.bottom() - (z - low_) / (high_ - low_) * area_.height; }
+
+  std::string axes() const {
+    std::string svg;
+    const double dz = round_step(high_ - low_, 4);
+    for (double z = std::ceil(low_ / dz) * dz + 0.0; z <= high_; z += dz) {
+      svg += line(area_.left, y(z), area_.right(), y(z), "#d8dde2");
+      svg += text_at(area_.left - 8, y(z) + 4, grouped(z), kFaint, 12, Align::end);
+    }
+    const double ds = round_step(longest_, 10);
+    for (double s = 0; s <= longest_ * (1 + 1e-9); s += ds) {
+      svg += line(x(s), area_.bottom(), x(s), area_.bottom() + 5, kFaint);
+      svg += text_at(x(s), area_.bottom() + 19, grouped(s), kFaint, 12, Align::middle);
+    }
+    return svg + line(area_.left, area_.bottom(), area_.right(), area_.bottom(), kFaint);
+  }
+
+  /// A curve; where the profile has no number it is interrupted.
+  std::string curve(const Json& profile, const char* key) const {
+    std::string path;
+    bool pen_down = false;
+    for (std::size_t i = 0; i < profile.at("s").size(); ++i) {
+      const Json& z = profile.at(key)[i];
+      if (z.is_number()) {
+        path += (pen_down ? "L" : "M") + pixels(x(profile.at("s")[i].get<double>())) + " " +
+                pixels(y(z.get<double>()));
+      }
+      pen_down = z.is_number();
+    }
+    return path;
+  }
+
+ private:
+  Area area_;
+  double longest_ = 0;
+  double low_ = kInfinity;
+  double high_ = -kInfinity;
+};
+
+/// The frame of a chart in an area.
+Area within(const Area& area) {
+  return {area.left + 56, area.top + 22, area.width - 64, area.height - 46};
+}
+
+std::string heights(const Json& scene, const Area& area) {
+  const Json& results = scene.at("results");
+  const Chart chart(results, within(area), {"altitude", "ground"});
+  std::string caption = "Height above the sea over the distance flown, m";
+  if (!scene.at("ground").is_null()) {
+    caption += results.size() > 1 ? "; ground: grey below the first route, thin below others"
+                                  : "; the ground below";
+  }
+  std::string svg = text_at(area.left, area.top + 8, caption, kFaint, 12) + chart.axes();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& profile = results[i].at("profile");
+    if (profile.is_null()) {
+      continue;
+    }
+    const std::string color(route_color(i));
+    const std::string ground = chart.curve(profile, "ground");
+    if (!ground.empty()) {
+      svg += "<path d=\"" + ground + "\" stroke=\"" + (i == 0 ? "#8a8378" : color) +
+             "\" stroke-width=\"" + (i == 0 ? "1.5" : "0.8") + "\"/>\n";
+    }
+    svg += "<path d=\"" + chart.curve(profile, "altitude") + "\" stroke=\"" + color +
+           "\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n";
+  }
+  return svg;
+}
+
+std::string clearances(const Json& results, const Area& area) {
+  const Chart chart(results, within(area), {"clearance"});
+  std::string svg = text_at(area.left, area.top + 8,
+                            "Clearance from all obstacles and the ground, m", kFaint, 12) +
+                    chart.axes();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& profile = results[i].at("profile");
+    if (!profile.is_null()) {
+      svg += "<path d=\"" + chart.curve(profile, "clearance") + "\" stroke=\"" +
+             std::string(route_color(i)) + "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n";
+    }
+  }
+  return svg;
+}
+
+bool has_clearance(const Json& results) {
+  for (const Json& result : results) {
+    const Json& profile = result.at("profile");
+    for (const Json& clearance : profile.is_null() ? Json::array() : profile.at("clearance")) {
+      if (clearance.is_number()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+}  // namespace
+
+std::string profiles(const Json& scene, const Area& area) {
+  constexpr double kHeights = 0.6;  // of the width
+  const Json& results = scene.at("results");
+  if (!has_clearance(results)) {
+    return heights(scene, area);
+  }
+  const double width = kHeights * area.width;
+  return heights(scene, {area.left, area.top, width, area.height}) +
+         clearances(results, {area.left + width, area.top, area.width - width, area.height});
+}
+}  // namespace altiplan::host::picture

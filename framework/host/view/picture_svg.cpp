@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/view/picture_svg.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/view/picture_parts.hpp"
+
+namespace altiplan::host {
+namespace picture {
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        if (static_cast<unsigned char>(letter) >= ' ') {
+          out += letter;
+        }
+    }
+  }
+  return out;
+}
+
+std::string pixels(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+std::string text_at(double x, double y, std::string_view text, std::string_view color, int size,
+                    Align align, bool bold) {
+  std::string out = "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" fill=\"";
+  out += color;
+  out += "\" font-size=\"" + std::to_string(size) + "\"";
+  out += align == Align::middle ? " text-anchor=\"middle\""
+         : align == Align::end  ? " text-anchor=\"end\""
+                                : "";
+  out += bold ? " font-weight=\"600\">" : ">";
+  return out + escaped(text) + "</text>\n";
+}
+
+std::string line(double x0, double y0, double x1, double y1, std::string_view color, double width) {
+  return "<path d=\"M" + pixels(x0) + " " + pixels(y0) + "L" + pixels(x1) + " " + pixels(y1) +
+         "\" stroke=\"" + std::string(color) + "\" stroke-width=\"" + pixels(width) + "\"/>\n";
+}
+
+std::string rectangle(const Area& area, std::string_view more) {
+  return "<rect x=\"" + pixels(area.left) + "\" y=\"" + pixels(area.top) + "\" width=\"" +
+         pixels(area.width) + "\" height=\"" + pixels(area.height) + "\" " + std::string(more) +
+         "/>\n";
+}
+
+double round_step(double length, double steps) {
+  const double wanted = length / steps;
+  const double power = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (wanted <= factor * power) {
+      return factor * power;
+    }
+  }
+  return 10 * power;
+}
+
+std::string grouped(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.6g", std::round(value * 1e6) / 1e6);
+  std::string digits = text;
+  if (std::abs(value) >= 1e6) {
+    std::snprintf(text, sizeof text, "%.0f", value);
+    digits = text;
+  }
+  const std::size_t end = std::min(digits.find('.'), digits.size());
+  const std::size_t first = digits[0] == '-' ? 1 : 0;
+  for (std::size_t at = end; at > first + 3;) {
+    at -= 3;
+    digits.insert(at, ",");
+  }
+  return digits;
+}
+
+Map::Map(const Json& box, const Area& room) {
+  const auto at = [&](int corner, int axis) { return box.at(corner).at(axis).get<double>(); };
+  west_ = at(0, 0);
+  south_ = at(0, 1);
+  const double width = at(1, 0) - west_;
+  const double height = at(1, 1) - south_;
+  scale_ = std::min(room.width / width, room.height / height);
+  area_ = {room.left, room.top, width * scale_, height * scale_};
+}
+}  // namespace picture
+
+namespace {
+
+constexpr double kWidth = 1600;
+constexpr double kMostHeight = 1000;
+constexpr double kLeastMap = 300;  // leaves the legend some room
+constexpr double kMargin = 24;
+constexpr double kTitle = 36;
+constexpr double kLegend = 380;
+constexpr double kProfile = 210;
+
+bool has_profile(const Json& scene) {
+  const Json& results = scene.at("results");
+  return std::any_of(results.begin(), results.end(),
+                     [](const Json& result) { return !result.at("profile").is_null(); });
+}
+
+std::string attribution(const Json& scene) {
+  std::string text;
+  for (const Json& line : scene.at("attribution")) {
+    text += (text.empty() ? "" : " · ") + line.get<std::string>();
+  }
+  return text;
+}
+}  // namespace
+
+std::string picture_svg(const Json& scene) {
+  using namespace picture;
+  const double below = has_profile(scene) ? kProfile : 0;
+  const Area room{kMargin, kMargin + kTitle, kWidth - 3 * kMargin - kLegend,
+                  kMostHeight - 2 * kMargin - kTitle - below};
+  const Map map(scene.at("box"), room);
+  const double bottom = std::max(map.area().bottom(), room.top + kLeastMap);
+  const double height = bottom + below + kMargin;
+  const std::string title = scene.at("title").get<std::string>();
+  const std::string size = "width=\"" + pixels(kWidth) + "\" height=\"" + pixels(height) + "\"";
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size + " viewBox=\"0 0 " +
+                    pixels(kWidth) + " " + pixels(height) +
+                    "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n";
+  svg += "<title>" + escaped(title) + "</title>\n";
+  svg += rectangle({0, 0, kWidth, height}, "fill=\"" + std::string(kPaper) + "\"");
+  svg += text_at(kMargin, kMargin + 16, title, kInk, 20, Align::start, true);
+  svg += "<clipPath id=\"map\">" + rectangle(map.area(), "") + "</clipPath>\n";
+  svg += rectangle(map.area(), "fill=\"#eef1f4\"");
+  svg += "<g clip-path=\"url(#map)\">\n";
+  svg += relief(scene, map) + solids(scene, map) + routes(scene, map);
+  svg += "</g>\n" + rectangle(map.area(), "stroke=\"#5b6672\"") + scale_and_north(map);
+  svg += legend(scene, {map.area().right() + kMargin, room.top, kLegend, bottom - room.top});
+  if (below > 0) {
+    svg += profiles(scene, {kMargin, bottom + 12, kWidth - 2 * kMargin, below - 12});
+  }
+  svg += text_at(kWidth - kMargin, height - 8, attribution(scene), kFaint, 11, Align::end);
+  return svg + "</svg>\n";
+}
+}  // namespace altiplan::host

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "host/result/result_json.hpp"
+
+namespace altiplan::host {
+
+/// The scene seen from above, and its routes' heights below: one SVG that needs nothing else.
+std::string picture_svg(const Json& scene);
+}  // namespace altiplan::host

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/claims/claim_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "host/base/words.hpp"
+#include "host/config/config_check.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// The number with as many digits as it takes to see on which side of the range's ends it lies: an
+/// end of 0.95004 is not shown as 0.95 where 0.95 would do.
+std::string shown(double number, const ClaimRange& range) {
+  constexpr int kAll = 17;
+  const bool is_large = std::abs(number) >= 1e4 && std::abs(number) < 1e15;
+  for (int digits = is_large ? int(std::log10(std::abs(number))) + 1 : 4; digits < kAll; ++digits) {
+    const std::string text = with_digits(number, digits);
+    double rounded = 0;
+    std::from_chars(text.data(), text.data() + text.size(), rounded);
+    const bool is_same_side = (rounded < range.low) == (number < range.low) &&
+                              (rounded > range.high) == (number > range.high) &&
+                              range.contains(rounded) == range.contains(number);
+    if (is_same_side) {
+      return text;
+    }
+  }
+  return with_digits(number, kAll);
+}
+
+std::string name_of(const ClaimValue& value, const StudyData& data) {
+  return data.pipelines[value.pipeline].name + "." + value.name;
+}
+
+/// Which values no run has, or how many each pipeline has.
+std::string why_no_data(const ClaimQuantity& quantity, const ClaimPairs& pairs,
+                        const StudyData& data) {
+  if (pairs.all == 0) {
+    return "the study has no runs yet";
+  }
+  std::vector<std::string> columns = data.columns;
+  columns.emplace_back("solved");
+  std::string words;
+  for (const ClaimValue& value : quantity.values) {
+    if (std::find(columns.begin(), columns.end(), value.name) == columns.end()) {
+      words += (words.empty() ? "" : "; ") + std::string("no run has a value '") + value.name +
+               "'" + did_you_mean(value.name, columns);
+    }
+  }
+  if (words.empty()) {
+    words = "no pair has all that is named";
+  }
+  return words;
+}
+
+/// What was found and what it says of the claim, from the estimate on.
+std::string result(const JudgedClaim& judged, const ClaimRange& range) {
+  const std::string estimate = shown(judged.estimate, range);
+  const std::string is = wanted(judged.claim);
+  const bool satisfies = range.contains(judged.estimate);
+  if (!judged.interval) {
+    return judged.why_no_interval.empty()
+               ? estimate + ", which is " + (satisfies ? "" : "not ") + is +
+                     " (an extreme: of these runs only, without an interval)"
+               : estimate + ", claimed was " + is + "; there is no interval, " +
+                     judged.why_no_interval;
+  }
+  const auto [low, high] = *judged.interval;
+  const std::string interval = estimate + ", " + per_cent(judged.claim.confidence) + " interval " +
+                               shown(low, range) + " to " + shown(high, range) + " (" +
+                               judged.method + ")";
+  switch (judged.verdict) {
+    case Verdict::holds:
+      return interval + "; all of it is " + is;
+    case Verdict::fails:
+      return interval + "; none of it is " + is;
+    default:
+      return interval + "; the estimate is " +
+             (satisfies ? is + ", but part of the interval is not"
+                        : "not " + is + ", but part of the interval is");
+  }
+}
+
+/// How many pairs the claim rests on, and why not all.
+std::string basis(const JudgedClaim& judged, const ClaimQuantity& quantity, const ClaimPairs& pairs,
+                  const StudyData& data) {
+  std::string words;
+  const auto add = [&](const std::string& part) { words += (words.empty() ? "; " : ", ") + part; };
+  for (std::size_t i = 0; i < quantity.values.size(); ++i) {
+    if (pairs.missing[i] > 0) {
+      add(name_of(quantity.values[i], data) + " has no number in " +
+          std::to_string(pairs.missing[i]));
+    }
+  }
+  if (pairs.undefined > 0) {
+    add("the expression is not a number in " + std::to_string(pairs.undefined) +
+        " (such as 0 / 0)");
+  }
+  return std::to_string(judged.used) + " of " + counted(judged.pairs, "pair") + " counted" + words +
+         ".";
+}
+}  // namespace
+
+void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quantity,
+         const ClaimPairs& pairs, const StudyData& data) {
+  const bool has_data = judged.verdict != Verdict::no_data;
+  const std::string found = has_data ? result(judged, range) : why_no_data(quantity, pairs, data);
+  const std::string of = pairs.all == 0 ? "" : " " + basis(judged, quantity, pairs, data);
+  std::string verdict(name_of(judged.verdict));
+  verdict.front() = char(std::toupper(verdict.front()));
+  judged.words =
+      sentence(verdict + ": " + (has_data ? judged.claim.that + " is " : "") + found) + of;
+  judged.reasons = sentence((has_data ? "Found: " : "") + found) + of;
+  judged.reasons.front() = char(std::toupper(judged.reasons.front()));
+}
+
+std::string wanted(const ClaimEntry& claim) {
+  return (claim.is.find("..") == claim.is.npos ? "" : "within ") + claim.is;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "study/claims/claim_pairs.hpp"
+#include "study/claims/claims.hpp"
+
+namespace altiplan::host {
+
+/// Fills in the verdict with all that it rests on, in sentences: `words` and `reasons`.
+void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quantity,
+         const ClaimPairs& pairs, const StudyData& data);
+}  // namespace altiplan::host

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/model/run_values.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace altiplan::host {
+namespace {
+
+class Values {
+ public:
+  void add(const std::string& name, const Json& value) {
+    if (value.is_boolean()) {
+      all_[name] = value.get<bool>() ? 1 : 0;
+    } else if (value.is_number()) {
+      all_[name] = value.get<double>();
+    }
+  }
+  void add_each(const std::string& prefix, const Json& map) {
+    for (const auto& [name, value] : map.items()) {
+      add(prefix + name, value);
+    }
+  }
+  /// Sums over all replans: what they took, and each of their counters.
+  void add_replans(const Json& replans) {
+    add("flight.replans", replans.size());
+    for (const Json& replan : replans) {
+      all_["flight.replan_time_s"] += replan.at("time_s").get<double>();
+      for (const auto& [name, value] : replan.at("counters").items()) {
+        all_["flight.replan_counters." + name] += value.get<double>();
+      }
+    }
+  }
+  std::vector<std::pair<std::string, double>> sorted() const { return {all_.begin(), all_.end()}; }
+
+ private:
+  std::map<std::string, double> all_;
+};
+
+std::vector<std::string> keys_of(const Json& map) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : map.items()) {
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+std::vector<std::string> joined(std::vector<std::string> names,
+                                std::initializer_list<const char*> more) {
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+}  // namespace
+
+std::vector<std::pair<std::string, double>> values_of(const Json& result) {
+  Values values;
+  values.add_each("", result.at("metrics"));
+  values.add("setup_time_s", result.at("setup_time_s"));
+  for (const Json& step : result.at("steps")) {
+    const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
+    for (const char* name : {"time_s", "setup_time_s", "stands", "budget_hit"}) {
+      values.add(prefix + name, step.at(name));
+    }
+    values.add_each(prefix + "counters.", step.at("counters"));
+    values.add_each(prefix, step.at("metrics"));
+  }
+  if (const Json& flight = result.at("flight"); !flight.is_null()) {
+    for (const char* name : {"collisions", "min_separation_m", "reached"}) {
+      values.add(std::string("flight.") + name, flight.at(name));
+    }
+    values.add_replans(flight.at("replans"));
+    values.add("flight.handovers", flight.at("handovers").size());
+    values.add_each("flight.counters.", flight.at("counters"));
+    values.add_each("flight.", flight.at("metrics"));
+  }
+  return values.sorted();
+}
+
+std::string why_no_value(const std::string& name) {
+  static const std::vector<std::string> kOfRoute = keys_of(to_json(Measures{}));
+  static const std::vector<std::string> kOfRun =
+      joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
+                        "wall_time_s", "cpu_time_s", "peak_memory_mb"});
+  static const std::vector<std::string> kOfStep =
+      joined(kOfRoute, {"time_s", "setup_time_s", "stands", "budget_hit"});
+  static const std::vector<std::string> kOfFlight = joined(
+      kOfRoute,
+      {"collisions", "min_separation_m", "reached", "replans", "replan_time_s", "handovers"});
+  const std::size_t last = name.rfind('.');
+  const std::string end = name.substr(last == std::string::npos ? 0 : last + 1);
+  const std::string before = last == std::string::npos ? "" : name.substr(0, last);
+  const bool is_of_flight = before == "flight";
+  const bool is_of_step = before.starts_with("steps.") && before.size() > 6;
+  if (before == "flight.counters" || before == "flight.replan_counters" ||
+      (is_of_step && before.ends_with(".counters"))) {
+    return "";  // a plugin names its counters as it likes
+  }
+  if (!before.empty() && !is_of_flight && !is_of_step) {
+    return "no run has a value '" + name +
+           "': expected one of the run, or flight.…, flight.counters.…, "
+           "flight.replan_counters.…, steps.ID.…, steps.ID.counters.…";
+  }
+  const std::vector<std::string>& known = is_of_flight ? kOfFlight : is_of_step ? kOfStep : kOfRun;
+  if (std::find(known.begin(), known.end(), end) != known.end()) {
+    return "";
+  }
+  const std::string nearest = nearest_name(end, known);
+  return "no run has a value '" + name + "'" +
+         (nearest.empty()
+              ? ""
+              : "; did you mean '" + (before.empty() ? "" : before + ".") + nearest + "'?");
+}
+}  // namespace altiplan::host

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/model/records.hpp"
+#include "study/model/study_file.hpp"
+
+namespace altiplan::host {
+
+/// A run in a table: what statistics and figures read.
+struct RunRow {
+  std::size_t store = 0;  ///< index into StudyData::stores
+  std::int64_t id = 0;    ///< in that store
+  std::string key;
+  std::size_t scenario = 0;  ///< index into StudyData::scenarios
+  std::size_t pipeline = 0;
+  int repetition = 0;
+  std::int64_t seed = 0;
+  std::string outcome;
+  std::string message;
+  int place = 0;
+  /// One per StudyData::columns, to 12 significant digits; NaN where it does not apply.
+  std::vector<double> values;
+
+  bool solved() const { return outcome == "solved"; }
+};
+
+/// All runs of a study in memory, from one store or several shards of it.
+struct StudyData {
+  StudyFile file;           ///< the study as written
+  std::size_t planned = 0;  ///< how many runs there are to it; 0 where that is not known
+  std::vector<std::string> stores;
+  std::vector<StoredVariant> scenarios;
+  std::vector<StoredVariant> pipelines;
+  std::vector<StoredSession> sessions;
+  std::vector<std::string> columns;  ///< names of values, sorted
+  std::vector<RunRow> rows;          ///< sorted by scenario, pipeline, repetition; keys unique
+
+  /// Index of the column; columns.size() where there is none.
+  std::size_t column(std::string_view name) const;
+};
+
+/// Whether less is better, by the metric's name where the study does not say.
+Better better(const StudyData& data, std::string_view metric);
+/// The metrics that the report compares: those of the study file, or else length_m, plan_time_s
+/// and expanded.
+std::vector<std::string> compared_metrics(const StudyData& data);
+}  // namespace altiplan::host

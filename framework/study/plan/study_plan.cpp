@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/plan/study_plan.hpp"
+
+#include <dlfcn.h>
+
+#include <cerrno>
+#include <map>
+
+#include "host/base/machine_fault.hpp"
+#include "host/base/sha256.hpp"
+#include "host/registry/registry.hpp"
+#include "host/result/result_json.hpp"
+#include "study/model/records.hpp"
+#include "study/plan/study_grid.hpp"
+#include "study/plan/study_reading.hpp"
+#include "study/plan/study_selection.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+/// Of a folder there is none. A key without it would be another run's.
+std::string hash_of(const fs::path& file) {
+  errno = 0;
+  const std::string hash = sha256(file);
+  if (const int error = errno; hash.empty() && error != EISDIR) {
+    throw MachineFault(unreadable(file, error));
+  }
+  return hash;
+}
+
+std::string build_of(const fs::path& file) {
+  const Library library = examine_library(file);
+  if (library.build.empty()) {
+    throw MachineFault(file.string() + ": " + library.refused);
+  }
+  return library.build;
+}
+
+/// What the result of a pair depends on, but for the seed.
+std::string pair_text(const Config& config, const StudyBudget& budget) {
+  std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
+  text += flow_text(config.pipeline_tree) + "\n" + flow_text(config.scenario_tree) + "\n";
+  for (const fs::path& file : config.files) {
+    // Comments of the two files change nothing, and their trees stand above.
+    if (file != config.pipeline_path && file != config.scenario_path) {
+      text += hash_of(file) + "\n";
+    }
+  }
+  text += plugins_json(config).dump() + "\n";
+  text += Json({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}).dump() + "\n";
+  return text;
+}
+
+std::string key_of(const std::string& pair, const std::string& name, std::int64_t seed) {
+  return sha256_of(pair + name + "\n" + std::to_string(seed));
+}
+}  // namespace
+
+const std::string& host_build() {
+  static const std::string kBuild = [] {
+    Dl_info info{};
+    const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
+    return build_of("/proc/self/exe") + (is_found ? " " + build_of(info.dli_fname) : std::string());
+  }();
+  return kBuild;
+}
+
+std::string name_of_run(const StudyPlan& plan, const PlannedRun& run) {
+  return run_name(plan.pipelines[run.pipeline].name, plan.scenarios[run.scenario].name,
+                  run.repetition);
+}
+
+Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
+                       const std::vector<fs::path>& plugin_path) {
+  Overrides overrides;
+  overrides.scenario = plan.scenarios[run.scenario].file;
+  overrides.seed = run.seed;
+  overrides.set = plan.pipelines[run.pipeline].set;
+  const auto& of_scenario = plan.scenarios[run.scenario].set;
+  overrides.set.insert(overrides.set.end(), of_scenario.begin(), of_scenario.end());
+  overrides.plugin_path = plugin_path;
+  return overrides;
+}
+
+StudyPlan load_study(const fs::path& study, const StudySelection& selection,
+                     const std::vector<fs::path>& plugin_path) {
+  StudyProblems problems;
+  StudyVariants variants(problems);
+  StudyPlan plan = read_study(study, problems, variants);
+  plan.planned = plan.scenarios.size() * plan.pipelines.size() * std::size_t(plan.file.repetitions);
+  plan.runs = selected_runs(plan, selection);
+  std::map<std::pair<std::size_t, std::size_t>, std::string> pairs;
+  for (PlannedRun& run : plan.runs) {
+    std::string& text = pairs[{run.scenario, run.pipeline}];
+    if (text.empty()) {
+      try {
+        const Config config = load_config(plan.pipelines[run.pipeline].file,
+                                          overrides_of(plan, run, plugin_path), plan.registry);
+        if (config.registry != plan.registry) {
+          plan.registry = config.registry;
+          plan.registries.push_back(config.registry);
+        }
+        text = pair_text(config, plan.file.budget);
+      } catch (const PluginError& error) {
+        text = error.what();  // its runs are refused, one by one; the others need not wait for it
+      } catch (const ConfigError& error) {
+        for (const Problem& problem : error.problems()) {
+          problems.add(variants.placed(problem));
+        }
+        text = "wrong";
+      }
+    }
+    run.key = key_of(text, name_of_run(plan, run), run.seed);
+  }
+  problems.finish();
+  return plan;
+}
+
+std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
+                   std::int64_t seed) {
+  return key_of(pair_text(config, budget), name, seed);
+}
+
+Config load_run(const StudyPlan& plan, const PlannedRun& run,
+                const std::vector<fs::path>& plugin_path) {
+  return load_config(plan.pipelines[run.pipeline].file, overrides_of(plan, run, plugin_path),
+                     plan.registry);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/config/config.hpp"
+#include "study/model/study_file.hpp"
+
+namespace altiplan::host {
+
+/// A scenario or a pipeline with some of its keys set: one cell of the factor grid.
+struct Variant {
+  std::string name;  ///< unique in the study: "fusion[weight_g=0.3]", "hills[seed=17]"
+  std::string of;    ///< the entry's id, or the scenario file's stem
+  std::filesystem::path file;
+  std::vector<std::string> set;  ///< as for --set, those of scenarios with "scenario." before
+};
+
+/// One run of the study.
+struct PlannedRun {
+  std::size_t scenario = 0;  ///< index into StudyPlan::scenarios
+  std::size_t pipeline = 0;
+  int repetition = 0;     ///< from 0
+  std::int64_t seed = 0;  ///< of (study seed, scenario, repetition): the same for every pipeline
+  /// Hash of its name and of all that the result depends on: both files as resolved, the files that
+  /// they name, the seed, the budget, the host's and the plugins' builds.
+  std::string key;
+};
+
+struct StudyPlan {
+  std::filesystem::path path;  ///< absolute
+  std::string text;            ///< of the file, without its comments and spaces
+  std::string source;          ///< the file as it is
+  StudyFile file;
+  std::vector<Variant> scenarios;
+  std::vector<Variant> pipelines;
+  std::vector<PlannedRun> runs;        ///< those selected, as they are run: interleaved at random
+  std::size_t planned = 0;             ///< how many there are in all
+  std::shared_ptr<Registry> registry;  ///< of the run planned last
+  std::vector<std::shared_ptr<Registry>> registries;  ///< all: files may name folders of plugins
+};
+
+/// "PIPELINE SCENARIO #REPETITION"
+std::string name_of_run(const StudyPlan& plan, const PlannedRun& run);
+
+struct StudySelection {
+  std::optional<double> sample;  ///< share of the (scenario, repetition) pairs, 0 … 1
+  std::string filter;            ///< regular expression on "PIPELINE SCENARIO #REPETITION"
+  int shard = 1;                 ///< of `shards`, from 1
+  int shards = 1;
+};
+
+/// Reads and checks the study, and every pair of pipeline and scenario in it; throws ConfigError
+/// with all that is wrong.
+StudyPlan load_study(const std::filesystem::path& study, const StudySelection& selection,
+                     const std::vector<std::filesystem::path>& plugin_path);
+
+/// What `altiplan run` would be given to do the run by itself.
+Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
+                       const std::vector<std::filesystem::path>& plugin_path);
+
+/// Builds of the program and of the library that it shares with its plugins.
+const std::string& host_build();
+
+/// PlannedRun::key of the run of that name with this configuration.
+std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
+                   std::int64_t seed);
+
+/// The configuration of a run, as the worker runs it and `replay` repeats it.
+Config load_run(const StudyPlan& plan, const PlannedRun& run,
+                const std::vector<std::filesystem::path>& plugin_path);
+}  // namespace altiplan::host

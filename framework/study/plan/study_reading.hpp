@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "study/plan/study_plan.hpp"
+
+namespace altiplan::host {
+
+/// Collects what is wrong, each thing once however many runs it spoils.
+class StudyProblems {
+ public:
+  void add(Location where, std::string key, std::string message) {
+    add({std::move(where), std::move(key), std::move(message)});
+  }
+  void add(const Problem& problem) {
+    if (said_.insert(problem.text()).second) {
+      all_.push_back(problem);
+    }
+  }
+  void finish() const {
+    if (!all_.empty()) {
+      throw ConfigError(all_);
+    }
+  }
+
+ private:
+  std::vector<Problem> all_;
+  std::set<std::string> said_;
+};
+
+/// Makes variants of the study's entries, and remembers which line of the study each value of
+/// theirs is from.
+class StudyVariants {
+ public:
+  explicit StudyVariants(StudyProblems& problems) : problems_(problems) {}
+
+  /// `prefix` goes before each key: "scenario." for scenarios.
+  void add(std::vector<Variant>& all, const std::string& of, const Path& file, const Value& set,
+           const std::string& prefix, const std::string& path, const Location& where);
+
+  /// Remembers where an assignment of the study's own is from.
+  void remember(const std::string& assignment, const Location& where, const std::string& key) {
+    said_at_["--set " + assignment] = {where, key};
+  }
+
+  /// The problem at the place in the study where its value was given.
+  Problem placed(const Problem& problem) const;
+
+ private:
+  StudyProblems& problems_;
+  std::map<std::string, std::pair<Location, std::string>> said_at_;
+  std::set<std::string> ids_;
+  std::set<std::string> names_;
+};
+
+/// The study with its variants, and no runs yet.
+StudyPlan read_study(const std::filesystem::path& study, StudyProblems& problems,
+                     StudyVariants& variants);
+}  // namespace altiplan::host

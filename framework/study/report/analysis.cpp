@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/report/analysis.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <set>
+#include <thread>
+
+#include "study/claims/claims.hpp"
+#include "study/drawing/text.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+std::vector<Success> success_of(const StudyData& data) {
+  struct Results {
+    std::vector<double> solved;  // 0 or 1
+    std::vector<std::size_t> scenarios;
+  };
+  std::vector<Success> all(data.pipelines.size());
+  std::vector<Results> results(data.pipelines.size());
+  std::vector<std::map<std::string, std::size_t>> counts(data.pipelines.size());
+  for (const RunRow& row : data.rows) {
+    ++all[row.pipeline].runs;
+    all[row.pipeline].solved += row.solved();
+    results[row.pipeline].solved.push_back(row.solved() ? 1 : 0);
+    results[row.pipeline].scenarios.push_back(row.scenario);
+    ++counts[row.pipeline][row.outcome];
+  }
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    all[p].interval = share_interval(results[p].solved, results[p].scenarios,
+                                     std::uint64_t(data.file.seed), kConfidence);
+    for (const std::string& outcome : outcome_order()) {
+      if (const auto found = counts[p].find(outcome); found != counts[p].end()) {
+        all[p].outcomes.emplace_back(*found);
+        counts[p].erase(found);
+      }
+    }
+    all[p].outcomes.insert(all[p].outcomes.end(), counts[p].begin(), counts[p].end());
+  }
+  return all;
+}
+
+std::vector<SuccessComparison> compare_success(const StudyData& data,
+                                               const std::vector<Pair>& pairs) {
+  std::vector<SuccessComparison> all;
+  std::vector<double> p;
+  for (std::size_t against = 0; against < data.pipelines.size(); ++against) {
+    for (std::size_t pipeline = against + 1; pipeline < data.pipelines.size(); ++pipeline) {
+      SuccessComparison made;
+      made.pipeline = pipeline;
+      made.against = against;
+      PairedSample sample;
+      for (const Pair& pair : pairs) {
+        if (pair.rows[pipeline] != kNoRow && pair.rows[against] != kNoRow) {
+          const bool solved = data.rows[pair.rows[pipeline]].solved();
+          const bool other_solved = data.rows[pair.rows[against]].solved();
+          made.only_pipeline += solved && !other_solved;
+          made.only_against += other_solved && !solved;
+          sample.add(other_solved ? 1 : 0, solved ? 1 : 0, pair.scenario);
+        }
+      }
+      made.pairs = sample.size();
+      made.test = success_test(sample);
+      p.push_back(made.test.p);
+      all.push_back(made);
+    }
+  }
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t at = 0; at < all.size(); ++at) {
+    all[at].p_holm = adjusted[at];
+  }
+  return all;
+}
+
+/// A metric's values on pairs, and what is made of them.
+class MetricAnalyser {
+ public:
+  MetricAnalyser(const StudyData& data, const std::vector<Pair>& pairs, const std::string& metric)
+      : data_(data),
+        pairs_(pairs),
+        column_(data.column(metric)),
+        is_of_every_run_(is_of_every_run(metric)) {
+    made_.metric = metric;
+    made_.better = better(data, metric);
+  }
+
+  MetricAnalysis operator()() {
+    take_samples();
+    compare_all();
+    std::vector<double> p;
+    for (const Comparison& comparison : made_.comparisons) {
+      p.push_back(comparison.p());
+    }
+    const std::vector<double> adjusted = holm(p);
+    for (std::size_t at = 0; at < adjusted.size(); ++at) {
+      made_.comparisons[at].p_holm = adjusted[at];
+    }
+    rank();
+    return std::move(made_);
+  }
+
+ private:
+  /// NaN for a run that is not there, did not solve (but for values that say how it went wrong), or
+  /// has no such number.
+  double value(std::size_t row) const {
+    if (row == kNoRow || !(is_of_every_run_ || data_.rows[row].solved())) {
+      return kNone;
+    }
+    const double found = data_.rows[row].values[column_];
+    return std::isfinite(found) ? found : kNone;
+  }
+
+  void take_samples() {
+    made_.samples.resize(data_.pipelines.size());
+    for (std::size_t at = 0; at < data_.rows.size(); ++at) {
+      if (const double found = value(at); !std::isnan(found)) {
+        Sample& sample = made_.samples[data_.rows[at].pipeline];
+        sample.values.push_back(found);
+        sample.rows.push_back(at);
+      }
+    }
+    made_.is_ratio = true;
+    for (Sample& sample : made_.samples) {
+      sample.box = box_plot(sample.values);
+      made_.is_ratio = made_.is_ratio && std::all_of(sample.values.begin(), sample.values.end(),
+                                                     [](double value) { return value > 0; });
+    }
+  }
+
+  /// On all cores: the resamples take long. Each comparison has its own stream of random numbers,
+  /// so that nothing depends on their number.
+  void compare_all() {
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (std::size_t a = 0; a < data_.pipelines.size(); ++a) {
+      for (std::size_t b = a + 1; b < data_.pipelines.size(); ++b) {
+        all.emplace_back(a, b);
+      }
+    }
+    made_.comparisons.resize(all.size());
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      for (std::size_t at = next++; at < all.size(); at = next++) {
+        made_.comparisons[at] = compare(all[at].first, all[at].second);
+      }
+    };
+    std::vector<std::jthread> others;
+    for (unsigned n = 1; n < std::min<std::size_t>(std::thread::hardware_concurrency(), all.size());
+         ++n) {
+      others.emplace_back(work);
+    }
+    work();
+  }
+
+  Comparison compare(std::size_t against, std::size_t pipeline) const {
+    Comparison made;
+    made.pipeline = pipeline;
+    made.against = against;
+    PairedSample sample;
+    for (const Pair& pair : pairs_) {
+      made.pairs += pair.rows[against] != kNoRow && pair.rows[pipeline] != kNoRow;
+      const double x = value(pair.rows[against]);
+      const double y = value(pair.rows[pipeline]);
+      if (!std::isnan(x) && !std::isnan(y)) {
+        sample.add(x, y, pair.scenario);
+      }
+    }
+    made.used = sample.size();
+    const RandomStream stream =
+        RandomStream(std::uint64_t(data_.file.seed))
+            .sub("report " + made_.metric + " " + data_.pipelines[against].name + " " +
+                 data_.pipelines[pipeline].name);
+    made.effect = paired_effect(sample, made_.is_ratio, stream, kConfidence,
+                                resamples(pairs_.size(), data_.pipelines.size()));
+    return made;
+  }
+
+  void rank() {
+    const std::size_t count = data_.pipelines.size();
+    if (count < 3) {
+      made_.why_no_ranking = "Ranks need three pipelines.";
+      return;
+    }
+    // One list per scenario and pipeline, of the pairs that all pipelines solved.
+    std::map<std::size_t, std::vector<std::vector<double>>> scenarios;
+    for (const Pair& pair : pairs_) {
+      std::vector<double> values;
+      for (const std::size_t row : pair.rows) {
+        values.push_back(value(row));
+      }
+      if (std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) {
+        auto& lists = scenarios[pair.scenario];
+        lists.resize(count);
+        for (std::size_t p = 0; p < count; ++p) {
+          lists[p].push_back(made_.better == Better::lower ? values[p] : -values[p]);
+        }
+      }
+    }
+    std::vector<std::vector<double>> treatments(count);
+    for (const auto& [scenario, lists] : scenarios) {
+      for (std::size_t p = 0; p < count; ++p) {
+        if (scenarios.size() > 1) {
+          treatments[p].push_back(median(lists[p]));
+        } else {
+          treatments[p] = lists[p];
+        }
+      }
+    }
+    finish_ranking(treatments, scenarios.size() > 1);
+  }
+
+  void finish_ranking(const std::vector<std::vector<double>>& treatments, bool of_scenarios) {
+    const std::size_t blocks = treatments.front().size();
+    const auto test = blocks < 2 ? std::nullopt : friedman(treatments);
+    if (!test) {
+      made_.why_no_ranking =
+          "Ranks need two scenarios or repetitions that all pipelines solved; found " +
+          std::to_string(blocks) + ".";
+      return;
+    }
+    const double critical =
+        critical_difference(int(treatments.size()), std::int64_t(blocks), kAlpha);
+    made_.ranking =
+        Ranking{blocks, of_scenarios, *test, critical, joined(test->average_ranks, critical)};
+  }
+
+  const StudyData& data_;
+  const std::vector<Pair>& pairs_;
+  std::size_t column_;
+  bool is_of_every_run_;
+  MetricAnalysis made_;
+};
+}  // namespace
+
+std::size_t resamples(std::size_t pairs, std::size_t pipelines) {
+  constexpr std::size_t kDraws = 1'000'000'000;
+  const std::size_t drawn = pairs * pipelines * (pipelines - 1) / 2;
+  return std::clamp<std::size_t>(drawn == 0 ? kResamples : kDraws / drawn, 1000, kResamples);
+}
+
+Analysis analyse(const StudyData& data, bool times) {
+  Analysis made;
+  const std::vector<Pair> pairs = pairs_of(data);
+  made.success = success_of(data);
+  made.success_comparisons = compare_success(data, pairs);
+  std::set<std::string> files;  // of figures, named by their metric
+  for (const std::string& metric : compared_metrics(data)) {
+    if (!files.insert(slug(metric)).second) {
+      made.left_out.push_back(metric + " is named twice.");
+    } else if (data.column(metric) < data.columns.size()) {
+      made.metrics.push_back(MetricAnalyser(data, pairs, metric)());
+    } else {
+      made.left_out.push_back(metric + (!times && varies(metric)
+                                            ? " is not compared: it differs from run to run."
+                                            : " is not compared: no run has such a number."));
+    }
+  }
+  return made;
+}
+}  // namespace altiplan::host::report

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/report/convergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "host/result/result_json.hpp"
+#include "study/statistics/statistics.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+constexpr std::size_t kMostPoints = 150;  // of a figure
+constexpr double kBestWithin = 1.01;
+constexpr double kMeanWithin = 1.03;
+
+/// Of one run in one scenario.
+using Run = std::vector<Iteration>;
+
+Spread spread_of(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }),
+               values.end());
+  return {quantile(values, 0.1), median(values), quantile(values, 0.9)};
+}
+
+/// The iteration that was the last when `number` had been reached; null before the first.
+const Iteration* reached(const Run& run, double number) {
+  const auto after = std::upper_bound(run.begin(), run.end(), number,
+                                      [](double n, const Iteration& i) { return n < i.number; });
+  return after == run.begin() ? nullptr : &*(after - 1);
+}
+
+/// Numbers of iterations of any of the runs, evenly thinned.
+std::vector<double> numbers_of(const std::vector<Run>& runs) {
+  std::set<double> all;
+  for (const Run& run : runs) {
+    for (const Iteration& iteration : run) {
+      all.insert(iteration.number);
+    }
+  }
+  const std::vector<double> numbers(all.begin(), all.end());
+  if (numbers.size() <= kMostPoints) {
+    return numbers;
+  }
+  std::vector<double> kept;
+  for (std::size_t n = 0; n < kMostPoints; ++n) {
+    kept.push_back(numbers[n * (numbers.size() - 1) / (kMostPoints - 1)]);
+  }
+  return kept;
+}
+
+/// The first iteration of a run for which `is_there` holds; infinite where none is.
+template <typename Test>
+double first(const Run& run, const Test& is_there) {
+  const auto found = std::find_if(run.begin(), run.end(), is_there);
+  return found == run.end() ? kInfinity : found->number;
+}
+
+void add_curves(Convergence& made, const std::vector<Run>& runs) {
+  made.iterations = numbers_of(runs);
+  for (const double number : made.iterations) {
+    std::vector<double> best;
+    std::vector<double> mean;
+    std::vector<double> alive;
+    for (const Run& run : runs) {
+      const double unit = made.is_ratio ? run.back().best : 1;
+      const Iteration* now = reached(run, number);
+      const bool has_route = now != nullptr && std::isfinite(now->best);
+      best.push_back(has_route ? now->best / unit : kInfinity);
+      if (now != nullptr && number <= run.back().number) {
+        mean.push_back(std::isfinite(unit) ? now->mean / unit : kNone);
+        alive.push_back(now->alive);
+      }
+    }
+    made.best.push_back(spread_of(best));
+    made.mean.push_back(spread_of(mean));
+    made.alive.push_back(spread_of(alive));
+  }
+}
+
+Convergence convergence_of_runs(const std::vector<Run>& runs, bool is_ratio) {
+  Convergence made;
+  made.runs = runs.size();
+  made.is_ratio = is_ratio;
+  made.is_population =
+      std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.front().alive >= 0; });
+  add_curves(made, runs);
+  std::vector<double> best_from;
+  std::vector<double> mean_from;
+  std::vector<double> alive;
+  for (const Run& run : runs) {
+    const double last = run.back().best;
+    best_from.push_back(first(run, [&](const Iteration& i) {
+      return std::isfinite(i.best) && i.best <= kBestWithin * last;
+    }));
+    mean_from.push_back(first(run, [&](const Iteration& i) {
+      return std::isfinite(last) && i.mean <= kMeanWithin * last;
+    }));
+    alive.push_back(run.back().alive);
+  }
+  made.best_from = spread_of(best_from);
+  made.mean_from = spread_of(mean_from);
+  made.alive_at_end = spread_of(alive);
+  return made;
+}
+
+double number_or(const Json& json, const char* key, double otherwise) {
+  return json.contains(key) && json.at(key).is_number() ? json.at(key).get<double>() : otherwise;
+}
+}  // namespace
+
+std::vector<Progress> progress_of(std::string_view trace) {
+  // Few lines of a trace are iterations: those alone are parsed.
+  constexpr std::string_view kWord = "iteration\"";
+  std::vector<Progress> all;
+  std::set<std::string> over;  // steps whose first search has ended
+  for (std::size_t at = 0; (at = trace.find(kWord, at)) != std::string_view::npos;) {
+    const std::size_t begin = trace.rfind('\n', at) + 1;
+    const std::size_t end = std::min(trace.find('\n', at), trace.size());
+    at = end;
+    const Json line = Json::parse(trace.substr(begin, end - begin), nullptr, false);
+    if (!line.is_object() || line.value("kind", Json()) != "iteration" ||
+        !line.value("step", Json()).is_string()) {
+      continue;
+    }
+    const auto step = line.at("step").get<std::string>();
+    const Iteration iteration{number_or(line, "node", 0), number_or(line, "value", kInfinity),
+                              number_or(line, "mean", kNone), number_or(line, "alive", -1)};
+    auto found = std::find_if(all.begin(), all.end(),
+                              [&](const Progress& progress) { return progress.step == step; });
+    found = found == all.end() ? all.insert(found, {step, {}}) : found;
+    if (!found->iterations.empty() && iteration.number <= found->iterations.back().number) {
+      over.insert(step);
+    }
+    if (over.count(step) == 0) {
+      found->iterations.push_back(iteration);
+    }
+  }
+  return all;
+}
+
+std::vector<Convergence> convergence_of(const StudyData& data, const TraceSource& traces) {
+  std::map<std::size_t, std::map<std::string, std::vector<Run>>> runs;
+  for (const RunRow& row : data.rows) {
+    for (Progress& progress : progress_of(traces(row))) {
+      runs[row.pipeline][progress.step].push_back(std::move(progress.iterations));
+    }
+  }
+  std::vector<Convergence> all;
+  for (const auto& [pipeline, steps] : runs) {
+    for (const auto& [step, of_step] : steps) {
+      all.push_back(convergence_of_runs(of_step, data.scenarios.size() > 1));
+      all.back().pipeline = pipeline;
+      all.back().step = step;
+      all.back().is_only_step = steps.size() == 1;
+    }
+  }
+  return all;
+}
+}  // namespace altiplan::host::report

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/model/study_data.hpp"
+
+namespace altiplan::host::report {
+
+/// The trace of a run, "" where there is none.
+using TraceSource = std::function<std::string(const RunRow&)>;
+
+/// What an iteration of a search told (TraceEvent).
+struct Iteration {
+  double number = 0;
+  double best = 0;    ///< infinite while there is no route
+  double mean = 0;    ///< NaN where it found none
+  double alive = -1;  ///< -1: no population
+};
+
+/// The iterations of the first search of a step.
+struct Progress {
+  std::string step;
+  std::vector<Iteration> iterations;  ///< by ascending number
+};
+std::vector<Progress> progress_of(std::string_view trace);
+
+/// The 10th percentile, the median and the 90th over runs; NaN of none, and infinite where as many
+/// runs have no route.
+struct Spread {
+  double low = 0;
+  double median = 0;
+  double high = 0;
+};
+
+/// How the searches of a step of a pipeline came to their routes.
+struct Convergence {
+  std::size_t pipeline = 0;
+  std::string step;
+  bool is_only_step = true;  ///< of the pipeline's
+  std::size_t runs = 0;
+  bool is_population = false;
+  /// Lengths are times the last best of their run: lengths of several scenarios are not alike.
+  bool is_ratio = false;
+  std::vector<double> iterations;
+  std::vector<Spread> best;  ///< one per iteration; so far
+  std::vector<Spread> mean;  ///< of the runs that still went on, as is `alive`
+  std::vector<Spread> alive;
+  Spread best_from;     ///< the first iteration with a best within 1 % of the last
+  Spread mean_from;     ///< the first one with a mean within 3 % of that best
+  Spread alive_at_end;  ///< in the last iteration
+};
+
+/// Of all runs that have a trace with iterations, by pipeline and step.
+std::vector<Convergence> convergence_of(const StudyData& data, const TraceSource& traces);
+}  // namespace altiplan::host::report

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "study/drawing/text.hpp"
+#include "study/report/figures.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+constexpr double kLeft = 12;
+constexpr double kRight = kFigureWidth - 16;
+constexpr double kRow = 44;
+constexpr double kFirst = 16;
+/// So few runs are all shown, each as a point.
+constexpr std::size_t kFew = 40;
+/// Points of a box beyond that would be a smear.
+constexpr std::size_t kMostPoints = 150;
+
+/// The sample's indices that are shown as points: all of a few, else outliers, those farthest out.
+std::vector<std::size_t> shown_points(const Sample& sample) {
+  std::vector<std::size_t> shown;
+  if (sample.values.size() <= kFew) {
+    for (std::size_t at = 0; at < sample.values.size(); ++at) {
+      shown.push_back(at);
+    }
+    return shown;
+  }
+  shown = sample.box->outliers;
+  const auto far = [&](std::size_t at) { return std::abs(sample.values[at] - sample.box->median); };
+  std::stable_sort(shown.begin(), shown.end(),
+                   [&](std::size_t a, std::size_t b) { return far(a) > far(b); });
+  shown.resize(std::min(shown.size(), kMostPoints));
+  return shown;
+}
+
+void draw_box(Canvas& canvas, const BoxPlot& box, const Axis& axis, double y, std::size_t series) {
+  constexpr double kHalf = 7;
+  const double low = axis(box.low_whisker);
+  const double q1 = axis(box.q1);
+  const double q3 = axis(box.q3);
+  const double high = axis(box.high_whisker);
+  canvas.path("M" + pixels(low) + " " + pixels(y) + "H" + pixels(q1) + "M" + pixels(q3) + " " +
+                  pixels(y) + "H" + pixels(high) + "M" + pixels(low) + " " + pixels(y - 4) + "v8M" +
+                  pixels(high) + " " + pixels(y - 4) + "v8",
+              series_line(series, 1.3));
+  canvas.rectangle(q1, y - kHalf, std::max(0.5, q3 - q1), 2 * kHalf, series_fill_pale(series));
+  canvas.rectangle(q1, y - kHalf, std::max(0.5, q3 - q1), 2 * kHalf, series_line(series, 1.3));
+  const double middle = axis(box.median);
+  canvas.path("M" + pixels(middle) + " " + pixels(y - kHalf) + "v" + pixels(2 * kHalf),
+              series_line(series, 3));
+}
+
+/// "12.3 m", "straight".
+std::string with_unit(const MetricAnalysis& metric, double value, int digits) {
+  const std::string unit = metric_unit(metric.metric);
+  const bool bare = unit.empty() || is_straight(metric.metric, value);
+  return readable_value(metric.metric, value, digits) + (bare ? "" : " " + unit);
+}
+
+/// One pipeline's row; how many outliers have no point.
+std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis& metric,
+                     std::size_t p, const Axis& axis, double y) {
+  const Sample& sample = metric.samples[p];
+  const std::string right = sample.box ? "median " + with_unit(metric, sample.box->median, 4) +
+                                             "  ·  n = " + grouped(sample.values.size())
+                                       : "no solved run has it";
+  canvas.text(kLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
+  canvas.text(kRight, y, right, "quiet", Anchor::end);
+  if (!sample.box) {
+    return 0;
+  }
+  draw_box(canvas, *sample.box, axis, y + 15, p);
+  const std::vector<std::size_t> shown = shown_points(sample);
+  for (const std::size_t at : shown) {
+    // Spread over the height of the box by the run's place, so that equal ones are seen.
+    const double shift = double(at * 7 % 11) - 5;
+    const RunRow& row = data.rows[sample.rows[at]];
+    canvas.point(axis(sample.values[at]), y + 15 + shift, p, sample.rows[at],
+                 run_name(data, row) + ": " + with_unit(metric, sample.values[at], 6));
+  }
+  const bool all = sample.values.size() <= kFew;
+  return all ? 0 : sample.box->outliers.size() - shown.size();
+}
+
+Grid box_numbers(const StudyData& data, const MetricAnalysis& metric) {
+  Grid grid{{"pipeline", "part", "value", "scenario", "repetition"}, {}};
+  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+    const std::string& name = data.pipelines[p].name;
+    const Sample& sample = metric.samples[p];
+    grid.rows.push_back({name, "n", std::to_string(sample.values.size()), "", ""});
+    if (!sample.box) {
+      continue;
+    }
+    const BoxPlot& box = *sample.box;
+    for (const auto& [part, value] : {std::pair("low_whisker", box.low_whisker),
+                                      {"q1", box.q1},
+                                      {"median", box.median},
+                                      {"q3", box.q3},
+                                      {"high_whisker", box.high_whisker}}) {
+      grid.rows.push_back({name, part, exact(value), "", ""});
+    }
+    for (const std::size_t at : box.outliers) {
+      const RunRow& row = data.rows[sample.rows[at]];
+      grid.rows.push_back({name, "outlier", exact(sample.values[at]),
+                           data.scenarios[row.scenario].name, std::to_string(row.repetition)});
+    }
+  }
+  return grid;
+}
+}  // namespace
+
+Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
+  std::vector<double> values;
+  std::size_t runs = 0;
+  for (const Sample& sample : metric.samples) {
+    for (const double value : sample.values) {
+      values.push_back(without_noise(metric.metric, value));  // else an axis of 1e-13 degrees
+    }
+    runs += sample.values.size();
+  }
+  const Axis axis = Axis::around(values, kLeft, kRight);
+  Canvas canvas;
+  const double bottom = kFirst + kRow * double(data.pipelines.size()) - 10;
+  draw_bottom(canvas, axis, kFirst + 4, bottom, axis_label(metric_label(metric.metric), axis));
+  std::size_t hidden = 0;
+  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+    hidden += draw_row(canvas, data, metric, p, axis, kFirst + kRow * double(p));
+  }
+  std::string caption = counted(runs, "solved run") +
+                        ". Box: quartiles and median; whiskers: the last value within 1.5 "
+                        "interquartile ranges; points: outliers, or all of up to " +
+                        std::to_string(kFew) + " runs.";
+  if (hidden > 0) {
+    caption += " " + counted(hidden, "outlier") + " nearer to the box not drawn.";
+  }
+  return {"boxes-" + slug(metric.metric),
+          metric_title(metric.metric) + " of solved runs",
+          caption,
+          kFigureWidth,
+          bottom + kAxisHeight,
+          canvas.take(),
+          box_numbers(data, metric)};
+}
+}  // namespace altiplan::host::report

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "altiplan/error.hpp"
+#include "study/drawing/text.hpp"
+#include "study/plan/study_grid.hpp"
+#include "study/report/analysis.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+/// The variants sorted, and for each old place the new one.
+template <class Less>
+std::vector<std::size_t> sort_variants(std::vector<StoredVariant>& variants, const Less& less) {
+  std::vector<std::size_t> order(variants.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return less(variants[a], variants[b]); });
+  std::vector<StoredVariant> sorted;
+  std::vector<std::size_t> place(variants.size());
+  for (const std::size_t old : order) {
+    place[old] = sorted.size();
+    sorted.push_back(std::move(variants[old]));
+  }
+  variants = std::move(sorted);
+  return place;
+}
+
+/// Place of the entry that a pipeline is a variant of.
+std::size_t entry_of(const StudyFile& file, const StoredVariant& variant) {
+  const auto found = std::find_if(file.pipelines.begin(), file.pipelines.end(),
+                                  [&](const auto& entry) { return entry.id == variant.of; });
+  return std::size_t(found - file.pipelines.begin());
+}
+
+/// For each variant of a pipeline its place in the study's file; an entry's grid varies its last
+/// key fastest, as its runs do.
+std::map<std::string, std::size_t> places_in(const StudyFile& file) {
+  std::map<std::string, std::size_t> places;
+  for (const PipelineChoice& entry : file.pipelines) {
+    try {
+      for (const GridCell& cell : grid_of(entry.set, "set")) {
+        places.try_emplace(entry.id + cell.label, places.size());
+      }
+    } catch (const ConfigError&) {
+      // A study that could not be planned; its pipelines are in the order of their names.
+    }
+  }
+  return places;
+}
+
+void drop_varying_columns(StudyData& data) {
+  std::vector<std::size_t> kept;
+  for (std::size_t at = 0; at < data.columns.size(); ++at) {
+    if (!varies(data.columns[at])) {
+      kept.push_back(at);
+    }
+  }
+  std::vector<std::string> columns;
+  for (const std::size_t at : kept) {
+    columns.push_back(data.columns[at]);
+  }
+  for (RunRow& row : data.rows) {
+    std::vector<double> values;
+    for (const std::size_t at : kept) {
+      values.push_back(row.values[at]);
+    }
+    row.values = std::move(values);
+  }
+  data.columns = std::move(columns);
+}
+}  // namespace
+
+StudyData in_order(StudyData data, bool times) {
+  const std::map<std::string, std::size_t> places = places_in(data.file);
+  const auto place_of = [&](const StoredVariant& variant) {
+    const auto found = places.find(variant.name);
+    return std::pair(entry_of(data.file, variant), found == places.end() ? kNoRow : found->second);
+  };
+  const auto by_entry = [&](const StoredVariant& a, const StoredVariant& b) {
+    const auto left = place_of(a);
+    const auto right = place_of(b);
+    return left != right ? left < right : natural_less(a.name, b.name);
+  };
+  const auto by_name = [](const StoredVariant& a, const StoredVariant& b) {
+    return natural_less(a.name, b.name);
+  };
+  const std::vector<std::size_t> pipeline = sort_variants(data.pipelines, by_entry);
+  const std::vector<std::size_t> scenario = sort_variants(data.scenarios, by_name);
+  for (RunRow& row : data.rows) {
+    row.pipeline = pipeline[row.pipeline];
+    row.scenario = scenario[row.scenario];
+  }
+  std::stable_sort(data.rows.begin(), data.rows.end(), [](const RunRow& a, const RunRow& b) {
+    return std::tie(a.scenario, a.pipeline, a.repetition) <
+           std::tie(b.scenario, b.pipeline, b.repetition);
+  });
+  if (!times) {
+    drop_varying_columns(data);
+  }
+  return data;
+}
+
+const std::vector<std::string>& outcome_order() {
+  static const std::vector<std::string> kOrder{
+      "solved",        "no_route",   "timed_out", "invalid_problem", "rejected",
+      "not_reached",   "collided",   "cancelled", "failed",          "crashed",
+      "out_of_memory", "bad_output", "refused"};
+  return kOrder;
+}
+
+bool unexplained(std::string_view outcome) {
+  for (const char* known : {"solved", "no_route", "timed_out", "cancelled", "invalid_problem",
+                            "rejected", "collided", "not_reached"}) {
+    if (outcome == known) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string outcome_text(std::string_view outcome) {
+  std::string text = printable(outcome);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string run_name(const StudyData& data, const RunRow& row) {
+  return host::run_name(data.pipelines[row.pipeline].name, data.scenarios[row.scenario].name,
+                        row.repetition);
+}
+
+std::vector<Pair> pairs_of(const StudyData& data) {
+  std::vector<Pair> pairs;
+  std::vector<std::size_t> order(data.rows.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](std::size_t at) {
+    return std::pair(data.rows[at].scenario, data.rows[at].repetition);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  for (const std::size_t at : order) {
+    if (pairs.empty() || std::pair(pairs.back().scenario, pairs.back().repetition) != key(at)) {
+      pairs.push_back(
+          {key(at).first, key(at).second, std::vector<std::size_t>(data.pipelines.size(), kNoRow)});
+    }
+    pairs.back().rows[data.rows[at].pipeline] = at;
+  }
+  return pairs;
+}
+}  // namespace altiplan::host::report

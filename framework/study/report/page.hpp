@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/claims/claims.hpp"
+#include "study/drawing/tables.hpp"
+#include "study/report/analysis.hpp"
+#include "study/report/figures.hpp"
+#include "study/report/scenes.hpp"
+
+namespace altiplan::host::report {
+
+/// A group of runs that failed alike.
+struct FailureGroup {
+  std::size_t pipeline = 0;
+  std::string outcome;
+  std::string message;
+  std::vector<std::size_t> rows;
+};
+
+/// What built the plugins that ran.
+struct Builds {
+  std::vector<std::string> versions;              ///< of altiplan
+  std::vector<std::vector<std::string>> plugins;  ///< kind, name, build
+};
+
+/// All that the report says, before it is written in any form.
+struct Content {
+  StudyData data;                        ///< in_order
+  std::vector<std::string> short_names;  ///< of its pipelines
+  bool times = true;
+  std::string title;
+  std::string command;
+  std::string study_text;
+  Analysis analysis;
+  std::vector<JudgedClaim> claims;
+  std::vector<std::string> claims_left_out;  ///< sentences
+  std::vector<FailureGroup> failures;
+  std::vector<Figure> success_figures;
+  std::vector<std::vector<Figure>> metric_figures;  ///< one list per metric of the analysis
+  std::vector<Figure> effort_figures;
+  std::vector<Convergence> convergence;
+  std::vector<Figure> convergence_figures;  ///< of the first kMostConvergence
+  Builds builds;
+  Scenes scenes;
+};
+
+// Tables.
+Table failure_table(const Content& content);
+Table claim_table(const Content& content);
+Table success_table(const Content& content);
+Table success_comparison_table(const Content& content);
+Table metric_table(const Content& content);
+Table comparison_table(const Content& content, const MetricAnalysis& metric);
+/// When the searches of each pipeline had come near to their last length.
+Table convergence_table(const Content& content);
+/// One row per scenario: of each pipeline how many runs solved, and the median of the first metric.
+Table scenario_table(const Content& content);
+Table pipeline_table(const Content& content);
+Table session_table(const Content& content);
+Table build_table(const Content& content);
+/// Every run, with all its values.
+Grid run_grid(const Content& content);
+
+/// "A study of 4 pipelines …", one sentence.
+std::string summary(const Content& content);
+/// "34 of 540 planned runs are stored (6 %): verdicts are preliminary.", "" where all are stored.
+std::string incomplete(const StudyData& data);
+/// Paragraphs: tests, corrections, resamples, what was left out.
+std::vector<std::string> method_text(const Content& content);
+/// The command that repeats a run.
+std::string replay_command(const Content& content, const RunRow& row);
+
+/// What the script needs of all runs, as JSON.
+std::string page_data(const Content& content, const Table& scenarios);
+/// index.html.
+std::string page_text(const Content& content);
+
+/// Figures of convergence that the page carries.
+constexpr std::size_t kMostConvergence = 48;
+/// Rows of the scenario table that stand in the page; the script adds the others.
+constexpr std::size_t kRowsShown = 50;
+}  // namespace altiplan::host::report

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "study/drawing/text.hpp"
+#include "study/report/page.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+/// Packed, some 6 bytes each.
+constexpr std::size_t kMostValues = 300'000;
+
+/// Six digits are more than the page shows; all would only make it larger.
+std::string short_number(std::string_view metric, double value) {
+  if (is_straight(metric, value)) {
+    return "\"straight\"";
+  }
+  value = without_noise(metric, value);
+  if (!std::isfinite(value)) {
+    return "null";
+  }
+  char text[64];
+  const auto done =
+      std::to_chars(text, text + sizeof text, value + 0.0, std::chars_format::general, 6);
+  return {text, done.ptr};
+}
+
+/// Texts, each once, and for each run which.
+class Texts {
+ public:
+  std::size_t operator()(const std::string& text) {
+    const auto [found, is_new] = index_.try_emplace(text, all_.size());
+    if (is_new) {
+      all_.push_back(printable(text, true));
+    }
+    return found->second;
+  }
+  Json take() { return std::move(all_); }
+
+ private:
+  std::map<std::string, std::size_t> index_;
+  Json all_ = Json::array();
+};
+
+Json names(const std::vector<StoredVariant>& variants) {
+  Json all = Json::array();
+  for (const StoredVariant& variant : variants) {
+    all.push_back(printable(variant.name));
+  }
+  return all;
+}
+
+/// The columns that the page carries: all, or of many runs the metrics of the whole run and those
+/// that are compared.
+std::vector<std::size_t> shown_columns(const Content& content) {
+  const StudyData& data = content.data;
+  const bool all = data.rows.size() * data.columns.size() <= kMostValues;
+  std::vector<std::size_t> shown;
+  for (std::size_t at = 0; at < data.columns.size(); ++at) {
+    const std::string& name = data.columns[at];
+    const bool compared =
+        std::any_of(content.analysis.metrics.begin(), content.analysis.metrics.end(),
+                    [&](const MetricAnalysis& metric) { return metric.metric == name; });
+    if (all || compared || name.find('.') == std::string::npos) {
+      shown.push_back(at);
+    }
+  }
+  return shown;
+}
+
+/// The values of each run as one text, which is smaller than numbers of JSON with 17 digits.
+std::string values_json(const StudyData& data, const std::vector<std::size_t>& columns) {
+  std::string text = "[";
+  for (const RunRow& row : data.rows) {
+    text += text.size() > 1 ? ",[" : "[";
+    for (const std::size_t at : columns) {
+      text += (at == columns.front() ? "" : ",") + short_number(data.columns[at], row.values[at]);
+    }
+    text += "]";
+  }
+  return text + "]";
+}
+}  // namespace
+
+std::string page_data(const Content& content, const Table& scenarios) {
+  const StudyData& data = content.data;
+  Json json;
+  json["pipelines"] = names(data.pipelines);
+  json["scenarios"] = names(data.scenarios);
+  json["columns"] = Json::array();
+  const std::vector<std::size_t> columns = shown_columns(content);
+  for (const std::size_t at : columns) {
+    const std::string& name = data.columns[at];
+    json["columns"].push_back({printable(name), metric_title(name), metric_unit(name)});
+  }
+  json["all_columns"] = columns.size() == data.columns.size();
+  Texts outcomes;
+  Texts messages;
+  json["runs"] = Json::array();
+  for (const RunRow& row : data.rows) {
+    Json run{row.scenario,          row.pipeline,         row.repetition, std::to_string(row.seed),
+             outcomes(row.outcome), messages(row.message)};
+    if (content.times) {
+      run.push_back(row.store);
+      run.push_back(row.id);
+    }
+    json["runs"].push_back(std::move(run));
+  }
+  json["outcomes"] = outcomes.take();
+  json["stores"] = Json::array({"DB"});  // of whose number nothing may depend
+  if (content.times) {
+    json["stores"] = Json::array();
+    for (const std::string& store : data.stores) {
+      json["stores"].push_back(printable(store));
+    }
+  }
+  json["scenes"] = Json::array();
+  for (const PackedScene& scene : content.scenes.scenes) {
+    json["scenes"].push_back(scene.rows);
+  }
+  json["why_not"] = Json::array();
+  for (const auto& [row, why] : content.scenes.why_not) {
+    json["why_not"].push_back({row, messages(why)});
+  }
+  json["messages"] = messages.take();
+  json["more_rows"] = Json::array();
+  for (std::size_t at = kRowsShown; at < scenarios.rows.size(); ++at) {
+    json["more_rows"].push_back(html_row(scenarios, at));
+  }
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.back() = ',';
+  return text + "\"values\":" + values_json(data, columns) + "}";
+}
+}  // namespace altiplan::host::report

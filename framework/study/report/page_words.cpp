@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "study/drawing/text.hpp"
+#include "study/report/page.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+/// "all 3 claims hold", "2 of 3 claims hold, 1 fails".
+std::string claims_in_short(const std::vector<JudgedClaim>& claims) {
+  std::map<Verdict, std::size_t> counts;
+  for (const JudgedClaim& judged : claims) {
+    ++counts[judged.verdict];
+  }
+  const std::size_t hold = counts[Verdict::holds];
+  if (claims.size() == 1) {
+    static constexpr const char* kWords[] = {"holds", "fails", "is undecided", "has no data"};
+    return std::string("its claim ") + kWords[int(claims.front().verdict)];
+  }
+  if (hold == claims.size()) {
+    return "all " + grouped(hold) + " claims hold";
+  }
+  std::string text = (hold == 0 ? "none" : grouped(hold)) + " of " +
+                     counted(claims.size(), "claim") + (hold < 2 ? " holds" : " hold");
+  if (const std::size_t fail = counts[Verdict::fails]; fail > 0) {
+    text += ", " + grouped(fail) + (fail == 1 ? " fails" : " fail");
+  }
+  if (counts[Verdict::undecided] > 0) {
+    text += ", " + grouped(counts[Verdict::undecided]) + " undecided";
+  }
+  if (counts[Verdict::no_data] > 0) {
+    text += ", " + grouped(counts[Verdict::no_data]) + " without data";
+  }
+  return text;
+}
+
+std::size_t most_repetitions(const StudyData& data) {
+  int most = 0;
+  for (const RunRow& row : data.rows) {
+    most = std::max(most, row.repetition + 1);
+  }
+  return std::size_t(most);
+}
+
+std::string left_out_text(const Content& content) {
+  std::string text;
+  for (const std::string& line : content.analysis.left_out) {
+    text += line + " ";
+  }
+  for (const std::string& line : content.claims_left_out) {
+    text += line + " ";
+  }
+  for (const MetricAnalysis& metric : content.analysis.metrics) {
+    if (!metric.why_no_ranking.empty()) {
+      text += metric_title(metric.metric) + ": no ranking. " + metric.why_no_ranking + " ";
+    }
+  }
+  return text;
+}
+}  // namespace
+
+std::string summary(const Content& content) {
+  const StudyData& data = content.data;
+  if (data.rows.empty()) {
+    return "No runs yet.";
+  }
+  std::size_t solved = 0;
+  std::size_t faults = 0;
+  for (const RunRow& row : data.rows) {
+    solved += row.solved();
+    faults += unexplained(row.outcome);
+  }
+  std::string text = counted(data.pipelines.size(), "pipeline") + " on " +
+                     counted(data.scenarios.size(), "scenario");
+  if (const std::size_t repetitions = most_repetitions(data); repetitions > 1) {
+    text += ", " + grouped(repetitions) + " repetitions";
+  }
+  text += ": " + grouped(solved) + " of " + counted(data.rows.size(), "run") + " solved";
+  if (!content.claims.empty()) {
+    text += "; " + claims_in_short(content.claims);
+  }
+  return text + "; " +
+         (faults == 0 ? "no unexplained failures" : counted(faults, "unexplained failure")) + ".";
+}
+
+std::string incomplete(const StudyData& data) {
+  const std::size_t stored = data.rows.size();
+  if (stored >= data.planned) {
+    return "";
+  }
+  const std::size_t share = 100 * stored / data.planned;
+  return grouped(stored) + " of " + counted(data.planned, "planned run") +
+         (stored == 1 ? " is" : " are") + " stored (" +
+         (share == 0 && stored > 0 ? "less than 1" : std::to_string(share)) +
+         " %): verdicts are preliminary.";
+}
+
+std::vector<std::string> method_text(const Content& content) {
+  std::vector<std::string> text;
+  text.emplace_back(
+      "A pair is one scenario and repetition; every pipeline runs it with the same seed. A value "
+      "counts where its run solved and has it as a finite number; those that say how a run went "
+      "wrong (reached, collisions, least separation) count in every run that has them.");
+  text.emplace_back(
+      "Success: the 95 % interval of a share is Wilson's score interval where runs are independent "
+      "(one per scenario, or one scenario); where all runs of all scenarios agree, Wilson's with a "
+      "scenario as one trial; else the bootstrap's, as below. Claims on a share have the same. Two "
+      "pipelines are compared by the exact two-sided sign test on scenarios: in how many one "
+      "solved more of the repetitions that both have run, and in how many the other; with one "
+      "repetition that is McNemar's test. Of one scenario, repetitions are counted. Holm's "
+      "step-down correction is over all pairs of pipelines.");
+  text.emplace_back(
+      "Metrics: a pipeline is compared against another on the pairs that both solved. The effect "
+      "is the median of the ratio of its value to the other's where all values of the metric are "
+      "positive, else of the difference. Its 95 % interval is the percentile bootstrap over " +
+      grouped(resamples(pairs_of(content.data).size(), content.data.pipelines.size())) +
+      " resamples, of scenarios with all their repetitions (of repetitions where there is one "
+      "scenario), drawn from the study's seed " +
+      std::to_string(content.data.file.seed) + "; of fewer than " +
+      std::to_string(fewest_units(kConfidence)) + " there is none, as not even their whole range " +
+      "holds the median with that confidence.");
+  text.emplace_back(
+      "Wilcoxon's signed-rank test is two-sided on the differences, one per scenario (the median "
+      "over its repetitions) or, of one scenario, one per repetition; zeros are dropped, ties "
+      "share the mean of their ranks; exact for at most 50 differences, else by the normal "
+      "distribution with correction for ties, not for continuity. n is the number of differences. "
+      "Rank-biserial: matched pairs, -1 where the pipeline always has less than the one it is "
+      "compared against. Holm's correction is over all pairs of pipelines, for each metric.");
+  text.emplace_back(
+      "Ranks: Friedman's test, corrected for ties, and Nemenyi's critical difference at 5 % "
+      "(Demšar "
+      "2006), over scenarios (medians over repetitions) that all pipelines solved, or over "
+      "repetitions of one scenario.");
+  text.emplace_back(
+      "Curves of runs solved count a run that did not solve among all and never among the solved: "
+      "its time is censored. Performance profiles: Dolan and Moré (2002). Box plots: Tukey's, "
+      "whiskers at the last value within 1.5 interquartile ranges.");
+  text.push_back("Scenes: " + content.scenes.what);
+  if (const std::string left_out = left_out_text(content); !left_out.empty()) {
+    text.push_back("Left out: " + left_out);
+  }
+  if (!content.times) {
+    text.push_back(
+        "Made with --no-times: all that differs from run to run is left out (values whose names "
+        "end in time_s or memory_mb, run ids, sessions, machines, dates).");
+  }
+  return text;
+}
+}  // namespace altiplan::host::report

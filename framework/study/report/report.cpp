@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/report/report.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <set>
+#include <tuple>
+
+#include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/output_file.hpp"
+#include "study/drawing/text.hpp"
+#include "study/report/page.hpp"
+#include "study/store/load_study.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMark = "<meta name=\"generator\" content=\"altiplan report\">";
+
+std::vector<FailureGroup> failures_of(const StudyData& data) {
+  std::map<std::tuple<std::size_t, std::string, std::string>, FailureGroup> groups;
+  for (std::size_t at = 0; at < data.rows.size(); ++at) {
+    const RunRow& row = data.rows[at];
+    if (unexplained(row.outcome)) {
+      FailureGroup& group = groups[{row.pipeline, row.outcome, row.message}];
+      group.pipeline = row.pipeline;
+      group.outcome = row.outcome;
+      group.message = row.message;
+      group.rows.push_back(at);
+    }
+  }
+  std::vector<FailureGroup> all;
+  for (auto& [key, group] : groups) {
+    all.push_back(std::move(group));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const FailureGroup& a, const FailureGroup& b) {
+    return a.rows.size() > b.rows.size();
+  });
+  return all;
+}
+
+/// Of one result for each pipeline and each scenario file.
+Builds builds_of(const StudyData& data, const ResultSource& results) {
+  std::set<std::pair<std::size_t, std::string>> seen;
+  std::set<std::string> versions;
+  std::set<std::vector<std::string>> plugins;
+  for (const RunRow& row : data.rows) {
+    const auto kind = std::pair(row.pipeline, data.scenarios[row.scenario].of);
+    if (seen.count(kind) > 0) {
+      continue;
+    }
+    const Json json = Json::parse(results(row), nullptr, false);
+    if (!json.is_object() || !json.contains("version") || !json.contains("plugins")) {
+      continue;
+    }
+    seen.insert(kind);
+    versions.insert(json.value("version", ""));
+    for (const Json& plugin : json.at("plugins")) {
+      if (plugin.is_object()) {
+        plugins.insert(
+            {plugin.value("kind", ""), plugin.value("name", ""), plugin.value("build", "")});
+      }
+    }
+  }
+  return {{versions.begin(), versions.end()}, {plugins.begin(), plugins.end()}};
+}
+
+void judge_claims(Content& content) {
+  for (const ClaimEntry& claim : content.data.file.claims) {
+    JudgedClaim judged = judge_claim(content.data, claim);
+    if (judged.measured && !content.times) {
+      content.claims_left_out.push_back("The claim '" + claim.id +
+                                        "' is on measured times or memory, and is left out.");
+    } else {
+      content.claims.push_back(std::move(judged));
+    }
+  }
+}
+
+void draw(Content& content) {
+  const StudyData& data = content.data;
+  content.success_figures = {success_figure(data, content.analysis),
+                             outcome_figure(data, content.analysis)};
+  for (const MetricAnalysis& metric : content.analysis.metrics) {
+    std::vector<Figure> figures{box_figure(data, metric)};
+    if (!metric.comparisons.empty()) {
+      figures.push_back(comparison_figure(data, metric));
+    }
+    if (auto ranks = rank_figure(data, metric)) {
+      figures.push_back(std::move(*ranks));
+    }
+    if (auto profile = profile_figure(data, metric)) {
+      figures.push_back(std::move(*profile));
+    }
+    content.metric_figures.push_back(std::move(figures));
+  }
+  for (const char* effort : {"plan_time_s", "expanded"}) {
+    if (auto figure = effort_figure(data, effort)) {
+      content.effort_figures.push_back(std::move(*figure));
+    }
+  }
+  std::set<std::string> names;
+  for (const Convergence& convergence : content.convergence) {
+    if (names.size() < kMostConvergence) {
+      content.convergence_figures.push_back(convergence_figure(data, convergence));
+      std::string& name = content.convergence_figures.back().name;
+      while (!names.insert(name).second) {
+        name += "-2";
+      }
+    }
+  }
+}
+
+Content content_of(const Source& source, const Options& options) {
+  Content content;
+  content.data = in_order(source.data, options.times);
+  content.short_names = short_names(content.data);
+  content.times = options.times;
+  content.title = printable(options.title.empty() ? content.data.file.name : options.title);
+  content.title = content.title.empty() ? "Study" : content.title;
+  content.command = options.command;
+  content.study_text = source.study_text;
+  content.analysis = analyse(content.data, options.times);
+  judge_claims(content);
+  content.failures = failures_of(content.data);
+  content.convergence = convergence_of(content.data, source.traces);
+  draw(content);
+  content.builds = builds_of(content.data, source.results);
+  SceneOptions scenes = options.scenes;
+  scenes.times = options.times;
+  content.scenes = build_scenes(content.data, content.analysis, source.results, scenes);
+  return content;
+}
+
+std::vector<Figure> all_figures(const Content& content) {
+  std::vector<Figure> all = content.success_figures;
+  for (const auto& figures : content.metric_figures) {
+    all.insert(all.end(), figures.begin(), figures.end());
+  }
+  all.insert(all.end(), content.effort_figures.begin(), content.effort_figures.end());
+  all.insert(all.end(), content.convergence_figures.begin(), content.convergence_figures.end());
+  return all;
+}
+
+void write_tables(const Content& content, const fs::path& folder) {
+  std::vector<Table> tables{success_table(content), metric_table(content), claim_table(content)};
+  if (content.data.pipelines.size() > 1) {
+    tables.push_back(success_comparison_table(content));
+    for (const MetricAnalysis& metric : content.analysis.metrics) {
+      tables.push_back(comparison_table(content, metric));
+    }
+  }
+  if (!content.convergence.empty()) {
+    tables.push_back(convergence_table(content));
+  }
+  for (Table& table : tables) {
+    table.note = incomplete(content.data);
+    write_file(folder / (table.name + ".md"), markdown_text(table));
+    write_file(folder / (table.name + ".tex"), latex_text(table));
+  }
+  const Table scenarios = scenario_table(content);
+  Grid grid;
+  for (const Column& column : scenarios.columns) {
+    grid.columns.push_back(column.title);
+  }
+  for (const auto& row : scenarios.rows) {
+    grid.rows.emplace_back();
+    for (const Cell& cell : row) {
+      // "3/4" stays; of a median all digits that it has.
+      const bool is_number =
+          !std::isnan(cell.sort) && cell.text.find('/') == std::string::npos && cell.text != "–";
+      grid.rows.back().push_back(is_number ? exact(cell.sort) : cell.text == "–" ? "" : cell.text);
+    }
+  }
+  write_file(folder / "scenarios.csv", csv_text(grid));
+}
+
+void write_parts(const Content& content, const std::string& page, const fs::path& folder) {
+  fs::create_directories(folder / "figures");
+  fs::create_directories(folder / "tables");
+  for (const Figure& figure : all_figures(content)) {
+    write_file(folder / "figures" / (figure.name + ".svg"), svg_text(figure, false));
+    write_file(folder / "figures" / (figure.name + ".csv"), csv_text(figure.numbers));
+  }
+  write_tables(content, folder / "tables");
+  write_file(folder / "runs.csv", csv_text(run_grid(content)));
+  write_file(folder / "index.html", page);
+}
+
+/// Each takes the other's place, also where one of them is not there; again, and all is as it was.
+void exchange(const fs::path& a, const fs::path& b) {
+  if (!fs::exists(b)) {
+    fs::rename(a, b);
+  } else if (!fs::exists(a)) {
+    fs::rename(b, a);
+  } else if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS) {
+      throw fs::filesystem_error("rename", b, std::error_code(errno, std::generic_category()));
+    }
+    const fs::path aside = a.string() + ".earlier";  // a file system that knows no exchange
+    fs::rename(b, aside);
+    fs::rename(a, b);
+    fs::rename(aside, a);
+  }
+}
+
+/// An earlier report goes when all of the new one is in its place.
+void put_in_place(const fs::path& beside, const fs::path& folder) {
+  const auto lock = uninterrupted();
+  std::vector<const char*> done;
+  try {
+    for (const char* part : {"figures", "tables", "runs.csv", "index.html"}) {
+      exchange(beside / part, folder / part);
+      done.push_back(part);
+    }
+  } catch (const fs::filesystem_error&) {
+    for (const char* part : done) {
+      exchange(beside / part, folder / part);
+    }
+    throw;
+  }
+}
+
+bool is_report(const fs::path& folder) {
+  const std::string file = (folder / "index.html").string();
+  if (!kit::why_unreadable(file).empty()) {
+    return false;
+  }
+  kit::InputFile page(file);
+  std::string start(1000, '\0');
+  page.read(start.data(), std::streamsize(start.size()));
+  return start.find(kMark) != std::string::npos;
+}
+}  // namespace
+
+void expect_report_folder(const fs::path& folder) {
+  std::error_code code;
+  if (!fs::exists(folder, code)) {
+    return;
+  }
+  if (!fs::is_directory(folder, code)) {
+    throw Error("-o: '" + folder.string() + "' is a file, expected a folder");
+  }
+  if (!fs::is_empty(folder, code) && !is_report(folder)) {
+    throw Error("-o: '" + folder.string() +
+                "' holds other files, expected a new folder or one of an earlier report");
+  }
+}
+
+Source load_source(const std::vector<std::string>& stores) {
+  Source source;
+  source.data = load_study_data(stores);
+  auto open = std::make_shared<std::vector<std::unique_ptr<Store>>>();
+  for (const std::string& store : stores) {
+    open->push_back(std::make_unique<Store>(store, StoreMode::read));
+  }
+  source.study_text = open->front()->study()["text"];
+  source.results = [open](const RunRow& row) {
+    const auto run = open->at(row.store)->run(row.id);
+    return run ? run->result : std::string();
+  };
+  source.traces = [open](const RunRow& row) { return open->at(row.store)->trace(row.id); };
+  return source;
+}
+
+Written write_report(const Source& source, const Options& options, const fs::path& folder) {
+  expect_report_folder(folder);
+  const Content content = content_of(source, options);
+  const std::string page = page_text(content);
+  const fs::path beside = name_beside(fs::absolute(folder) / "report");
+  // What has taken its place is not in it any more, and the folder goes where nothing has.
+  const Unfinished unfinished([beside] {
+    std::error_code ignored;
+    fs::remove_all(beside, ignored);
+    fs::remove(beside.parent_path(), ignored);
+  });
+  try {
+    write_parts(content, page, beside);
+    put_in_place(beside, folder);
+  } catch (const fs::filesystem_error& error) {
+    throw Error("-o: cannot write into '" + folder.string() + "': " + error.code().message());
+  }
+  Written written;
+  written.page_bytes = page.size();
+  written.figures = all_figures(content).size();
+  written.scenes = content.scenes.scenes.size();
+  written.notes = content.scenes.notes;
+  written.changed = content.scenes.changed;
+  const std::string part = incomplete(content.data);
+  written.summary = (part.empty() ? "" : part + " ") + summary(content);
+  return written;
+}
+}  // namespace altiplan::host::report

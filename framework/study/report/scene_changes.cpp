@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <map>
+
+#include "study/report/scenes.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+/// Builds by kind and name, of the plugins that make the world: what planned a route is in it.
+std::map<std::string, std::string> world_builds(const Json& plugins) {
+  std::map<std::string, std::string> builds;
+  for (const Json& plugin : plugins) {
+    const std::string kind = plugin.at("kind");
+    if (kind == "environment" || kind == "constraint") {
+      builds[kind + " '" + plugin.at("name").get<std::string>() + "'"] = plugin.at("build");
+    }
+  }
+  return builds;
+}
+}  // namespace
+
+std::vector<std::string> what_changed(const StoredResult& stored) {
+  std::vector<std::string> changes;
+  for (const std::string& file : stored.changed) {
+    std::error_code code;
+    changes.push_back(file + (std::filesystem::exists(file, code) ? " has changed since"
+                                                                  : " is not there any more"));
+  }
+  if (!changes.empty()) {
+    return changes;  // what the files say now may name other plugins
+  }
+  const auto now = world_builds(plugins_json(load_config(stored.pipeline, stored.overrides)));
+  for (const auto& [plugin, build] : world_builds(stored.json.at("plugins"))) {
+    const auto found = now.find(plugin);
+    if (found == now.end() || found->second != build) {
+      changes.push_back(plugin + " is of another build than then");
+    }
+  }
+  return changes;
+}
+}  // namespace altiplan::host::report

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <set>
+
+#include "host/base/base64.hpp"
+#include "study/report/scenes.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+constexpr int kMostPosts = 140;  // on the longer side
+constexpr std::size_t kMostSamples = 240;
+constexpr float kHeightSteps = 8;  // to the metre; finer heights would not compress
+
+std::vector<float> floats(const std::string& text) {
+  const std::vector<std::byte> bytes = from_base64(text);
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+  return values;
+}
+
+void thin_ground(Json& scene) {
+  Json& ground = scene.at("ground");
+  if (ground.is_null()) {
+    return;
+  }
+  const int nx = ground.at("nx").get<int>();
+  const int ny = ground.at("ny").get<int>();
+  const int every = (std::max(nx, ny) - 1) / kMostPosts + 1;
+  if ((nx - 1) / every < 1 || (ny - 1) / every < 1) {
+    return;  // a strip: it has few posts
+  }
+  const std::vector<float> heights = floats(ground.at("heights").get<std::string>());
+  std::vector<float> kept;
+  for (int j = 0; j < ny; j += every) {
+    for (int i = 0; i < nx; i += every) {
+      const float height = heights[std::size_t(j) * std::size_t(nx) + std::size_t(i)];
+      kept.push_back(std::round(height * kHeightSteps) / kHeightSteps);
+    }
+  }
+  if (every > 1) {
+    if (ground.at("of").is_null()) {
+      ground["of"] = {nx, ny};
+    }
+    ground["nx"] = (nx - 1) / every + 1;
+    ground["ny"] = (ny - 1) / every + 1;
+    ground["dx"] = ground.at("dx").get<double>() * every;
+    ground["dy"] = ground.at("dy").get<double>() * every;
+    scene["notes"].push_back("the report shows the ground at one in " +
+                             std::to_string(every * every) + " posts");
+  }
+  ground["heights"] = base64_of(kept);
+}
+
+/// Adds the sample with the least value.
+void keep_least(const Json& values, std::set<std::size_t>& kept) {
+  std::optional<std::size_t> least;
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    if (values[at].is_number() && (!least || values[at] < values[*least])) {
+      least = at;
+    }
+  }
+  if (least) {
+    kept.insert(*least);
+  }
+}
+
+Json heights_over_ground(const Json& profile) {
+  Json heights = Json::array();
+  for (std::size_t at = 0; at < profile.at("ground").size(); ++at) {
+    const Json& ground = profile.at("ground")[at];
+    heights.push_back(ground.is_null()
+                          ? ground
+                          : Json(profile.at("altitude")[at].get<double>() - ground.get<double>()));
+  }
+  return heights;
+}
+
+/// Every n-th sample, the last, the lowest and nearest ones, and, where there is room, all that
+/// have a turn.
+void thin_profile(Json& profile) {
+  if (profile.is_null()) {
+    return;
+  }
+  const std::size_t count = profile.at("s").size();
+  if (count <= kMostSamples) {
+    return;
+  }
+  const Json& turns = profile.at("turn");
+  const auto corners = std::size_t(
+      std::count_if(turns.begin(), turns.end(), [](const Json& turn) { return !turn.is_null(); }));
+  const bool keep_corners = corners <= kMostSamples / 2;
+  const std::size_t every = (count - 1) / (kMostSamples - (keep_corners ? corners : 0)) + 1;
+  std::set<std::size_t> kept{count - 1};
+  for (std::size_t at = 0; at < count; ++at) {
+    if (at % every == 0 || (keep_corners && !turns[at].is_null())) {
+      kept.insert(at);
+    }
+  }
+  keep_least(heights_over_ground(profile), kept);
+  for (const Json& clearances : profile.at("to")) {
+    keep_least(clearances, kept);
+  }
+  const auto thin = [&](Json& values) {
+    Json some = Json::array();
+    for (const std::size_t at : kept) {
+      some.push_back(std::move(values[at]));
+    }
+    values = std::move(some);
+  };
+  for (auto& [key, values] : profile.items()) {
+    if (values.is_array()) {
+      thin(values);
+    }
+  }
+  for (Json& values : profile.at("to")) {
+    thin(values);
+  }
+}
+}  // namespace
+
+void thin_scene(Json& scene) {
+  thin_ground(scene);
+  for (Json& result : scene.at("results")) {
+    thin_profile(result.at("profile"));
+    if (!result.at("flight").is_null()) {
+      thin_profile(result.at("flight").at("profile"));
+    }
+  }
+}
+
+void drop_times(Json& json) {
+  if (json.is_object()) {
+    Json kept = Json::object();
+    for (auto& [key, value] : json.items()) {
+      if (!key.ends_with("time_s")) {
+        kept[key] = std::move(value);
+      }
+    }
+    json = std::move(kept);
+  }
+  if (json.is_structured()) {
+    for (Json& part : json) {
+      drop_times(part);
+    }
+  }
+}
+}  // namespace altiplan::host::report

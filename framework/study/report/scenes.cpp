@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/report/scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "altiplan/random.hpp"
+#include "host/view/scene.hpp"
+#include "study/drawing/text.hpp"
+#include "study/report/packed.hpp"
+
+namespace altiplan::host::report {
+namespace {
+
+constexpr unsigned kSeconds = 20;        // to build one scene
+constexpr std::size_t kMostRoutes = 12;  // in one scene; more would hide each other
+
+/// Takes one of each list in turn, so that every kind has its examples.
+std::vector<std::size_t> in_turn(const std::vector<std::vector<std::size_t>>& lists) {
+  std::vector<std::size_t> taken;
+  bool any = true;
+  for (std::size_t at = 0; any; ++at) {
+    any = false;
+    for (const auto& list : lists) {
+      if (at < list.size()) {
+        taken.push_back(list[at]);
+        any = true;
+      }
+    }
+  }
+  return taken;
+}
+
+std::vector<std::size_t> failures(const StudyData& data) {
+  using Kind = std::tuple<bool, std::size_t, std::string, std::string>;
+  std::map<Kind, std::vector<std::size_t>> kinds;  // unexplained ones first
+  for (std::size_t at = 0; at < data.rows.size(); ++at) {
+    const RunRow& row = data.rows[at];
+    if (!row.solved()) {
+      kinds[{!unexplained(row.outcome), row.pipeline, row.outcome, row.message}].push_back(at);
+    }
+  }
+  std::vector<std::vector<std::size_t>> lists;
+  for (auto& [kind, rows] : kinds) {
+    lists.push_back(std::move(rows));
+  }
+  return in_turn(lists);
+}
+
+std::vector<std::size_t> outliers(const Analysis& analysis) {
+  std::vector<std::vector<std::size_t>> lists;
+  for (const MetricAnalysis& metric : analysis.metrics) {
+    for (const Sample& sample : metric.samples) {
+      if (!sample.box) {
+        continue;
+      }
+      std::vector<std::size_t> far = sample.box->outliers;
+      std::stable_sort(far.begin(), far.end(), [&](std::size_t a, std::size_t b) {
+        return std::abs(sample.values[a] - sample.box->median) >
+               std::abs(sample.values[b] - sample.box->median);
+      });
+      lists.emplace_back();
+      for (const std::size_t at : far) {
+        lists.back().push_back(sample.rows[at]);
+      }
+    }
+  }
+  return in_turn(lists);
+}
+
+/// All rows in an order that follows the study's seed.
+std::vector<std::size_t> shuffled(const StudyData& data) {
+  std::vector<std::size_t> rows(data.rows.size());
+  RandomStream stream = RandomStream(std::uint64_t(data.file.seed)).sub("report scenes");
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    const auto other = std::size_t(stream.integer(0, std::int64_t(at)));
+    rows[at] = rows[other];
+    rows[other] = at;
+  }
+  return rows;
+}
+
+StoredResult result_of(const StudyData& data, std::size_t row, const std::string& text,
+                       const SceneOptions& options) {
+  Overrides overrides;
+  overrides.plugin_path = options.plugin_path;
+  Json json = Json::parse(text);
+  if (!options.times) {
+    drop_times(json);
+  }
+  json["trace"] = nullptr;
+  return stored_result(run_name(data, data.rows[row]), std::move(json), overrides);
+}
+
+/// The scene of these rows of one pair, as text of JSON.
+std::string scene_text(const StudyData& data, const std::vector<std::size_t>& rows,
+                       const std::vector<StoredResult>& results) {
+  Json scene = build_scene(results).json;
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    const RunRow& row = data.rows[rows[at]];
+    scene["results"][at]["name"] = data.pipelines[row.pipeline].name;
+    scene["results"][at]["file"] = run_name(data, row);
+  }
+  const RunRow& first = data.rows[rows.front()];
+  scene["title"] = data.scenarios[first.scenario].name + " #" + std::to_string(first.repetition);
+  thin_scene(scene);
+  return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A line of JSON, for each row what has changed since it was made, and after it the packed scene
+/// of those rows for which nothing has: a route belongs into the world that it was planned in.
+std::string pair_text(const StudyData& data, const std::vector<std::size_t>& rows,
+                      const std::vector<std::string>& texts, const SceneOptions& options) {
+  Json changed = Json::array();
+  std::vector<std::size_t> drawn;
+  std::vector<StoredResult> results;
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    StoredResult result = result_of(data, rows[at], texts[at], options);
+    changed.push_back(what_changed(result));
+    if (changed.back().empty()) {
+      drawn.push_back(rows[at]);
+      results.push_back(std::move(result));
+    }
+  }
+  return changed.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n" +
+         (drawn.empty() ? "" : packed(scene_text(data, drawn, results)));
+}
+
+class SceneMaker {
+ public:
+  SceneMaker(const StudyData& data, const ResultSource& results, const SceneOptions& options)
+      : data_(data), results_(results), options_(options) {}
+
+  void add(const std::vector<std::size_t>& chosen) {
+    std::vector<std::size_t> rows;
+    std::vector<std::string> texts;
+    for (const std::size_t row : chosen) {
+      std::string text = results_(data_.rows[row]);
+      if (!text.empty() && texts.size() < kMostRoutes) {
+        texts.push_back(std::move(text));
+        rows.push_back(row);
+      } else if (!text.empty()) {
+        why_not_[row] = "a scene holds " + std::to_string(kMostRoutes) + " runs at most";
+      }
+    }
+    if (texts.empty()) {
+      ++empty_;
+      return;
+    }
+    try {
+      keep(chosen, rows,
+           made_in_child([&] { return pair_text(data_, rows, texts, options_); }, kSeconds));
+    } catch (const std::exception& error) {  // of JSON too: a plugin may spoil what its child says
+      leave_out(chosen, error.what());
+    }
+  }
+
+  Scenes take(std::size_t pairs) {
+    Scenes made;
+    made.what = what(pairs);
+    made.scenes = std::move(scenes_);
+    made.notes.assign(notes_.begin(), notes_.end());
+    for (const auto& [change, runs] : changed_) {
+      made.changed.push_back(change + ": " + counted(runs, "run") + " made before " +
+                             (runs == 1 ? "is" : "are") + " not drawn in 3-D.");
+    }
+    made.why_not = std::move(why_not_);
+    return made;
+  }
+
+ private:
+  void leave_out(const std::vector<std::size_t>& chosen, const std::string& why) {
+    notes_.insert(run_name(data_, data_.rows[chosen.front()]) + ": " + why);
+    for (const std::size_t row : chosen) {
+      why_not_.try_emplace(row, why);
+    }
+  }
+
+  /// `text` as of pair_text.
+  void keep(const std::vector<std::size_t>& chosen, const std::vector<std::size_t>& rows,
+            const std::string& text) {
+    const std::size_t line = std::min(text.find('\n'), text.size());
+    const auto changes =
+        Json::parse(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
+    PackedScene made;
+    for (std::size_t at = 0; at < rows.size(); ++at) {
+      for (const std::string& change : changes.at(at)) {
+        ++changed_[change];
+        std::string& why = why_not_[rows[at]];
+        why += (why.empty() ? "" : "; ") + change;
+      }
+      if (changes[at].empty()) {
+        made.rows.push_back(rows[at]);
+      }
+    }
+    made.data = text.substr(std::min(line + 1, text.size()));
+    if (made.rows.empty()) {
+      return;
+    }
+    if (made.data.size() > options_.most_bytes_each) {
+      leave_out(chosen, "its scene has " + grouped(made.data.size()) + " bytes, the limit is " +
+                            grouped(options_.most_bytes_each));
+    } else if (bytes_ + made.data.size() <= options_.most_bytes) {
+      bytes_ += made.data.size();
+      scenes_.push_back(std::move(made));
+    } else {
+      ++beyond_;
+    }
+  }
+
+  std::string what(std::size_t pairs) const {
+    std::size_t runs = 0;
+    for (const PackedScene& scene : scenes_) {
+      runs += scene.rows.size();
+    }
+    std::string text =
+        counted(runs, "run") + " of " + grouped(scenes_.size()) + " of " + counted(pairs, "pair") +
+        " (scenario, repetition) can be seen in 3-D: failures of every kind, outliers, and a "
+        "sample drawn by the study's seed.";
+    if (empty_ > 0) {
+      text += " Of " + counted(empty_, "more pair") + " no pipeline left a result.";
+    }
+    if (beyond_ > 0) {
+      text += " " + counted(beyond_, "more scene") + " did not fit.";
+    }
+    return text;
+  }
+
+  const StudyData& data_;
+  const ResultSource& results_;
+  const SceneOptions& options_;
+  std::vector<PackedScene> scenes_;
+  std::set<std::string> notes_;
+  std::map<std::string, std::size_t> changed_;  // runs of each
+  std::map<std::size_t, std::string> why_not_;
+  std::size_t bytes_ = 0;
+  std::size_t beyond_ = 0;
+  std::size_t empty_ = 0;
+};
+}  // namespace
+
+std::vector<std::vector<std::size_t>> choose_scenes(const StudyData& data, const Analysis& analysis,
+                                                    std::size_t most) {
+  std::map<std::pair<std::size_t, int>, const Pair*> pair_of;
+  const std::vector<Pair> pairs = pairs_of(data);
+  for (const Pair& pair : pairs) {
+    pair_of[{pair.scenario, pair.repetition}] = &pair;
+  }
+  std::set<const Pair*> taken;
+  std::vector<std::vector<std::size_t>> chosen;
+  const auto take = [&](const std::vector<std::size_t>& rows, std::size_t until) {
+    for (const std::size_t at : rows) {
+      const Pair* pair = pair_of.at({data.rows[at].scenario, data.rows[at].repetition});
+      if (chosen.size() >= until) {
+        return;
+      }
+      if (taken.insert(pair).second) {
+        chosen.push_back({at});
+        for (const std::size_t other : pair->rows) {
+          if (other != kNoRow && other != at) {
+            chosen.back().push_back(other);
+          }
+        }
+      }
+    }
+  };
+  take(failures(data), most * 2 / 5);
+  take(outliers(analysis), most * 4 / 5);
+  take(shuffled(data), most);
+  return chosen;
+}
+
+Scenes build_scenes(const StudyData& data, const Analysis& analysis, const ResultSource& results,
+                    const SceneOptions& options) {
+  SceneMaker maker(data, results, options);
+  for (const auto& rows : choose_scenes(data, analysis, options.most)) {
+    maker.add(rows);
+  }
+  return maker.take(pairs_of(data).size());
+}
+}  // namespace altiplan::host::report

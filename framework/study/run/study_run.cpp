@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/run/study_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "host/base/words.hpp"
+#include "study/model/run_values.hpp"
+#include "study/plan/study_selection.hpp"
+#include "study/pool/worker_pool.hpp"
+#include "study/run/machine.hpp"
+#include "study/run/study_worker.hpp"
+#include "study/store/place.hpp"
+#include "study/store/store.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The runs of a plan, and a store that they are put into.
+class Study {
+ public:
+  Study(const StudyPlan& plan, const StudyOptions& options) : plan_(plan), options_(options) {
+    for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+      by_key_[plan.runs[i].key] = i;
+    }
+  }
+
+  /// A run that has ended, as it is stored.
+  StoredRun stored(const PlannedRun& run, const Ended& ended, std::int64_t session) const {
+    const RunOutcome outcome = outcome_of(ended, plan_.file.budget);
+    StoredRun row;
+    row.key = run.key;
+    row.scenario = plan_.scenarios[run.scenario].name;
+    row.pipeline = plan_.pipelines[run.pipeline].name;
+    row.repetition = run.repetition;
+    row.seed = run.seed;
+    row.outcome = outcome.outcome;
+    row.message = outcome.message;
+    row.wall_time_s = ended.wall_s;
+    row.cpu_time_s = ended.cpu_s;
+    row.peak_memory_mb = ended.peak_memory_mb;
+    row.place = ended.place;
+    row.session = session;
+    row.result = outcome.result;
+    row.trace = outcome.trace;
+    if (!row.result.empty()) {
+      row.values = values_of(Json::parse(row.result));
+    }
+    for (const auto& value : {std::pair<std::string, double>{"solved", row.outcome == "solved"},
+                              {"wall_time_s", ended.wall_s},
+                              {"cpu_time_s", ended.cpu_s},
+                              {"peak_memory_mb", ended.peak_memory_mb}}) {
+      row.values.insert(std::lower_bound(row.values.begin(), row.values.end(), value), value);
+    }
+    return row;
+  }
+
+  Work work() const {
+    return [this](const Job& job) {
+      const PlannedRun& run = plan_.runs[job.index];
+      const PlannedConfig planned{[&] { return load_run(plan_, run, options_.plugin_path); },
+                                  [&](const Config& config) {
+                                    return run.key == key_of(config, plan_.file.budget,
+                                                             name_of_run(plan_, run), run.seed);
+                                  }};
+      return study_run(job, planned, plan_.file.budget, options_.traces);
+    };
+  }
+
+  PoolOptions pool_options() const {
+    PoolOptions pool;
+    pool.jobs = options_.jobs;
+    pool.reuse = options_.reuse;
+    pool.limits = job_limits(plan_.file.budget);
+    pool.key = [this](std::size_t i) { return record_key(plan_.runs[i]); };
+    pool.appraise = [this](const Ended& ended) {
+      return appraisal_of(ended, plan_.file.budget, name_of_run(plan_, plan_.runs[ended.job]));
+    };
+    pool.say = options_.say;
+    return pool;
+  }
+
+  /// By which a record in the work folder is known: a later call may have selected other runs.
+  std::string record_key(const PlannedRun& run) const {
+    return run.key + " " + name_of_run(plan_, run);
+  }
+
+  const PlannedRun* find(const std::string& key) const {
+    const auto found = by_key_.find(key);
+    return found == by_key_.end() ? nullptr : &plan_.runs[found->second];
+  }
+
+  /// The file may have grown (more seeds, another pipeline), but not lost what has been run.
+  void expect_same_study(const Store& store) const {
+    const auto names = [](const auto& variants) {
+      std::set<std::string> all;
+      for (const auto& variant : variants) {
+        all.insert(variant.name);
+      }
+      return all;
+    };
+    const std::set<std::string> scenarios = names(plan_.scenarios);
+    const std::set<std::string> pipelines = names(plan_.pipelines);
+    std::size_t others = 0;
+    std::string first;
+    for (const StoredRun& run : store.outlines()) {
+      if (!scenarios.contains(run.scenario) || !pipelines.contains(run.pipeline) ||
+          run.repetition >= plan_.file.repetitions) {
+        first = others++ == 0 ? run_name(run) : first;
+      }
+    }
+    if (others > 0) {
+      throw Error("'" + store.file().string() + "' holds " + counted(others, "run") +
+                  " that this study does not have, such as " + first +
+                  ": give another --out, or --fresh to begin anew");
+    }
+  }
+
+  /// Makes the store one of this study, or refuses one that is of another.
+  void prepare(Store& store) const {
+    if (!store.study().empty()) {
+      expect_same_study(store);
+      drop_outdated(store);
+    }
+    store.set_study({{"name", plan_.file.name},
+                     {"path", plan_.path.string()},
+                     {"text", plan_.text},
+                     {"source", plan_.source},
+                     {"seed", std::to_string(plan_.file.seed)},
+                     {"planned", std::to_string(plan_.planned)}});
+    const auto as_stored = [](const std::vector<Variant>& variants) {
+      std::vector<StoredVariant> all;
+      for (const Variant& variant : variants) {
+        all.push_back({variant.name, variant.of, variant.file.string(), variant.set});
+      }
+      return all;
+    };
+    store.add_variants(as_stored(plan_.scenarios), as_stored(plan_.pipelines));
+  }
+
+  /// Indices of the runs whose keys are not among these.
+  std::vector<std::size_t> without(const std::vector<std::string>& keys) const {
+    const std::set<std::string> there(keys.begin(), keys.end());
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < plan_.runs.size(); ++i) {
+      if (!there.contains(plan_.runs[i].key)) {
+        left.push_back(i);
+      }
+    }
+    return left;
+  }
+
+ private:
+  /// Runs that other files, plugins or another program gave are done again.
+  void drop_outdated(Store& store) const {
+    std::map<std::string, std::string> wanted;
+    for (const PlannedRun& run : plan_.runs) {
+      wanted[name_of_run(plan_, run)] = run.key;
+    }
+    std::vector<std::string> outdated;
+    for (const StoredRun& run : store.outlines()) {
+      const auto found = wanted.find(run_name(run));
+      if (found != wanted.end() && found->second != run.key) {
+        outdated.push_back(run.key);
+      }
+    }
+    if (!outdated.empty()) {
+      options_.say(counted(outdated.size(), "stored run") +
+                   " came of other files, budgets, plugins or another program: done again" +
+                   (plan_.runs.size() < plan_.planned
+                        ? "; so may others be, which this call does not look at"
+                        : ""));
+      store.remove(outdated);
+    }
+  }
+
+  const StudyPlan& plan_;
+  const StudyOptions& options_;
+  std::map<std::string, std::size_t> by_key_;
+};
+
+/// Runs are made with the libraries that the plan has loaded, whatever becomes of their files.
+/// A file that is written slowly changes more than once: it is named once.
+void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs::path>& said) {
+  for (const std::shared_ptr<Registry>& registry : plan.registries) {
+    for (const fs::path& file : registry->changed()) {
+      if (said.insert(file).second) {
+        options.say(file.string() +
+                    " has changed since the study began: the runs of this call are made with the "
+                    "library of its beginning; call the study again to run them with the new one");
+      }
+    }
+  }
+}
+
+/// What a killed call had run and not stored, of this selection or another; one that is out of date
+/// is found out by its key when it is asked for again.
+std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder& folder,
+                    Store& store, std::int64_t session) {
+  const std::vector<Ended> records = folder.records();
+  if (records.empty()) {
+    return 0;
+  }
+  std::map<std::string, PlannedRun> by_name;
+  for (const PlannedRun& run : all_runs(plan)) {
+    by_name[name_of_run(plan, run)] = run;
+  }
+  std::set<std::string> there;
+  for (const StoredRun& run : store.outlines()) {
+    there.insert(run_name(run));
+  }
+  std::vector<StoredRun> found;
+  for (const Ended& ended : records) {
+    const std::size_t space = ended.key.find(' ');
+    const auto run = by_name.find(ended.key.substr(std::min(ended.key.size(), space + 1)));
+    const bool is_final = appraisal_of(ended, plan.file.budget, "").verdict == Appraisal::final;
+    if (run != by_name.end() && is_final && there.insert(run->first).second) {
+      run->second.key = ended.key.substr(0, space);
+      found.push_back(study.stored(run->second, ended, session));
+    }
+  }
+  store.add(found);
+  return found.size();
+}
+}  // namespace
+
+StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const Study study(plan, options);
+  WorkFolder folder(work_folder_of(options.store));  // locked before the store is touched
+  if (options.fresh) {
+    remove_store(options.store);
+    folder.clear();
+  }
+  Store store(options.store, StoreMode::write);
+  study.prepare(store);
+  WorkerPool pool(folder, study.pool_options());
+  StoredSession session = this_session();
+  session.command = options.command;
+  session.jobs = options.jobs;
+  session.reuse = options.reuse;
+  session.limits = pool.limits_kept();
+  const std::int64_t session_id = store.add_session(session);
+  if (const std::size_t found = harvest(study, plan, folder, store, session_id)) {
+    options.say(counted(found, "run") + " of the call before had ended unstored: stored now");
+  }
+  folder.clear();
+  const std::vector<std::size_t> left = study.without(store.keys());
+  StudyProgress progress;
+  progress.runs = plan.runs.size();
+  progress.before = plan.runs.size() - left.size();
+  options.progress(progress);
+  std::set<fs::path> changed;
+  const auto keep = [&](const std::vector<Ended>& ended) {
+    std::vector<StoredRun> rows;
+    for (const Ended& one : ended) {
+      rows.push_back(study.stored(plan.runs[one.job], one, session_id));
+      ++progress.outcomes[rows.back().outcome];
+    }
+    store.add(rows);
+    progress.done += rows.size();
+    progress.elapsed_s = since(start);
+    say_changes(plan, options, changed);
+    options.progress(progress);
+  };
+  const WorkerPool::Finish finish = pool.run(left, study.work(), keep);
+  progress.elapsed_s = since(start);
+  return {progress, finish == WorkerPool::Finish::interrupted};
+}
+
+StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options) {
+  const Study study(plan, options);
+  StudyEstimate estimate;
+  std::vector<std::string> keys;
+  double seconds = 0;
+  std::error_code absent;
+  if (!options.fresh && fs::exists(options.store, absent)) {
+    const Store store(options.store, StoreMode::read);
+    study.expect_same_study(store);
+    for (const StoredRun& run : store.outlines()) {
+      if (study.find(run.key) != nullptr) {
+        keys.push_back(run.key);
+        seconds += run.wall_time_s;
+      }
+    }
+  }
+  const std::vector<std::size_t> left = study.without(keys);
+  estimate.stored = keys.size();
+  estimate.left = left.size();
+  estimate.measured = keys.size();
+  if (keys.empty() && !left.empty()) {
+    std::map<std::size_t, std::size_t> first;  // of each pipeline
+    for (const std::size_t i : left) {
+      first.emplace(plan.runs[i].pipeline, i);
+    }
+    std::vector<std::size_t> probes;
+    for (const auto& [pipeline, run] : first) {
+      probes.push_back(run);
+    }
+    WorkFolder folder(options.store.string() + ".probe");
+    PoolOptions pool_options = study.pool_options();
+    pool_options.reuse = 1;
+    WorkerPool pool(folder, pool_options);
+    pool.run(probes, study.work(), [&](const std::vector<Ended>& ended) {
+      for (const Ended& one : ended) {
+        seconds += one.wall_s;
+        ++estimate.measured;
+      }
+    });
+    folder.clear();
+    estimate.is_probed = true;
+  }
+  estimate.run_s = estimate.measured > 0 ? seconds / double(estimate.measured) : 0;
+  estimate.total_s = estimate.run_s * double(estimate.left) / double(options.jobs);
+  return estimate;
+}
+}  // namespace altiplan::host

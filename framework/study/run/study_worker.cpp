@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/run/study_worker.hpp"
+
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
+#include <new>
+#include <optional>
+#include <system_error>
+
+#include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
+#include "host/base/output_file.hpp"
+#include "host/result/result_json.hpp"
+#include "host/run/pipeline.hpp"
+#include "study/pool/job_record.hpp"
+
+namespace altiplan::host {
+namespace {
+
+// Exit codes of a worker that has left the result as far as it goes in Job::last_words; one that
+// has crashed has also written how, on the last line of its stderr.
+constexpr int kCrashed = 81;
+constexpr int kStuck = 82;
+
+constexpr std::size_t kResultAtMost = std::size_t(256) << 20;
+
+/// A payload is a line of JSON with the lengths of the texts that follow.
+std::string payload_of(const RunOutcome& run) {
+  const Json head = {{"outcome", run.outcome},
+                     {"message", run.message},
+                     {"result_bytes", run.result.size()},
+                     {"trace_bytes", run.trace.size()}};
+  return head.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + run.result + run.trace;
+}
+
+RunOutcome bad_output(const std::string& why) { return {"bad_output", why, "", ""}; }
+
+struct PayloadHead {
+  RunOutcome run;  ///< without result and trace
+  std::size_t bytes = 0;
+  std::size_t result_bytes = 0;
+  std::size_t trace_bytes = 0;
+};
+
+/// nullopt where it is not as it was written.
+std::optional<PayloadHead> head_of(const std::string& payload) {
+  const std::size_t end = payload.find('\n');
+  const Json json = Json::parse(payload.substr(0, end), nullptr, false);
+  PayloadHead head;
+  try {
+    head.run.outcome = json.at("outcome");
+    head.run.message = json.at("message");
+    head.result_bytes = json.at("result_bytes");
+    head.trace_bytes = json.at("trace_bytes");
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+  head.bytes = end + 1;
+  return head;
+}
+
+RunOutcome outcome_of_payload(const std::string& payload) {
+  const std::optional<PayloadHead> head = head_of(payload);
+  if (!head) {
+    return bad_output("the run's record is not as it was written");
+  }
+  if (head->result_bytes > kResultAtMost || head->trace_bytes > kResultAtMost) {
+    return bad_output("its result or its trace is larger than 256 MB");
+  }
+  if (payload.size() - head->bytes != head->result_bytes + head->trace_bytes) {
+    return bad_output("the run's record is not as it was written");
+  }
+  RunOutcome run = head->run;
+  run.result = payload.substr(head->bytes, head->result_bytes);
+  run.trace = payload.substr(head->bytes + head->result_bytes);
+  if (!run.result.empty() && !Json::accept(run.result)) {
+    return bad_output("its result is not JSON");
+  }
+  return run;
+}
+
+/// A message that ends with what the process cannot say any more: how it ended.
+std::string without_cause(std::string message) {
+  if (const std::size_t at = message.find(ProcessGuard::LastWords::kCause); at != message.npos) {
+    message.resize(at);
+  }
+  while (message.ends_with(' ')) {
+    message.pop_back();
+  }
+  return message;
+}
+
+ProcessGuard::LastWords last_words(const Job& job, const Config& config, const RunResult& result) {
+  ProcessGuard::LastWords words;
+  words.for_user = std::string("\n") + ProcessGuard::LastWords::kCause;
+  words.result = file_text(result_json(config, result));
+  words.file = job.last_words;
+  words.exit_code = kCrashed;
+  return words;
+}
+
+/// A step that took more than the study gave it, beyond what stopping takes.
+const StepResult* overtime(const RunResult& result, const StudyBudget& budget) {
+  const auto late = std::find_if(result.steps.begin(), result.steps.end(), [&](const auto& step) {
+    return budget.time_s && step.verb == Verb::plan && step.status == Status::solved &&
+           step.time_s > 1.1 * *budget.time_s + 0.1;
+  });
+  return late == result.steps.end() ? nullptr : &*late;
+}
+
+bool out_of_memory(const RunResult& result) {
+  return result.status == Status::failed &&
+         result.message.find("std::bad_alloc") != std::string::npos;
+}
+
+RunOutcome outcome_of_result(const RunResult& result, const StudyBudget& budget) {
+  RunOutcome run{name(result.status), result.message, "", ""};
+  if (out_of_memory(result)) {
+    run.outcome = "out_of_memory";
+  } else if (const StepResult* late = overtime(result, budget)) {
+    run.outcome = name(Status::timed_out);
+    run.message = late->id + ": '" + late->plugin +
+                  "' says solved, but took more than the time budget of the study";
+  }
+  return run;
+}
+
+RunOutcome run_pipeline(const Job& job, const Config& config, const StudyBudget& budget,
+                        bool trace) {
+  RunOptions options;
+  options.patience_s = std::numeric_limits<double>::max();  // the pool's limits decide
+  if (trace) {
+    options.trace = job.scratch;
+  }
+  std::optional<ProcessGuard> process(std::in_place);
+  options.process = &*process;
+  options.on_call = [&](const RunResult& result) {
+    job.note(without_cause(result.message));
+    process->set_last_words(last_words(job, config, result));
+  };
+  options.on_stuck = [&](const RunResult& result) {
+    write_file(job.last_words, file_text(result_json(config, result)));
+    ::_exit(kStuck);
+  };
+  RunResult result = run(config, options);
+  process.reset();
+  RunOutcome outcome = outcome_of_result(result, budget);
+  if (trace) {
+    result.trace.reset();  // it is not where the run has put it
+    ReadText read = read_from(job.scratch, 0, kResultAtMost + 1);
+    if (read.error != 0 && read.error != ENOENT) {
+      throw MachineFault(unreadable(job.scratch, read.error));
+    }
+    outcome.trace = std::move(read.text);
+    std::error_code error;
+    std::filesystem::remove(job.scratch, error);
+  }
+  outcome.result = file_text(result_json(config, result));
+  return outcome;
+}
+
+/// `files` become those of the run.
+RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
+                       bool trace, std::vector<std::filesystem::path>& files) {
+  try {
+    job.note("reading the files of the run");
+    const Config config = planned.load();
+    files = config.files;
+    const RunOutcome changed{kChanged, "its files have changed since the runs were planned", "",
+                             ""};
+    if (!planned.is_current(config)) {
+      return changed;
+    }
+    RunOutcome run = run_pipeline(job, config, budget, trace);
+    return planned.is_current(config) ? run : changed;  // what plugins read may have changed since
+  } catch (const std::system_error& error) {
+    return {kNotDone, std::string("the system refuses a run what it needs: ") + error.what(), "",
+            ""};
+  } catch (const MachineFault& fault) {
+    return {kNotDone, fault.what(), "", ""};
+  } catch (const PluginError& error) {
+    return {"refused", error.what(), "", ""};
+  } catch (const ConfigError& error) {
+    std::string all;
+    for (const Problem& problem : error.problems()) {
+      all += (all.empty() ? "" : "; ") + problem.text();
+    }
+    if (planned.is_on_trial) {
+      return {kBadParameters, all, "", ""};
+    }
+    // All was read and checked when the study began.
+    return {kNotDone, all + " (unlike when the runs were planned)", "", ""};
+  } catch (const std::bad_alloc&) {
+    return {"out_of_memory", "no memory was left", "", ""};
+  } catch (const std::exception& error) {
+    return {"failed", error.what(), "", ""};
+  }
+}
+
+/// A failure that nothing but the plugin explains, unless the machine had failed.
+bool is_unexplained(const std::string& outcome) {
+  return outcome == "failed" || outcome == "crashed" || outcome == "out_of_memory" ||
+         outcome == "bad_output" || outcome == "refused" || outcome == kBadParameters;
+}
+
+/// "SIGSEGV"
+std::string signal_name(int number) {
+  const char* name = ::sigabbrev_np(number);
+  return name != nullptr ? "SIG" + std::string(name) : "signal " + std::to_string(number);
+}
+
+/// What plugins say need not be UTF-8: U+FFFD stands for what is not.
+std::string in_utf8(const std::string& text) {
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// With the end of what it wrote to stdout and stderr, in one line.
+std::string with_said(const std::string& message, const std::string& said) {
+  constexpr std::size_t kAtMost = 300;
+  std::string line;
+  for (const char c : said.substr(said.size() - std::min(said.size(), kAtMost))) {
+    const bool blank = c >= 0 && c <= ' ';
+    if (!blank) {
+      line += c;
+    } else if (!line.empty() && line.back() != ' ') {
+      line += ' ';
+    }
+  }
+  if (line.ends_with(' ')) {
+    line.pop_back();
+  }
+  return line.empty() ? message : message + "; the last that it wrote: " + line;
+}
+
+/// How the process ended that nobody has ended from outside.
+std::string cause_of(const Ended& ended, std::string& said) {
+  if (ended.how == Ending::killed) {
+    return "was killed by " + signal_name(ended.signal);
+  }
+  if (const std::size_t line = said.rfind('\n');
+      ended.exit_code == kCrashed && line != std::string::npos) {
+    const std::string cause = said.substr(line + 1);
+    said.resize(line);
+    return cause;
+  }
+  return "ended the process with exit code " + std::to_string(ended.exit_code);
+}
+
+RunOutcome crashed(const Ended& ended) {
+  std::string said = ended.said;
+  RunOutcome run{"crashed", ended.note + " " + cause_of(ended, said), "", ""};
+  const Json result = Json::parse(ended.last_words, nullptr, false);
+  if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
+    run.outcome = ended.exit_code == kStuck ? "failed" : "crashed";
+    run.message = result["message"].get<std::string>();
+    run.result = ended.last_words;
+  }
+  run.message = with_said(run.message, said);
+  return run;
+}
+
+std::string number(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  return text.ends_with('.') ? text.substr(0, text.size() - 1) : text;
+}
+}  // namespace
+
+JobLimits job_limits(const StudyBudget& budget) {
+  JobLimits limits;
+  limits.wall_s = budget.wall_s;
+  limits.cpu_s = budget.cpu_s;
+  limits.memory_mb = budget.memory_mb;
+  return limits;
+}
+
+std::string study_run(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
+                      bool trace) {
+  std::vector<std::filesystem::path> files;
+  RunOutcome run = run_guarded(job, planned, budget, trace, files);
+  if (is_unexplained(run.outcome) || run.outcome == kNotDone || run.outcome == kChanged) {
+    job.retire();
+    ::close_range(3, ~0U, 0);  // whatever a plugin has left open
+    if (const std::string why = first_unreadable(files); !why.empty()) {
+      run = {kNotDone, why, "", ""};
+    }
+  }
+  return payload_of(run);
+}
+
+namespace {
+
+RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
+  const JobLimits limits = job_limits(budget);
+  const auto stopped = [&](const char* outcome, const std::string& why) {
+    return RunOutcome{outcome, ended.note + " " + why, "", ""};
+  };
+  switch (ended.how) {
+    case Ending::done: {
+      RunOutcome run = outcome_of_payload(ended.payload);
+      if (ended.left_behind > 0) {
+        run.outcome = "failed";
+        run.message = "a plugin left processes behind, which were ended; " + run.message;
+      }
+      return run;
+    }
+    case Ending::threw:
+      return {"failed", ended.payload, "", ""};
+    case Ending::exited:
+    case Ending::killed:
+      return crashed(ended);
+    case Ending::garbled:
+      return bad_output("the run's record is not as it was written");
+    case Ending::too_large:
+      return bad_output(ended.note + " wrote a file, or gave a result, of more than " +
+                        number(limits.file_mb) + " MB");
+    case Ending::wall_limit:
+      return stopped("timed_out", "did not end within " + number(limits.wall_s) + " s");
+    case Ending::cpu_limit:
+      return stopped("timed_out", "used more than " + number(*limits.cpu_s) + " s of CPU time");
+    case Ending::memory_limit:
+      return stopped("out_of_memory",
+                     "used more than " + number(*limits.memory_mb) + " MB of memory");
+    case Ending::out_of_memory:
+      return stopped("out_of_memory", "was killed by the kernel for lack of memory");
+    case Ending::process_limit:
+      return stopped("failed", "had more than " + std::to_string(limits.processes) + " processes");
+  }
+  return {};
+}
+}  // namespace
+
+Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std::string& name) {
+  switch (ended.how) {
+    case Ending::too_large:
+    case Ending::wall_limit:
+    case Ending::cpu_limit:
+    case Ending::memory_limit:
+    case Ending::process_limit:
+      return {};
+    default:
+      break;
+  }
+  const std::optional<PayloadHead> head =
+      ended.how == Ending::done ? head_of(ended.payload) : std::nullopt;
+  const RunOutcome run = head ? head->run : outcome_of(ended, budget);
+  if (run.outcome == kNotDone) {
+    return {Appraisal::fault, in_utf8(run.message)};
+  }
+  if (run.outcome == kChanged) {
+    return {Appraisal::hopeless, name + ": " + run.message};
+  }
+  if (is_unexplained(run.outcome) && ended.left_behind == 0) {
+    return {Appraisal::doubtful, run.outcome + ": " + run.message};
+  }
+  return {};
+}
+
+RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget) {
+  RunOutcome run = outcome_as_told(ended, budget);
+  run.message = in_utf8(run.message);
+  return run;
+}
+}  // namespace altiplan::host

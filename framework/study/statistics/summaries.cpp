@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <numeric>
+
+#include "study/statistics/statistics.hpp"
+
+namespace altiplan::host {
+namespace {
+
+bool has_nan(std::span<const double> sample) {
+  return std::any_of(sample.begin(), sample.end(), [](double x) { return std::isnan(x); });
+}
+
+/// a + t (b - a), monotone in t and exact at both ends, as NumPy's.
+double between(double a, double b, double t) {
+  if (a == b || t == 0) {
+    return a;
+  }
+  if (std::isinf(a) || std::isinf(b)) {
+    return a + b;  // NaN between infinities of both signs only
+  }
+  return t < 0.5 ? a + (b - a) * t : b - (b - a) * (1 - t);
+}
+
+/// The step function that rises by 1 / all at each of the values.
+std::vector<CurvePoint> steps(std::vector<double> values, std::size_t all) {
+  std::sort(values.begin(), values.end());
+  std::vector<CurvePoint> curve;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i + 1 == values.size() || values[i + 1] != values[i]) {
+      curve.push_back({values[i], double(i + 1) / double(all)});
+    }
+  }
+  return curve;
+}
+
+bool comparable(const std::vector<std::vector<double>>& costs) {
+  return std::all_of(costs.begin(), costs.end(), [&](const std::vector<double>& row) {
+    return row.size() == costs.front().size() &&
+           std::none_of(row.begin(), row.end(),
+                        [](double cost) { return cost < 0 || std::isinf(cost); });
+  });
+}
+
+/// The cost as a multiple of the least.
+double ratio(double cost, double least) {
+  return cost == least ? 1 : cost / least;  // infinite over zero
+}
+}  // namespace
+
+double in_12_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  std::from_chars(text, text + std::strlen(text), value);
+  return value;
+}
+
+double mean(std::span<const double> sample) {
+  if (sample.empty()) {
+    return kNone;
+  }
+  return std::accumulate(sample.begin(), sample.end(), 0.0) / double(sample.size());
+}
+
+double quantile_in_place(std::span<double> sample, double q) {
+  if (sample.empty() || !(q >= 0 && q <= 1) || has_nan(sample)) {
+    return kNone;
+  }
+  const double place = q * double(sample.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(place);
+  const auto at = sample.begin() + below;
+  std::nth_element(sample.begin(), at, sample.end());
+  if (at + 1 == sample.end()) {
+    return *at;
+  }
+  return between(*at, *std::min_element(at + 1, sample.end()), place - double(below));
+}
+
+double quantile(std::span<const double> sample, double q) {
+  std::vector<double> copy(sample.begin(), sample.end());
+  return quantile_in_place(copy, q);
+}
+
+double median(std::span<const double> sample) { return quantile(sample, 0.5); }
+
+std::optional<BoxPlot> box_plot(std::span<const double> sample) {
+  if (sample.empty() ||
+      !std::all_of(sample.begin(), sample.end(), [](double x) { return std::isfinite(x); })) {
+    return std::nullopt;
+  }
+  BoxPlot box;
+  box.q1 = quantile(sample, 0.25);
+  box.median = median(sample);
+  box.q3 = quantile(sample, 0.75);
+  // A quartile may lie between a value within and an outlier: no whisker ends inside the box.
+  box.low_whisker = box.q1;
+  box.high_whisker = box.q3;
+  const double reach = 1.5 * (box.q3 - box.q1);
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    if (sample[i] < box.q1 - reach || sample[i] > box.q3 + reach) {
+      box.outliers.push_back(i);
+    } else {
+      box.low_whisker = std::min(box.low_whisker, sample[i]);
+      box.high_whisker = std::max(box.high_whisker, sample[i]);
+    }
+  }
+  return box;
+}
+
+std::vector<CurvePoint> solved_by(std::span<const double> times) {
+  std::vector<double> solved;
+  std::copy_if(times.begin(), times.end(), std::back_inserter(solved),
+               [](double time) { return !std::isnan(time); });
+  return steps(std::move(solved), times.size());
+}
+
+std::optional<std::vector<std::vector<CurvePoint>>> performance_profile(
+    const std::vector<std::vector<double>>& costs) {
+  if (!comparable(costs)) {
+    return std::nullopt;
+  }
+  std::vector<std::vector<CurvePoint>> curves;
+  for (const std::vector<double>& row : costs) {
+    std::vector<double> ratios;
+    for (std::size_t problem = 0; problem < row.size(); ++problem) {
+      double least = row[problem];
+      for (const std::vector<double>& other : costs) {
+        least = std::fmin(least, other[problem]);  // ignores a NaN
+      }
+      const double multiple = std::isnan(row[problem]) ? kNone : ratio(row[problem], least);
+      if (std::isfinite(multiple)) {
+        ratios.push_back(multiple);
+      }
+    }
+    curves.push_back(steps(std::move(ratios), row.size()));
+  }
+  return curves;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "study/store/store.hpp"
+
+namespace altiplan::host {
+
+/// The run with this id, name, or key that begins so, with its result and trace. Throws Error where
+/// there is none, or more than one.
+StoredRun find_run(const Store& store, const std::string& named);
+}  // namespace altiplan::host

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/store/sqlite.hpp"
+
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "altiplan/error.hpp"
+#include "study/store/place.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// SQLite does not keep the system's error of a COMMIT. That the disk is full it says itself.
+int system_error(int code, sqlite3* database) {
+  const int error = sqlite3_system_errno(database);
+  rlimit limit{};
+  const bool is_limited = ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return error == 0 && code == SQLITE_IOERR_WRITE && is_limited ? EFBIG : error;
+}
+
+/// What the system said, or else SQLite.
+std::string cause(int error, const char* words) {
+  return error != 0 ? std::strerror(error) : words;
+}
+
+/// SQLite's own words for what users meet say little. `error` is the system's.
+std::string meaning(int code, int error, const char* words) {
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    return "a program that wrote it was killed in the middle, which SQLite undoes where the file "
+           "and its folder may be written to: here they may not. Have their owner open it, or copy "
+           "the file together with its -journal";
+  }
+  if (code == SQLITE_READONLY_DBMOVED) {
+    return "it was removed or renamed while this program wrote to it";
+  }
+  switch (code & 0xff) {
+    case SQLITE_FULL:
+      return "the disk is full; what was written before is intact";
+    case SQLITE_READONLY:
+      return "it is read-only";
+    case SQLITE_CANTOPEN:
+      return "it cannot be opened: " + (error == 0 ? "is its path longer than 500 bytes?"
+                                                   : std::string(std::strerror(error)));
+    case SQLITE_NOTADB:
+      return "it is no database";
+    case SQLITE_CORRUPT:
+      // The same word for a file whose reading the system refuses.
+      return std::string("it is damaged, or cannot be read (") + words + ")";
+    case SQLITE_BUSY:
+      return "another program is writing to it";
+    case SQLITE_IOERR:
+      return "it cannot be read or written (" + cause(error, words) +
+             (error == EFBIG ? "): see ulimit -f" : "): is the disk full?");
+    default:
+      return words;
+  }
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file, int code, sqlite3* database) {
+  const int error = database == nullptr ? 0 : system_error(code, database);
+  const char* words = database == nullptr ? "out of memory" : sqlite3_errmsg(database);
+  throw Error("the database '" + file.string() + "': " + meaning(code, error, words));
+}
+}  // namespace
+
+Statement::Statement(sqlite3* database, const std::filesystem::path& file, const char* sql)
+    : database_(database), file_(file) {
+  sqlite3_stmt* statement = nullptr;
+  expect(sqlite3_prepare_v2(database, sql, -1, &statement, nullptr));
+  statement_.reset(statement);
+}
+
+void Statement::expect(int code) const {
+  if (code != SQLITE_OK && code != SQLITE_ROW && code != SQLITE_DONE) {
+    fail(file_, code, database_);
+  }
+}
+
+Statement& Statement::bind(int index, std::string_view text) {
+  expect(
+      sqlite3_bind_text(statement_.get(), index, text.data(), int(text.size()), SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind(int index, std::int64_t value) {
+  expect(sqlite3_bind_int64(statement_.get(), index, value));
+  return *this;
+}
+
+Statement& Statement::bind(int index, double value) {
+  expect(std::isnan(value) ? sqlite3_bind_null(statement_.get(), index)
+                           : sqlite3_bind_double(statement_.get(), index, value));
+  return *this;
+}
+
+Statement& Statement::bind_blob(int index, std::string_view bytes) {
+  expect(
+      sqlite3_bind_blob64(statement_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind_null(int index) {
+  expect(sqlite3_bind_null(statement_.get(), index));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_.get());
+  expect(code);
+  return code == SQLITE_ROW;
+}
+
+void Statement::run() {
+  step();
+  reset();
+}
+
+std::string Statement::text(int column) const { return std::string(blob(column)); }
+
+std::string_view Statement::blob(int column) const {
+  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return bytes == nullptr ? std::string_view()
+                          : std::string_view(static_cast<const char*>(bytes), std::size_t(size));
+}
+
+std::int64_t Statement::integer(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) != SQLITE_INTEGER) {
+    fail_type(column, "a whole number");
+  }
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+int Statement::count(int column) const {
+  const std::int64_t value = integer(column);
+  if (value < 0 || value > std::numeric_limits<int>::max()) {
+    fail_type(column, "a number from 0 to 2147483647");
+  }
+  return int(value);
+}
+
+double Statement::number(int column) const {
+  const int type = sqlite3_column_type(statement_.get(), column);
+  if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
+    fail_type(column, "a number");
+  }
+  return sqlite3_column_double(statement_.get(), column);
+}
+
+bool Statement::is_null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+void Statement::fail_type(int column, const char* expected) const {
+  throw Error("the database '" + file_.string() + "': it is damaged: '" +
+              sqlite3_column_name(statement_.get(), column) + "' is " + excerpt(text(column)) +
+              ", expected " + expected);
+}
+
+Sqlite::Sqlite(const std::filesystem::path& file, int flags) : file_(file) {
+  expect_regular_or_absent(file);
+  sqlite3* database = nullptr;
+  const int code =
+      sqlite3_open_v2(std::filesystem::absolute(file).c_str(), &database, flags, nullptr);
+  database_.reset(database);
+  if (code != SQLITE_OK) {
+    fail(file, code, database);
+  }
+  sqlite3_extended_result_codes(database, 1);
+  sqlite3_busy_timeout(database, 10000);  // a report that reads while a study writes
+}
+
+void Sqlite::run(const char* sql) const {
+  const int code = sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) {
+    fail(file_, code, database_.get());
+  }
+}
+
+Transaction::Transaction(const Sqlite& database) : database_(database) {
+  database_.run("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+  if (open_) {
+    try {
+      database_.run("ROLLBACK");
+    } catch (const Error&) {
+      // SQLite has rolled back by itself, or does when the file is opened next.
+    }
+  }
+}
+
+void Transaction::commit() {
+  database_.run("COMMIT");
+  open_ = false;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/store/store_database.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "altiplan/error.hpp"
+#include "host/base/deflate.hpp"
+#include "host/base/machine_fault.hpp"
+#include "study/store/place.hpp"
+
+namespace altiplan::host {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kVersion = 1;
+/// Of a result or a trace unpacked, more than any run leaves: a few kB of zeros make a gigabyte.
+constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+/// Of a result's lists and objects in each other; each takes a call of a function to compare.
+constexpr int kMostLevels = 500;
+
+constexpr const char* kSchema = R"sql(
+  CREATE TABLE study(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+  CREATE TABLE scenarios(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, of TEXT NOT NULL,
+    file TEXT NOT NULL, overrides TEXT NOT NULL);
+  CREATE TABLE pipelines(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, of TEXT NOT NULL,
+    file TEXT NOT NULL, overrides TEXT NOT NULL);
+  CREATE TABLE sessions(id INTEGER PRIMARY KEY, started TEXT NOT NULL, command TEXT NOT NULL,
+    version TEXT NOT NULL, host TEXT NOT NULL, system TEXT NOT NULL, cpu TEXT NOT NULL,
+    cores INTEGER NOT NULL, memory_mb REAL NOT NULL, jobs INTEGER NOT NULL,
+    reuse INTEGER NOT NULL, limits TEXT NOT NULL);
+  CREATE TABLE runs(id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
+    scenario INTEGER NOT NULL REFERENCES scenarios(id),
+    pipeline INTEGER NOT NULL REFERENCES pipelines(id),
+    repetition INTEGER NOT NULL, seed INTEGER NOT NULL, outcome TEXT NOT NULL,
+    message TEXT NOT NULL, wall_time_s REAL, cpu_time_s REAL, peak_memory_mb REAL,
+    place INTEGER NOT NULL, session INTEGER NOT NULL REFERENCES sessions(id));
+  CREATE TABLE results(run INTEGER PRIMARY KEY REFERENCES runs(id) ON DELETE CASCADE,
+    result BLOB, trace BLOB);
+  CREATE TABLE quantities(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE);
+  CREATE TABLE run_values(run INTEGER NOT NULL REFERENCES runs(id) ON DELETE CASCADE,
+    quantity INTEGER NOT NULL REFERENCES quantities(id), value REAL NOT NULL,
+    PRIMARY KEY(run, quantity)) WITHOUT ROWID;
+)sql";
+
+constexpr const char* kRun =
+    "SELECT runs.id, key, scenarios.name, pipelines.name, repetition, seed, outcome, message, "
+    "wall_time_s, cpu_time_s, peak_memory_mb, place, session FROM runs "
+    "LEFT JOIN scenarios ON scenarios.id = scenario "
+    "LEFT JOIN pipelines ON pipelines.id = pipeline ";
+
+std::int64_t pragma(const Sqlite& database, const char* sql) {
+  Statement statement = database.prepare(sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+/// Whether lists and objects are in each other deeper than kMostLevels.
+bool is_too_deep(std::string_view json) {
+  int level = 0;
+  bool is_text = false;
+  for (std::size_t n = 0; n < json.size(); ++n) {
+    const char letter = json[n];
+    if (letter == '"') {
+      is_text = !is_text;
+    } else if (is_text) {
+      n += letter == '\\' ? 1 : 0;
+    } else if (letter == '[' || letter == '{') {
+      if (++level > kMostLevels) {
+        return true;
+      }
+    } else if (letter == ']' || letter == '}') {
+      --level;
+    }
+  }
+  return false;
+}
+
+StoredRun run_of(const Statement& row) {
+  StoredRun run;
+  run.id = row.integer(0);
+  run.key = row.text(1);
+  run.scenario = row.text(2);
+  run.pipeline = row.text(3);
+  run.repetition = row.count(4);
+  run.seed = row.integer(5);
+  run.outcome = row.text(6);
+  run.message = row.text(7);
+  run.wall_time_s = row.number(8);
+  run.cpu_time_s = row.number(9);
+  run.peak_memory_mb = row.number(10);
+  run.place = row.count(11);
+  run.session = row.integer(12);
+  return run;
+}
+
+/// A call that was killed while it wrote has left a journal, by which SQLite undoes what it had
+/// begun; a reader alone may not.
+void undo_half_a_write(const fs::path& file) {
+  std::error_code absent;
+  if (fs::exists(place_of(file).string() + "-journal", absent) && fs::exists(file, absent)) {
+    pragma(Sqlite(file, SQLITE_OPEN_READWRITE), "PRAGMA schema_version");
+  }
+}
+
+Sqlite opened(const fs::path& file, StoreMode mode) {
+  if (mode == StoreMode::read) {
+    undo_half_a_write(file);
+    return {file, SQLITE_OPEN_READONLY};
+  }
+  std::error_code error;
+  const bool is_absent = !fs::exists(file, error);
+  if (is_absent && error) {
+    throw MachineFault(unreadable(file, error.value()));  // its journal may be all that saves it
+  }
+  if (is_absent || fs::is_empty(file, error)) {
+    remove_journal(file);
+  }
+  return {file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};
+}
+}  // namespace
+
+StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode)
+    : sqlite(opened(file, mode)),
+      lock_(mode == StoreMode::write ? std::make_unique<StoreLock>(file) : nullptr) {
+  if (mode == StoreMode::write && is_new()) {
+    create();
+  }
+  expect_store();
+  sqlite.run("PRAGMA foreign_keys = ON");
+}
+
+bool StoreDatabase::is_new() const {
+  const std::int64_t version = pragma(sqlite, "PRAGMA schema_version");  // undoes half a write
+  return version == 0 && fs::file_size(sqlite.file()) == 0;
+}
+
+void StoreDatabase::fail_damaged(const std::string& why) const {
+  throw Error("'" + sqlite.file().string() + "' is damaged: " + why);
+}
+
+void StoreDatabase::expect_store() const {
+  if (is_new()) {
+    throw Error("'" + sqlite.file().string() + "' is empty: nothing has been stored in it yet");
+  }
+  const std::int64_t id = pragma(sqlite, "PRAGMA application_id");
+  const std::int64_t version = pragma(sqlite, "PRAGMA user_version");
+  if (pragma(sqlite, "PRAGMA page_count") == 0) {
+    throw Error("the database '" + sqlite.file().string() + "': it is no database");
+  }
+  if (id != kApplicationId) {
+    throw Error("'" + sqlite.file().string() + "' is a database, but not of altiplan study");
+  }
+  if (version != kVersion) {
+    throw Error("'" + sqlite.file().string() + "' is of version " + std::to_string(version) +
+                " of the store; this program knows version " + std::to_string(kVersion));
+  }
+  expect_tables();
+}
+
+void StoreDatabase::expect_tables() const {
+  Statement strange = sqlite.prepare(
+      "SELECT type, name FROM sqlite_master WHERE type = 'trigger' OR (type = 'view' AND name IN "
+      "('study', 'scenarios', 'pipelines', 'sessions', 'runs', 'results', 'quantities', "
+      "'run_values'))");
+  if (strange.step()) {
+    fail_damaged("it has a " + strange.text(0) + " " + excerpt(strange.text(1)) +
+                 ", which no call of study makes");
+  }
+}
+
+void StoreDatabase::create() const {
+  Transaction transaction(sqlite);
+  sqlite.run(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
+  sqlite.run(("PRAGMA user_version = " + std::to_string(kVersion)).c_str());
+  sqlite.run(kSchema);
+  transaction.commit();
+}
+
+void StoreDatabase::add_variants(const char* table,
+                                 const std::vector<StoredVariant>& variants) const {
+  Statement insert = sqlite.prepare(
+      (std::string("INSERT INTO ") + table +
+       "(name, of, file, overrides) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE SET "
+       "of = excluded.of, file = excluded.file, overrides = excluded.overrides")
+          .c_str());
+  for (const StoredVariant& variant : variants) {
+    insert.bind(1, variant.name).bind(2, variant.of).bind(3, variant.file);
+    insert.bind(4, std::string_view(Json(variant.set).dump())).run();
+  }
+}
+
+std::vector<StoredVariant> StoreDatabase::variants(const char* table) const {
+  std::vector<StoredVariant> all;
+  Statement rows = sqlite.prepare(
+      (std::string("SELECT name, of, file, overrides FROM ") + table + " ORDER BY id").c_str());
+  while (rows.step()) {
+    StoredVariant variant{rows.text(0), rows.text(1), rows.text(2), {}};
+    try {
+      variant.set = Json::parse(rows.blob(3)).get<std::vector<std::string>>();
+    } catch (const Json::exception&) {
+      throw Error("the database '" + sqlite.file().string() + "': the overrides of '" +
+                  variant.name + "' are no list of texts");
+    }
+    all.push_back(std::move(variant));
+  }
+  return all;
+}
+
+void StoreDatabase::read_values(StoredRun& run, Statement& values) const {
+  values.bind(1, run.id);
+  while (values.step()) {
+    if (values.is_null(0)) {
+      fail_damaged("a value of the run " + run.key + " has no name");
+    }
+    run.values.emplace_back(values.text(0), values.number(1));
+  }
+  values.reset();
+}
+
+Statement StoreDatabase::values_of_run() const {
+  return sqlite.prepare(
+      "SELECT name, value FROM run_values LEFT JOIN quantities ON quantities.id = quantity "
+      "WHERE run = ? ORDER BY name");
+}
+
+Statement StoreDatabase::outlines(const std::string& rest) const {
+  return sqlite.prepare((kRun + rest).c_str());
+}
+
+StoredRun StoreDatabase::outline(const Statement& row) const {
+  if (row.is_null(2) || row.is_null(3)) {
+    fail_damaged("the run " + row.text(1) + " is of no " +
+                 (row.is_null(2) ? "scenario" : "pipeline") + " that is stored");
+  }
+  return run_of(row);
+}
+
+std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
+                                    std::string_view bytes) const {
+  if (bytes.empty()) {
+    return "";
+  }
+  const std::string name = std::string("the ") + what + " of '" + run_name(run) + "' ";
+  std::optional<std::string> text;
+  try {
+    text = decompressed(bytes, kMostBytes);
+  } catch (const Error&) {
+    fail_damaged(name + "cannot be unpacked");
+  }
+  if (!text) {
+    fail_damaged(name + "is larger than 1 GB unpacked, which no run leaves");
+  }
+  if (is_too_deep(*text)) {
+    fail_damaged(name + "is nested deeper than " + std::to_string(kMostLevels) + " levels");
+  }
+  return *std::move(text);
+}
+
+std::optional<StoredRun> StoreDatabase::whole_run(Statement& row) const {
+  if (!row.step()) {
+    return std::nullopt;
+  }
+  StoredRun run = outline(row);
+  Statement values = values_of_run();
+  read_values(run, values);
+  Statement result = sqlite.prepare("SELECT result, trace FROM results WHERE run = ?");
+  result.bind(1, run.id);
+  if (result.step()) {
+    run.result = unpacked(run, "result", result.blob(0));
+    run.trace = unpacked(run, "trace", result.blob(1));
+  }
+  return run;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/store/store_lock.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// A lock of the open file, of which the system does not tell the owner: its length does.
+struct flock range_for(pid_t process) {
+  constexpr off_t kBeyondAllStores = off_t(1) << 62;
+  struct flock range {};
+  range.l_type = F_WRLCK;
+  range.l_whence = SEEK_SET;
+  range.l_start = kBeyondAllStores;
+  range.l_len = off_t(process) + 1;
+  return range;
+}
+
+std::string why_not_locked(int descriptor, int error) {
+  struct flock held = range_for(0);
+  if (error != EAGAIN && error != EACCES) {
+    return std::string("cannot be locked: ") + std::strerror(error);
+  }
+  const bool is_known = ::fcntl(descriptor, F_OFD_GETLK, &held) == 0 && held.l_type != F_UNLCK;
+  return "is being written by " +
+         (is_known ? "process " + std::to_string(held.l_len - 1) : "another process") +
+         ", under this name or another: wait for its end, or give another --out";
+}
+}  // namespace
+
+StoreLock::StoreLock(const std::filesystem::path& file)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
+  struct flock range = range_for(::getpid());
+  if (descriptor_ < 0 || ::fcntl(descriptor_, F_OFD_SETLK, &range) != 0) {
+    const int error = errno;
+    const std::string why = descriptor_ < 0
+                                ? std::string("cannot be opened: ") + std::strerror(error)
+                                : why_not_locked(descriptor_, error);
+    ::close(descriptor_);
+    throw Error("the database '" + file.string() + "' " + why);
+  }
+}
+
+StoreLock::~StoreLock() { ::close(descriptor_); }
+}  // namespace altiplan::host

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/stat.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "altiplan/error.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::host {
+
+/// The files of a tuning, by what a change of them would change at least.
+class FileWatch {
+ public:
+  explicit FileWatch(const Json& files) {
+    for (const auto& [file, hash] : files.items()) {
+      stamps_.emplace_back(file, stamp(file));
+    }
+  }
+  void expect_unchanged() const {
+    for (const auto& [file, before] : stamps_) {
+      if (stamp(file) != before) {
+        throw Error("'" + file +
+                    "' has changed since the tuning began; what had been run before is "
+                    "kept: put the file back, or begin anew with --fresh");
+      }
+    }
+  }
+
+ private:
+  static std::array<std::int64_t, 4> stamp(const std::string& file) {
+    struct stat found {};
+    if (::stat(file.c_str(), &found) != 0) {
+      return {};
+    }
+    return {std::int64_t(found.st_size), std::int64_t(found.st_mtim.tv_sec),
+            std::int64_t(found.st_mtim.tv_nsec), std::int64_t(found.st_ino)};
+  }
+  std::vector<std::pair<std::string, std::array<std::int64_t, 4>>> stamps_;
+};
+}  // namespace altiplan::host

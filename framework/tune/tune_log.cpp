@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tune/tune_log.hpp"
+
+#include <zlib.h>
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "altiplan/error.hpp"
+#include "altiplan/kit/input_file.hpp"
+#include "host/base/output_file.hpp"
+#include "study/pool/job_record.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kSettings = "settings.json";
+constexpr const char* kLog = "runs.log";
+/// All that a tuning writes: what --fresh removes.
+constexpr std::array kOurs = {kSettings,         kLog,           "evaluations.csv", "held_back.csv",
+                              "convergence.svg", "summary.json", "tuned.yaml"};
+
+std::string check_sum(const std::string& text) {
+  char sum[16];
+  std::snprintf(sum, sizeof sum, "%08lx",
+                ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())));
+  return sum;
+}
+
+std::string line_of(const RunId& id, const std::string& parameters, const ScoredRun& run) {
+  const Json json = {
+      id.first,   id.second, parameters, run.outcome, run.value ? Json(*run.value) : Json(),
+      run.message};
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text + " " + check_sum(text) + "\n";
+}
+
+/// "" where it is not there.
+std::string text_of(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored)
+             ? kit::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
+             : "";
+}
+
+/// Where two settings differ, in words.
+std::string differences(const Json& before, const Json& now) {
+  std::set<std::string> keys;
+  for (const Json* all : {&before, &now}) {
+    for (const auto& [key, value] : all->items()) {
+      keys.insert(key);
+    }
+  }
+  std::string text;
+  for (const std::string& key : keys) {
+    const Json was = before.value(key, Json());
+    const Json is = now.value(key, Json());
+    if (was == is) {
+      continue;
+    }
+    std::string what = key;
+    if (key == "files") {
+      what = "";
+      for (const auto& [file, hash] : is.items()) {
+        const bool same = was.is_object() && was.value(file, Json()) == hash;
+        what += !same ? (what.empty() ? "" : ", ") + file : "";
+      }
+      what = what.empty() ? "the files that it reads" : "the content of " + what;
+    } else if (key == "plugins" || key == "program" || key == "altiplan") {
+      what = key == "plugins" ? "the build of a plugin" : "the build of the program";
+    } else if (is.is_primitive()) {
+      what += " (" + was.dump() + " before, " + is.dump() + " now)";
+    }
+    text += (text.empty() ? "" : "; ") + what;
+  }
+  return text;
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+  throw Error("--out: '" + folder.string() + "' " + why);
+}
+}  // namespace
+
+TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
+    : folder_(std::move(folder)), file_(folder_ / kLog) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) {
+    refuse(folder_, "cannot be made a folder: " + error.message());
+  }
+  const fs::path described = folder_ / kSettings;
+  if (!fs::exists(described, error)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
+      if (entry.path().filename() != "work") {
+        refuse(folder_, "holds '" + entry.path().filename().string() +
+                            "' and no tuning: give a folder that is empty or not there");
+      }
+    }
+  } else if (fresh) {
+    for (const char* ours : kOurs) {
+      fs::remove(folder_ / ours, error);
+    }
+  } else if (fs::exists(file_, error)) {  // else nothing has been run that could be lost
+    const Json before = Json::parse(text_of(described), nullptr, false);
+    if (!before.is_object()) {
+      refuse(folder_, "holds a damaged settings.json: give another folder, or --fresh");
+    }
+    if (before != settings) {
+      refuse(folder_, "holds a tuning that differs in " + differences(before, settings) +
+                          ": give another folder, or --fresh to begin anew");
+    }
+  }
+  write_file(described, file_text(settings));
+  read();
+}
+
+void TuneLog::read() {
+  const std::string text = text_of(file_);
+  std::size_t begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    const std::string line = text.substr(begin, end - begin);
+    const std::size_t space = line.rfind(' ');
+    begin = end + 1;
+    const bool is_whole =
+        space != std::string::npos && line.substr(space + 1) == check_sum(line.substr(0, space));
+    const Json json =
+        is_whole ? Json::parse(line.substr(0, space), nullptr, false) : Json(Json::value_t::null);
+    if (!json.is_array() || json.size() != 6) {
+      ++damaged_;
+      continue;
+    }
+    ScoredRun run{json[3], std::nullopt, json[5]};
+    if (json[4].is_number()) {
+      run.value = json[4].get<double>();
+    }
+    runs_[{json[0], json[1]}] = {json[2], run};
+  }
+  std::error_code error;
+  if (damaged_ > 0) {
+    finish();
+  } else if (begin < text.size()) {  // a kill has cut it off
+    fs::resize_file(file_, begin, error);
+    if (error) {
+      refuse(folder_, "holds a log that cannot be written: " + error.message());
+    }
+  }
+}
+
+const ScoredRun* TuneLog::find(const RunId& id, const std::string& parameters) const {
+  const auto found = runs_.find(id);
+  if (found == runs_.end()) {
+    return nullptr;
+  }
+  if (found->second.parameters != parameters) {
+    throw PluginError("the tuner is not deterministic: evaluation " + std::to_string(id.first) +
+                      " was of " + found->second.parameters + ", and is now of " + parameters);
+  }
+  return &found->second.run;
+}
+
+void TuneLog::add(const RunId& id, const std::string& parameters, const ScoredRun& run) {
+  if (const int error = append_file(file_.string(), line_of(id, parameters, run)); error != 0) {
+    refuse(folder_, "cannot be written to: " + std::string(std::strerror(error)));
+  }
+  runs_[id] = {parameters, run};
+}
+
+void TuneLog::finish() const {
+  std::string text;
+  for (const auto& [id, line] : runs_) {
+    text += line_of(id, line.parameters, line.run);
+  }
+  write_file(file_, text);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tune/tune_plan.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "altiplan/blame.hpp"
+#include "host/base/input.hpp"
+#include "host/base/sha256.hpp"
+#include "host/config/overrides.hpp"
+#include "host/config/yaml.hpp"
+#include "study/model/run_values.hpp"
+#include "study/plan/study_grid.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+/// "a=1,b=[2,3]" at the commas that stand in no bracket.
+std::vector<std::string> split_outside_brackets(const std::string& text) {
+  std::vector<std::string> parts{""};
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    if (c == ',' && depth == 0) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// The keys and values of FILE[KEY=VALUES,…], as a study's `set` has them.
+Value set_of(const std::string& text, const Location& where) {
+  Value set;
+  set.kind = Value::Kind::map;
+  set.where = where;
+  for (const std::string& part : split_outside_brackets(text)) {
+    const std::size_t equals = part.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      throw ConfigError(where, "", "expected FILE[KEY=VALUES,…], found " + excerpt(part));
+    }
+    for (const auto& entry : set.entries) {
+      if (entry.key == part.substr(0, equals)) {
+        throw ConfigError(where, "", "the key '" + entry.key + "' is given twice");
+      }
+    }
+    set.entries.push_back({part.substr(0, equals), where,
+                           parse_override(part.substr(equals + 1), where.override_text)});
+  }
+  return set;
+}
+
+/// One entry of --scenarios or --hold-out: a file, or a file with keys set to each of their values.
+std::vector<Variant> scenarios_of(const std::string& entry, const std::string& option) {
+  const Location where{"", 0, 0, option + " " + entry};
+  std::error_code error;
+  const std::size_t bracket =
+      fs::exists(entry, error) || !entry.ends_with(']') ? std::string::npos : entry.find('[');
+  const std::string file = entry.substr(0, bracket);
+  if (const std::string why = file_problem(file); !why.empty()) {
+    throw ConfigError(where, "", why);
+  }
+  const std::string of = fs::path(file).stem().string();
+  const fs::path path = fs::absolute(file).lexically_normal();
+  if (bracket == std::string::npos) {
+    return {Variant{of, of, path, {}}};
+  }
+  std::vector<Variant> all;
+  const std::string inner = entry.substr(bracket + 1, entry.size() - bracket - 2);
+  for (const GridCell& cell : grid_of(set_of(inner, where), "")) {
+    Variant variant{of + cell.label, of, path, {}};
+    for (const Assignment& assignment : cell.assignments) {
+      variant.set.push_back("scenario." + assignment.key + "=" + assignment.value);
+    }
+    all.push_back(std::move(variant));
+  }
+  return all;
+}
+
+/// What two names of one scenario have in common.
+std::string identity(const fs::path& file, const std::vector<std::string>& set) {
+  return fs::weakly_canonical(file).string() + " " + Json(set).dump();
+}
+
+/// Fills the plan's scenarios.
+void find_scenarios(TunePlan& plan) {
+  const TuneRequest& request = plan.request;
+  std::set<std::string> known;
+  for (const auto& [entries, option] :
+       {std::pair(&request.scenarios, "--scenarios"), std::pair(&request.hold_out, "--hold-out")}) {
+    for (const std::string& entry : *entries) {
+      for (Variant& variant : scenarios_of(entry, option)) {
+        if (!known.insert(identity(variant.file, variant.set)).second) {
+          throw ConfigError(
+              Location{"", 0, 0, std::string(option) + " " + entry}, "",
+              "the scenario '" + variant.name + "' is given twice" +
+                  (entries == &request.hold_out ? ": what is held back must be new to the tuning"
+                                                : ""));
+        }
+        plan.scenarios.push_back(std::move(variant));
+      }
+    }
+    if (plan.scenarios.empty()) {
+      plan.scenarios.push_back({"", "", {}, {}});  // the pipeline's own
+    }
+    plan.tuned_on = entries == &request.scenarios ? plan.scenarios.size() : plan.tuned_on;
+  }
+}
+
+/// The pipeline in that scenario, with what is wrong told at the option that named it.
+Config load_in(const TunePlan& plan, std::size_t scenario) {
+  try {
+    return load_config(plan.request.pipeline, plan.overrides(scenario, {}), plan.config.registry);
+  } catch (const ConfigError& error) {
+    std::vector<Problem> problems = error.problems();
+    const char* option = scenario < plan.tuned_on ? "--scenarios " : "--hold-out ";
+    for (Problem& problem : problems) {
+      std::string& text = problem.where.override_text;
+      text = text.empty() ? "" : option + plan.scenarios[scenario].name;
+    }
+    throw ConfigError(std::move(problems));
+  }
+}
+
+/// The tuner with its parameters, and these as JSON.
+Json make_tuner(TunePlan& plan) {
+  const TuneRequest& request = plan.request;
+  Value with = empty_map();
+  for (const std::string& assignment : request.set_tuner) {
+    const Location where{"", 0, 0, "--set-tuner " + assignment};
+    const std::size_t equals = assignment.find('=');
+    const std::string key = assignment.substr(0, equals);
+    if (with.find(key) != nullptr) {
+      throw ConfigError(where, key, "is given twice");
+    }
+    with.entries.push_back(
+        {key, where, parse_override(assignment.substr(equals + 1), where.override_text)});
+  }
+  const PluginEntry& entry = plugin(*plan.config.registry, "tuner", request.tuner);
+  const std::string who = "the tuner '" + request.tuner + "'";
+  const ParamReport report =
+      blamed([&] { return "describing " + who; }, [&] { return entry.describe(&with, ""); });
+  if (!report.problems.empty()) {
+    throw ConfigError(report.problems);
+  }
+  plan.tuner = blamed([&] { return "making " + who; }, [&] { return entry.tuner(&with); });
+  Json json = {{"name", request.tuner},
+               {"build", plan.config.registry->offering("tuner", request.tuner)->build}};
+  for (const BoundField& field : report.fields) {
+    json["parameters"][field.spec.name] = Json::parse(field.value_json);
+  }
+  return json;
+}
+
+Json settings_of(const TunePlan& plan, const Json& tuner, const std::set<fs::path>& files,
+                 const Json& plugins) {
+  const TuneRequest& request = plan.request;
+  Json names = Json::array();
+  for (const Variant& scenario : plan.scenarios) {
+    names.push_back({scenario.name, scenario.set});
+  }
+  const auto middle = names.begin() + std::ptrdiff_t(plan.tuned_on);
+  Json settings = {{"altiplan", ALTIPLAN_VERSION}, {"program", host_build()}};
+  settings["pipeline"] = request.pipeline.filename().string();
+  settings["--over"] = request.over;
+  settings["--metric"] = request.metric;
+  settings["--scenarios"] = Json(names.begin(), middle);
+  settings["--hold-out"] = Json(middle, names.end());
+  settings["--tuner"] = tuner;
+  settings["--seed"] = request.seed;
+  settings["--penalty"] = request.penalty ? Json(*request.penalty) : Json();
+  settings["limits"] = {{"wall_s", request.limits.wall_s}, {"memory_mb", request.limits.memory_mb}};
+  for (const fs::path& file : files) {
+    settings["files"][file.string()] = sha256(file);
+  }
+  settings["plugins"] = plugins;
+  return settings;
+}
+}  // namespace
+
+std::vector<Dimension> TunePlan::space() const {
+  std::vector<Dimension> space;
+  for (const TunedParameter& parameter : parameters) {
+    space.push_back(parameter.dimension());
+  }
+  return space;
+}
+
+std::vector<std::string> TunePlan::assignments(const std::vector<double>& point) const {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    all.push_back(parameters[i].over.key + "=" + parameters[i].value(point[i]));
+  }
+  return all;
+}
+
+Overrides TunePlan::overrides(std::size_t scenario,
+                              const std::vector<std::string>& assignments) const {
+  Overrides overrides;
+  const Variant& variant = scenarios[scenario];
+  if (!variant.file.empty()) {
+    overrides.scenario = variant.file;
+  }
+  overrides.set = variant.set;
+  overrides.set.insert(overrides.set.end(), assignments.begin(), assignments.end());
+  overrides.plugin_path = request.plugin_path;
+  return overrides;
+}
+
+TunePlan plan_tuning(const TuneRequest& request) {
+  TunePlan plan;
+  plan.request = request;
+  plan.objective = read_objective(request.metric);
+  const std::vector<OverEntry> entries = read_over(request.over);
+  find_scenarios(plan);
+  std::set<fs::path> files;
+  std::set<Json> plugins;
+  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    Config config = load_in(plan, s);
+    files.insert(config.files.begin(), config.files.end());
+    const Json used = plugins_json(config);
+    plugins.insert(used.begin(), used.end());
+    if (s == 0) {
+      plan.config = std::move(config);
+    }
+  }
+  if (plan.scenarios[0].name.empty()) {
+    const fs::path& own = plan.config.scenario_path;
+    plan.scenarios[0].name = own.stem().string();
+    for (std::size_t s = plan.tuned_on; s < plan.scenarios.size(); ++s) {
+      if (identity(plan.scenarios[s].file, plan.scenarios[s].set) == identity(own, {})) {
+        throw ConfigError(Location{"", 0, 0, "--hold-out " + own.string()}, "",
+                          "the scenario is the pipeline's own, which it is tuned on: what is held "
+                          "back must be new to the tuning");
+      }
+    }
+  }
+  plan.parameters = find_parameters(plan.config, entries);
+  const Json tuner = make_tuner(plan);
+  plan.settings = settings_of(plan, tuner, files, Json(plugins));
+  return plan;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tune/tune_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/base/output_file.hpp"
+#include "study/drawing/tables.hpp"
+#include "study/drawing/text.hpp"
+#include "study/statistics/statistics.hpp"
+#include "tune/tuned_file.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+using report::counted;
+using report::exact;
+
+/// What the paired test says of the differences, now less before, as the end of a sentence. It
+/// looks at their ranks, so that a few great ones can leave the mean on the other side.
+std::string test_words(const std::vector<double>& differences) {
+  const std::optional<Wilcoxon> test = wilcoxon(differences);
+  if (!test) {
+    return "no scenario differs";
+  }
+  const std::string p = "Wilcoxon's signed-rank test: " + report::p_equals(test->p);
+  if (!(test->p < 0.05)) {
+    return p + ", no difference that chance does not explain";
+  }
+  const bool is_better = test->rank_biserial < 0;
+  const double change = mean(differences);
+  const std::string verdict = p + ", the tuned pipeline is " + (is_better ? "better" : "worse");
+  if (is_better ? change < 0 : change > 0) {
+    return verdict;
+  }
+  return verdict + " by the ranks of the differences, but its mean is " +
+         (change == 0 ? "the same"
+          : is_better ? "worse"
+                      : "better");
+}
+
+TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) {
+  TunedComparison made;
+  std::vector<double> before;
+  std::vector<double> now;
+  std::vector<double> differences;
+  for (std::size_t s = from; s < to; ++s) {
+    const ScoredRun& first = tuning.as_it_is().runs[s];
+    const ScoredRun& second = tuning.tuned().runs[s];
+    ++made.scenarios;
+    made.failed_before += !first.value;
+    made.failed_now += !second.value;
+    if (first.value && second.value) {
+      before.push_back(*first.value);
+      now.push_back(*second.value);
+      differences.push_back(*second.value - *first.value);
+      made.better += differences.back() < 0;
+      made.worse += differences.back() > 0;
+      made.equal += differences.back() == 0;
+    }
+  }
+  made.mean_before = mean(before);
+  made.mean_now = mean(now);
+  if (made.scenarios == 0) {
+    return made;
+  }
+  made.words = "better in " + std::to_string(made.better) + ", worse in " +
+               std::to_string(made.worse) + " and equal in " + std::to_string(made.equal) + " of " +
+               counted(made.scenarios, "scenario");
+  if (made.failed_before + made.failed_now > 0) {
+    made.words += " (as it is fails in " + std::to_string(made.failed_before) + ", tuned in " +
+                  std::to_string(made.failed_now) + ")";
+  }
+  made.words += differences.empty() ? "" : "; " + test_words(differences);
+  return made;
+}
+
+Json json_of(const TunedComparison& made) {
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  return {{"scenarios", made.scenarios},
+          {"failed_as_it_is", made.failed_before},
+          {"failed_tuned", made.failed_now},
+          {"better", made.better},
+          {"worse", made.worse},
+          {"equal", made.equal},
+          {"mean_as_it_is", number(made.mean_before)},
+          {"mean_tuned", number(made.mean_now)},
+          {"words", made.words}};
+}
+
+/// The part behind '=' of an assignment.
+std::string value_of(const std::string& assignment) {
+  return assignment.substr(assignment.find('=') + 1);
+}
+
+report::Grid evaluations_grid(const TunePlan& plan, const Tuning& tuning) {
+  report::Grid grid{{"evaluation", "iteration"}, {}};
+  for (const TunedParameter& parameter : plan.parameters) {
+    grid.columns.push_back(parameter.over.key);
+  }
+  grid.columns.insert(grid.columns.end(), {"score", "failed_runs"});
+  for (std::size_t s = 0; s < plan.tuned_on; ++s) {
+    grid.columns.push_back(plan.scenarios[s].name);
+  }
+  grid.columns.push_back("first_failure");
+  for (std::size_t i = 0; i < tuning.evaluations.size(); ++i) {
+    const Evaluation& evaluation = tuning.evaluations[i];
+    std::vector<std::string> row{std::to_string(i), std::to_string(evaluation.iteration)};
+    for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
+      row.push_back(i == 0 ? plan.parameters[p].shown() : value_of(evaluation.assignments[p]));
+    }
+    row.push_back(std::isfinite(evaluation.score) ? exact(evaluation.score) : "inf");
+    row.push_back(std::to_string(evaluation.failed));
+    std::string failure;
+    for (std::size_t s = 0; s < plan.tuned_on; ++s) {
+      const ScoredRun& run = evaluation.runs[s];
+      row.push_back(run.value ? exact(*run.value) : run.outcome);
+      failure = !run.value && failure.empty() ? run.outcome + ": " + run.message : failure;
+    }
+    row.push_back(failure);
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+report::Grid held_back_grid(const TunePlan& plan, const Tuning& tuning) {
+  report::Grid grid{{"scenario", "as_it_is", "tuned"}, {}};
+  const auto cell = [](const ScoredRun& run) {
+    return run.value ? exact(*run.value) : run.outcome;
+  };
+  for (std::size_t s = plan.tuned_on; s < plan.scenarios.size(); ++s) {
+    grid.rows.push_back(
+        {plan.scenarios[s].name, cell(tuning.as_it_is().runs[s]), cell(tuning.tuned().runs[s])});
+  }
+  return grid;
+}
+
+Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSummary& summary) {
+  const auto score = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  Json json = {{"altiplan", 1},
+               {"metric", plan.request.metric},
+               {"tuner", plan.request.tuner},
+               {"seed", plan.request.seed},
+               {"evaluations", summary.evaluations},
+               {"failed_evaluations", summary.failed},
+               {"evaluations_on_plateau", summary.on_plateau},
+               {"best_evaluation", tuning.best},
+               {"score_as_it_is", score(tuning.as_it_is().score)},
+               {"score_tuned", score(tuning.tuned().score)}};
+  for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
+    const Json before = Json::parse(plan.parameters[p].as_it_is, nullptr, false);
+    json["parameters"][plan.parameters[p].over.key] = {
+        {"as_it_is", before.is_discarded() ? Json() : before},
+        {"tuned", tuning.best == 0 ? (before.is_discarded() ? Json() : before)
+                                   : Json::parse(value_of(tuning.tuned().assignments[p]))}};
+  }
+  json["tuned_on"] = json_of(summary.tuned_on);
+  json["held_back"] = summary.held_back.scenarios > 0 ? json_of(summary.held_back) : Json();
+  return json;
+}
+
+/// What stands above the tuned pipeline.
+std::string heading(const TunePlan& plan, const Tuning& tuning) {
+  const std::string where = counted(plan.tuned_on, "scenario");
+  return "# Tuned by altiplan tune from " + plan.config.pipeline_path.filename().string() + ": " +
+         report::printable(plan.request.metric) + " = " + exact(tuning.tuned().score) + " over " +
+         where + ", as it was " +
+         (std::isfinite(tuning.as_it_is().score) ? exact(tuning.as_it_is().score) : "a failure") +
+         " (" + plan.request.tuner + ", seed " + std::to_string(plan.request.seed) + ", " +
+         counted(tuning.evaluations.size() - 1, "evaluation") + ").\n";
+}
+
+std::string tuned_pipeline(const TunePlan& plan, const Tuning& tuning, const fs::path& folder) {
+  return heading(plan, tuning) + tuned_text(plan.config, tuning.tuned().assignments, folder);
+}
+}  // namespace
+
+TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning) {
+  TuneSummary summary;
+  summary.tuned_on = compare(tuning, 0, plan.tuned_on);
+  summary.held_back = compare(tuning, plan.tuned_on, plan.scenarios.size());
+  summary.evaluations = tuning.evaluations.size() - 1;
+  double least = kInfinity;
+  for (std::size_t i = 1; i < tuning.evaluations.size(); ++i) {
+    least = std::min(least, tuning.evaluations[i].score);
+  }
+  for (std::size_t i = 1; i < tuning.evaluations.size(); ++i) {
+    const Evaluation& evaluation = tuning.evaluations[i];
+    summary.failed += evaluation.failed > 0;
+    summary.on_plateau +=
+        std::isfinite(least) && evaluation.score <= least + 1e-9 * std::abs(least);
+  }
+  return summary;
+}
+
+void write_tuning(const TunePlan& plan, const Tuning& tuning, const fs::path& folder) {
+  write_file(folder / "evaluations.csv", report::csv_text(evaluations_grid(plan, tuning)));
+  if (plan.scenarios.size() > plan.tuned_on) {
+    write_file(folder / "held_back.csv", report::csv_text(held_back_grid(plan, tuning)));
+  }
+  write_file(folder / "convergence.svg", report::svg_text(convergence_figure(plan, tuning), false));
+  write_file(folder / "summary.json",
+             file_text(summary_json(plan, tuning, summary_of(plan, tuning))));
+  write_file(folder / "tuned.yaml", tuned_pipeline(plan, tuning, folder));
+}
+}  // namespace altiplan::host

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tune/tune_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "study/claims/claim_pairs.hpp"
+#include "study/claims/claims.hpp"
+#include "study/model/run_values.hpp"
+#include "study/pool/worker_pool.hpp"
+#include "study/run/study_worker.hpp"
+#include "study/statistics/statistics.hpp"
+#include "tune/tune_guards.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Calls the tuner; what it throws says whose it is.
+template <class Call>
+auto of_tuner(const TunePlan& plan, const Call& call) {
+  const std::string who = "the tuner '" + plan.request.tuner + "' ";
+  try {
+    return call();
+  } catch (const PluginError& error) {
+    throw PluginError(who + error.what());
+  } catch (const std::exception& error) {
+    throw PluginError(who + "threw: " + error.what());
+  } catch (...) {
+    throw PluginError(who + "threw something that is not a std::exception");
+  }
+}
+
+/// How many points the tuner asks for when nothing is better than anything.
+std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
+  constexpr std::size_t kMost = 1'000'000;
+  const auto limit = std::size_t(plan.request.evaluations.value_or(kMost));
+  const auto search = plan.tuner->begin(plan.space(), random);
+  std::size_t points = 0;
+  while (points < limit) {
+    const std::size_t asked = search->ask().size();
+    if (asked == 0) {
+      break;
+    }
+    points += asked;
+    search->tell(std::vector<double>(asked, 1.0));
+  }
+  return std::min(points, limit);
+}
+
+struct Interrupted {};
+
+class TuningRun {
+ public:
+  TuningRun(const TunePlan& plan, const TuneOptions& options)
+      : plan_(plan),
+        options_(options),
+        folder_(options.out / "work"),
+        log_(options.out, plan.settings, options.fresh),
+        files_(plan.settings.at("files")),
+        pool_(folder_, pool_options()) {
+    folder_.clear();  // of a call that was killed: done again
+  }
+
+  Tuning operator()() {
+    try {
+      search();
+      hold_out();
+      log_.finish();
+    } catch (const Interrupted&) {
+      tuning_.is_interrupted = true;
+    }
+    tuning_.runs_done = progress_.runs;
+    tuning_.damaged_lines = log_.damaged();
+    tuning_.elapsed_s = std::chrono::duration<double>(Clock::now() - began_).count();
+    return std::move(tuning_);
+  }
+
+ private:
+  /// A run that is still to be done.
+  struct Wanted {
+    std::size_t evaluation;
+    std::size_t scenario;
+  };
+
+  PoolOptions pool_options() {
+    PoolOptions pool;
+    pool.jobs = options_.jobs;
+    pool.reuse = 1000;
+    pool.limits = job_limits(plan_.request.limits);
+    pool.key = [this](std::size_t i) {
+      return std::to_string(wanted_[i].evaluation) + " " + std::to_string(wanted_[i].scenario);
+    };
+    pool.appraise = [this](const Ended& ended) {
+      const Wanted& wanted = wanted_[ended.job];
+      return appraisal_of(
+          ended, plan_.request.limits,
+          plan_.scenarios[wanted.scenario].name + " with " + parameters_of(wanted.evaluation));
+    };
+    return pool;
+  }
+
+  void search() {
+    const RandomStream random = RandomStream(std::uint64_t(plan_.request.seed)).sub("tuner");
+    tuning_.evaluations.emplace_back();
+    progress_.expected = of_tuner(plan_, [&] { return rehearsed(plan_, random); });
+    evaluate(0, 0, plan_.tuned_on);
+    expect_values();
+    const auto search = of_tuner(plan_, [&] { return plan_.tuner->begin(plan_.space(), random); });
+    const std::int64_t most =
+        plan_.request.evaluations.value_or(std::numeric_limits<std::int64_t>::max());
+    for (std::size_t iteration = 1;; ++iteration) {
+      const auto batch = of_tuner(plan_, [&] { return search->ask(); });
+      const std::size_t first = tuning_.evaluations.size();
+      for (const std::vector<double>& point : batch) {
+        if (std::int64_t(tuning_.evaluations.size()) <= most) {
+          Evaluation evaluation;
+          evaluation.iteration = iteration;
+          evaluation.assignments = plan_.assignments(point);
+          tuning_.evaluations.push_back(std::move(evaluation));
+        }
+      }
+      evaluate(first, 0, plan_.tuned_on);
+      if (batch.empty() || tuning_.evaluations.size() - first < batch.size()) {
+        return;
+      }
+      std::vector<double> scores;
+      for (std::size_t i = first; i < tuning_.evaluations.size(); ++i) {
+        scores.push_back(tuning_.evaluations[i].score);
+      }
+      of_tuner(plan_, [&] { search->tell(scores); });
+    }
+  }
+
+  void hold_out() {
+    for (const std::size_t i : {std::size_t(0), tuning_.best}) {
+      if (tuning_.evaluations[i].runs.size() == plan_.tuned_on) {
+        run_missing(i, i + 1, plan_.tuned_on, plan_.scenarios.size());
+      }
+    }
+  }
+
+  /// Runs and scores the evaluations from `first` on.
+  void evaluate(std::size_t first, std::size_t from, std::size_t to) {
+    run_missing(first, tuning_.evaluations.size(), from, to);
+    for (std::size_t i = first; i < tuning_.evaluations.size(); ++i) {
+      score(tuning_.evaluations[i]);
+      if (is_better(tuning_.evaluations[i], tuning_.tuned())) {
+        tuning_.best = i;
+      }
+    }
+    progress_.evaluations = tuning_.evaluations.size() - 1;
+    progress_.best = tuning_.tuned().score;
+    tell_progress();
+  }
+
+  /// Whatever a penalty makes of failures: what solves more scenarios comes first.
+  static bool is_better(const Evaluation& a, const Evaluation& b) {
+    return a.failed != b.failed ? a.failed < b.failed : a.score < b.score;
+  }
+
+  /// The mean over the scenarios, a failed run counted as the penalty or infinity.
+  void score(Evaluation& evaluation) const {
+    double sum = 0;
+    for (std::size_t s = 0; s < plan_.tuned_on; ++s) {
+      const ScoredRun& run = evaluation.runs[s];
+      evaluation.failed += !run.value;
+      sum += run.value.value_or(plan_.request.penalty.value_or(kInfinity));
+    }
+    evaluation.score = in_12_digits(sum / double(plan_.tuned_on));
+  }
+
+  /// Gives the evaluations their runs: known ones, those of an earlier evaluation with the same
+  /// parameters, and else new ones.
+  void run_missing(std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
+    wanted_.clear();
+    std::vector<std::size_t> jobs;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::string parameters = parameters_of(i);
+      const std::size_t same = first_with_.try_emplace(parameters, i).first->second;
+      for (std::size_t s = from; s < to; ++s) {
+        if (same == i && log_.find({i, s}, parameters) == nullptr) {
+          jobs.push_back(wanted_.size());
+          wanted_.push_back({i, s});
+        }
+      }
+    }
+    run(jobs);
+    for (std::size_t i = first; i < last; ++i) {
+      const std::string parameters = parameters_of(i);
+      for (std::size_t s = from; s < to; ++s) {
+        const ScoredRun* known = log_.find({first_with_.at(parameters), s}, parameters);
+        tuning_.evaluations[i].runs.push_back(*known);
+      }
+    }
+  }
+
+  std::string parameters_of(std::size_t evaluation) const {
+    std::string text;
+    for (const std::string& assignment : tuning_.evaluations[evaluation].assignments) {
+      text += (text.empty() ? "" : " ") + assignment;
+    }
+    return text.empty() ? "the pipeline as it is" : text;
+  }
+
+  void run(const std::vector<std::size_t>& jobs) {
+    if (jobs.empty()) {
+      return;
+    }
+    files_.expect_unchanged();
+    const Work work = [this](const Job& job) {
+      const Wanted& wanted = wanted_[job.index];
+      PlannedConfig planned;
+      planned.is_on_trial = true;
+      planned.load = [&] {
+        return load_config(
+            plan_.request.pipeline,
+            plan_.overrides(wanted.scenario, tuning_.evaluations[wanted.evaluation].assignments),
+            plan_.config.registry);
+      };
+      return study_run(job, planned, plan_.request.limits);
+    };
+    const auto keep = [this](const std::vector<Ended>& all) {
+      files_.expect_unchanged();
+      for (const Ended& ended : all) {
+        const Wanted& wanted = wanted_[ended.job];
+        log_.add({wanted.evaluation, wanted.scenario}, parameters_of(wanted.evaluation),
+                 scored(ended));
+      }
+      progress_.runs += all.size();
+      tell_progress();
+    };
+    const WorkerPool::Finish finish = pool_.run(jobs, work, keep);
+    if (finish == WorkerPool::Finish::interrupted) {
+      throw Interrupted();
+    }
+  }
+
+  ScoredRun scored(const Ended& ended) const {
+    const RunOutcome outcome = outcome_of(ended, plan_.request.limits);
+    if (outcome.outcome != "solved") {
+      return {outcome.outcome, std::nullopt, outcome.message};
+    }
+    std::map<std::string, double> values;
+    for (const auto& [name, value] : values_of(Json::parse(outcome.result))) {
+      values[name] = value;
+    }
+    values.insert({{"solved", 1},
+                   {"wall_time_s", ended.wall_s},
+                   {"cpu_time_s", ended.cpu_s},
+                   {"peak_memory_mb", ended.peak_memory_mb}});
+    std::vector<double> named;
+    for (const ClaimValue& wanted : plan_.objective.values) {
+      const auto found = values.find(wanted.name);
+      if (found == values.end()) {
+        return {"no_value", std::nullopt, "the run has no value '" + wanted.name + "'"};
+      }
+      named.push_back(found->second);
+    }
+    const double value = in_12_digits(host::evaluate(plan_.objective.expression, named));
+    if (!std::isfinite(value)) {
+      return {"no_value", std::nullopt, "the metric is not finite"};
+    }
+    return {outcome.outcome, value, ""};
+  }
+
+  /// A metric that no run has would only make every evaluation a failure.
+  void expect_values() const {
+    for (std::size_t s = 0; s < plan_.tuned_on; ++s) {
+      const ScoredRun& run = tuning_.as_it_is().runs[s];
+      if (run.outcome == "no_value") {
+        throw Error("--metric: in '" + plan_.scenarios[s].name +
+                    "' the pipeline as it is solves the problem, but " + run.message);
+      }
+    }
+  }
+
+  void tell_progress() {
+    progress_.elapsed_s = std::chrono::duration<double>(Clock::now() - began_).count();
+    const std::size_t all =
+        (progress_.expected + 1) * plan_.tuned_on + 2 * (plan_.scenarios.size() - plan_.tuned_on);
+    progress_.runs_left = all - std::min(all, log_.size());
+    if (options_.progress) {
+      options_.progress(progress_);
+    }
+  }
+
+  const TunePlan& plan_;
+  const TuneOptions& options_;
+  const Clock::time_point began_ = Clock::now();
+  WorkFolder folder_;  ///< locked before the log is looked at
+  TuneLog log_;
+  const FileWatch files_;
+  WorkerPool pool_;
+  Tuning tuning_;
+  TuneProgress progress_;
+  std::vector<Wanted> wanted_;
+  std::map<std::string, std::size_t> first_with_;  ///< evaluations by their parameters
+};
+}  // namespace
+
+Tuning run_tuning(const TunePlan& plan, const TuneOptions& options) {
+  std::error_code error;
+  if (fs::exists(options.out, error) && !fs::is_directory(options.out, error)) {
+    throw Error("--out: '" + options.out.string() + "' is not a folder");
+  }
+  return TuningRun(plan, options)();
+}
+}  // namespace altiplan::host

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <regex>
+#include <sstream>
+#include <thread>
+
+#include "altiplan/error.hpp"
+#include "check_plugin/verdicts.hpp"
+#include "commands.hpp"
+#include "host/base/output_file.hpp"
+#include "host/result/result_json.hpp"
+#include "interrupt.hpp"
+#include "progress_line.hpp"
+#include "study/drawing/text.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Arguments {
+  std::string library;
+  std::string only;
+  std::string sets;
+  std::string junit;
+  std::string answer;         ///< of a process that runs one test for another
+  host::Overrides overrides;  ///< of which the plugin path and the seed are asked for
+  int rounds = PluginToCheck().rounds;
+  double time_limit_s = RunnerOptions().time_limit_s;
+  double memory_limit_mb = RunnerOptions().memory_limit_mb;
+  std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
+  bool json = false;
+  bool untimed = false;
+  bool list = false;
+  bool here = false;
+};
+
+/// Tests run in folders of their own.
+void make_plugin_path_absolute() {
+  const char* const listed = std::getenv("ALTIPLAN_PLUGIN_PATH");
+  std::istringstream folders(listed != nullptr ? listed : "");
+  std::string all;
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!folder.empty()) {
+      all += (all.empty() ? "" : ":") + fs::absolute(folder).string();
+    }
+  }
+  if (!all.empty()) {
+    ::setenv("ALTIPLAN_PLUGIN_PATH", all.c_str(), 1);
+  }
+}
+
+PluginToCheck plugin_of(const Arguments& arguments) {
+  if (!fs::is_regular_file(arguments.library)) {
+    throw Error(arguments.library + (fs::exists(arguments.library) ? ": not a file, expected the "
+                                                                     "library of a plugin"
+                                                                   : ": no such file"));
+  }
+  PluginToCheck what;
+  what.library = fs::absolute(arguments.library);
+  if (!arguments.sets.empty()) {
+    what.sets = parameter_sets(fs::absolute(arguments.sets));
+  }
+  for (const fs::path& folder : arguments.overrides.plugin_path) {
+    what.plugin_path.push_back(fs::absolute(folder));
+  }
+  what.seed = std::uint64_t(arguments.overrides.seed.value_or(1));
+  what.rounds = arguments.rounds;
+  return what;
+}
+
+/// The call that runs tests of it as this one would, by absolute paths.
+std::vector<std::string> command_of(const Arguments& arguments, const PluginToCheck& what) {
+  std::vector<std::string> words{"altiplan", "check-plugin", what.library.string(), "--seed",
+                                 std::to_string(what.seed)};
+  const auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (what.rounds != PluginToCheck().rounds) {
+    add("--rounds", std::to_string(what.rounds));
+  }
+  if (!arguments.sets.empty()) {
+    add("--sets", fs::absolute(arguments.sets).string());
+  }
+  for (const fs::path& folder : what.plugin_path) {
+    add("--plugin-path", folder.string());
+  }
+  return words;
+}
+
+std::vector<PluginTest> chosen(const Arguments& arguments, const PluginToCheck& what) {
+  std::vector<PluginTest> tests = tests_of(what);
+  const std::regex only(arguments.only);
+  std::erase_if(tests, [&](const PluginTest& test) {
+    return (arguments.untimed && test.alone) || !std::regex_search(test.name, only);
+  });
+  return tests;
+}
+
+/// Runs the one test in this process: for a debugger, or for the process that asks for an answer.
+int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLibrary& library) {
+  Outcome outcome;
+  try {
+    outcome = test.run();
+  } catch (const std::exception& error) {
+    outcome.findings.push_back({"Process: the test can be made", error.what()});
+  }
+  if (!arguments.answer.empty()) {
+    host::write_file(arguments.answer, outcome_text(outcome));
+    return kDone;
+  }
+  Verdict verdict;
+  verdict.test = test.name;
+  verdict.findings = outcome.findings;
+  verdict.skipped = outcome.skipped;
+  std::cout << verdict_text(library, verdict);
+  return verdict.failed() ? kBadPlugin : kDone;
+}
+
+int check_plugin(const Arguments& arguments) {
+  make_plugin_path_absolute();
+  const PluginToCheck what = plugin_of(arguments);
+  const std::vector<PluginTest> tests = chosen(arguments, what);
+  if (tests.empty()) {
+    std::cerr << "altiplan: check-plugin: --only: no test of " << arguments.library
+              << " has a name that matches '" << arguments.only << "' (--list shows them)\n";
+    return kUsage;
+  }
+  if (arguments.list) {
+    for (const PluginTest& test : tests) {
+      std::cout << test.name << '\n';
+    }
+    return kDone;
+  }
+  RunnerOptions options;
+  options.command = command_of(arguments, what);
+  CheckedLibrary library{arguments.library, host::examine_library(what.library).build, what.seed, 0,
+                         ""};
+  for (const std::string& word : options.command) {
+    library.command += (library.command.empty() ? "" : " ") + host::report::shell(word);
+  }
+  if (arguments.here) {
+    if (tests.size() > 1) {
+      std::cerr << "altiplan: check-plugin: --here runs one test, and --only leaves "
+                << tests.size() << '\n';
+      return kUsage;
+    }
+    return run_here(arguments, tests.front(), library);
+  }
+  if (!arguments.junit.empty()) {
+    expect_writable(arguments.junit, "--junit");
+  }
+  options.jobs = arguments.jobs;
+  options.time_limit_s = arguments.time_limit_s;
+  options.memory_limit_mb = arguments.memory_limit_mb;
+  const Interrupt interrupt;
+  options.stop = interrupt.token();
+  ProgressLine progress;
+  std::size_t done = 0;
+  const auto from = Clock::now();
+  const std::vector<Verdict> verdicts = run_apart(tests, options, [&](const Verdict& verdict) {
+    progress.clear();
+    if (!arguments.json && (verdict.failed() || log_level() == LogLevel::info)) {
+      std::cout << verdict_text(library, verdict) << std::flush;
+    }
+    progress.show(std::to_string(++done) + " of " + std::to_string(tests.size()) + " tests");
+  });
+  progress.clear();
+  library.time_s = std::chrono::duration<double>(Clock::now() - from).count();
+  if (arguments.json) {
+    std::cout << host::file_text(verdicts_json(library, verdicts));
+  } else {
+    std::cout << summary_text(library, verdicts);
+  }
+  std::cout.flush();  // what is known, before what may fail
+  if (!arguments.junit.empty()) {
+    host::write_file(arguments.junit, verdicts_junit(library, verdicts));
+  }
+  if (verdicts.size() < tests.size()) {
+    std::cerr << "altiplan: check-plugin: interrupted, " << tests.size() - verdicts.size()
+              << " tests were not run\n";
+    return kInterrupted;
+  }
+  if (std::any_of(verdicts.begin(), verdicts.end(),
+                  [](const Verdict& verdict) { return verdict.failed(); })) {
+    return kBadPlugin;
+  }
+  const auto misfit = std::find_if(verdicts.begin(), verdicts.end(),
+                                   [](const Verdict& verdict) { return verdict.misfit; });
+  if (misfit != verdicts.end()) {
+    throw Error(misfit->test + " and others were skipped: " + misfit->skipped);
+  }
+  return kDone;
+}
+
+std::string regex_problem(const std::string& text) {
+  try {
+    const std::regex parsed(text);
+    return "";
+  } catch (const std::regex_error& error) {
+    return "expected a regular expression, found '" + text + "'";
+  }
+}
+}  // namespace
+
+void add_check_plugin(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("check-plugin",
+                         "holds a plugin's library to the laws of its interface, each test in a "
+                         "process of its own");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("library", arguments->library, "library of the plugin")
+      ->required()
+      ->type_name("LIB");
+  command->add_option("--only", arguments->only, "tests whose name the regular expression matches")
+      ->type_name("RE")
+      ->check(regex_problem);
+  command->add_option("--seed", arguments->overrides.seed, "of all that is drawn (1)")
+      ->type_name("N")
+      ->check(seed_problem);
+  command->add_option("--rounds", arguments->rounds, "worlds, routes or samples of a test")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command
+      ->add_option("--sets", arguments->sets,
+                   "sets of parameters to check it with, as docs/conformance.md says; by default "
+                   "the plugin's own defaults")
+      ->type_name("FILE");
+  add_plugin_path(*command, arguments->overrides);
+  command->add_option("--jobs", arguments->jobs, "tests at a time")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--time-limit", arguments->time_limit_s, "seconds that a test may take")
+      ->type_name("S")
+      ->check(number_from(0.01, 86400))
+      ->capture_default_str();
+  command->add_option("--memory-limit", arguments->memory_limit_mb, "megabytes that a test may use")
+      ->type_name("MB")
+      ->check(number_from(1, 1e9))
+      ->capture_default_str();
+  command->add_flag("--untimed", arguments->untimed, "without the tests that look at the clock");
+  command->add_flag("--list", arguments->list, "print the names of the tests and run none");
+  CLI::Option* here =
+      command->add_flag("--here", arguments->here,
+                        "run the one test that --only leaves in this process: for a debugger");
+  command->add_flag("--json", arguments->json, "print JSON")->excludes(here);
+  command->add_option("--junit", arguments->junit, "write the verdicts for a build server too")
+      ->type_name("FILE")
+      ->excludes(here);
+  command->add_option("--answer", arguments->answer)->group("");  // between two of these processes
+  set_example(*command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
+  command->callback(
+      [&action, arguments] { action = [arguments] { return check_plugin(*arguments); }; });
+}
+}  // namespace altiplan::cli
