@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <regex>
 #include <set>
@@ -106,19 +108,154 @@ std::vector<PluginFolder> plugin_folders() {
 }
 
 TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
-  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host)");
+  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|study|tune)");
   EXPECT_GT(sources("framework/include").size(), 20u);
   EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
 }
 
 TEST(Structure, TheCoreDoesNotKnowTheHost) {
-  const std::regex kHost("(^|/)host/|^(yaml-cpp|boost|gdal|CLI)");
+  const std::regex kHost("(^|/)(host|study|tune)/|^(yaml-cpp|boost|gdal|CLI)");
   EXPECT_GT(sources("framework/src").size(), 5u);
   EXPECT_EQ(list(forbidden(sources("framework/src"), kHost)), "");
 }
 
+/// The rooms in their order, as the build has them.
+std::vector<std::string> rooms() {
+  std::istringstream text(text_of(kSource / "framework/rooms.txt"));
+  return {std::istream_iterator<std::string>(text), {}};
+}
+
+TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
+  const std::regex kInside(R"(^(host|study|tune|src|\.\.)/)");
+  std::set<std::string> open;
+  std::vector<std::string> found;
+  for (const std::string& room : rooms()) {
+    open.insert(room);
+    for (const fs::path& file : sources("framework/" + room)) {
+      for (const std::string& header : includes(file)) {
+        if (std::regex_search(header, kInside) && !open.count(fs::path(header).parent_path())) {
+          found.push_back(fs::relative(file, kSource).string() + " includes " + header);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(list(found), "");
+}
+
+TEST(Structure, EveryFolderIsARoomThatTheArchitectureShows) {
+  std::set<std::string> folders;
+  for (const char* part : {"framework/host", "framework/study", "framework/tune"}) {
+    for (const fs::path& file : sources(part)) {
+      folders.insert(fs::relative(file.parent_path(), kSource / "framework").string());
+    }
+  }
+  std::vector<std::string> all = rooms();
+  const std::regex kRow("^\\| `((host|study|tune)[a-z/]*)` \\|");
+  std::vector<std::string> shown;
+  std::istringstream page(text_of(kSource / "docs/architecture.md"));
+  for (std::string line; std::getline(page, line);) {
+    if (std::smatch row; std::regex_search(line, row, kRow)) {
+      shown.push_back(row[1]);
+    }
+  }
+  EXPECT_EQ(list(shown), list(all));
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(list({folders.begin(), folders.end()}), list(all));
+}
+
+/// An include of a file that lies in another folder.
+struct Arrow {
+  std::string from;
+  std::string to;
+  std::string text;
+};
+
+std::vector<Arrow> arrows(const std::vector<fs::path>& code) {
+  std::vector<Arrow> found;
+  for (const fs::path& file : code) {
+    for (const std::string& header : includes(file)) {
+      auto there =
+          std::find(code.begin(), code.end(), (file.parent_path() / header).lexically_normal());
+      if (there == code.end()) {
+        there = std::find_if(code.begin(), code.end(), [&](const fs::path& other) {
+          return ends_with(other.native(), header) && ends_with(other.native(), "/" + header);
+        });
+      }
+      if (there != code.end() && there->parent_path() != file.parent_path()) {
+        found.push_back({file.parent_path(), there->parent_path(),
+                         fs::relative(file, kSource).string() + " includes " + header});
+      }
+    }
+  }
+  return found;
+}
+
+using Below = std::map<std::string, std::set<std::string>>;
+
+/// What the folder includes, and what that includes.
+void add_all_below(const std::string& folder, const Below& below, std::set<std::string>& all) {
+  const auto found = below.find(folder);
+  if (found != below.end()) {
+    for (const std::string& lower : found->second) {
+      if (all.insert(lower).second) {
+        add_all_below(lower, below, all);
+      }
+    }
+  }
+}
+
+TEST(Structure, FoldersDoNotIncludeEachOtherInACircle) {
+  std::vector<fs::path> code = sources("framework");
+  const std::vector<fs::path> of_tools = sources("tools");
+  code.insert(code.end(), of_tools.begin(), of_tools.end());
+  const std::vector<Arrow> all = arrows(code);
+  EXPECT_GT(all.size(), 500u);
+  Below below;
+  for (const Arrow& arrow : all) {
+    below[arrow.from].insert(arrow.to);
+  }
+  std::vector<std::string> found;
+  for (const Arrow& arrow : all) {
+    std::set<std::string> reached;
+    add_all_below(arrow.to, below, reached);
+    if (reached.count(arrow.from)) {
+      found.push_back(arrow.text);
+    }
+  }
+  EXPECT_EQ(list(found), "");
+}
+
+TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
+  const std::map<fs::path, std::string> namespaces{
+      {"framework/include", "altiplan"},    {"framework/include/altiplan/kit", "altiplan::kit"},
+      {"framework/src", "altiplan"},        {"framework/src/kit", "altiplan::kit"},
+      {"framework/host", "altiplan::host"}, {"framework/study", "altiplan::host"},
+      {"framework/tune", "altiplan::host"}, {"framework/conformance", "altiplan::conformance"},
+      {"tools/altiplan", "altiplan::cli"},  {"tools/bench", "altiplan::bench"}};
+  const std::regex kOpened(R"(^namespace (altiplan[a-z_:]*) \{)");
+  std::vector<std::string> found;
+  for (const char* part : {"framework", "tools"}) {
+    for (const fs::path& file : sources(part)) {
+      fs::path folder = fs::relative(file, kSource).parent_path();
+      while (!folder.empty() && !namespaces.count(folder)) {
+        folder = folder.parent_path();
+      }
+      std::istringstream text(text_of(file));
+      for (std::string line; std::getline(text, line);) {
+        std::smatch opened;
+        if (std::regex_search(line, opened, kOpened) &&
+            (folder.empty() ||
+             (opened[1].str() + "::").rfind(namespaces.at(folder) + "::", 0) != 0)) {
+          found.push_back(fs::relative(file, kSource).string() + " opens " + opened[1].str());
+        }
+      }
+    }
+  }
+  EXPECT_EQ(list(found), "");
+}
+
 TEST(Structure, PluginsKnowOnlyTheApiAndTheKit) {
-  const std::regex kHost("(^|/)host/|^(yaml-cpp|boost/dll|fcl|CLI)");
+  const std::regex kHost("(^|/)(host|study|tune)/|^(yaml-cpp|boost/dll|fcl|CLI)");
   std::vector<fs::path> code = sources("plugins");
   EXPECT_GT(code.size(), 16u);
   EXPECT_EQ(list(forbidden(code, kHost)), "");
