@@ -12,12 +12,12 @@
 #include "altiplan/error.hpp"
 #include "host/result/result_json.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// The files of a tuning, by what a change of them would change at least.
 class FileWatch {
  public:
-  explicit FileWatch(const Json& files) {
+  explicit FileWatch(const host::Json& files) {
     for (const auto& [file, hash] : files.items()) {
       stamps_.emplace_back(file, stamp(file));
     }
@@ -43,4 +43,4 @@ class FileWatch {
   }
   std::vector<std::pair<std::string, std::array<std::int64_t, 4>>> stamps_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

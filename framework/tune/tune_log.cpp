@@ -14,7 +14,7 @@
 #include "host/base/output_file.hpp"
 #include "study/pool/job_record.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
@@ -32,10 +32,13 @@ std::string check_sum(const std::string& text) {
 }
 
 std::string line_of(const RunId& id, const std::string& parameters, const ScoredRun& run) {
-  const Json json = {
-      id.first,   id.second, parameters, run.outcome, run.value ? Json(*run.value) : Json(),
-      run.message};
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const host::Json json = {id.first,
+                           id.second,
+                           parameters,
+                           run.outcome,
+                           run.value ? host::Json(*run.value) : host::Json(),
+                           run.message};
+  const std::string text = json.dump(-1, ' ', false, host::Json::error_handler_t::replace);
   return text + " " + check_sum(text) + "\n";
 }
 
@@ -48,17 +51,17 @@ std::string text_of(const fs::path& file) {
 }
 
 /// Where two settings differ, in words.
-std::string differences(const Json& before, const Json& now) {
+std::string differences(const host::Json& before, const host::Json& now) {
   std::set<std::string> keys;
-  for (const Json* all : {&before, &now}) {
+  for (const host::Json* all : {&before, &now}) {
     for (const auto& [key, value] : all->items()) {
       keys.insert(key);
     }
   }
   std::string text;
   for (const std::string& key : keys) {
-    const Json was = before.value(key, Json());
-    const Json is = now.value(key, Json());
+    const host::Json was = before.value(key, host::Json());
+    const host::Json is = now.value(key, host::Json());
     if (was == is) {
       continue;
     }
@@ -66,7 +69,7 @@ std::string differences(const Json& before, const Json& now) {
     if (key == "files") {
       what = "";
       for (const auto& [file, hash] : is.items()) {
-        const bool same = was.is_object() && was.value(file, Json()) == hash;
+        const bool same = was.is_object() && was.value(file, host::Json()) == hash;
         what += !same ? (what.empty() ? "" : ", ") + file : "";
       }
       what = what.empty() ? "the files that it reads" : "the content of " + what;
@@ -85,7 +88,7 @@ std::string differences(const Json& before, const Json& now) {
 }
 }  // namespace
 
-TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
+TuneLog::TuneLog(fs::path folder, const host::Json& settings, bool fresh)
     : folder_(std::move(folder)), file_(folder_ / kLog) {
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -105,7 +108,7 @@ TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
       fs::remove(folder_ / ours, error);
     }
   } else if (fs::exists(file_, error)) {  // else nothing has been run that could be lost
-    const Json before = Json::parse(text_of(described), nullptr, false);
+    const host::Json before = host::Json::parse(text_of(described), nullptr, false);
     if (!before.is_object()) {
       refuse(folder_, "holds a damaged settings.json: give another folder, or --fresh");
     }
@@ -114,7 +117,7 @@ TuneLog::TuneLog(fs::path folder, const Json& settings, bool fresh)
                           ": give another folder, or --fresh to begin anew");
     }
   }
-  write_file(described, file_text(settings));
+  host::write_file(described, host::file_text(settings));
   read();
 }
 
@@ -127,8 +130,8 @@ void TuneLog::read() {
     begin = end + 1;
     const bool is_whole =
         space != std::string::npos && line.substr(space + 1) == check_sum(line.substr(0, space));
-    const Json json =
-        is_whole ? Json::parse(line.substr(0, space), nullptr, false) : Json(Json::value_t::null);
+    const host::Json json = is_whole ? host::Json::parse(line.substr(0, space), nullptr, false)
+                                     : host::Json(host::Json::value_t::null);
     if (!json.is_array() || json.size() != 6) {
       ++damaged_;
       continue;
@@ -163,7 +166,8 @@ const ScoredRun* TuneLog::find(const RunId& id, const std::string& parameters) c
 }
 
 void TuneLog::add(const RunId& id, const std::string& parameters, const ScoredRun& run) {
-  if (const int error = append_file(file_.string(), line_of(id, parameters, run)); error != 0) {
+  if (const int error = study::append_file(file_.string(), line_of(id, parameters, run));
+      error != 0) {
     refuse(folder_, "cannot be written to: " + std::string(std::strerror(error)));
   }
   runs_[id] = {parameters, run};
@@ -174,6 +178,6 @@ void TuneLog::finish() const {
   for (const auto& [id, line] : runs_) {
     text += line_of(id, line.parameters, line.run);
   }
-  write_file(file_, text);
+  host::write_file(file_, text);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

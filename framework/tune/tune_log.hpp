@@ -9,7 +9,7 @@
 
 #include "host/result/result_json.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// What a run of an evaluation came to.
 struct ScoredRun {
@@ -31,7 +31,7 @@ class TuneLog {
  public:
   /// Makes the folder, or goes on with the tuning in it. Throws Error where it holds other files,
   /// or a tuning with other settings, saying which.
-  TuneLog(std::filesystem::path folder, const Json& settings, bool fresh);
+  TuneLog(std::filesystem::path folder, const host::Json& settings, bool fresh);
 
   /// The run, if it is known; throws Error where it was of other parameters, so that the tuner is
   /// not deterministic.
@@ -55,4 +55,4 @@ class TuneLog {
   std::map<RunId, Line> runs_;
   std::size_t damaged_ = 0;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

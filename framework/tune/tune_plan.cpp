@@ -12,7 +12,7 @@
 #include "study/model/run_values.hpp"
 #include "study/plan/study_grid.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
@@ -47,31 +47,31 @@ Value set_of(const std::string& text, const Location& where) {
       }
     }
     set.entries.push_back({part.substr(0, equals), where,
-                           parse_override(part.substr(equals + 1), where.override_text)});
+                           host::parse_override(part.substr(equals + 1), where.override_text)});
   }
   return set;
 }
 
 /// One entry of --scenarios or --hold-out: a file, or a file with keys set to each of their values.
-std::vector<Variant> scenarios_of(const std::string& entry, const std::string& option) {
+std::vector<study::Variant> scenarios_of(const std::string& entry, const std::string& option) {
   const Location where{"", 0, 0, option + " " + entry};
   std::error_code error;
   const std::size_t bracket =
       fs::exists(entry, error) || !entry.ends_with(']') ? std::string::npos : entry.find('[');
   const std::string file = entry.substr(0, bracket);
-  if (const std::string why = file_problem(file); !why.empty()) {
+  if (const std::string why = host::file_problem(file); !why.empty()) {
     throw ConfigError(where, "", why);
   }
   const std::string of = fs::path(file).stem().string();
   const fs::path path = fs::absolute(file).lexically_normal();
   if (bracket == std::string::npos) {
-    return {Variant{of, of, path, {}}};
+    return {study::Variant{of, of, path, {}}};
   }
-  std::vector<Variant> all;
+  std::vector<study::Variant> all;
   const std::string inner = entry.substr(bracket + 1, entry.size() - bracket - 2);
-  for (const GridCell& cell : grid_of(set_of(inner, where), "")) {
-    Variant variant{of + cell.label, of, path, {}};
-    for (const Assignment& assignment : cell.assignments) {
+  for (const study::GridCell& cell : study::grid_of(set_of(inner, where), "")) {
+    study::Variant variant{of + cell.label, of, path, {}};
+    for (const study::Assignment& assignment : cell.assignments) {
       variant.set.push_back("scenario." + assignment.key + "=" + assignment.value);
     }
     all.push_back(std::move(variant));
@@ -81,7 +81,7 @@ std::vector<Variant> scenarios_of(const std::string& entry, const std::string& o
 
 /// What two names of one scenario have in common.
 std::string identity(const fs::path& file, const std::vector<std::string>& set) {
-  return fs::weakly_canonical(file).string() + " " + Json(set).dump();
+  return fs::weakly_canonical(file).string() + " " + host::Json(set).dump();
 }
 
 /// Fills the plan's scenarios.
@@ -91,7 +91,7 @@ void find_scenarios(TunePlan& plan) {
   for (const auto& [entries, option] :
        {std::pair(&request.scenarios, "--scenarios"), std::pair(&request.hold_out, "--hold-out")}) {
     for (const std::string& entry : *entries) {
-      for (Variant& variant : scenarios_of(entry, option)) {
+      for (study::Variant& variant : scenarios_of(entry, option)) {
         if (!known.insert(identity(variant.file, variant.set)).second) {
           throw ConfigError(
               Location{"", 0, 0, std::string(option) + " " + entry}, "",
@@ -110,9 +110,10 @@ void find_scenarios(TunePlan& plan) {
 }
 
 /// The pipeline in that scenario, with what is wrong told at the option that named it.
-Config load_in(const TunePlan& plan, std::size_t scenario) {
+host::Config load_in(const TunePlan& plan, std::size_t scenario) {
   try {
-    return load_config(plan.request.pipeline, plan.overrides(scenario, {}), plan.config.registry);
+    return host::load_config(plan.request.pipeline, plan.overrides(scenario, {}),
+                             plan.config.registry);
   } catch (const ConfigError& error) {
     std::vector<Problem> problems = error.problems();
     const char* option = scenario < plan.tuned_on ? "--scenarios " : "--hold-out ";
@@ -125,9 +126,9 @@ Config load_in(const TunePlan& plan, std::size_t scenario) {
 }
 
 /// The tuner with its parameters, and these as JSON.
-Json make_tuner(TunePlan& plan) {
+host::Json make_tuner(TunePlan& plan) {
   const TuneRequest& request = plan.request;
-  Value with = empty_map();
+  Value with = host::empty_map();
   for (const std::string& assignment : request.set_tuner) {
     const Location where{"", 0, 0, "--set-tuner " + assignment};
     const std::size_t equals = assignment.find('=');
@@ -136,7 +137,7 @@ Json make_tuner(TunePlan& plan) {
       throw ConfigError(where, key, "is given twice");
     }
     with.entries.push_back(
-        {key, where, parse_override(assignment.substr(equals + 1), where.override_text)});
+        {key, where, host::parse_override(assignment.substr(equals + 1), where.override_text)});
   }
   const PluginEntry& entry = plugin(*plan.config.registry, "tuner", request.tuner);
   const std::string who = "the tuner '" + request.tuner + "'";
@@ -146,34 +147,34 @@ Json make_tuner(TunePlan& plan) {
     throw ConfigError(report.problems);
   }
   plan.tuner = blamed([&] { return "making " + who; }, [&] { return entry.tuner(&with); });
-  Json json = {{"name", request.tuner},
-               {"build", plan.config.registry->offering("tuner", request.tuner)->build}};
+  host::Json json = {{"name", request.tuner},
+                     {"build", plan.config.registry->offering("tuner", request.tuner)->build}};
   for (const BoundField& field : report.fields) {
-    json["parameters"][field.spec.name] = Json::parse(field.value_json);
+    json["parameters"][field.spec.name] = host::Json::parse(field.value_json);
   }
   return json;
 }
 
-Json settings_of(const TunePlan& plan, const Json& tuner, const std::set<fs::path>& files,
-                 const Json& plugins) {
+host::Json settings_of(const TunePlan& plan, const host::Json& tuner,
+                       const std::set<fs::path>& files, const host::Json& plugins) {
   const TuneRequest& request = plan.request;
-  Json names = Json::array();
-  for (const Variant& scenario : plan.scenarios) {
+  host::Json names = host::Json::array();
+  for (const study::Variant& scenario : plan.scenarios) {
     names.push_back({scenario.name, scenario.set});
   }
   const auto middle = names.begin() + std::ptrdiff_t(plan.tuned_on);
-  Json settings = {{"altiplan", ALTIPLAN_VERSION}, {"program", host_build()}};
+  host::Json settings = {{"altiplan", ALTIPLAN_VERSION}, {"program", study::host_build()}};
   settings["pipeline"] = request.pipeline.filename().string();
   settings["--over"] = request.over;
   settings["--metric"] = request.metric;
-  settings["--scenarios"] = Json(names.begin(), middle);
-  settings["--hold-out"] = Json(middle, names.end());
+  settings["--scenarios"] = host::Json(names.begin(), middle);
+  settings["--hold-out"] = host::Json(middle, names.end());
   settings["--tuner"] = tuner;
   settings["--seed"] = request.seed;
-  settings["--penalty"] = request.penalty ? Json(*request.penalty) : Json();
+  settings["--penalty"] = request.penalty ? host::Json(*request.penalty) : host::Json();
   settings["limits"] = {{"wall_s", request.limits.wall_s}, {"memory_mb", request.limits.memory_mb}};
   for (const fs::path& file : files) {
-    settings["files"][file.string()] = sha256(file);
+    settings["files"][file.string()] = host::sha256(file);
   }
   settings["plugins"] = plugins;
   return settings;
@@ -196,10 +197,10 @@ std::vector<std::string> TunePlan::assignments(const std::vector<double>& point)
   return all;
 }
 
-Overrides TunePlan::overrides(std::size_t scenario,
-                              const std::vector<std::string>& assignments) const {
-  Overrides overrides;
-  const Variant& variant = scenarios[scenario];
+host::Overrides TunePlan::overrides(std::size_t scenario,
+                                    const std::vector<std::string>& assignments) const {
+  host::Overrides overrides;
+  const study::Variant& variant = scenarios[scenario];
   if (!variant.file.empty()) {
     overrides.scenario = variant.file;
   }
@@ -212,15 +213,15 @@ Overrides TunePlan::overrides(std::size_t scenario,
 TunePlan plan_tuning(const TuneRequest& request) {
   TunePlan plan;
   plan.request = request;
-  plan.objective = read_objective(request.metric);
+  plan.objective = study::read_objective(request.metric);
   const std::vector<OverEntry> entries = read_over(request.over);
   find_scenarios(plan);
   std::set<fs::path> files;
-  std::set<Json> plugins;
+  std::set<host::Json> plugins;
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
-    Config config = load_in(plan, s);
+    host::Config config = load_in(plan, s);
     files.insert(config.files.begin(), config.files.end());
-    const Json used = plugins_json(config);
+    const host::Json used = host::plugins_json(config);
     plugins.insert(used.begin(), used.end());
     if (s == 0) {
       plan.config = std::move(config);
@@ -238,8 +239,8 @@ TunePlan plan_tuning(const TuneRequest& request) {
     }
   }
   plan.parameters = find_parameters(plan.config, entries);
-  const Json tuner = make_tuner(plan);
-  plan.settings = settings_of(plan, tuner, files, Json(plugins));
+  const host::Json tuner = make_tuner(plan);
+  plan.settings = settings_of(plan, tuner, files, host::Json(plugins));
   return plan;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

@@ -13,7 +13,7 @@
 #include "study/plan/study_plan.hpp"
 #include "tune/tuned_parameter.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// What the user asks for; texts as on the command line.
 struct TuneRequest {
@@ -27,31 +27,32 @@ struct TuneRequest {
   std::int64_t seed = 0;
   std::optional<std::int64_t> evaluations;  ///< at most
   std::optional<double> penalty;            ///< what a failed run counts; none: infinity
-  StudyBudget limits;                       ///< wall_s, cpu_s and memory_mb of a run
+  study::StudyBudget limits;                ///< wall_s, cpu_s and memory_mb of a run
   std::vector<std::filesystem::path> plugin_path;
 };
 
 /// A tuning, read and checked.
 struct TunePlan {
   TuneRequest request;
-  Config config;                   ///< the pipeline as it is, in the first scenario
-  std::vector<Variant> scenarios;  ///< those tuned on, then those held back
-  std::size_t tuned_on = 0;        ///< how many of them
+  host::Config config;                    ///< the pipeline as it is, in the first scenario
+  std::vector<study::Variant> scenarios;  ///< those tuned on, then those held back
+  std::size_t tuned_on = 0;               ///< how many of them
   std::vector<TunedParameter> parameters;
-  ClaimQuantity objective;
+  study::ClaimQuantity objective;
   std::unique_ptr<Tuner> tuner;
   /// All that decides what comes of it, by words for the user. A tuning that goes on must have the
   /// same.
-  Json settings;
+  host::Json settings;
 
   std::vector<Dimension> space() const;
   /// "steps.0.with.weight_g=0.3" for each parameter.
   std::vector<std::string> assignments(const std::vector<double>& point) const;
   /// What `altiplan run` would be given to do a run by itself.
-  Overrides overrides(std::size_t scenario, const std::vector<std::string>& assignments) const;
+  host::Overrides overrides(std::size_t scenario,
+                            const std::vector<std::string>& assignments) const;
 };
 
 /// Reads and checks all that is asked for, the pipeline in every scenario; throws ConfigError and
 /// Error naming the option.
 TunePlan plan_tuning(const TuneRequest& request);
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

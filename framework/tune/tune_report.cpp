@@ -11,26 +11,26 @@
 #include "study/statistics/statistics.hpp"
 #include "tune/tuned_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
-using report::counted;
-using report::exact;
+using study::report::counted;
+using study::report::exact;
 
 /// What the paired test says of the differences, now less before, as the end of a sentence. It
 /// looks at their ranks, so that a few great ones can leave the mean on the other side.
 std::string test_words(const std::vector<double>& differences) {
-  const std::optional<Wilcoxon> test = wilcoxon(differences);
+  const std::optional<study::Wilcoxon> test = study::wilcoxon(differences);
   if (!test) {
     return "no scenario differs";
   }
-  const std::string p = "Wilcoxon's signed-rank test: " + report::p_equals(test->p);
+  const std::string p = "Wilcoxon's signed-rank test: " + study::report::p_equals(test->p);
   if (!(test->p < 0.05)) {
     return p + ", no difference that chance does not explain";
   }
   const bool is_better = test->rank_biserial < 0;
-  const double change = mean(differences);
+  const double change = study::mean(differences);
   const std::string verdict = p + ", the tuned pipeline is " + (is_better ? "better" : "worse");
   if (is_better ? change < 0 : change > 0) {
     return verdict;
@@ -61,8 +61,8 @@ TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) 
       made.equal += differences.back() == 0;
     }
   }
-  made.mean_before = mean(before);
-  made.mean_now = mean(now);
+  made.mean_before = study::mean(before);
+  made.mean_now = study::mean(now);
   if (made.scenarios == 0) {
     return made;
   }
@@ -77,8 +77,10 @@ TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) 
   return made;
 }
 
-Json json_of(const TunedComparison& made) {
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+host::Json json_of(const TunedComparison& made) {
+  const auto number = [](double value) {
+    return std::isfinite(value) ? host::Json(value) : host::Json();
+  };
   return {{"scenarios", made.scenarios},
           {"failed_as_it_is", made.failed_before},
           {"failed_tuned", made.failed_now},
@@ -95,8 +97,8 @@ std::string value_of(const std::string& assignment) {
   return assignment.substr(assignment.find('=') + 1);
 }
 
-report::Grid evaluations_grid(const TunePlan& plan, const Tuning& tuning) {
-  report::Grid grid{{"evaluation", "iteration"}, {}};
+study::report::Grid evaluations_grid(const TunePlan& plan, const Tuning& tuning) {
+  study::report::Grid grid{{"evaluation", "iteration"}, {}};
   for (const TunedParameter& parameter : plan.parameters) {
     grid.columns.push_back(parameter.over.key);
   }
@@ -125,8 +127,8 @@ report::Grid evaluations_grid(const TunePlan& plan, const Tuning& tuning) {
   return grid;
 }
 
-report::Grid held_back_grid(const TunePlan& plan, const Tuning& tuning) {
-  report::Grid grid{{"scenario", "as_it_is", "tuned"}, {}};
+study::report::Grid held_back_grid(const TunePlan& plan, const Tuning& tuning) {
+  study::report::Grid grid{{"scenario", "as_it_is", "tuned"}, {}};
   const auto cell = [](const ScoredRun& run) {
     return run.value ? exact(*run.value) : run.outcome;
   };
@@ -137,27 +139,29 @@ report::Grid held_back_grid(const TunePlan& plan, const Tuning& tuning) {
   return grid;
 }
 
-Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSummary& summary) {
-  const auto score = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
-  Json json = {{"altiplan", 1},
-               {"metric", plan.request.metric},
-               {"tuner", plan.request.tuner},
-               {"seed", plan.request.seed},
-               {"evaluations", summary.evaluations},
-               {"failed_evaluations", summary.failed},
-               {"evaluations_on_plateau", summary.on_plateau},
-               {"best_evaluation", tuning.best},
-               {"score_as_it_is", score(tuning.as_it_is().score)},
-               {"score_tuned", score(tuning.tuned().score)}};
+host::Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSummary& summary) {
+  const auto score = [](double value) {
+    return std::isfinite(value) ? host::Json(value) : host::Json();
+  };
+  host::Json json = {{"altiplan", 1},
+                     {"metric", plan.request.metric},
+                     {"tuner", plan.request.tuner},
+                     {"seed", plan.request.seed},
+                     {"evaluations", summary.evaluations},
+                     {"failed_evaluations", summary.failed},
+                     {"evaluations_on_plateau", summary.on_plateau},
+                     {"best_evaluation", tuning.best},
+                     {"score_as_it_is", score(tuning.as_it_is().score)},
+                     {"score_tuned", score(tuning.tuned().score)}};
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
-    const Json before = Json::parse(plan.parameters[p].as_it_is, nullptr, false);
+    const host::Json before = host::Json::parse(plan.parameters[p].as_it_is, nullptr, false);
     json["parameters"][plan.parameters[p].over.key] = {
-        {"as_it_is", before.is_discarded() ? Json() : before},
-        {"tuned", tuning.best == 0 ? (before.is_discarded() ? Json() : before)
-                                   : Json::parse(value_of(tuning.tuned().assignments[p]))}};
+        {"as_it_is", before.is_discarded() ? host::Json() : before},
+        {"tuned", tuning.best == 0 ? (before.is_discarded() ? host::Json() : before)
+                                   : host::Json::parse(value_of(tuning.tuned().assignments[p]))}};
   }
   json["tuned_on"] = json_of(summary.tuned_on);
-  json["held_back"] = summary.held_back.scenarios > 0 ? json_of(summary.held_back) : Json();
+  json["held_back"] = summary.held_back.scenarios > 0 ? json_of(summary.held_back) : host::Json();
   return json;
 }
 
@@ -165,8 +169,8 @@ Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSummary&
 std::string heading(const TunePlan& plan, const Tuning& tuning) {
   const std::string where = counted(plan.tuned_on, "scenario");
   return "# Tuned by altiplan tune from " + plan.config.pipeline_path.filename().string() + ": " +
-         report::printable(plan.request.metric) + " = " + exact(tuning.tuned().score) + " over " +
-         where + ", as it was " +
+         study::report::printable(plan.request.metric) + " = " + exact(tuning.tuned().score) +
+         " over " + where + ", as it was " +
          (std::isfinite(tuning.as_it_is().score) ? exact(tuning.as_it_is().score) : "a failure") +
          " (" + plan.request.tuner + ", seed " + std::to_string(plan.request.seed) + ", " +
          counted(tuning.evaluations.size() - 1, "evaluation") + ").\n";
@@ -196,13 +200,16 @@ TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning) {
 }
 
 void write_tuning(const TunePlan& plan, const Tuning& tuning, const fs::path& folder) {
-  write_file(folder / "evaluations.csv", report::csv_text(evaluations_grid(plan, tuning)));
+  host::write_file(folder / "evaluations.csv",
+                   study::report::csv_text(evaluations_grid(plan, tuning)));
   if (plan.scenarios.size() > plan.tuned_on) {
-    write_file(folder / "held_back.csv", report::csv_text(held_back_grid(plan, tuning)));
+    host::write_file(folder / "held_back.csv",
+                     study::report::csv_text(held_back_grid(plan, tuning)));
   }
-  write_file(folder / "convergence.svg", report::svg_text(convergence_figure(plan, tuning), false));
-  write_file(folder / "summary.json",
-             file_text(summary_json(plan, tuning, summary_of(plan, tuning))));
-  write_file(folder / "tuned.yaml", tuned_pipeline(plan, tuning, folder));
+  host::write_file(folder / "convergence.svg",
+                   study::report::svg_text(convergence_figure(plan, tuning), false));
+  host::write_file(folder / "summary.json",
+                   host::file_text(summary_json(plan, tuning, summary_of(plan, tuning))));
+  host::write_file(folder / "tuned.yaml", tuned_pipeline(plan, tuning, folder));
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

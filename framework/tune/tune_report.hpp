@@ -7,7 +7,7 @@
 #include "study/drawing/svg.hpp"
 #include "tune/tune_run.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// How the tuned pipeline does in scenarios, beside the pipeline as it is.
 struct TunedComparison {
@@ -32,8 +32,8 @@ struct TuneSummary {
 TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning);
 
 /// The best and the mean score of each iteration.
-report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning);
+study::report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning);
 
 /// evaluations.csv, held_back.csv (where there are any), convergence.svg, summary.json, tuned.yaml.
 void write_tuning(const TunePlan& plan, const Tuning& tuning, const std::filesystem::path& folder);
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

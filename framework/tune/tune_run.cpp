@@ -14,7 +14,7 @@
 #include "study/statistics/statistics.hpp"
 #include "tune/tune_guards.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
@@ -87,17 +87,17 @@ class TuningRun {
     std::size_t scenario;
   };
 
-  PoolOptions pool_options() {
-    PoolOptions pool;
+  study::PoolOptions pool_options() {
+    study::PoolOptions pool;
     pool.jobs = options_.jobs;
     pool.reuse = 1000;
-    pool.limits = job_limits(plan_.request.limits);
+    pool.limits = study::job_limits(plan_.request.limits);
     pool.key = [this](std::size_t i) {
       return std::to_string(wanted_[i].evaluation) + " " + std::to_string(wanted_[i].scenario);
     };
-    pool.appraise = [this](const Ended& ended) {
+    pool.appraise = [this](const study::Ended& ended) {
       const Wanted& wanted = wanted_[ended.job];
-      return appraisal_of(
+      return study::appraisal_of(
           ended, plan_.request.limits,
           plan_.scenarios[wanted.scenario].name + " with " + parameters_of(wanted.evaluation));
     };
@@ -171,7 +171,7 @@ class TuningRun {
       evaluation.failed += !run.value;
       sum += run.value.value_or(plan_.request.penalty.value_or(kInfinity));
     }
-    evaluation.score = in_12_digits(sum / double(plan_.tuned_on));
+    evaluation.score = study::in_12_digits(sum / double(plan_.tuned_on));
   }
 
   /// Gives the evaluations their runs: known ones, those of an earlier evaluation with the same
@@ -212,21 +212,21 @@ class TuningRun {
       return;
     }
     files_.expect_unchanged();
-    const Work work = [this](const Job& job) {
+    const study::Work work = [this](const study::Job& job) {
       const Wanted& wanted = wanted_[job.index];
-      PlannedConfig planned;
+      study::PlannedConfig planned;
       planned.is_on_trial = true;
       planned.load = [&] {
-        return load_config(
+        return host::load_config(
             plan_.request.pipeline,
             plan_.overrides(wanted.scenario, tuning_.evaluations[wanted.evaluation].assignments),
             plan_.config.registry);
       };
-      return study_run(job, planned, plan_.request.limits);
+      return study::study_run(job, planned, plan_.request.limits);
     };
-    const auto keep = [this](const std::vector<Ended>& all) {
+    const auto keep = [this](const std::vector<study::Ended>& all) {
       files_.expect_unchanged();
-      for (const Ended& ended : all) {
+      for (const study::Ended& ended : all) {
         const Wanted& wanted = wanted_[ended.job];
         log_.add({wanted.evaluation, wanted.scenario}, parameters_of(wanted.evaluation),
                  scored(ended));
@@ -234,19 +234,19 @@ class TuningRun {
       progress_.runs += all.size();
       tell_progress();
     };
-    const WorkerPool::Finish finish = pool_.run(jobs, work, keep);
-    if (finish == WorkerPool::Finish::interrupted) {
+    const study::WorkerPool::Finish finish = pool_.run(jobs, work, keep);
+    if (finish == study::WorkerPool::Finish::interrupted) {
       throw Interrupted();
     }
   }
 
-  ScoredRun scored(const Ended& ended) const {
-    const RunOutcome outcome = outcome_of(ended, plan_.request.limits);
+  ScoredRun scored(const study::Ended& ended) const {
+    const study::RunOutcome outcome = study::outcome_of(ended, plan_.request.limits);
     if (outcome.outcome != "solved") {
       return {outcome.outcome, std::nullopt, outcome.message};
     }
     std::map<std::string, double> values;
-    for (const auto& [name, value] : values_of(Json::parse(outcome.result))) {
+    for (const auto& [name, value] : study::values_of(host::Json::parse(outcome.result))) {
       values[name] = value;
     }
     values.insert({{"solved", 1},
@@ -254,14 +254,14 @@ class TuningRun {
                    {"cpu_time_s", ended.cpu_s},
                    {"peak_memory_mb", ended.peak_memory_mb}});
     std::vector<double> named;
-    for (const ClaimValue& wanted : plan_.objective.values) {
+    for (const study::ClaimValue& wanted : plan_.objective.values) {
       const auto found = values.find(wanted.name);
       if (found == values.end()) {
         return {"no_value", std::nullopt, "the run has no value '" + wanted.name + "'"};
       }
       named.push_back(found->second);
     }
-    const double value = in_12_digits(host::evaluate(plan_.objective.expression, named));
+    const double value = study::in_12_digits(study::evaluate(plan_.objective.expression, named));
     if (!std::isfinite(value)) {
       return {"no_value", std::nullopt, "the metric is not finite"};
     }
@@ -292,10 +292,10 @@ class TuningRun {
   const TunePlan& plan_;
   const TuneOptions& options_;
   const Clock::time_point began_ = Clock::now();
-  WorkFolder folder_;  ///< locked before the log is looked at
+  study::WorkFolder folder_;  ///< locked before the log is looked at
   TuneLog log_;
   const FileWatch files_;
-  WorkerPool pool_;
+  study::WorkerPool pool_;
   Tuning tuning_;
   TuneProgress progress_;
   std::vector<Wanted> wanted_;
@@ -310,4 +310,4 @@ Tuning run_tuning(const TunePlan& plan, const TuneOptions& options) {
   }
   return TuningRun(plan, options)();
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

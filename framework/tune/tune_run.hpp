@@ -10,7 +10,7 @@
 #include "tune/tune_log.hpp"
 #include "tune/tune_plan.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 struct TuneProgress {
   std::size_t evaluations = 0;  ///< that have ended, those of an earlier call included
@@ -54,4 +54,4 @@ struct Tuning {
 /// Throws Error where the folder cannot be used, a file changed meanwhile, or the metric has no
 /// value in a run that solved the problem.
 Tuning run_tuning(const TunePlan& plan, const TuneOptions& options);
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

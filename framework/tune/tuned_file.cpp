@@ -12,7 +12,7 @@
 #include "host/result/result_json.hpp"
 #include "study/plan/study_grid.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
@@ -39,7 +39,8 @@ bool same(const Value& a, const Value& b) {
 /// The document that an edit works on.
 class Document {
  public:
-  explicit Document(std::string text) : text_(std::move(text)), tree_(parse_yaml(text_, "")) {}
+  explicit Document(std::string text)
+      : text_(std::move(text)), tree_(host::parse_yaml(text_, "")) {}
 
   const std::string& text() const { return text_; }
   const Value& tree() const { return tree_; }
@@ -47,7 +48,7 @@ class Document {
   /// Sets the key within the text; false where that would change anything else.
   bool set(const std::string& assignment) {
     Value wanted = tree_;
-    apply_overrides(wanted, {assignment}, FileOfKey::pipeline);
+    host::apply_overrides(wanted, {assignment}, host::FileOfKey::pipeline);
     const std::size_t equals = assignment.find('=');
     std::string edited = text_;
     if (!edit(edited, assignment.substr(0, equals), assignment.substr(equals + 1))) {
@@ -184,7 +185,7 @@ std::string rebased(const std::string& path, const fs::path& from, const fs::pat
 }
 
 /// Keys of the pipeline that hold paths, with what they hold.
-std::vector<std::pair<std::string, std::string>> paths_of(const Config& config) {
+std::vector<std::pair<std::string, std::string>> paths_of(const host::Config& config) {
   std::vector<std::pair<std::string, std::string>> paths;
   const auto add = [&](const std::string& key, const Value* value) {
     if (value != nullptr && value->kind == Value::Kind::scalar) {
@@ -194,7 +195,7 @@ std::vector<std::pair<std::string, std::string>> paths_of(const Config& config) 
   add("scenario", config.pipeline_tree.find("scenario"));
   if (const Value* plugins = config.pipeline_tree.find("plugins")) {
     for (std::size_t i = 0; i < plugins->items.size(); ++i) {
-      add(item("plugins", i), &plugins->items[i]);
+      add(host::item("plugins", i), &plugins->items[i]);
     }
   }
   const auto add_fields = [&](const ParamReport& report, const Value& with,
@@ -205,21 +206,21 @@ std::vector<std::pair<std::string, std::string>> paths_of(const Config& config) 
       }
     }
   };
-  const auto add_step = [&](const StepEntry& step) {
-    if (step.plugin != kFollowRoute) {
+  const auto add_step = [&](const host::StepEntry& step) {
+    if (step.plugin != host::kFollowRoute) {
       const std::string path = step.path + ".with";
       const PluginEntry& entry =
-          plugin(*config.registry, kind_of_step(*config.registry, step), step.plugin);
+          plugin(*config.registry, host::kind_of_step(*config.registry, step), step.plugin);
       add_fields(entry.describe(&step.with, path), step.with, path);
     }
   };
-  for (const StepEntry& step : config.steps) {
+  for (const host::StepEntry& step : config.steps) {
     add_step(step);
     std::for_each(step.otherwise.begin(), step.otherwise.end(), add_step);
   }
   for (std::size_t i = 0; i < config.pipeline.constraints.size(); ++i) {
-    const ConstraintEntry& entry = config.pipeline.constraints[i];
-    const std::string path = item("constraints", i) + "." + entry.plugin;
+    const host::ConstraintEntry& entry = config.pipeline.constraints[i];
+    const std::string path = host::item("constraints", i) + "." + entry.plugin;
     add_fields(
         plugin(*config.registry, "constraint", entry.plugin).describe(&entry.parameters, path),
         entry.parameters, path);
@@ -230,11 +231,11 @@ std::vector<std::pair<std::string, std::string>> paths_of(const Config& config) 
 std::string scalar_text(const std::string& text) {
   Value value;
   value.text = text;
-  return flow_text(value);
+  return study::flow_text(value);
 }
 }  // namespace
 
-std::string tuned_text(const Config& config, const std::vector<std::string>& assignments,
+std::string tuned_text(const host::Config& config, const std::vector<std::string>& assignments,
                        const fs::path& folder) {
   Document document(kit::read_file(config.pipeline_path.string()));
   const fs::path from = config.pipeline_path.parent_path();
@@ -252,11 +253,11 @@ std::string tuned_text(const Config& config, const std::vector<std::string>& ass
     return document.text();
   }
   Value tree = document.tree();
-  apply_overrides(tree, all, FileOfKey::pipeline);
+  host::apply_overrides(tree, all, host::FileOfKey::pipeline);
   std::string text;
   for (const Value::Entry& entry : tree.entries) {
-    text += entry.key + ": " + flow_text(entry.value) + "\n";
+    text += entry.key + ": " + study::flow_text(entry.value) + "\n";
   }
   return text;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

@@ -7,11 +7,11 @@
 
 #include "host/config/config.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// The pipeline's text with keys set ("steps.0.with.weight_g=0.3"), as a file in `folder`: comments
 /// and layout stay, and the paths in it lead to the files that they did. Where the text cannot be
 /// kept (values behind aliases), the pipeline is written anew, without its comments.
-std::string tuned_text(const Config& config, const std::vector<std::string>& assignments,
+std::string tuned_text(const host::Config& config, const std::vector<std::string>& assignments,
                        const std::filesystem::path& folder);
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

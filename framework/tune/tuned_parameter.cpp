@@ -10,7 +10,7 @@
 #include "host/config/config_check.hpp"
 #include "host/result/result_json.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 namespace {
 
 [[noreturn]] void refuse(const OverEntry& entry, const std::string& message) {
@@ -78,9 +78,10 @@ void read_range(std::string_view text, OverEntry& entry) {
 }
 
 /// The step that the first words of the key name; what follows is the rest.
-const StepEntry* step_of(const Config& config, std::string_view key, std::string_view& rest) {
-  const auto find_in = [&](const std::vector<StepEntry>& steps) -> const StepEntry* {
-    for (const StepEntry& step : steps) {
+const host::StepEntry* step_of(const host::Config& config, std::string_view key,
+                               std::string_view& rest) {
+  const auto find_in = [&](const std::vector<host::StepEntry>& steps) -> const host::StepEntry* {
+    for (const host::StepEntry& step : steps) {
       if (key.starts_with(step.path + ".with.")) {
         rest = key.substr(step.path.size() + 6);
         return &step;
@@ -88,8 +89,8 @@ const StepEntry* step_of(const Config& config, std::string_view key, std::string
     }
     return nullptr;
   };
-  for (const StepEntry& step : config.steps) {
-    if (const StepEntry* other = find_in(step.otherwise)) {
+  for (const host::StepEntry& step : config.steps) {
+    if (const host::StepEntry* other = find_in(step.otherwise)) {
       return other;
     }
   }
@@ -122,7 +123,7 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
   }
   const bool below = spec.above ? entry.min <= spec.min : entry.min < spec.min;
   if (below || entry.max > spec.max) {
-    const auto text = [](double number) { return Json(number).dump(); };
+    const auto text = [](double number) { return host::Json(number).dump(); };
     const std::string low =
         std::isfinite(spec.min) ? (spec.above ? "more than " : "at least ") + text(spec.min) : "";
     const std::string high = std::isfinite(spec.max) ? "at most " + text(spec.max) : "";
@@ -134,7 +135,7 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
   if (spec.type == FieldType::integer && (std::ceil(entry.min) > std::floor(entry.max) ||
                                           entry.min < -kMostWhole || entry.max > kMostWhole)) {
     refuse(entry, "takes whole numbers, of which there is none, or too many, from " +
-                      Json(entry.min).dump() + " to " + Json(entry.max).dump());
+                      host::Json(entry.min).dump() + " to " + host::Json(entry.max).dump());
   }
 }
 
@@ -143,7 +144,7 @@ bool is_number(FieldType type) {
 }
 
 /// The declaration of the number that the rest of a key names, `name` or `name.0`.
-FieldSpec spec_of(const BoundField& field, const StepEntry& step, std::string_view inner,
+FieldSpec spec_of(const BoundField& field, const host::StepEntry& step, std::string_view inner,
                   const OverEntry& entry, TunedParameter& found) {
   FieldSpec spec = field.spec;
   found.as_it_is = field.value_json;
@@ -177,19 +178,19 @@ FieldSpec spec_of(const BoundField& field, const StepEntry& step, std::string_vi
   return spec;
 }
 
-TunedParameter find_parameter(const Config& config, const OverEntry& entry) {
+TunedParameter find_parameter(const host::Config& config, const OverEntry& entry) {
   std::string_view rest;
-  const StepEntry* step = step_of(config, entry.key, rest);
-  if (step == nullptr || step->plugin == kFollowRoute) {
+  const host::StepEntry* step = step_of(config, entry.key, rest);
+  if (step == nullptr || step->plugin == host::kFollowRoute) {
     std::vector<std::string> steps;
-    for (const StepEntry& known : config.steps) {
+    for (const host::StepEntry& known : config.steps) {
       steps.push_back(known.path + ".with");
     }
     refuse(entry, "names no parameter of a step: expected " + steps.front() +
                       ".NAME, by the steps' numbers from 0" +
                       (steps.size() > 1 ? " to " + std::to_string(steps.size() - 1) : ""));
   }
-  const std::string kind = kind_of_step(*config.registry, *step);
+  const std::string kind = host::kind_of_step(*config.registry, *step);
   const ParamReport report =
       blamed([&] { return "describing the " + kind + " '" + step->plugin + "'"; },
              [&] {
@@ -210,8 +211,8 @@ TunedParameter find_parameter(const Config& config, const OverEntry& entry) {
       return found;
     }
   }
-  refuse(entry,
-         "'" + step->plugin + "' has no parameter '" + name + "'" + did_you_mean(name, names));
+  refuse(entry, "'" + step->plugin + "' has no parameter '" + name + "'" +
+                    host::did_you_mean(name, names));
 }
 }  // namespace
 
@@ -248,7 +249,7 @@ std::vector<OverEntry> read_over(const std::vector<std::string>& options) {
 }
 
 std::string TunedParameter::shown() const {
-  const Json value = Json::parse(as_it_is, nullptr, false);
+  const host::Json value = host::Json::parse(as_it_is, nullptr, false);
   return value.is_string() ? value.get<std::string>() : as_it_is;
 }
 
@@ -272,10 +273,10 @@ std::string TunedParameter::value(double number) const {
     const double whole = std::clamp(std::round(raw), std::ceil(over.min), std::floor(over.max));
     return std::to_string(std::int64_t(whole));
   }
-  return Json(std::clamp(raw, over.min, over.max)).dump();
+  return host::Json(std::clamp(raw, over.min, over.max)).dump();
 }
 
-std::vector<TunedParameter> find_parameters(const Config& config,
+std::vector<TunedParameter> find_parameters(const host::Config& config,
                                             const std::vector<OverEntry>& entries) {
   std::vector<TunedParameter> found;
   for (const OverEntry& entry : entries) {
@@ -283,4 +284,4 @@ std::vector<TunedParameter> find_parameters(const Config& config,
   }
   return found;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

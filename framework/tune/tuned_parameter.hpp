@@ -8,7 +8,7 @@
 #include "altiplan/tuner.hpp"
 #include "host/config/config.hpp"
 
-namespace altiplan::host {
+namespace altiplan::tune {
 
 /// What `--over` says of one parameter.
 struct OverEntry {
@@ -41,6 +41,6 @@ struct TunedParameter {
 
 /// Finds the parameters in the pipeline's steps. Throws ConfigError naming option and key for one
 /// that is not there, is no number, or is to leave the bounds that it has.
-std::vector<TunedParameter> find_parameters(const Config& config,
+std::vector<TunedParameter> find_parameters(const host::Config& config,
                                             const std::vector<OverEntry>& entries);
-}  // namespace altiplan::host
+}  // namespace altiplan::tune

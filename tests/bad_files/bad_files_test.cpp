@@ -17,6 +17,7 @@
 #include "support/folders.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 

@@ -229,8 +229,8 @@ TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
   const std::map<fs::path, std::string> namespaces{
       {"framework/include", "altiplan"},    {"framework/include/altiplan/kit", "altiplan::kit"},
       {"framework/src", "altiplan"},        {"framework/src/kit", "altiplan::kit"},
-      {"framework/host", "altiplan::host"}, {"framework/study", "altiplan::host"},
-      {"framework/tune", "altiplan::host"}, {"framework/conformance", "altiplan::conformance"},
+      {"framework/host", "altiplan::host"}, {"framework/study", "altiplan::study"},
+      {"framework/tune", "altiplan::tune"}, {"framework/conformance", "altiplan::conformance"},
       {"tools/altiplan", "altiplan::cli"},  {"tools/bench", "altiplan::bench"}};
   const std::regex kOpened(R"(^namespace (altiplan[a-z_:]*) \{)");
   std::vector<std::string> found;

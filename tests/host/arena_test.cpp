@@ -6,6 +6,7 @@
 #include "study/arena/arena_columns.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 TEST(Arena, columns_have_names_that_sql_and_planner_arena_take) {

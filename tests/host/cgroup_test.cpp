@@ -11,6 +11,7 @@
 #include "study/pool/worker_pool.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 namespace fs = std::filesystem;

@@ -7,6 +7,7 @@
 #include "study/claims/claims.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 const std::vector<std::string> kPipelines{"astar", "fusion[weight_g=0.3]", "fusion[weight_g=0.7]",

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 /// Two pipelines, `a` and `b`, over scenarios and repetitions; a's lengths are 100, 101, …

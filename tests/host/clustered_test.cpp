@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 using Sample = std::vector<double>;
 using Indices = std::vector<std::size_t>;

@@ -9,6 +9,7 @@
 #include "study/compare/origin.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 using Verdict = MetricChange::Verdict;

@@ -11,7 +11,8 @@
 #include "study/report/report.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
+using namespace host;
 namespace {
 
 using altiplan::testing::TempFolder;
@@ -185,4 +186,4 @@ TEST(Convergence, TheReportDrawsIt) {
   EXPECT_EQ(with[4].find("Found a route in the iteration"), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

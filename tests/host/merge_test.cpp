@@ -6,6 +6,7 @@
 #include "study/store/place.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 using Merge = testing::StoredStudy;

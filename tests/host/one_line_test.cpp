@@ -10,6 +10,7 @@
 #include "support/folders.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 

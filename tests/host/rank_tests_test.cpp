@@ -7,6 +7,7 @@
 #include "study/statistics/statistics.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 using Sample = std::vector<double>;
 using Indices = std::vector<std::size_t>;

@@ -14,7 +14,8 @@
 #include "host/base/base64.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
+using namespace host;
 namespace {
 
 TEST(ReportScenes, CostNothingButThemselves) {
@@ -166,4 +167,4 @@ TEST(ReportScenes, TimesAreDroppedAtAnyDepth) {
   EXPECT_EQ(json, Json::parse(R"({"a": [{"duration_s": 3}, 4], "b": {}})"));
 }
 }  // namespace
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

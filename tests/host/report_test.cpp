@@ -15,7 +15,8 @@
 #include "study/report/page.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
+using namespace host;
 namespace {
 
 namespace fs = std::filesystem;
@@ -423,4 +424,4 @@ TEST(ReportScenes, AreOfFailuresFirst) {
   EXPECT_EQ(chosen[0].size(), 2u);  // with the other pipeline's run of the pair
 }
 }  // namespace
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -12,7 +12,7 @@
 #include "study/drawing/tables.hpp"
 #include "study/report/packed.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 using std::string;
@@ -163,4 +163,4 @@ TEST(ReportText, PacksAsZlib) {
   EXPECT_EQ(packed("aaaa").substr(0, 3), "eNp");  // 78 da: deflate, the best compression
 }
 }  // namespace
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -6,6 +6,7 @@
 #include <map>
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 std::map<std::string, double> values_of_flight(const std::string& replans) {

@@ -14,6 +14,7 @@
 #include "support/support.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 using altiplan::testing::configs;

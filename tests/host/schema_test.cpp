@@ -9,6 +9,7 @@
 #include "support/folders.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -8,6 +8,7 @@
 #include "study/statistics/statistics.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 using Json = nlohmann::json;
 using Sample = std::vector<double>;

@@ -10,6 +10,7 @@
 #include <set>
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 using Sample = std::vector<double>;
 using Indices = std::vector<std::size_t>;

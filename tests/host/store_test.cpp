@@ -13,6 +13,7 @@
 #include "study/store/sqlite.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 namespace fs = std::filesystem;

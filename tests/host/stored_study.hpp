@@ -12,6 +12,7 @@
 #include "study/store/store.hpp"
 
 namespace altiplan::host::testing {
+using namespace study;
 
 /// Makes stores of a study with two pipelines and two scenarios in a folder of the test's own.
 class StoredStudy : public ::testing::Test {

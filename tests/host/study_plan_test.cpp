@@ -9,6 +9,7 @@
 #include "study/plan/study_grid.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 using testing::Files;

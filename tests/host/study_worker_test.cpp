@@ -9,6 +9,7 @@
 #include "support/instrumented.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 /// Runs of a study, each in the pool as the study command has it. What misbehaves, and how it is

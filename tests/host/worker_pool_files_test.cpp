@@ -12,6 +12,7 @@
 #include "worker_pool_fixture.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 INSTANTIATE_TEST_SUITE_P(Reuse, Faults, ::testing::Values(1, 8));

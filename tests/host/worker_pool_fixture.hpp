@@ -18,6 +18,7 @@
 #include "study/pool/worker_pool.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace fs = std::filesystem;
 
 inline void sleep_s(double seconds) {

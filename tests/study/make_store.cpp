@@ -12,6 +12,7 @@
 #include "study/store/store.hpp"
 
 namespace altiplan::host {
+using namespace study;
 namespace {
 
 std::vector<StoredVariant> variants(const Json& list) {

@@ -34,8 +34,8 @@ std::string number(double value) {
 /// With all digits: two numbers that differ must not look the same.
 std::string exact(double value) { return host::Json(value).dump(); }
 
-const char* name(host::MetricChange::Verdict verdict) {
-  using Verdict = host::MetricChange::Verdict;
+const char* name(study::MetricChange::Verdict verdict) {
+  using Verdict = study::MetricChange::Verdict;
   switch (verdict) {
     case Verdict::same:
       return "same";
@@ -59,13 +59,13 @@ void print_more(std::size_t all) {
   }
 }
 
-void print_outcomes(const char* title, const std::vector<host::OutcomeChange>& changes) {
+void print_outcomes(const char* title, const std::vector<study::OutcomeChange>& changes) {
   if (changes.empty()) {
     return;
   }
   std::printf("%s: %zu\n", title, changes.size());
   for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
-    const host::OutcomeChange& change = changes[n];
+    const study::OutcomeChange& change = changes[n];
     const bool is_said = change.after != "solved" && !change.message.empty();
     std::printf("  %s: %s, then %s%s%s\n", change.run.c_str(), change.before.c_str(),
                 change.after.c_str(), is_said ? ": " : "", is_said ? change.message.c_str() : "");
@@ -73,21 +73,21 @@ void print_outcomes(const char* title, const std::vector<host::OutcomeChange>& c
   print_more(changes.size());
 }
 
-void print_values(const std::vector<host::ValueChange>& changes) {
+void print_values(const std::vector<study::ValueChange>& changes) {
   if (changes.empty()) {
     return;
   }
   std::printf("values of the metrics below that no clock decides, and that differ: %zu\n",
               changes.size());
   for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
-    const host::ValueChange& change = changes[n];
+    const study::ValueChange& change = changes[n];
     std::printf("  %s: %s was %s and is %s\n", change.run.c_str(), change.metric.c_str(),
                 exact(change.before).c_str(), exact(change.after).c_str());
   }
   print_more(changes.size());
 }
 
-std::string change_text(const host::MetricChange& change) {
+std::string change_text(const study::MetricChange& change) {
   if (change.pairs == 0) {
     return "-";
   }
@@ -102,23 +102,23 @@ std::string change_text(const host::MetricChange& change) {
   return text;
 }
 
-std::string verdict_text(const host::MetricChange& change) {
+std::string verdict_text(const study::MetricChange& change) {
   const bool is_said =
-      change.verdict == host::MetricChange::Verdict::unclear && !change.why_no_interval.empty();
+      change.verdict == study::MetricChange::Verdict::unclear && !change.why_no_interval.empty();
   return name(change.verdict) + (is_said ? ", " + change.why_no_interval : std::string());
 }
 
-void print_metrics(const std::vector<host::MetricChange>& changes) {
+void print_metrics(const std::vector<study::MetricChange>& changes) {
   int pipeline = 8;
   int metric = 6;
-  for (const host::MetricChange& change : changes) {
+  for (const study::MetricChange& change : changes) {
     pipeline = std::max(pipeline, int(change.pipeline.size()));
     metric = std::max(metric, int(change.metric.size()));
   }
   std::printf("%-*s  %-*s  %6s  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline, "pipeline", metric,
               "metric", "pairs", "first", "second", "second against first [95 %]", "n", "p (Holm)",
               "verdict");
-  for (const host::MetricChange& change : changes) {
+  for (const study::MetricChange& change : changes) {
     std::printf("%-*s  %-*s  %6zu  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline,
                 change.pipeline.c_str(), metric, change.metric.c_str(), change.pairs,
                 number(change.before).c_str(), number(change.after).c_str(),
@@ -129,20 +129,20 @@ void print_metrics(const std::vector<host::MetricChange>& changes) {
 }
 
 /// Reads results out of a store.
-host::ResultOf results_of(const std::string& file) {
-  auto store = std::make_shared<host::Store>(file, host::StoreMode::read);
-  return [store](const host::RunRow& row) {
+study::ResultOf results_of(const std::string& file) {
+  auto store = std::make_shared<study::Store>(file, study::StoreMode::read);
+  return [store](const study::RunRow& row) {
     const auto run = store->run(row.id);
     return run ? run->result : std::string();
   };
 }
 
-void print_origins(const host::Comparison& comparison, const host::StudyData& first,
-                   const host::StudyData& second, const Arguments& arguments) {
+void print_origins(const study::Comparison& comparison, const study::StudyData& first,
+                   const study::StudyData& second, const Arguments& arguments) {
   if (comparison.other_origins.empty()) {
     return;
   }
-  std::vector<std::string> changed = host::changed_origins(
+  std::vector<std::string> changed = study::changed_origins(
       comparison, first, second, results_of(arguments.first), results_of(arguments.second));
   if (changed.empty()) {
     changed.emplace_back(
@@ -156,7 +156,7 @@ void print_origins(const host::Comparison& comparison, const host::StudyData& fi
 }
 
 /// The last line, and whether the gate lets it pass.
-bool print_verdict(const host::Comparison& comparison) {
+bool print_verdict(const study::Comparison& comparison) {
   const std::size_t missing = comparison.only_first + comparison.other_seeds;
   std::string words = comparison.is_worse()
                           ? "the second is worse: a success is lost, or a metric is beyond the "
@@ -171,10 +171,10 @@ bool print_verdict(const host::Comparison& comparison) {
 }
 
 int compare(const Arguments& arguments) {
-  const host::StudyData first = host::load_study_data({arguments.first});
-  const host::StudyData second = host::load_study_data({arguments.second});
-  const host::Comparison comparison =
-      host::compare_studies(first, second, {arguments.metrics, arguments.tolerance_percent / 100});
+  const study::StudyData first = study::load_study_data({arguments.first});
+  const study::StudyData second = study::load_study_data({arguments.second});
+  const study::Comparison comparison =
+      study::compare_studies(first, second, {arguments.metrics, arguments.tolerance_percent / 100});
   std::printf("%zu pairs of runs; %zu runs in the first alone, %zu in the second alone\n",
               comparison.pairs, comparison.only_first, comparison.only_second);
   if (comparison.other_seeds > 0) {

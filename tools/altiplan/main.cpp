@@ -111,7 +111,7 @@ namespace {
 std::string command_line(int argc, char** argv) {
   std::string line = "altiplan";
   for (int i = 1; i < argc; ++i) {
-    line += " " + host::report::shell(argv[i]);
+    line += " " + study::report::shell(argv[i]);
   }
   return line;
 }

@@ -29,9 +29,9 @@ void expect_no_loss(const Arguments& arguments) {
 }
 
 int merge(const Arguments& arguments) {
-  expect_writable(host::place_of(arguments.out).string(), "-o");
+  expect_writable(study::place_of(arguments.out).string(), "-o");
   expect_no_loss(arguments);
-  const host::Merged merged = host::merge_stores(arguments.stores, arguments.out);
+  const study::Merged merged = study::merge_stores(arguments.stores, arguments.out);
   for (const std::string& sentence : merged.differing) {
     warn(sentence);
   }

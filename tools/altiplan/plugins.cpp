@@ -55,7 +55,7 @@ int describe(const Arguments& arguments) {
 int schema(const Arguments& arguments) {
   host::Registry registry = registry_of(arguments);
   std::cout << host::file_text(
-      host::any_file_schema(host::choices_of(registry), host::fields_of<host::StudyFile>()));
+      host::any_file_schema(host::choices_of(registry), host::fields_of<study::StudyFile>()));
   return kDone;
 }
 

@@ -25,13 +25,13 @@ struct Arguments {
 };
 
 /// Says how the run compares with the stored one, in the exit code too.
-int report(std::FILE* to, const host::StoredRun& stored, const host::Json& result,
+int report(std::FILE* to, const study::StoredRun& stored, const host::Json& result,
            const std::string& key) {
-  const host::Replayed replayed = host::compare_replay(stored, result, key);
+  const study::Replayed replayed = study::compare_replay(stored, result, key);
   for (const std::string& change : replayed.changed) {
     warn(change);
   }
-  const std::string name = host::run_name(stored);
+  const std::string name = study::run_name(stored);
   if (!replayed.difference) {
     std::fprintf(to, "%s: identical to the stored run: %s\n", name.c_str(), stored.outcome.c_str());
     return kDone;
@@ -47,7 +47,7 @@ int report(std::FILE* to, const host::StoredRun& stored, const host::Json& resul
   return kNoRoute;
 }
 
-int hand_out(std::FILE* to, const Arguments& arguments, const host::StoredRun& stored,
+int hand_out(std::FILE* to, const Arguments& arguments, const study::StoredRun& stored,
              const host::Config& config, const std::string& key, const host::RunResult& result) {
   const host::Json json = host::result_json(config, result);
   const int code = report(to, stored, json, key);
@@ -59,11 +59,11 @@ int hand_out(std::FILE* to, const Arguments& arguments, const host::StoredRun& s
 
 /// What is said where a plugin ends the process.
 host::ProcessGuard::LastWords last_words(const Arguments& arguments, const host::Config& config,
-                                         const host::StoredRun& stored,
+                                         const study::StoredRun& stored,
                                          const host::RunResult& result) {
   host::ProcessGuard::LastWords words;
   const bool as_then = stored.outcome == "crashed";
-  words.for_user = "altiplan: " + result.message + "\n" + host::run_name(stored) + ": " +
+  words.for_user = "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
                    (as_then ? "crashed, as the stored run did: " + stored.message
                             : "crashed, and the stored run did not: " + stored.outcome) +
                    "\n";
@@ -75,10 +75,11 @@ host::ProcessGuard::LastWords last_words(const Arguments& arguments, const host:
   return words;
 }
 
-int run_again(const Arguments& arguments, const host::Store& store, const host::StoredRun& stored) {
-  const host::Config config = host::config_of(store, stored, arguments.overrides.plugin_path);
-  const host::StudyBudget budget = host::budget_of(store);
-  const std::string key = host::key_of(config, budget, host::run_name(stored), stored.seed);
+int run_again(const Arguments& arguments, const study::Store& store,
+              const study::StoredRun& stored) {
+  const host::Config config = study::config_of(store, stored, arguments.overrides.plugin_path);
+  const study::StudyBudget budget = study::budget_of(store);
+  const std::string key = study::key_of(config, budget, study::run_name(stored), stored.seed);
   Interrupt interrupt;
   host::RunOptions options;
   options.patience_s = budget.wall_s;
@@ -113,9 +114,9 @@ int run_again(const Arguments& arguments, const host::Store& store, const host::
   return code;
 }
 
-int write_stored(const Arguments& arguments, const host::StoredRun& stored) {
+int write_stored(const Arguments& arguments, const study::StoredRun& stored) {
   if (stored.result.empty()) {
-    throw Error("the run '" + host::run_name(stored) + "' left no result: " + stored.outcome +
+    throw Error("the run '" + study::run_name(stored) + "' left no result: " + stored.outcome +
                 (stored.message.empty() ? "" : " (" + stored.message + ")"));
   }
   if (arguments.out) {
@@ -125,7 +126,7 @@ int write_stored(const Arguments& arguments, const host::StoredRun& stored) {
   }
   if (arguments.trace) {
     if (stored.trace.empty()) {
-      throw Error("the run '" + host::run_name(stored) + "' was stored without a trace");
+      throw Error("the run '" + study::run_name(stored) + "' was stored without a trace");
     }
     host::write_file(*arguments.trace, stored.trace);
   }
@@ -137,8 +138,8 @@ int replay(const Arguments& arguments) {
   expect_writable(arguments.trace, "--trace");
   expect_apart(arguments.out, "--out", {arguments.store});
   expect_apart(arguments.trace, "--trace", {arguments.store, arguments.out.value_or("")});
-  const host::Store store(arguments.store, host::StoreMode::read);
-  const host::StoredRun stored = host::find_run(store, arguments.run);
+  const study::Store store(arguments.store, study::StoreMode::read);
+  const study::StoredRun stored = study::find_run(store, arguments.run);
   return arguments.stored ? write_stored(arguments, stored) : run_again(arguments, store, stored);
 }
 }  // namespace

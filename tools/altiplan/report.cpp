@@ -29,29 +29,29 @@ std::string command_of(const Arguments& arguments) {
     command += " DB -o DIR --no-times";
   } else {
     for (const std::string& store : arguments.stores) {
-      command += " " + host::report::shell(store);
+      command += " " + study::report::shell(store);
     }
-    command += " -o " + host::report::shell(arguments.folder);
+    command += " -o " + study::report::shell(arguments.folder);
   }
   if (!arguments.title.empty()) {
-    command += " --title " + host::report::shell(arguments.title);
+    command += " --title " + study::report::shell(arguments.title);
   }
   return command;
 }
 
 int write_page(const Arguments& arguments) {
-  host::report::expect_report_folder(arguments.folder);
-  const host::report::Source source = host::report::load_source(arguments.stores);
-  host::report::Options options;
+  study::report::expect_report_folder(arguments.folder);
+  const study::report::Source source = study::report::load_source(arguments.stores);
+  study::report::Options options;
   options.title = arguments.title;
   options.command = command_of(arguments);
   options.times = !arguments.no_times;
   options.scenes.plugin_path = arguments.overrides.plugin_path;
-  const host::report::Written written =
-      host::report::write_report(source, options, arguments.folder);
+  const study::report::Written written =
+      study::report::write_report(source, options, arguments.folder);
   constexpr std::size_t kMostChanges = 5;
   for (std::size_t n = 0; n < written.changed.size() && n < kMostChanges; ++n) {
-    warn(host::report::printable(written.changed[n]));
+    warn(study::report::printable(written.changed[n]));
   }
   if (written.changed.size() > kMostChanges) {
     warn(std::to_string(written.changed.size() - kMostChanges) +
@@ -60,7 +60,7 @@ int write_page(const Arguments& arguments) {
   if (!written.notes.empty()) {
     warn(std::to_string(written.notes.size()) +
          " scenes could not be made, which the page tells; the first: " +
-         host::report::printable(written.notes.front()));
+         study::report::printable(written.notes.front()));
   }
   std::printf("%s\n%s: %s MB, %zu figures, %zu scenes\n", written.summary.c_str(),
               (std::filesystem::path(arguments.folder) / "index.html").c_str(),
@@ -70,12 +70,12 @@ int write_page(const Arguments& arguments) {
 
 int report(const Arguments& arguments) {
   if (arguments.arena) {
-    expect_writable(host::place_of(*arguments.arena).string(), "--arena");
+    expect_writable(study::place_of(*arguments.arena).string(), "--arena");
   }
   expect_apart(arguments.arena, "--arena", arguments.stores);
   if (arguments.arena) {
-    host::expect_replaceable(*arguments.arena);
-    host::write_arena(host::load_study_data(arguments.stores), *arguments.arena);
+    study::expect_replaceable(*arguments.arena);
+    study::write_arena(study::load_study_data(arguments.stores), *arguments.arena);
     std::printf("%s: for Planner Arena\n", arguments.arena->c_str());
   }
   return arguments.folder.empty() ? kDone : write_page(arguments);

@@ -46,8 +46,8 @@ std::string decimal(double value) {
   return {text, end};
 }
 
-host::SlurmJob job_of(const Arguments& arguments, const host::StudyPlan& plan) {
-  host::SlurmJob job;
+study::SlurmJob job_of(const Arguments& arguments, const study::StudyPlan& plan) {
+  study::SlurmJob job;
   job.program = fs::canonical("/proc/self/exe");
   job.study = plan.path;
   job.out = fs::absolute(arguments.out).lexically_normal();
@@ -92,8 +92,8 @@ std::vector<std::string> lines_of(const fs::path& file) {
 }
 
 /// Two tasks on one shard would only wait for each other.
-void expect_none_queued(const host::SlurmJob& job) {
-  const std::string queued = host::still_queued(lines_of(job.folder() / "jobs"));
+void expect_none_queued(const study::SlurmJob& job) {
+  const std::string queued = study::still_queued(lines_of(job.folder() / "jobs"));
   if (!queued.empty()) {
     throw Error("jobs of this study are in the queue already: " + queued +
                 "; wait for them, or end them with scancel");
@@ -101,7 +101,7 @@ void expect_none_queued(const host::SlurmJob& job) {
 }
 
 /// The databases that an estimate can be made from. Throws Error where one is of another study.
-std::vector<fs::path> stores_of(const host::SlurmJob& job, const host::StudyPlan& plan) {
+std::vector<fs::path> stores_of(const study::SlurmJob& job, const study::StudyPlan& plan) {
   std::vector<fs::path> stores;
   std::error_code error;
   if (fs::exists(job.out, error)) {
@@ -114,19 +114,19 @@ std::vector<fs::path> stores_of(const host::SlurmJob& job, const host::StudyPlan
   }
   std::sort(stores.begin(), stores.end());
   for (const fs::path& file : stores) {
-    auto study = host::Store(file, host::StoreMode::read).study();
+    auto study = study::Store(file, study::StoreMode::read).study();
     if (!study.empty() && study["text"] != plan.text) {
       auto now = study;
       now["text"] = plan.text;
       throw Error("'" + file.string() + "' is of another study: " +
-                  host::studies_differ(study, now) + "; remove it, or give --out another name");
+                  study::studies_differ(study, now) + "; remove it, or give --out another name");
     }
   }
   return stores;
 }
 
 /// Runs a few of the study's runs here.
-fs::path take_sample(const host::SlurmJob& job, const host::StudyPlan& plan) {
+fs::path take_sample(const study::SlurmJob& job, const study::StudyPlan& plan) {
   const double pairs = double(plan.scenarios.size()) * plan.file.repetitions;
   const double share = std::min(1.0, kSamplePairs / pairs);
   const fs::path file = job.folder() / "sample.db";
@@ -136,8 +136,8 @@ fs::path take_sample(const host::SlurmJob& job, const host::StudyPlan& plan) {
   if (std::find(command.begin(), command.end(), "--sample") == command.end()) {
     command.insert(command.end(), {"--sample", decimal(share)});
   }
-  info("no runs to estimate from: " + host::shell_text(command));
-  const host::CommandResult result = host::run_command(command);
+  info("no runs to estimate from: " + study::shell_text(command));
+  const study::CommandResult result = study::run_command(command);
   if (result.code != 0) {
     throw Error("the sample that the time is estimated from ended with exit code " +
                 std::to_string(result.code) + ": " + result.err);
@@ -147,7 +147,7 @@ fs::path take_sample(const host::SlurmJob& job, const host::StudyPlan& plan) {
 
 /// An earlier call's number of shards, so that its databases are gone on with, or else by the time
 /// that the runs will take.
-int shards_of(const Arguments& arguments, const host::SlurmJob& job, const host::StudyPlan& plan,
+int shards_of(const Arguments& arguments, const study::SlurmJob& job, const study::StudyPlan& plan,
               double seconds) {
   const std::vector<std::string> before = lines_of(job.folder() / "shards");
   if (!before.empty()) {
@@ -163,7 +163,7 @@ int shards_of(const Arguments& arguments, const host::SlurmJob& job, const host:
   return int(std::clamp(wanted, 1.0, std::max(1.0, most)));
 }
 
-void print_plan(const host::SlurmJob& job, const host::StudyPlan& plan, double seconds) {
+void print_plan(const study::SlurmJob& job, const study::StudyPlan& plan, double seconds) {
   std::printf(
       "%zu runs, about %s minutes of computing: %d task%s of %d process%s, about %s minutes "
       "each\n",
@@ -172,8 +172,8 @@ void print_plan(const host::SlurmJob& job, const host::StudyPlan& plan, double s
   std::printf("%s\n%s\n", job.array_file().c_str(), job.merge_file().c_str());
 }
 
-void submit_jobs(const host::SlurmJob& job, const host::StudyPlan& plan, double seconds) {
-  const host::Submitted submitted = host::submit(job);
+void submit_jobs(const study::SlurmJob& job, const study::StudyPlan& plan, double seconds) {
+  const study::Submitted submitted = study::submit(job);
   host::write_file(job.folder() / "jobs", submitted.array + "\n" + submitted.merge + "\n");
   print_plan(job, plan, seconds);
   std::printf("submitted: array %s, then merge %s; the results will be in %s\n",
@@ -181,40 +181,40 @@ void submit_jobs(const host::SlurmJob& job, const host::StudyPlan& plan, double 
 }
 
 int slurm(const Arguments& arguments) {
-  if (!arguments.dry_run && !host::has_command("sbatch")) {
+  if (!arguments.dry_run && !study::has_command("sbatch")) {
     throw Error(
         "there is no sbatch on PATH: this machine cannot submit to Slurm (--dry-run writes "
         "the scripts all the same)");
   }
-  expect_writable(host::place_of(arguments.out).string(), "--out");
-  const host::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
-  const host::StudyPlan plan =
-      host::load_study(arguments.study, selection, arguments.overrides.plugin_path);
+  expect_writable(study::place_of(arguments.out).string(), "--out");
+  const study::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
+  const study::StudyPlan plan =
+      study::load_study(arguments.study, selection, arguments.overrides.plugin_path);
   if (plan.runs.empty()) {
     throw Error("no run of the study is chosen: does --filter match any?");
   }
-  host::SlurmJob job = job_of(arguments, plan);
+  study::SlurmJob job = job_of(arguments, plan);
   fs::create_directories(job.folder());
   if (!arguments.dry_run) {
     expect_none_queued(job);
   }
   std::vector<fs::path> stores = stores_of(job, plan);
-  double seconds = host::estimated_seconds(plan, stores);
+  double seconds = study::estimated_seconds(plan, stores);
   if (std::isnan(seconds)) {
     stores.push_back(take_sample(job, plan));
-    seconds = host::estimated_seconds(plan, stores);
+    seconds = study::estimated_seconds(plan, stores);
   }
   job.shards = shards_of(arguments, job, plan, seconds);
   // Twice the estimate, and whatever the last run may take.
   const double chunk = std::max(arguments.chunk_minutes, seconds / 60 / job.shards / job.jobs);
   job.minutes = int(std::ceil(2 * chunk + plan.file.budget.wall_s / 60 + 2));
   host::write_file(job.folder() / "shards", std::to_string(job.shards) + "\n");
-  host::write_file(job.array_file(), host::array_script(job));
-  host::write_file(job.merge_file(), host::merge_script(job));
+  host::write_file(job.array_file(), study::array_script(job));
+  host::write_file(job.merge_file(), study::merge_script(job));
   if (arguments.dry_run) {
     print_plan(job, plan, seconds);
-    std::printf("%s\n%s\n", host::shell_text(host::array_command(job)).c_str(),
-                host::shell_text(host::merge_command(job, "ARRAY")).c_str());
+    std::printf("%s\n%s\n", study::shell_text(study::array_command(job)).c_str(),
+                study::shell_text(study::merge_command(job, "ARRAY")).c_str());
     return kDone;
   }
   submit_jobs(job, plan, seconds);

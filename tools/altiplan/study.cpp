@@ -22,8 +22,8 @@ namespace {
 struct Arguments {
   std::string study;
   std::string store;
-  host::StudySelection selection;
-  host::StudyOptions options;
+  study::StudySelection selection;
+  study::StudyOptions options;
 
   host::Overrides overrides;  ///< of which only the plugin path is asked for
   bool dry_run = false;
@@ -31,7 +31,7 @@ struct Arguments {
   bool resume = false;  ///< what happens anyway
 };
 
-std::string line_of(const host::StudyProgress& progress) {
+std::string line_of(const study::StudyProgress& progress) {
   const std::size_t ended = progress.before + progress.done;
   std::string line = std::to_string(ended) + " of " + std::to_string(progress.runs) + " runs";
   if (progress.done > 0 && ended < progress.runs) {
@@ -45,9 +45,9 @@ std::string line_of(const host::StudyProgress& progress) {
   return line;
 }
 
-void print_outcomes(const host::StudyData& data) {
+void print_outcomes(const study::StudyData& data) {
   std::size_t width = 8;
-  for (const host::StoredVariant& pipeline : data.pipelines) {
+  for (const study::StoredVariant& pipeline : data.pipelines) {
     width = std::max(width, pipeline.name.size());
   }
   const std::size_t time = data.column("plan_time_s");
@@ -58,7 +58,7 @@ void print_outcomes(const host::StudyData& data) {
     std::size_t solved = 0;
     std::map<std::string, std::size_t> others;
     std::vector<double> times;
-    for (const host::RunRow& row : data.rows) {
+    for (const study::RunRow& row : data.rows) {
       if (row.pipeline == p) {
         ++runs;
         solved += row.solved();
@@ -74,25 +74,25 @@ void print_outcomes(const host::StudyData& data) {
           number == 0 ? "" : (text.empty() ? "" : ", ") + std::to_string(number) + " " + outcome;
     }
     const std::optional<double> median =
-        times.empty() ? std::nullopt : std::optional(host::median(times));
+        times.empty() ? std::nullopt : std::optional(study::median(times));
     std::printf("  %-*s %8zu %8zu %12s  %s\n", int(width), data.pipelines[p].name.c_str(), runs,
                 solved, fixed(median, 1).c_str(), text.c_str());
   }
 }
 
 /// Whether every claim holds.
-bool print_claims(const host::StudyData& data) {
+bool print_claims(const study::StudyData& data) {
   bool all_hold = true;
-  for (const host::ClaimEntry& claim : data.file.claims) {
-    const host::JudgedClaim judged = host::judge_claim(data, claim);
-    all_hold = all_hold && judged.verdict == host::Verdict::holds;
+  for (const study::ClaimEntry& claim : data.file.claims) {
+    const study::JudgedClaim judged = study::judge_claim(data, claim);
+    all_hold = all_hold && judged.verdict == study::Verdict::holds;
     std::printf("  claim %s: %s\n", claim.id.c_str(), judged.words.c_str());
   }
   return all_hold;
 }
 
-int dry_run(const Arguments& arguments, const host::StudyPlan& plan) {
-  const host::StudyEstimate estimate = host::estimate_study(plan, arguments.options);
+int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
+  const study::StudyEstimate estimate = study::estimate_study(plan, arguments.options);
   std::printf("%zu pipeline%s x %zu scenario%s x %d repetition%s = %zu runs\n",
               plan.pipelines.size(), plan.pipelines.size() == 1 ? "" : "s", plan.scenarios.size(),
               plan.scenarios.size() == 1 ? "" : "s", plan.file.repetitions,
@@ -115,10 +115,10 @@ int study(Arguments arguments) {
     arguments.options.store = std::filesystem::temp_directory_path() / name;
   } else {
     arguments.options.store = arguments.store;
-    expect_writable(host::place_of(arguments.store).string(), "--out");
+    expect_writable(study::place_of(arguments.store).string(), "--out");
   }
-  const host::StudyPlan plan =
-      host::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
+  const study::StudyPlan plan =
+      study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
   if (plan.runs.empty()) {
     throw Error("no run is left: --filter, --sample and --shard select none of the " +
                 std::to_string(plan.planned) + " runs");
@@ -127,16 +127,16 @@ int study(Arguments arguments) {
     return dry_run(arguments, plan);
   }
   ProgressLine line;
-  arguments.options.progress = [&](const host::StudyProgress& progress) {
+  arguments.options.progress = [&](const study::StudyProgress& progress) {
     line.show(line_of(progress));
   };
   arguments.options.say = [&](const std::string& text) {
     line.clear();
     warn(text);
   };
-  const host::StudyEnd end = host::run_study(plan, arguments.options);
+  const study::StudyEnd end = study::run_study(plan, arguments.options);
   line.clear();
-  const host::StudyProgress& progress = end.progress;
+  const study::StudyProgress& progress = end.progress;
   std::printf("%s: %zu runs stored, %zu of them now, in %s\n", arguments.store.c_str(),
               progress.before + progress.done, progress.done, duration(progress.elapsed_s).c_str());
   if (end.is_interrupted) {
@@ -144,10 +144,10 @@ int study(Arguments arguments) {
                 progress.runs - progress.before - progress.done);
     return kInterrupted;
   }
-  const host::StudyData data = host::load_study_data({arguments.store});
+  const study::StudyData data = study::load_study_data({arguments.store});
   print_outcomes(data);
   // In the report's order: resamples follow it, and both must say the same.
-  const bool all_hold = print_claims(host::report::in_order(data, true));
+  const bool all_hold = print_claims(study::report::in_order(data, true));
   return arguments.gate && !all_hold ? kNoRoute : kDone;
 }
 
@@ -172,7 +172,7 @@ std::string read_share(const std::string& text, std::optional<double>& share) {
 }
 
 /// "2/5"
-std::string read_shard(const std::string& text, host::StudySelection& selection) {
+std::string read_shard(const std::string& text, study::StudySelection& selection) {
   int shard = 0;
   int shards = 0;
   const char* const end = text.data() + text.size();

@@ -12,17 +12,17 @@
 namespace altiplan::cli {
 namespace {
 
-using host::report::counted;
-using host::report::readable;
+using study::report::counted;
+using study::report::readable;
 
 struct Arguments {
-  host::TuneRequest request;
-  host::TuneOptions options;
+  tune::TuneRequest request;
+  tune::TuneOptions options;
   host::Overrides overrides;  ///< of which only the plugin path is asked for
   bool resume = false;        ///< what happens anyway
 };
 
-std::string line_of(const host::TuneProgress& progress) {
+std::string line_of(const tune::TuneProgress& progress) {
   std::string line = std::to_string(progress.evaluations) + " of " +
                      std::to_string(progress.expected) + " evaluations";
   if (std::isfinite(progress.best)) {
@@ -51,7 +51,7 @@ void print_row(const std::string& what, const std::string& before, const std::st
               change.c_str());
 }
 
-void print_comparison(const char* what, const host::TunedComparison& made) {
+void print_comparison(const char* what, const tune::TunedComparison& made) {
   if (made.scenarios == 0) {
     return;
   }
@@ -61,30 +61,30 @@ void print_comparison(const char* what, const host::TunedComparison& made) {
 }
 
 std::string share_of(std::size_t part, std::size_t all) {
-  return std::to_string(part) + " (" + host::report::percent(double(part) / double(all)) + ")";
+  return std::to_string(part) + " (" + study::report::percent(double(part) / double(all)) + ")";
 }
 
 /// "altiplan run …", which repeats the score in the first scenario.
-std::string repeating_call(const host::TunePlan& plan, const std::string& folder) {
-  const host::Variant& scenario = plan.scenarios.front();
-  std::string call = "altiplan run " + host::report::shell(folder + "/tuned.yaml");
+std::string repeating_call(const tune::TunePlan& plan, const std::string& folder) {
+  const study::Variant& scenario = plan.scenarios.front();
+  std::string call = "altiplan run " + study::report::shell(folder + "/tuned.yaml");
   if (!scenario.file.empty()) {
-    call += " --scenario " + host::report::shell(scenario.file.string());
+    call += " --scenario " + study::report::shell(scenario.file.string());
   }
   for (const std::string& set : scenario.set) {
-    call += " --set " + host::report::shell(set);
+    call += " --set " + study::report::shell(set);
   }
   return call;
 }
 
-void print_table(const host::TunePlan& plan, const host::Tuning& tuning,
+void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
                  const std::string& folder) {
-  const host::TuneSummary summary = host::summary_of(plan, tuning);
+  const tune::TuneSummary summary = tune::summary_of(plan, tuning);
   print_row(plan.request.metric, "as it is", "tuned", "change");
   print_comparison("tuned on", summary.tuned_on);
   print_comparison("held back", summary.held_back);
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
-    const host::TunedParameter& parameter = plan.parameters[p];
+    const tune::TunedParameter& parameter = plan.parameters[p];
     const std::string before = parameter.shown();
     std::string now = before;
     if (tuning.best > 0) {
@@ -110,12 +110,12 @@ void print_table(const host::TunePlan& plan, const host::Tuning& tuning,
 
 int tune(Arguments arguments) {
   const std::string folder = arguments.options.out.string();
-  const host::TunePlan plan = host::plan_tuning(arguments.request);
+  const tune::TunePlan plan = tune::plan_tuning(arguments.request);
   ProgressLine line;
-  arguments.options.progress = [&](const host::TuneProgress& progress) {
+  arguments.options.progress = [&](const tune::TuneProgress& progress) {
     line.show(line_of(progress));
   };
-  const host::Tuning tuning = host::run_tuning(plan, arguments.options);
+  const tune::Tuning tuning = tune::run_tuning(plan, arguments.options);
   line.clear();
   if (tuning.damaged_lines > 0) {
     warn(folder + "/runs.log: " + counted(tuning.damaged_lines, "line") +
@@ -128,7 +128,7 @@ int tune(Arguments arguments) {
                 counted(tuning.runs_done, "run").c_str());
     return kInterrupted;
   }
-  host::write_tuning(plan, tuning, arguments.options.out);
+  tune::write_tuning(plan, tuning, arguments.options.out);
   std::printf("%s: %s done now in %s\n", folder.c_str(), counted(tuning.runs_done, "run").c_str(),
               duration(tuning.elapsed_s).c_str());
   print_table(plan, tuning, folder);
@@ -153,15 +153,15 @@ std::string problem_of(const Read& read) {
 
 std::string metric_problem(const std::string& text) {
   return problem_of([&] {
-    for (const host::ClaimValue& value : host::read_objective(text).values) {
-      if (const std::string why = host::why_no_value(value.name); !why.empty()) {
+    for (const study::ClaimValue& value : study::read_objective(text).values) {
+      if (const std::string why = study::why_no_value(value.name); !why.empty()) {
         throw Error(why);
       }
     }
   });
 }
 
-void add_what(CLI::App& command, host::TuneRequest& request) {
+void add_what(CLI::App& command, tune::TuneRequest& request) {
   command.add_option("pipeline", request.pipeline, "pipeline to be tuned")->required();
   command
       .add_option("--over", request.over,
@@ -193,7 +193,7 @@ void add_what(CLI::App& command, host::TuneRequest& request) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_how(CLI::App& command, host::TuneRequest& request) {
+void add_how(CLI::App& command, tune::TuneRequest& request) {
   command.add_option("--tuner", request.tuner, "plugin that searches (default pso)")
       ->type_name("NAME");
   command
@@ -241,7 +241,7 @@ void add_tune(CLI::App& app, Action& action) {
               "altiplan tune configs/pipelines/fusion_paper_astar_angles.yaml --out tuned --jobs 2 "
               "\\\n    --over 'steps.0.with.{weight_g,weight_h}=simplex' --metric length_m");
   command->callback([&action, arguments] {
-    const std::string over = problem_of([&] { host::read_over(arguments->request.over); });
+    const std::string over = problem_of([&] { tune::read_over(arguments->request.over); });
     if (!over.empty()) {
       throw CLI::ValidationError(over);
     }

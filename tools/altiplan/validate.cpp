@@ -27,7 +27,7 @@ void validate_one(const std::string& file, const host::Overrides& overrides) {
       host::load_scenario(file, overrides);
       break;
     case host::FileKind::study:
-      host::load_study(file, {}, overrides.plugin_path);
+      study::load_study(file, {}, overrides.plugin_path);
       break;
   }
 }

@@ -11,7 +11,7 @@
 #include "study/store/sqlite.hpp"
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,10 +140,11 @@ class ArenaWriter {
       return "";
     }
     const auto run = Store(data_.stores[row->store], StoreMode::read).run(row->id);
-    const Json json = run ? Json::parse(run->result, nullptr, false) : Json();
+    const host::Json json = run ? host::Json::parse(run->result, nullptr, false) : host::Json();
     std::string text;
-    for (const Json& step : json.is_object() ? json.value("steps", Json::array()) : Json()) {
-      if (step.value("instead_of", Json()).is_null()) {
+    for (const host::Json& step :
+         json.is_object() ? json.value("steps", host::Json::array()) : host::Json()) {
+      if (step.value("instead_of", host::Json()).is_null()) {
         text += "step = " + step.value("verb", "") + " " + step.value("plugin", "") + " (" +
                 step.value("id", "") + ")\n";
       }
@@ -220,4 +221,4 @@ void write_arena(const StudyData& data, const std::filesystem::path& file) {
   ArenaWriter(data, unfinished.file()).write();
   unfinished.put_in_place();
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 bool is_number(std::string_view text) {
@@ -160,4 +160,4 @@ int arena_status(std::string_view outcome) {
   }
   return 0;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -7,7 +7,7 @@
 
 #include "study/model/study_data.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// Names of columns as SQL and Planner Arena can take them: small letters, digits and underscores,
 /// and no two alike, with underscores read as blanks, over all tables that Planner Arena joins.
@@ -60,4 +60,4 @@ struct ArenaStatus {
 };
 /// OMPL's number and words where it has them, else ours from 16.
 const std::vector<ArenaStatus>& arena_statuses();
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -7,7 +7,7 @@
 #include "study/claims/claim_reader.hpp"
 #include "study/claims/claims.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 using Kind = ClaimExpression::Kind;
 
@@ -168,7 +168,7 @@ class Expression {
       }
     }
     if (variants.empty()) {
-      ClaimReader::fail(at, "there is no pipeline '" + id + "'" + did_you_mean(id, ids));
+      ClaimReader::fail(at, "there is no pipeline '" + id + "'" + host::did_you_mean(id, ids));
     }
     reader_.skip(id.size());
     const std::string name = id + std::string(bracket(id, variants));
@@ -267,4 +267,4 @@ void expect_logical(const ClaimExpression& expression, const ClaimQuantity& quan
                     "expected a comparison (such as a.length_m <= b.length_m), or a value that is "
                     "0 or 1 (solved, flight.reached, steps.ID.stands, steps.ID.budget_hit)");
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -9,7 +9,7 @@
 
 #include "study/claims/claims.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 using Kind = ClaimExpression::Kind;
 
@@ -163,4 +163,4 @@ ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
   }
   return evaluation.take();
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -6,7 +6,7 @@
 #include "study/claims/claim_text.hpp"
 #include "study/model/study_data.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The expression of a claim over the pairs of a study.
 struct ClaimPairs {
@@ -24,4 +24,4 @@ double evaluate(const ClaimExpression& expression, const std::vector<double>& va
 /// A pair counts where every value named has a number. `p.solved and …` is false where p did not
 /// solve: other values of p are then not asked for.
 ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

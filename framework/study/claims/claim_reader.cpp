@@ -6,7 +6,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -66,4 +66,4 @@ void ClaimReader::expected(const std::string& what, const std::string& hint) {
 void ClaimReader::fail(std::size_t at, const std::string& message) {
   throw Error("at character " + std::to_string(at + 1) + ": " + message);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,7 +8,7 @@
 
 #include "study/claims/claim_text.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The text of a claim, read from left to right.
 class ClaimReader {
@@ -44,4 +44,4 @@ ClaimExpression read_expression(ClaimReader& reader, const std::vector<std::stri
                                 ClaimQuantity& quantity);
 /// Throws unless it is a comparison, several of them, or a value that is always 0 or 1.
 void expect_logical(const ClaimExpression& expression, const ClaimQuantity& quantity);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -5,7 +5,7 @@
 #include "host/config/config_check.hpp"
 #include "study/claims/claim_reader.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// p01 to p99.
@@ -32,7 +32,7 @@ void read_function(ClaimReader& reader, ClaimQuantity& quantity) {
     quantity.function = Function::share;
   } else if (word != "median") {
     reader.expected("median(, mean(, min(, max(, share( or one of p01( to p99(",
-                    did_you_mean(word, names));
+                    host::did_you_mean(word, names));
   }
   reader.skip(word.size());
   if (!reader.takes("(")) {
@@ -130,4 +130,4 @@ ClaimRange read_range(const std::string& text) {
   expect_end(reader, "the comparison");
   return range;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

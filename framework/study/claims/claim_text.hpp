@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A value of the runs of a pipeline, as a claim names it.
 struct ClaimValue {
@@ -76,4 +76,4 @@ ClaimQuantity read_quantity(const std::string& text, const std::vector<std::stri
 ClaimQuantity read_objective(const std::string& text);
 /// Reads "<= 0.95", "0.9..1.1" and the like; throws likewise.
 ClaimRange read_range(const std::string& text);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

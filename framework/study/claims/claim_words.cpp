@@ -10,7 +10,7 @@
 #include "host/base/words.hpp"
 #include "host/config/config_check.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// The number with as many digits as it takes to see on which side of the range's ends it lies: an
@@ -19,7 +19,7 @@ std::string shown(double number, const ClaimRange& range) {
   constexpr int kAll = 17;
   const bool is_large = std::abs(number) >= 1e4 && std::abs(number) < 1e15;
   for (int digits = is_large ? int(std::log10(std::abs(number))) + 1 : 4; digits < kAll; ++digits) {
-    const std::string text = with_digits(number, digits);
+    const std::string text = host::with_digits(number, digits);
     double rounded = 0;
     std::from_chars(text.data(), text.data() + text.size(), rounded);
     const bool is_same_side = (rounded < range.low) == (number < range.low) &&
@@ -29,7 +29,7 @@ std::string shown(double number, const ClaimRange& range) {
       return text;
     }
   }
-  return with_digits(number, kAll);
+  return host::with_digits(number, kAll);
 }
 
 std::string name_of(const ClaimValue& value, const StudyData& data) {
@@ -48,7 +48,7 @@ std::string why_no_data(const ClaimQuantity& quantity, const ClaimPairs& pairs,
   for (const ClaimValue& value : quantity.values) {
     if (std::find(columns.begin(), columns.end(), value.name) == columns.end()) {
       words += (words.empty() ? "" : "; ") + std::string("no run has a value '") + value.name +
-               "'" + did_you_mean(value.name, columns);
+               "'" + host::did_you_mean(value.name, columns);
     }
   }
   if (words.empty()) {
@@ -70,9 +70,9 @@ std::string result(const JudgedClaim& judged, const ClaimRange& range) {
                      judged.why_no_interval;
   }
   const auto [low, high] = *judged.interval;
-  const std::string interval = estimate + ", " + per_cent(judged.claim.confidence) + " interval " +
-                               shown(low, range) + " to " + shown(high, range) + " (" +
-                               judged.method + ")";
+  const std::string interval = estimate + ", " + host::per_cent(judged.claim.confidence) +
+                               " interval " + shown(low, range) + " to " + shown(high, range) +
+                               " (" + judged.method + ")";
   switch (judged.verdict) {
     case Verdict::holds:
       return interval + "; all of it is " + is;
@@ -100,8 +100,8 @@ std::string basis(const JudgedClaim& judged, const ClaimQuantity& quantity, cons
     add("the expression is not a number in " + std::to_string(pairs.undefined) +
         " (such as 0 / 0)");
   }
-  return std::to_string(judged.used) + " of " + counted(judged.pairs, "pair") + " counted" + words +
-         ".";
+  return std::to_string(judged.used) + " of " + host::counted(judged.pairs, "pair") + " counted" +
+         words + ".";
 }
 }  // namespace
 
@@ -113,12 +113,12 @@ void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quan
   std::string verdict(name_of(judged.verdict));
   verdict.front() = char(std::toupper(verdict.front()));
   judged.words =
-      sentence(verdict + ": " + (has_data ? judged.claim.that + " is " : "") + found) + of;
-  judged.reasons = sentence((has_data ? "Found: " : "") + found) + of;
+      host::sentence(verdict + ": " + (has_data ? judged.claim.that + " is " : "") + found) + of;
+  judged.reasons = host::sentence((has_data ? "Found: " : "") + found) + of;
   judged.reasons.front() = char(std::toupper(judged.reasons.front()));
 }
 
 std::string wanted(const ClaimEntry& claim) {
   return (claim.is.find("..") == claim.is.npos ? "" : "within ") + claim.is;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

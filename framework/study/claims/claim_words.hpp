@@ -7,9 +7,9 @@
 #include "study/claims/claim_pairs.hpp"
 #include "study/claims/claims.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// Fills in the verdict with all that it rests on, in sentences: `words` and `reasons`.
 void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quantity,
          const ClaimPairs& pairs, const StudyData& data);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -9,7 +9,7 @@
 #include "study/claims/claim_words.hpp"
 #include "study/statistics/clustered.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 using Function = ClaimQuantity::Function;
 
@@ -133,8 +133,9 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
     }
     say(judged, range, quantity, pairs, data);
   } catch (const Error& error) {
-    judged.words = sentence("No data: the claim cannot be read: " + std::string(error.what()));
-    judged.reasons = sentence("The claim cannot be read: " + std::string(error.what()));
+    judged.words =
+        host::sentence("No data: the claim cannot be read: " + std::string(error.what()));
+    judged.reasons = host::sentence("The claim cannot be read: " + std::string(error.what()));
   }
   return judged;
 }
@@ -153,4 +154,4 @@ bool is_of_every_run(std::string_view value) {
 bool is_measured(std::string_view value) {
   return value.ends_with("time_s") || value.ends_with("memory_mb");
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -10,7 +10,7 @@
 #include "study/model/study_data.hpp"
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// What is wrong with a claim, by the names of the study's pipelines (all variants): what cannot be
 /// read, a function or a pipeline that there is none of, one that stands for several variants.
@@ -52,4 +52,4 @@ bool is_yes_or_no(std::string_view value);
 bool is_of_every_run(std::string_view value);
 /// Times and memory: names that end in time_s or memory_mb.
 bool is_measured(std::string_view value);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

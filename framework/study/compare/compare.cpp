@@ -11,7 +11,7 @@
 #include "host/config/config_check.hpp"
 #include "study/claims/claims.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr double kConfidence = 0.95;
@@ -124,7 +124,7 @@ class Comparer {
     if (!options_.metrics.empty() && first_.column(metric) == first_.columns.size() &&
         second_.column(metric) == second_.columns.size()) {
       throw Error("--metric: no run has a value named '" + metric + "'" +
-                  did_you_mean(metric, first_.columns));
+                  host::did_you_mean(metric, first_.columns));
     }
   }
 
@@ -260,4 +260,4 @@ Comparison compare_studies(const StudyData& first, const StudyData& second,
                            const CompareOptions& options) {
   return Comparer(first, second, options).compare();
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,7 +8,7 @@
 #include "study/model/study_data.hpp"
 #include "study/statistics/clustered.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// What a metric came to with one pipeline, over the pairs of runs that both solved.
 struct MetricChange {
@@ -85,4 +85,4 @@ struct CompareOptions {
 /// is one that no run has.
 Comparison compare_studies(const StudyData& first, const StudyData& second,
                            const CompareOptions& options);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,23 +8,23 @@
 #include <tuple>
 #include <utility>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// Contents of files by path, or builds of plugins by kind and name.
 using Origins = std::map<std::string, std::string>;
 
-Origins files_of(const Json& result) {
+Origins files_of(const host::Json& result) {
   Origins files;
-  for (const Json& file : result.at("files")) {
+  for (const host::Json& file : result.at("files")) {
     files[file.at("path").get<std::string>()] = file.at("sha256").get<std::string>();
   }
   return files;
 }
 
-Origins plugins_of(const Json& result) {
+Origins plugins_of(const host::Json& result) {
   Origins plugins;
-  for (const Json& plugin : result.at("plugins")) {
+  for (const host::Json& plugin : result.at("plugins")) {
     plugins[plugin.at("kind").get<std::string>() + " '" + plugin.at("name").get<std::string>() +
             "'"] = plugin.at("build").get<std::string>();
   }
@@ -104,8 +104,8 @@ bool same_budget(const StudyBudget& one, const StudyBudget& other) {
 
 std::vector<std::string> changed_results(const std::string& then, const std::string& now) {
   try {
-    const Json before = Json::parse(then);
-    const Json after = Json::parse(now);
+    const host::Json before = host::Json::parse(then);
+    const host::Json after = host::Json::parse(now);
     std::vector<std::string> changed = changed_origins(before, after);
     const std::string was = before.at("version").get<std::string>();
     const std::string is = after.at("version").get<std::string>();
@@ -113,13 +113,13 @@ std::vector<std::string> changed_results(const std::string& then, const std::str
       changed.push_back("the first is of altiplan " + was + ", the second of " + is);
     }
     return changed;
-  } catch (const Json::exception&) {
+  } catch (const host::Json::exception&) {
     return {};  // a result that is none says nothing of its origin
   }
 }
 }  // namespace
 
-std::vector<std::string> changed_origins(const Json& then, const Json& now) {
+std::vector<std::string> changed_origins(const host::Json& then, const host::Json& now) {
   std::vector<std::string> changed;
   Origins before = files_of(then);
   Origins after = files_of(now);
@@ -175,4 +175,4 @@ std::vector<std::string> changed_origins(const Comparison& comparison, const Stu
   }
   return all;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,12 +8,12 @@
 #include "host/result/result_json.hpp"
 #include "study/compare/compare.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A sentence for each file and plugin's build of two results, as result.json names them, that are
 /// not the same: "'city.yaml' has changed since". A file that was moved alone is the same. Throws
 /// Json::exception for what is no result.
-std::vector<std::string> changed_origins(const Json& then, const Json& now);
+std::vector<std::string> changed_origins(const host::Json& then, const host::Json& now);
 
 /// The text of a run's result.json, "" where it left none.
 using ResultOf = std::function<std::string(const RunRow&)>;
@@ -24,4 +24,4 @@ using ResultOf = std::function<std::string(const RunRow&)>;
 std::vector<std::string> changed_origins(const Comparison& comparison, const StudyData& first,
                                          const StudyData& second, const ResultOf& of_first,
                                          const ResultOf& of_second);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -11,7 +11,7 @@
 #include "study/store/find_run.hpp"
 #include "study/store/load_study.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 StoredVariant variant_named(const std::vector<StoredVariant>& variants, const std::string& name,
@@ -26,7 +26,7 @@ StoredVariant variant_named(const std::vector<StoredVariant>& variants, const st
   return *found;
 }
 
-std::vector<std::string> what_changed(const Json& stored, const Json& now) {
+std::vector<std::string> what_changed(const host::Json& stored, const host::Json& now) {
   std::vector<std::string> changed = changed_origins(stored, now);
   const std::string then = stored.at("version").get<std::string>();
   if (stored.at("version") != now.at("version")) {
@@ -37,7 +37,7 @@ std::vector<std::string> what_changed(const Json& stored, const Json& now) {
 }
 
 /// What came of the run, without what it was made from.
-Json outcome_of(Json result) {
+host::Json outcome_of(host::Json result) {
   for (const char* key : {"version", "files", "plugins"}) {
     result.erase(key);
   }
@@ -45,22 +45,22 @@ Json outcome_of(Json result) {
 }
 }  // namespace
 
-Config config_of(const Store& store, const StoredRun& run,
-                 const std::vector<std::filesystem::path>& plugin_path) {
+host::Config config_of(const Store& store, const StoredRun& run,
+                       const std::vector<std::filesystem::path>& plugin_path) {
   const StoredVariant pipeline = variant_named(store.pipelines(), run.pipeline, store);
   const StoredVariant scenario = variant_named(store.scenarios(), run.scenario, store);
-  Overrides overrides;
+  host::Overrides overrides;
   overrides.scenario = scenario.file;
   overrides.seed = run.seed;
   overrides.set = pipeline.set;
   overrides.set.insert(overrides.set.end(), scenario.set.begin(), scenario.set.end());
   overrides.plugin_path = plugin_path;
-  return load_config(pipeline.file, overrides);
+  return host::load_config(pipeline.file, overrides);
 }
 
 StudyBudget budget_of(const Store& store) { return study_file(store).budget; }
 
-Replayed compare_replay(const StoredRun& stored, const Json& result, const std::string& key) {
+Replayed compare_replay(const StoredRun& stored, const host::Json& result, const std::string& key) {
   if (stored.result.empty()) {
     const std::string status = result.at("status").get<std::string>();
     std::vector<std::string> changed;
@@ -69,19 +69,19 @@ Replayed compare_replay(const StoredRun& stored, const Json& result, const std::
     }
     return {changed, status == stored.outcome
                          ? std::nullopt
-                         : std::optional(Difference{"status", stored.outcome, status})};
+                         : std::optional(host::Difference{"status", stored.outcome, status})};
   }
-  const Json before = Json::parse(stored.result, nullptr, false);
+  const host::Json before = host::Json::parse(stored.result, nullptr, false);
   try {
     // As the file has it: what is no UTF-8 in a plugin's message has been replaced.
-    const Json now = Json::parse(file_text(result));
+    const host::Json now = host::Json::parse(host::file_text(result));
     std::vector<std::string> changed = what_changed(before, now);
     if (changed.empty() && key != stored.key) {
       changed.push_back("this is another build of the program than then");
     }
-    return {changed, first_difference(outcome_of(before), outcome_of(now))};
-  } catch (const Json::exception&) {
+    return {changed, host::first_difference(outcome_of(before), outcome_of(now))};
+  } catch (const host::Json::exception&) {
     throw Error("the stored result of " + run_name(stored) + " is no result of altiplan run");
   }
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

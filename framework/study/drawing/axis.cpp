@@ -5,7 +5,7 @@
 #include "study/drawing/svg.hpp"
 #include "study/drawing/text.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLogarithmicFrom = 30;  // times between the least and the greatest
@@ -186,4 +186,4 @@ void draw_shares(Canvas& canvas, double left, double right, double top, double b
                 Anchor::end);
   }
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

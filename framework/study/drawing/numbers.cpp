@@ -7,7 +7,7 @@
 
 #include "study/drawing/text.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr std::string_view kDash = "–";
@@ -164,4 +164,4 @@ std::string metric_label(std::string_view metric) {
 bool varies(std::string_view metric) {
   return metric.ends_with("time_s") || metric.ends_with("memory_mb");
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

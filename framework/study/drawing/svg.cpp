@@ -9,7 +9,7 @@
 
 #include "study/drawing/text.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// Okabe and Ito's colours, but for yellow, which is too pale on paper; the second is for dark.
@@ -232,4 +232,4 @@ std::string svg_text(const Figure& figure, bool inlined) {
   }
   return out + figure.body + "</svg>\n";
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

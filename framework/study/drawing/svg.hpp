@@ -8,7 +8,7 @@
 
 #include "study/drawing/tables.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// A figure of the report. Its colours stand in the elements, for programs that know no style
 /// sheets, and are overruled by the classes' where there is one (light and dark).
@@ -111,4 +111,4 @@ std::string axis_label(const std::string& label, const Axis& axis);
 std::string figure_style();
 /// A file of its own, or (`inlined`) an element of a page that has figure_style().
 std::string svg_text(const Figure& figure, bool inlined);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -6,7 +6,7 @@
 
 #include "study/drawing/text.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 template <class List, class Text>
@@ -96,4 +96,4 @@ std::string html_text(const Table& table, std::size_t most) {
   }
   return out + "</tbody></table></div>\n";
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

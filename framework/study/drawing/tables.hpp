@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// Numbers as a CSV file has them: cells are raw text.
 struct Grid {
@@ -48,4 +48,4 @@ std::string latex_text(const Table& table);
 std::string html_text(const Table& table, std::size_t most = std::size_t(-1));
 /// The cells of one row, <td>… .
 std::string html_row(const Table& table, std::size_t row);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
@@ -225,4 +225,4 @@ bool natural_less(std::string_view a, std::string_view b) {
   }
   return (a.size() - i) != (b.size() - j) ? a.size() - i < b.size() - j : a < b;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 // Names of scenarios and messages of plugins may hold any bytes. Everything that goes into a file
 // of the report passes through one of these.
@@ -67,4 +67,4 @@ bool varies(std::string_view metric);
 
 /// Order in which people read numbered names: hills[seed=2] before hills[seed=10].
 bool natural_less(std::string_view a, std::string_view b);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/model/records.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 std::string run_name(const std::string& pipeline, const std::string& scenario, int repetition) {
   return pipeline + " " + scenario + " #" + std::to_string(repetition);
@@ -10,4 +10,4 @@ std::string run_name(const std::string& pipeline, const std::string& scenario, i
 std::string run_name(const StoredRun& run) {
   return run_name(run.pipeline, run.scenario, run.repetition);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

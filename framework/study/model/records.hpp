@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A run as the store holds it; the tables are in docs/study-database.md.
 struct StoredRun {
@@ -56,4 +56,4 @@ struct StoredSession {
   int reuse = 1;
   std::string limits;  ///< how limits were kept: "cgroup v2", "process tree, every 20 ms"
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -4,27 +4,27 @@
 #include <algorithm>
 #include <map>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 class Values {
  public:
-  void add(const std::string& name, const Json& value) {
+  void add(const std::string& name, const host::Json& value) {
     if (value.is_boolean()) {
       all_[name] = value.get<bool>() ? 1 : 0;
     } else if (value.is_number()) {
       all_[name] = value.get<double>();
     }
   }
-  void add_each(const std::string& prefix, const Json& map) {
+  void add_each(const std::string& prefix, const host::Json& map) {
     for (const auto& [name, value] : map.items()) {
       add(prefix + name, value);
     }
   }
   /// Sums over all replans: what they took, and each of their counters.
-  void add_replans(const Json& replans) {
+  void add_replans(const host::Json& replans) {
     add("flight.replans", replans.size());
-    for (const Json& replan : replans) {
+    for (const host::Json& replan : replans) {
       all_["flight.replan_time_s"] += replan.at("time_s").get<double>();
       for (const auto& [name, value] : replan.at("counters").items()) {
         all_["flight.replan_counters." + name] += value.get<double>();
@@ -37,7 +37,7 @@ class Values {
   std::map<std::string, double> all_;
 };
 
-std::vector<std::string> keys_of(const Json& map) {
+std::vector<std::string> keys_of(const host::Json& map) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : map.items()) {
     keys.push_back(key);
@@ -52,11 +52,11 @@ std::vector<std::string> joined(std::vector<std::string> names,
 }
 }  // namespace
 
-std::vector<std::pair<std::string, double>> values_of(const Json& result) {
+std::vector<std::pair<std::string, double>> values_of(const host::Json& result) {
   Values values;
   values.add_each("", result.at("metrics"));
   values.add("setup_time_s", result.at("setup_time_s"));
-  for (const Json& step : result.at("steps")) {
+  for (const host::Json& step : result.at("steps")) {
     const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
     for (const char* name : {"time_s", "setup_time_s", "stands", "budget_hit"}) {
       values.add(prefix + name, step.at(name));
@@ -64,7 +64,7 @@ std::vector<std::pair<std::string, double>> values_of(const Json& result) {
     values.add_each(prefix + "counters.", step.at("counters"));
     values.add_each(prefix, step.at("metrics"));
   }
-  if (const Json& flight = result.at("flight"); !flight.is_null()) {
+  if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
     for (const char* name : {"collisions", "min_separation_m", "reached"}) {
       values.add(std::string("flight.") + name, flight.at(name));
     }
@@ -77,7 +77,7 @@ std::vector<std::pair<std::string, double>> values_of(const Json& result) {
 }
 
 std::string why_no_value(const std::string& name) {
-  static const std::vector<std::string> kOfRoute = keys_of(to_json(Measures{}));
+  static const std::vector<std::string> kOfRoute = keys_of(host::to_json(Measures{}));
   static const std::vector<std::string> kOfRun =
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
                         "wall_time_s", "cpu_time_s", "peak_memory_mb"});
@@ -110,4 +110,4 @@ std::string why_no_value(const std::string& name) {
               ? ""
               : "; did you mean '" + (before.empty() ? "" : before + ".") + nearest + "'?");
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

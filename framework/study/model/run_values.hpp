@@ -7,14 +7,14 @@
 
 #include "host/result/result_json.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The numbers of a result.json, by the names that claims and tables use: "length_m",
 /// "flight.collisions", "steps.ID.counters.expanded". Sorted by name; what is null is left out.
 /// Throws nlohmann's exceptions where it is no result.
-std::vector<std::pair<std::string, double>> values_of(const Json& result);
+std::vector<std::pair<std::string, double>> values_of(const host::Json& result);
 
 /// What is wrong with a name that no run can have a value of: a sentence, with the nearest that
 /// could be. "" where a run may have it.
 std::string why_no_value(const std::string& name);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

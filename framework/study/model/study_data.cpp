@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 std::size_t StudyData::column(std::string_view name) const {
   const auto found = std::lower_bound(columns.begin(), columns.end(), name);
@@ -32,4 +32,4 @@ std::vector<std::string> compared_metrics(const StudyData& data) {
   }
   return names;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,7 +8,7 @@
 #include "study/model/records.hpp"
 #include "study/model/study_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A run in a table: what statistics and figures read.
 struct RunRow {
@@ -48,4 +48,4 @@ Better better(const StudyData& data, std::string_view metric);
 /// The metrics that the report compares: those of the study file, or else length_m, plan_time_s
 /// and expanded.
 std::vector<std::string> compared_metrics(const StudyData& data);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -3,7 +3,7 @@
 
 #include "host/config/scenario_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 void ScenarioChoice::describe(Fields& f) {
   f("id", id).doc("name in reports; left out: the file's, without .yaml");
@@ -40,7 +40,7 @@ void ClaimEntry::describe(Fields& f) {
 }
 
 void StudyFile::describe(Fields& f) {
-  f("altiplan", altiplan).range(kFileFormat, kFileFormat).required().doc("file format");
+  f("altiplan", altiplan).range(host::kFileFormat, host::kFileFormat).required().doc("file format");
   f("name", name).doc("title in reports");
   f("scenarios", scenarios).min_items(1).required().doc("what is flown through");
   f("pipelines", pipelines).min_items(1).required().doc("what is compared");
@@ -52,4 +52,4 @@ void StudyFile::describe(Fields& f) {
   f("metrics", metrics).doc("what the report compares; left out: length_m, plan_time_s, expanded");
   f("claims", claims).doc("what is to be shown");
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

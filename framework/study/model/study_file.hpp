@@ -9,7 +9,7 @@
 
 #include "altiplan/params.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 // A study file as written: field for field, nothing resolved yet.
 
@@ -66,4 +66,4 @@ struct StudyFile {
   std::vector<ClaimEntry> claims;
   void describe(Fields& f);
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr std::size_t kMostCells = 1000000;
@@ -159,4 +159,4 @@ std::vector<GridCell> grid_of(const Value& set, const std::string& path) {
   }
   return cells;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

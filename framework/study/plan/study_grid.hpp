@@ -6,7 +6,7 @@
 
 #include "altiplan/value.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A key of `set` with one of its values.
 struct Assignment {
@@ -29,4 +29,4 @@ std::vector<GridCell> grid_of(const Value& set, const std::string& path);
 
 /// The value as YAML on one line, such that reading it gives the value again.
 std::string flow_text(const Value& value);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

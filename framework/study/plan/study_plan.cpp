@@ -15,30 +15,30 @@
 #include "study/plan/study_reading.hpp"
 #include "study/plan/study_selection.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
 /// Of a folder there is none. A key without it would be another run's.
 std::string hash_of(const fs::path& file) {
   errno = 0;
-  const std::string hash = sha256(file);
+  const std::string hash = host::sha256(file);
   if (const int error = errno; hash.empty() && error != EISDIR) {
-    throw MachineFault(unreadable(file, error));
+    throw host::MachineFault(host::unreadable(file, error));
   }
   return hash;
 }
 
 std::string build_of(const fs::path& file) {
-  const Library library = examine_library(file);
+  const host::Library library = host::examine_library(file);
   if (library.build.empty()) {
-    throw MachineFault(file.string() + ": " + library.refused);
+    throw host::MachineFault(file.string() + ": " + library.refused);
   }
   return library.build;
 }
 
 /// What the result of a pair depends on, but for the seed.
-std::string pair_text(const Config& config, const StudyBudget& budget) {
+std::string pair_text(const host::Config& config, const StudyBudget& budget) {
   std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
   text += flow_text(config.pipeline_tree) + "\n" + flow_text(config.scenario_tree) + "\n";
   for (const fs::path& file : config.files) {
@@ -47,13 +47,13 @@ std::string pair_text(const Config& config, const StudyBudget& budget) {
       text += hash_of(file) + "\n";
     }
   }
-  text += plugins_json(config).dump() + "\n";
-  text += Json({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}).dump() + "\n";
+  text += host::plugins_json(config).dump() + "\n";
+  text += host::Json({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}).dump() + "\n";
   return text;
 }
 
 std::string key_of(const std::string& pair, const std::string& name, std::int64_t seed) {
-  return sha256_of(pair + name + "\n" + std::to_string(seed));
+  return host::sha256_of(pair + name + "\n" + std::to_string(seed));
 }
 }  // namespace
 
@@ -71,9 +71,9 @@ std::string name_of_run(const StudyPlan& plan, const PlannedRun& run) {
                   run.repetition);
 }
 
-Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
-                       const std::vector<fs::path>& plugin_path) {
-  Overrides overrides;
+host::Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
+                             const std::vector<fs::path>& plugin_path) {
+  host::Overrides overrides;
   overrides.scenario = plan.scenarios[run.scenario].file;
   overrides.seed = run.seed;
   overrides.set = plan.pipelines[run.pipeline].set;
@@ -95,8 +95,8 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
     std::string& text = pairs[{run.scenario, run.pipeline}];
     if (text.empty()) {
       try {
-        const Config config = load_config(plan.pipelines[run.pipeline].file,
-                                          overrides_of(plan, run, plugin_path), plan.registry);
+        const host::Config config = host::load_config(
+            plan.pipelines[run.pipeline].file, overrides_of(plan, run, plugin_path), plan.registry);
         if (config.registry != plan.registry) {
           plan.registry = config.registry;
           plan.registries.push_back(config.registry);
@@ -117,14 +117,14 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
   return plan;
 }
 
-std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
+std::string key_of(const host::Config& config, const StudyBudget& budget, const std::string& name,
                    std::int64_t seed) {
   return key_of(pair_text(config, budget), name, seed);
 }
 
-Config load_run(const StudyPlan& plan, const PlannedRun& run,
-                const std::vector<fs::path>& plugin_path) {
-  return load_config(plan.pipelines[run.pipeline].file, overrides_of(plan, run, plugin_path),
-                     plan.registry);
+host::Config load_run(const StudyPlan& plan, const PlannedRun& run,
+                      const std::vector<fs::path>& plugin_path) {
+  return host::load_config(plan.pipelines[run.pipeline].file, overrides_of(plan, run, plugin_path),
+                           plan.registry);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

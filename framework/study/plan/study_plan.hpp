@@ -10,7 +10,7 @@
 #include "host/config/config.hpp"
 #include "study/model/study_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A scenario or a pipeline with some of its keys set: one cell of the factor grid.
 struct Variant {
@@ -38,10 +38,11 @@ struct StudyPlan {
   StudyFile file;
   std::vector<Variant> scenarios;
   std::vector<Variant> pipelines;
-  std::vector<PlannedRun> runs;        ///< those selected, as they are run: interleaved at random
-  std::size_t planned = 0;             ///< how many there are in all
-  std::shared_ptr<Registry> registry;  ///< of the run planned last
-  std::vector<std::shared_ptr<Registry>> registries;  ///< all: files may name folders of plugins
+  std::vector<PlannedRun> runs;  ///< those selected, as they are run: interleaved at random
+  std::size_t planned = 0;       ///< how many there are in all
+  std::shared_ptr<host::Registry> registry;  ///< of the run planned last
+  std::vector<std::shared_ptr<host::Registry>>
+      registries;  ///< all: files may name folders of plugins
 };
 
 /// "PIPELINE SCENARIO #REPETITION"
@@ -60,17 +61,17 @@ StudyPlan load_study(const std::filesystem::path& study, const StudySelection& s
                      const std::vector<std::filesystem::path>& plugin_path);
 
 /// What `altiplan run` would be given to do the run by itself.
-Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
-                       const std::vector<std::filesystem::path>& plugin_path);
+host::Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
+                             const std::vector<std::filesystem::path>& plugin_path);
 
 /// Builds of the program and of the library that it shares with its plugins.
 const std::string& host_build();
 
 /// PlannedRun::key of the run of that name with this configuration.
-std::string key_of(const Config& config, const StudyBudget& budget, const std::string& name,
+std::string key_of(const host::Config& config, const StudyBudget& budget, const std::string& name,
                    std::int64_t seed);
 
 /// The configuration of a run, as the worker runs it and `replay` repeats it.
-Config load_run(const StudyPlan& plan, const PlannedRun& run,
-                const std::vector<std::filesystem::path>& plugin_path);
-}  // namespace altiplan::host
+host::Config load_run(const StudyPlan& plan, const PlannedRun& run,
+                      const std::vector<std::filesystem::path>& plugin_path);
+}  // namespace altiplan::study

@@ -13,7 +13,7 @@
 #include "study/model/run_values.hpp"
 #include "study/plan/study_grid.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
@@ -28,9 +28,9 @@ class Budget {
     if (!budget_.time_s && !budget_.iterations) {
       return;
     }
-    Value tree = load_yaml(variant.file);
+    Value tree = host::load_yaml(variant.file);
     try {
-      apply_overrides(tree, variant.set, FileOfKey::pipeline);
+      host::apply_overrides(tree, variant.set, host::FileOfKey::pipeline);
     } catch (const ConfigError&) {
       return;  // said when the pipeline is read
     }
@@ -40,9 +40,9 @@ class Budget {
  private:
   void give_all(Variant& variant, const Value* steps, const std::string& path) const {
     for (std::size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
-      const std::string step = item(path, i);
+      const std::string step = host::item(path, i);
       if (steps->items[i].find("plan") != nullptr && budget_.time_s) {
-        set(variant, step + ".within_s", Json(*budget_.time_s).dump(), "budget.time_s");
+        set(variant, step + ".within_s", host::Json(*budget_.time_s).dump(), "budget.time_s");
       }
       if (steps->items[i].find("plan") != nullptr && budget_.iterations) {
         set(variant, step + ".within_iterations", std::to_string(*budget_.iterations),
@@ -87,7 +87,7 @@ std::string set_twice(const Value& set) {
 /// Whether there is such a file; if not, it is said.
 bool is_file(StudyProblems& problems, const Path& file, const Location& where,
              const std::string& key) {
-  const std::string why = file_problem(file.text);
+  const std::string why = host::file_problem(file.text);
   if (!why.empty()) {
     problems.add(where, key, why);
   }
@@ -99,13 +99,13 @@ void read_scenarios(StudyPlan& plan, const Value& tree, StudyProblems& problems,
   for (std::size_t i = 0; i < plan.file.scenarios.size(); ++i) {
     const ScenarioChoice& entry = plan.file.scenarios[i];
     const Value& at = tree.find("scenarios")->items[i];
-    const std::string path = item("scenarios", i);
+    const std::string path = host::item("scenarios", i);
     if (entry.id.find_first_of("[]\n\r\t") != std::string::npos) {
       problems.add(
-          place_of(at, "id"), path + ".id",
+          host::place_of(at, "id"), path + ".id",
           "expected a name without brackets, tabs and line ends, found " + excerpt(entry.id));
     }
-    if (is_file(problems, entry.file, place_of(at, "file"), path + ".file")) {
+    if (is_file(problems, entry.file, host::place_of(at, "file"), path + ".file")) {
       const std::string of =
           entry.id.empty() ? fs::path(entry.file.text).stem().string() : entry.id;
       variants.add(plan.scenarios, of, entry.file, entry.set, "scenario.", path, at.where);
@@ -118,9 +118,9 @@ void read_pipelines(StudyPlan& plan, const Value& tree, StudyProblems& problems,
   for (std::size_t i = 0; i < plan.file.pipelines.size(); ++i) {
     const PipelineChoice& entry = plan.file.pipelines[i];
     const Value& at = tree.find("pipelines")->items[i];
-    const std::string path = item("pipelines", i);
-    if (!is_snake_case(entry.id)) {
-      problems.add(place_of(at, "id"), path + ".id",
+    const std::string path = host::item("pipelines", i);
+    if (!host::is_snake_case(entry.id)) {
+      problems.add(host::place_of(at, "id"), path + ".id",
                    "expected lower-case letters, digits and '_', the first a letter (claims name "
                    "it), found " +
                        excerpt(entry.id));
@@ -131,7 +131,7 @@ void read_pipelines(StudyPlan& plan, const Value& tree, StudyProblems& problems,
                      "is given by the study: see its 'repetitions', 'seed' and 'scenarios'");
       }
     }
-    if (is_file(problems, entry.file, place_of(at, "file"), path + ".file")) {
+    if (is_file(problems, entry.file, host::place_of(at, "file"), path + ".file")) {
       variants.add(plan.pipelines, entry.id, entry.file, entry.set, "", path, at.where);
     }
   }
@@ -141,7 +141,7 @@ void check_metrics(const StudyPlan& plan, const Value& tree, StudyProblems& prob
   for (std::size_t i = 0; i < plan.file.metrics.size(); ++i) {
     const Value& at = tree.find("metrics")->items[i];
     if (const std::string why = why_no_value(plan.file.metrics[i].name); !why.empty()) {
-      problems.add(place_of(at, "name"), item("metrics", i) + ".name", why);
+      problems.add(host::place_of(at, "name"), host::item("metrics", i) + ".name", why);
     }
   }
 }
@@ -155,12 +155,12 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
   for (std::size_t i = 0; i < plan.file.claims.size(); ++i) {
     const ClaimEntry& claim = plan.file.claims[i];
     const Value& at = tree.find("claims")->items[i];
-    const std::string path = item("claims", i);
+    const std::string path = host::item("claims", i);
     if (!ids.insert(claim.id).second) {
-      problems.add(place_of(at, "id"), path + ".id", "the id '" + claim.id + "' is taken");
+      problems.add(host::place_of(at, "id"), path + ".id", "the id '" + claim.id + "' is taken");
     }
     const std::vector<Problem> found =
-        check_claim(claim, names, place_of(at, "that"), place_of(at, "is"), path);
+        check_claim(claim, names, host::place_of(at, "that"), host::place_of(at, "is"), path);
     for (const Problem& problem : found) {
       problems.add(problem);
     }
@@ -169,7 +169,7 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
     }
     for (const ClaimValue& value : read_quantity(claim.that, names).values) {
       if (const std::string why = why_no_value(value.name); !why.empty()) {
-        problems.add(place_of(at, "that"), path + ".that", why);
+        problems.add(host::place_of(at, "that"), path + ".that", why);
       }
     }
   }
@@ -220,8 +220,8 @@ Problem StudyVariants::placed(const Problem& problem) const {
 StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVariants& variants) {
   StudyPlan plan;
   plan.path = fs::absolute(study).lexically_normal();
-  const Value tree = load_yaml(plan.path);
-  if (tree.kind != Value::Kind::map || kind_of(tree) != FileKind::study) {
+  const Value tree = host::load_yaml(plan.path);
+  if (tree.kind != Value::Kind::map || host::kind_of(tree) != host::FileKind::study) {
     throw ConfigError(tree.where, "", "expected a study: a file with 'scenarios' and 'pipelines'");
   }
   plan.text = flow_text(tree);
@@ -235,10 +235,10 @@ StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVarian
   problems.finish();
   check_metrics(plan, tree, problems);
   check_claims(plan, tree, problems);
-  const Budget budget(plan.file.budget, place_of(tree, "budget"), problems, variants);
+  const Budget budget(plan.file.budget, host::place_of(tree, "budget"), problems, variants);
   for (Variant& pipeline : plan.pipelines) {
     budget.give(pipeline);
   }
   return plan;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -9,7 +9,7 @@
 
 #include "study/plan/study_plan.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// Collects what is wrong, each thing once however many runs it spoils.
 class StudyProblems {
@@ -61,4 +61,4 @@ class StudyVariants {
 /// The study with its variants, and no runs yet.
 StudyPlan read_study(const std::filesystem::path& study, StudyProblems& problems,
                      StudyVariants& variants);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

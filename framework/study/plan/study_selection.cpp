@@ -11,14 +11,14 @@
 #include "host/base/sha256.hpp"
 #include "host/result/result_json.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr std::size_t kMostRuns = 10000000;
 
 /// 53 bits of a hash: whole in JSON too.
 std::int64_t number_of(const std::string& text) {
-  return std::int64_t(std::stoull(sha256_of(text).substr(0, 16), nullptr, 16) >> 11);
+  return std::int64_t(std::stoull(host::sha256_of(text).substr(0, 16), nullptr, 16) >> 11);
 }
 
 /// A POSIX extended regular expression: those of the standard library overflow the stack on long
@@ -106,4 +106,4 @@ std::vector<PlannedRun> selected_runs(const StudyPlan& plan, const StudySelectio
   }
   return chosen;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

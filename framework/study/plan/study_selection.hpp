@@ -5,7 +5,7 @@
 
 #include "study/plan/study_plan.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// Every run that there is to the study, in the order of the file, without keys. Throws ConfigError
 /// for more than ten millions.
@@ -15,4 +15,4 @@ std::vector<PlannedRun> all_runs(const StudyPlan& plan);
 /// on the machine favours a pipeline. Whether a run is chosen, and its place among the others, do
 /// not depend on the machine. Keys are not set yet.
 std::vector<PlannedRun> selected_runs(const StudyPlan& plan, const StudySelection& selection);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

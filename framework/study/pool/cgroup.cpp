@@ -12,7 +12,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ ControlGroups::~ControlGroups() { leave(); }
 std::string ControlGroups::entrance(std::size_t worker) const {
   return (workers_[worker] / "cgroup.procs").string();
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A control group (cgroup v2) for each worker, where the system has delegated one with the memory
 /// controller to this process alone (`systemd-run --user --scope -p Delegate=yes altiplan study
@@ -37,4 +37,4 @@ class ControlGroups {
   std::filesystem::path own_;
   std::vector<std::filesystem::path> workers_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

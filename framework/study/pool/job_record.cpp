@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x3163'6552'696c'6c41;
@@ -129,4 +129,4 @@ ReadText read_from(const std::string& file, std::size_t offset, std::size_t at_m
   ::close(from);
   return read;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

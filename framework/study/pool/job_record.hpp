@@ -6,7 +6,7 @@
 
 #include "study/pool/work_folder.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A record as a worker's file holds it: a head with a magic word, lengths and measurements, the
 /// key, the payload, and a CRC-32 over all of it. Numbers are in this machine's order: the file
@@ -27,4 +27,4 @@ struct ReadText {
 };
 /// A file's text from that offset on: "" where it ends before.
 ReadText read_from(const std::string& file, std::size_t offset, std::size_t at_most);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

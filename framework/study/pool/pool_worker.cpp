@@ -16,7 +16,7 @@
 #include "host/base/machine_fault.hpp"
 #include "study/pool/job_record.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are told
@@ -111,7 +111,7 @@ std::optional<Ending> PoolWorker::watch(const JobLimits& limits) {
 
 std::string PoolWorker::read(const std::string& file, std::size_t offset, std::size_t at_most) {
   ReadText read = read_from(file, offset, at_most);
-  unread_ = is_machine_fault(read.error) ? unreadable(file, read.error) : "";
+  unread_ = host::is_machine_fault(read.error) ? host::unreadable(file, read.error) : "";
   return std::move(read.text);
 }
 
@@ -123,7 +123,7 @@ std::vector<Ended> PoolWorker::take_records() {
   std::string_view rest = text;
   while (!rest.empty()) {
     Ended ended;
-    if (host::take_record(rest, ended) != RecordState::whole || known_ >= task_.batch.size() ||
+    if (take_record(rest, ended) != RecordState::whole || known_ >= task_.batch.size() ||
         ended.key != task_.keys[known_]) {
       break;  // not there yet, or damaged: told when the process has ended
     }
@@ -204,4 +204,4 @@ std::size_t PoolWorker::clear_away(const std::vector<pid_t>& others) {
   ::unlink(task_.scratch.c_str());
   return left;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

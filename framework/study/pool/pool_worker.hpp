@@ -10,7 +10,7 @@
 #include "study/pool/process_tree.hpp"
 #include "study/pool/worker.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A place for a worker, as the parent sees it: its process, its batch of jobs, what it has used.
 class PoolWorker {
@@ -74,4 +74,4 @@ class PoolWorker {
   double cpu_s_ = 0;         ///< as last seen
   double reaped_cpu_s_ = 0;  ///< of the process and of those that it left, when they were reaped
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

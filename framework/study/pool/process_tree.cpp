@@ -20,7 +20,7 @@
 #include <string_view>
 #include <thread>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 using FileText = std::array<char, 4096>;  ///< ends with a zero
@@ -245,4 +245,4 @@ TreeUse use_of(const std::vector<pid_t>& processes, double base_mb) {
   all.memory_mb = std::max(0.0, all.memory_mb - base_mb);
   return all;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The processes that stem from a worker, also those that have begun a session of their own or
 /// whose parents are gone.
@@ -58,4 +58,4 @@ struct TreeUse {
   double memory_mb = 0;
 };
 TreeUse use_of(const std::vector<pid_t>& processes, double base_mb);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -10,7 +10,7 @@
 
 #include "study/pool/worker.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr int kTries = 3;
@@ -74,4 +74,4 @@ bool Retries::is_last_try(std::size_t job) const {
 }
 
 bool Retries::is_paused() const { return now_s() < paused_until_s_; }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -6,7 +6,7 @@
 
 #include "study/pool/worker_pool.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// Which jobs of a pool are done again, and when the pool gives up.
 class Retries {
@@ -39,4 +39,4 @@ class Retries {
   std::string said_;
   std::string failure_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

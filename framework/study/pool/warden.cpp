@@ -12,7 +12,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// Waits for the parent's farewell or its end.
@@ -81,4 +81,4 @@ Warden::~Warden() {
   }
   ::close(leash_);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -5,7 +5,7 @@
 
 #include "study/pool/work_folder.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A process beside the pool's parent that outlives it by a moment: whatever kills the parent, the
 /// warden ends what the workers have started, and only then lets go of the folder's lock. (The
@@ -29,4 +29,4 @@ class Warden {
   int leash_ = -1;  ///< end of a socket: when it closes, the parent is no more
   pid_t process_ = -1;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -21,7 +21,7 @@
 #include "study/pool/job_record.hpp"
 #include "study/pool/process_tree.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,8 +122,8 @@ std::vector<fs::path> files_of_workers(const fs::path& folder) {
       files.push_back(entry->path());
     }
   }
-  if (is_machine_fault(error.value())) {
-    throw MachineFault(unreadable(folder, error.value()));
+  if (host::is_machine_fault(error.value())) {
+    throw host::MachineFault(host::unreadable(folder, error.value()));
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -160,7 +160,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
         fs::remove(path_ / "lock", error);
         fs::remove(path_, error);  // not where somebody else has put something into it
       }
-    } catch (const MachineFault&) {
+    } catch (const host::MachineFault&) {
       // The next call looks again.
     }
   });
@@ -178,8 +178,8 @@ std::vector<Ended> WorkFolder::records() const {
       continue;
     }
     const ReadText all = read_from(file.string(), 0, std::numeric_limits<std::size_t>::max());
-    if (is_machine_fault(all.error)) {
-      throw MachineFault(unreadable(file, all.error));
+    if (host::is_machine_fault(all.error)) {
+      throw host::MachineFault(host::unreadable(file, all.error));
     }
     std::string_view text = all.text;
     for (Ended ended; !text.empty() && take_record(text, ended) == RecordState::whole;) {
@@ -206,4 +206,4 @@ ProcessTree WorkFolder::processes() const { return {0, mark_, ~kWorkerBits}; }
 ProcessTree WorkFolder::processes(pid_t root, std::size_t worker) const {
   return {root, mark_ | (std::uint64_t(worker) & kWorkerBits), ~std::uint64_t(0)};
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -13,7 +13,7 @@
 #include "host/base/unfinished.hpp"
 #include "study/pool/process_tree.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// How a job of the worker pool ended.
 enum class Ending {
@@ -82,6 +82,6 @@ class WorkFolder {
   int lock_ = -1;
   std::uint64_t mark_ = 0;
   pid_t owner_;  ///< the parent, also when a worker asks
-  std::optional<Unfinished> unfinished_;
+  std::optional<host::Unfinished> unfinished_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -17,7 +17,7 @@
 #include "study/pool/job_record.hpp"
 #include "study/pool/process_tree.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 void write_system_file(const char* file, std::string_view text) {
@@ -230,4 +230,4 @@ void be_worker(const WorkerTask& task, Blackboard& board, const Work& work) {
   Worker(task, board, work).all();
   ::_exit(0);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

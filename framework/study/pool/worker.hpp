@@ -11,7 +11,7 @@
 
 #include "study/pool/worker_pool.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// What a worker tells its parent while it is at it, in memory that both have. A plugin may have
 /// written anything over it: the parent trusts the records alone, and takes this for hints.
@@ -44,4 +44,4 @@ struct WorkerTask {
 
 /// The life of a worker, in the process that was forked for it.
 [[noreturn]] void be_worker(const WorkerTask& task, Blackboard& board, const Work& work);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -23,7 +23,7 @@
 #include "study/pool/retries.hpp"
 #include "study/pool/warden.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr double kWatchEveryS = 0.02;
@@ -402,4 +402,4 @@ WorkerPool::Finish WorkerPool::run(const std::vector<std::size_t>& jobs, const W
 std::string WorkerPool::limits_kept() const {
   return std::string("process tree, every 20 ms") + (groups_ ? "; memory also by cgroup v2" : "");
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -12,7 +12,7 @@
 
 #include "study/pool/work_folder.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 class ControlGroups;
 
@@ -100,4 +100,4 @@ class WorkerPool {
   std::unique_ptr<ControlGroups> groups_;  ///< null where the system has delegated none
   std::size_t workers_started_ = 0;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

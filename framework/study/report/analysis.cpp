@@ -11,7 +11,7 @@
 #include "study/claims/claims.hpp"
 #include "study/drawing/text.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 std::vector<Success> success_of(const StudyData& data) {
@@ -259,4 +259,4 @@ Analysis analyse(const StudyData& data, bool times) {
   }
   return made;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -8,7 +8,7 @@
 #include "study/model/study_data.hpp"
 #include "study/statistics/clustered.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 constexpr double kConfidence = 0.95;
 constexpr double kAlpha = 0.05;
@@ -113,4 +113,4 @@ struct Pair {
   std::vector<std::size_t> rows;
 };
 std::vector<Pair> pairs_of(const StudyData& data);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -9,7 +9,7 @@
 #include "host/result/result_json.hpp"
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr std::size_t kMostPoints = 150;  // of a figure
@@ -106,7 +106,7 @@ Convergence convergence_of_runs(const std::vector<Run>& runs, bool is_ratio) {
   return made;
 }
 
-double number_or(const Json& json, const char* key, double otherwise) {
+double number_or(const host::Json& json, const char* key, double otherwise) {
   return json.contains(key) && json.at(key).is_number() ? json.at(key).get<double>() : otherwise;
 }
 }  // namespace
@@ -120,9 +120,9 @@ std::vector<Progress> progress_of(std::string_view trace) {
     const std::size_t begin = trace.rfind('\n', at) + 1;
     const std::size_t end = std::min(trace.find('\n', at), trace.size());
     at = end;
-    const Json line = Json::parse(trace.substr(begin, end - begin), nullptr, false);
-    if (!line.is_object() || line.value("kind", Json()) != "iteration" ||
-        !line.value("step", Json()).is_string()) {
+    const host::Json line = host::Json::parse(trace.substr(begin, end - begin), nullptr, false);
+    if (!line.is_object() || line.value("kind", host::Json()) != "iteration" ||
+        !line.value("step", host::Json()).is_string()) {
       continue;
     }
     const auto step = line.at("step").get<std::string>();
@@ -159,4 +159,4 @@ std::vector<Convergence> convergence_of(const StudyData& data, const TraceSource
   }
   return all;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -8,7 +8,7 @@
 
 #include "study/model/study_data.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// The trace of a run, "" where there is none.
 using TraceSource = std::function<std::string(const RunRow&)>;
@@ -56,4 +56,4 @@ struct Convergence {
 
 /// Of all runs that have a trace with iterations, by pipeline and step.
 std::vector<Convergence> convergence_of(const StudyData& data, const TraceSource& traces);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

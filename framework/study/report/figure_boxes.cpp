@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLeft = 12;
@@ -142,4 +142,4 @@ Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
           canvas.take(),
           box_numbers(data, metric)};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLeft = 12;
@@ -146,4 +146,4 @@ Figure comparison_figure(const StudyData& data, const MetricAnalysis& metric) {
   return {"pairs-" + slug(metric.metric), title,         caption_of(metric, rows), kFigureWidth,
           bottom + kAxisHeight,           canvas.take(), numbers_of(data, metric)};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

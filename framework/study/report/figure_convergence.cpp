@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLeft = 66;
@@ -150,4 +150,4 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
           canvas.take(),
           numbers_of(convergence)};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLeft = 48;
@@ -182,4 +182,4 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
                 canvas.take(),
                 curve_numbers(data, *curves, "times_the_least")};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

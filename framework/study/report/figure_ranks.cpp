@@ -6,7 +6,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// Beside the axis there is room for the names.
@@ -97,4 +97,4 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
                 canvas.take(),
                 std::move(grid)};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/figures.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr double kLeft = 8;
@@ -170,4 +170,4 @@ Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
   figure.body = outcome_patterns(outcomes) + canvas.take();
   return figure;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

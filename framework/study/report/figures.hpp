@@ -7,7 +7,7 @@
 #include "study/report/analysis.hpp"
 #include "study/report/convergence.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// The share of solved runs of each pipeline, with its interval.
 Figure success_figure(const StudyData& data, const Analysis& analysis);
@@ -33,4 +33,4 @@ std::string pipeline_label(const StudyData& data, std::size_t pipeline, std::siz
 std::size_t room_beside(const std::string& text);
 /// "0.95 [0.93, 0.97]".
 std::string interval_text(double estimate, const std::optional<Interval>& interval, int digits = 4);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

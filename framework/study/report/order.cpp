@@ -9,7 +9,7 @@
 #include "study/plan/study_grid.hpp"
 #include "study/report/analysis.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// The variants sorted, and for each old place the new one.
@@ -129,8 +129,8 @@ std::string outcome_text(std::string_view outcome) {
 }
 
 std::string run_name(const StudyData& data, const RunRow& row) {
-  return host::run_name(data.pipelines[row.pipeline].name, data.scenarios[row.scenario].name,
-                        row.repetition);
+  return study::run_name(data.pipelines[row.pipeline].name, data.scenarios[row.scenario].name,
+                         row.repetition);
 }
 
 std::vector<Pair> pairs_of(const StudyData& data) {
@@ -151,4 +151,4 @@ std::vector<Pair> pairs_of(const StudyData& data) {
   }
   return pairs;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -9,7 +9,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/base64.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 std::string packed(std::string_view text) {
   uLongf size = ::compressBound(uLong(text.size()));
@@ -18,6 +18,6 @@ std::string packed(std::string_view text) {
                   uLong(text.size()), Z_BEST_COMPRESSION) != Z_OK) {
     throw Error("no memory to compress " + std::to_string(text.size()) + " bytes");
   }
-  return base64(std::as_bytes(std::span(bytes.data(), size)));
+  return host::base64(std::as_bytes(std::span(bytes.data(), size)));
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

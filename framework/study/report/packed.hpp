@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// zlib, then base64: what the page's script takes apart again. Throws Error for lack of memory.
 std::string packed(std::string_view text);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

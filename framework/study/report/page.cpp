@@ -8,7 +8,7 @@
 #include "study/report/packed.hpp"
 #include "study/report/page_assets.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 std::string paragraph(const std::string& text, const char* kind = "") {
@@ -243,7 +243,7 @@ std::string stores_html(const Content& content, const Table& scenarios) {
   };
   std::string out = store("data", packed(page_data(content, scenarios)));
   if (!content.scenes.scenes.empty()) {
-    out += store("viewer", packed(viewer_template()));
+    out += store("viewer", packed(host::viewer_template()));
   }
   for (std::size_t at = 0; at < content.scenes.scenes.size(); ++at) {
     out += store("scene-" + std::to_string(at), content.scenes.scenes[at].data);
@@ -284,4 +284,4 @@ std::string page_text(const Content& content) {
          stores_html(content, scenarios) + "<script>\n" + std::string(page_script()) +
          "</script>\n</body>\n</html>\n";
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

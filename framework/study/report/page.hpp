@@ -10,7 +10,7 @@
 #include "study/report/figures.hpp"
 #include "study/report/scenes.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// A group of runs that failed alike.
 struct FailureGroup {
@@ -82,4 +82,4 @@ std::string page_text(const Content& content);
 constexpr std::size_t kMostConvergence = 48;
 /// Rows of the scenario table that stand in the page; the script adds the others.
 constexpr std::size_t kRowsShown = 50;
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

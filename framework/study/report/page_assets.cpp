@@ -24,7 +24,7 @@ extern const char altiplan_report_script[];      // NOLINT(readability-identifie
 extern const char altiplan_report_script_end[];  // NOLINT(readability-identifier-naming)
 }
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 std::string_view page_style() {
   return {altiplan_report_style, std::size_t(altiplan_report_style_end - altiplan_report_style)};
@@ -33,4 +33,4 @@ std::string_view page_style() {
 std::string_view page_script() {
   return {altiplan_report_script, std::size_t(altiplan_report_script_end - altiplan_report_script)};
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

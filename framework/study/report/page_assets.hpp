@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// assets/report.css and assets/report.js, parts of the program.
 std::string_view page_style();
 std::string_view page_script();
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

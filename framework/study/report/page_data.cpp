@@ -7,7 +7,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/page.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// Packed, some 6 bytes each.
@@ -38,15 +38,15 @@ class Texts {
     }
     return found->second;
   }
-  Json take() { return std::move(all_); }
+  host::Json take() { return std::move(all_); }
 
  private:
   std::map<std::string, std::size_t> index_;
-  Json all_ = Json::array();
+  host::Json all_ = host::Json::array();
 };
 
-Json names(const std::vector<StoredVariant>& variants) {
-  Json all = Json::array();
+host::Json names(const std::vector<StoredVariant>& variants) {
+  host::Json all = host::Json::array();
   for (const StoredVariant& variant : variants) {
     all.push_back(printable(variant.name));
   }
@@ -87,10 +87,10 @@ std::string values_json(const StudyData& data, const std::vector<std::size_t>& c
 
 std::string page_data(const Content& content, const Table& scenarios) {
   const StudyData& data = content.data;
-  Json json;
+  host::Json json;
   json["pipelines"] = names(data.pipelines);
   json["scenarios"] = names(data.scenarios);
-  json["columns"] = Json::array();
+  json["columns"] = host::Json::array();
   const std::vector<std::size_t> columns = shown_columns(content);
   for (const std::size_t at : columns) {
     const std::string& name = data.columns[at];
@@ -99,10 +99,11 @@ std::string page_data(const Content& content, const Table& scenarios) {
   json["all_columns"] = columns.size() == data.columns.size();
   Texts outcomes;
   Texts messages;
-  json["runs"] = Json::array();
+  json["runs"] = host::Json::array();
   for (const RunRow& row : data.rows) {
-    Json run{row.scenario,          row.pipeline,         row.repetition, std::to_string(row.seed),
-             outcomes(row.outcome), messages(row.message)};
+    host::Json run{row.scenario,          row.pipeline,
+                   row.repetition,        std::to_string(row.seed),
+                   outcomes(row.outcome), messages(row.message)};
     if (content.times) {
       run.push_back(row.store);
       run.push_back(row.id);
@@ -110,28 +111,28 @@ std::string page_data(const Content& content, const Table& scenarios) {
     json["runs"].push_back(std::move(run));
   }
   json["outcomes"] = outcomes.take();
-  json["stores"] = Json::array({"DB"});  // of whose number nothing may depend
+  json["stores"] = host::Json::array({"DB"});  // of whose number nothing may depend
   if (content.times) {
-    json["stores"] = Json::array();
+    json["stores"] = host::Json::array();
     for (const std::string& store : data.stores) {
       json["stores"].push_back(printable(store));
     }
   }
-  json["scenes"] = Json::array();
+  json["scenes"] = host::Json::array();
   for (const PackedScene& scene : content.scenes.scenes) {
     json["scenes"].push_back(scene.rows);
   }
-  json["why_not"] = Json::array();
+  json["why_not"] = host::Json::array();
   for (const auto& [row, why] : content.scenes.why_not) {
     json["why_not"].push_back({row, messages(why)});
   }
   json["messages"] = messages.take();
-  json["more_rows"] = Json::array();
+  json["more_rows"] = host::Json::array();
   for (std::size_t at = kRowsShown; at < scenarios.rows.size(); ++at) {
     json["more_rows"].push_back(html_row(scenarios, at));
   }
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json.dump(-1, ' ', false, host::Json::error_handler_t::replace);
   text.back() = ',';
   return text + "\"values\":" + values_json(data, columns) + "}";
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

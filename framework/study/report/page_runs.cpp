@@ -4,7 +4,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/page.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// The runs of one pipeline in one scenario.
@@ -101,4 +101,4 @@ Grid run_grid(const Content& content) {
   }
   return grid;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

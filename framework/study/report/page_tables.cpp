@@ -5,7 +5,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/page.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 Cell number(double value, int digits = 4) { return {readable(value, digits), value}; }
@@ -298,4 +298,4 @@ Table build_table(const Content& content) {
   }
   return table;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

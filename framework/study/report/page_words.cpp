@@ -6,7 +6,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/page.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// "all 3 claims hold", "2 of 3 claims hold, 1 fails".
@@ -149,4 +149,4 @@ std::vector<std::string> method_text(const Content& content) {
   }
   return text;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

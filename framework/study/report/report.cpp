@@ -19,7 +19,7 @@
 #include "study/report/page.hpp"
 #include "study/store/load_study.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,13 +58,13 @@ Builds builds_of(const StudyData& data, const ResultSource& results) {
     if (seen.count(kind) > 0) {
       continue;
     }
-    const Json json = Json::parse(results(row), nullptr, false);
+    const host::Json json = host::Json::parse(results(row), nullptr, false);
     if (!json.is_object() || !json.contains("version") || !json.contains("plugins")) {
       continue;
     }
     seen.insert(kind);
     versions.insert(json.value("version", ""));
-    for (const Json& plugin : json.at("plugins")) {
+    for (const host::Json& plugin : json.at("plugins")) {
       if (plugin.is_object()) {
         plugins.insert(
             {plugin.value("kind", ""), plugin.value("name", ""), plugin.value("build", "")});
@@ -164,8 +164,8 @@ void write_tables(const Content& content, const fs::path& folder) {
   }
   for (Table& table : tables) {
     table.note = incomplete(content.data);
-    write_file(folder / (table.name + ".md"), markdown_text(table));
-    write_file(folder / (table.name + ".tex"), latex_text(table));
+    host::write_file(folder / (table.name + ".md"), markdown_text(table));
+    host::write_file(folder / (table.name + ".tex"), latex_text(table));
   }
   const Table scenarios = scenario_table(content);
   Grid grid;
@@ -181,19 +181,19 @@ void write_tables(const Content& content, const fs::path& folder) {
       grid.rows.back().push_back(is_number ? exact(cell.sort) : cell.text == "–" ? "" : cell.text);
     }
   }
-  write_file(folder / "scenarios.csv", csv_text(grid));
+  host::write_file(folder / "scenarios.csv", csv_text(grid));
 }
 
 void write_parts(const Content& content, const std::string& page, const fs::path& folder) {
   fs::create_directories(folder / "figures");
   fs::create_directories(folder / "tables");
   for (const Figure& figure : all_figures(content)) {
-    write_file(folder / "figures" / (figure.name + ".svg"), svg_text(figure, false));
-    write_file(folder / "figures" / (figure.name + ".csv"), csv_text(figure.numbers));
+    host::write_file(folder / "figures" / (figure.name + ".svg"), svg_text(figure, false));
+    host::write_file(folder / "figures" / (figure.name + ".csv"), csv_text(figure.numbers));
   }
   write_tables(content, folder / "tables");
-  write_file(folder / "runs.csv", csv_text(run_grid(content)));
-  write_file(folder / "index.html", page);
+  host::write_file(folder / "runs.csv", csv_text(run_grid(content)));
+  host::write_file(folder / "index.html", page);
 }
 
 /// Each takes the other's place, also where one of them is not there; again, and all is as it was.
@@ -215,7 +215,7 @@ void exchange(const fs::path& a, const fs::path& b) {
 
 /// An earlier report goes when all of the new one is in its place.
 void put_in_place(const fs::path& beside, const fs::path& folder) {
-  const auto lock = uninterrupted();
+  const auto lock = host::uninterrupted();
   std::vector<const char*> done;
   try {
     for (const char* part : {"figures", "tables", "runs.csv", "index.html"}) {
@@ -276,9 +276,9 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   expect_report_folder(folder);
   const Content content = content_of(source, options);
   const std::string page = page_text(content);
-  const fs::path beside = name_beside(fs::absolute(folder) / "report");
+  const fs::path beside = host::name_beside(fs::absolute(folder) / "report");
   // What has taken its place is not in it any more, and the folder goes where nothing has.
-  const Unfinished unfinished([beside] {
+  const host::Unfinished unfinished([beside] {
     std::error_code ignored;
     fs::remove_all(beside, ignored);
     fs::remove(beside.parent_path(), ignored);
@@ -299,4 +299,4 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   written.summary = (part.empty() ? "" : part + " ") + summary(content);
   return written;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

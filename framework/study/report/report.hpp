@@ -9,7 +9,7 @@
 #include "study/report/convergence.hpp"
 #include "study/report/scenes.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// What a report is made of.
 struct Source {
@@ -46,4 +46,4 @@ void expect_report_folder(const std::filesystem::path& folder);
 /// those of an earlier report. The same data give the same bytes.
 Written write_report(const Source& source, const Options& options,
                      const std::filesystem::path& folder);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -4,13 +4,13 @@
 
 #include "study/report/scenes.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// Builds by kind and name, of the plugins that make the world: what planned a route is in it.
-std::map<std::string, std::string> world_builds(const Json& plugins) {
+std::map<std::string, std::string> world_builds(const host::Json& plugins) {
   std::map<std::string, std::string> builds;
-  for (const Json& plugin : plugins) {
+  for (const host::Json& plugin : plugins) {
     const std::string kind = plugin.at("kind");
     if (kind == "environment" || kind == "constraint") {
       builds[kind + " '" + plugin.at("name").get<std::string>() + "'"] = plugin.at("build");
@@ -20,7 +20,7 @@ std::map<std::string, std::string> world_builds(const Json& plugins) {
 }
 }  // namespace
 
-std::vector<std::string> what_changed(const StoredResult& stored) {
+std::vector<std::string> what_changed(const host::StoredResult& stored) {
   std::vector<std::string> changes;
   for (const std::string& file : stored.changed) {
     std::error_code code;
@@ -30,7 +30,8 @@ std::vector<std::string> what_changed(const StoredResult& stored) {
   if (!changes.empty()) {
     return changes;  // what the files say now may name other plugins
   }
-  const auto now = world_builds(plugins_json(load_config(stored.pipeline, stored.overrides)));
+  const auto now =
+      world_builds(host::plugins_json(host::load_config(stored.pipeline, stored.overrides)));
   for (const auto& [plugin, build] : world_builds(stored.json.at("plugins"))) {
     const auto found = now.find(plugin);
     if (found == now.end() || found->second != build) {
@@ -39,4 +40,4 @@ std::vector<std::string> what_changed(const StoredResult& stored) {
   }
   return changes;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -13,7 +13,7 @@
 #include "altiplan/error.hpp"
 #include "study/report/scenes.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr char kMade = 'm';
@@ -128,4 +128,4 @@ std::string made_in_child(const std::function<std::string()>& make, unsigned sec
   }
   return content;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

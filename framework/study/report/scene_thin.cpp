@@ -8,7 +8,7 @@
 #include "host/base/base64.hpp"
 #include "study/report/scenes.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr int kMostPosts = 140;  // on the longer side
@@ -16,14 +16,14 @@ constexpr std::size_t kMostSamples = 240;
 constexpr float kHeightSteps = 8;  // to the metre; finer heights would not compress
 
 std::vector<float> floats(const std::string& text) {
-  const std::vector<std::byte> bytes = from_base64(text);
+  const std::vector<std::byte> bytes = host::from_base64(text);
   std::vector<float> values(bytes.size() / sizeof(float));
   std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
   return values;
 }
 
-void thin_ground(Json& scene) {
-  Json& ground = scene.at("ground");
+void thin_ground(host::Json& scene) {
+  host::Json& ground = scene.at("ground");
   if (ground.is_null()) {
     return;
   }
@@ -52,11 +52,11 @@ void thin_ground(Json& scene) {
     scene["notes"].push_back("the report shows the ground at one in " +
                              std::to_string(every * every) + " posts");
   }
-  ground["heights"] = base64_of(kept);
+  ground["heights"] = host::base64_of(kept);
 }
 
 /// Adds the sample with the least value.
-void keep_least(const Json& values, std::set<std::size_t>& kept) {
+void keep_least(const host::Json& values, std::set<std::size_t>& kept) {
   std::optional<std::size_t> least;
   for (std::size_t at = 0; at < values.size(); ++at) {
     if (values[at].is_number() && (!least || values[at] < values[*least])) {
@@ -68,20 +68,20 @@ void keep_least(const Json& values, std::set<std::size_t>& kept) {
   }
 }
 
-Json heights_over_ground(const Json& profile) {
-  Json heights = Json::array();
+host::Json heights_over_ground(const host::Json& profile) {
+  host::Json heights = host::Json::array();
   for (std::size_t at = 0; at < profile.at("ground").size(); ++at) {
-    const Json& ground = profile.at("ground")[at];
-    heights.push_back(ground.is_null()
-                          ? ground
-                          : Json(profile.at("altitude")[at].get<double>() - ground.get<double>()));
+    const host::Json& ground = profile.at("ground")[at];
+    heights.push_back(ground.is_null() ? ground
+                                       : host::Json(profile.at("altitude")[at].get<double>() -
+                                                    ground.get<double>()));
   }
   return heights;
 }
 
 /// Every n-th sample, the last, the lowest and nearest ones, and, where there is room, all that
 /// have a turn.
-void thin_profile(Json& profile) {
+void thin_profile(host::Json& profile) {
   if (profile.is_null()) {
     return;
   }
@@ -89,9 +89,9 @@ void thin_profile(Json& profile) {
   if (count <= kMostSamples) {
     return;
   }
-  const Json& turns = profile.at("turn");
-  const auto corners = std::size_t(
-      std::count_if(turns.begin(), turns.end(), [](const Json& turn) { return !turn.is_null(); }));
+  const host::Json& turns = profile.at("turn");
+  const auto corners = std::size_t(std::count_if(
+      turns.begin(), turns.end(), [](const host::Json& turn) { return !turn.is_null(); }));
   const bool keep_corners = corners <= kMostSamples / 2;
   const std::size_t every = (count - 1) / (kMostSamples - (keep_corners ? corners : 0)) + 1;
   std::set<std::size_t> kept{count - 1};
@@ -101,11 +101,11 @@ void thin_profile(Json& profile) {
     }
   }
   keep_least(heights_over_ground(profile), kept);
-  for (const Json& clearances : profile.at("to")) {
+  for (const host::Json& clearances : profile.at("to")) {
     keep_least(clearances, kept);
   }
-  const auto thin = [&](Json& values) {
-    Json some = Json::array();
+  const auto thin = [&](host::Json& values) {
+    host::Json some = host::Json::array();
     for (const std::size_t at : kept) {
       some.push_back(std::move(values[at]));
     }
@@ -116,15 +116,15 @@ void thin_profile(Json& profile) {
       thin(values);
     }
   }
-  for (Json& values : profile.at("to")) {
+  for (host::Json& values : profile.at("to")) {
     thin(values);
   }
 }
 }  // namespace
 
-void thin_scene(Json& scene) {
+void thin_scene(host::Json& scene) {
   thin_ground(scene);
-  for (Json& result : scene.at("results")) {
+  for (host::Json& result : scene.at("results")) {
     thin_profile(result.at("profile"));
     if (!result.at("flight").is_null()) {
       thin_profile(result.at("flight").at("profile"));
@@ -132,9 +132,9 @@ void thin_scene(Json& scene) {
   }
 }
 
-void drop_times(Json& json) {
+void drop_times(host::Json& json) {
   if (json.is_object()) {
-    Json kept = Json::object();
+    host::Json kept = host::Json::object();
     for (auto& [key, value] : json.items()) {
       if (!key.ends_with("time_s")) {
         kept[key] = std::move(value);
@@ -143,9 +143,9 @@ void drop_times(Json& json) {
     json = std::move(kept);
   }
   if (json.is_structured()) {
-    for (Json& part : json) {
+    for (host::Json& part : json) {
       drop_times(part);
     }
   }
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

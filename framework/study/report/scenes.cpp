@@ -11,7 +11,7 @@
 #include "study/drawing/text.hpp"
 #include "study/report/packed.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 constexpr unsigned kSeconds = 20;        // to build one scene
@@ -82,22 +82,22 @@ std::vector<std::size_t> shuffled(const StudyData& data) {
   return rows;
 }
 
-StoredResult result_of(const StudyData& data, std::size_t row, const std::string& text,
-                       const SceneOptions& options) {
-  Overrides overrides;
+host::StoredResult result_of(const StudyData& data, std::size_t row, const std::string& text,
+                             const SceneOptions& options) {
+  host::Overrides overrides;
   overrides.plugin_path = options.plugin_path;
-  Json json = Json::parse(text);
+  host::Json json = host::Json::parse(text);
   if (!options.times) {
     drop_times(json);
   }
   json["trace"] = nullptr;
-  return stored_result(run_name(data, data.rows[row]), std::move(json), overrides);
+  return host::stored_result(run_name(data, data.rows[row]), std::move(json), overrides);
 }
 
 /// The scene of these rows of one pair, as text of JSON.
 std::string scene_text(const StudyData& data, const std::vector<std::size_t>& rows,
-                       const std::vector<StoredResult>& results) {
-  Json scene = build_scene(results).json;
+                       const std::vector<host::StoredResult>& results) {
+  host::Json scene = host::build_scene(results).json;
   for (std::size_t at = 0; at < rows.size(); ++at) {
     const RunRow& row = data.rows[rows[at]];
     scene["results"][at]["name"] = data.pipelines[row.pipeline].name;
@@ -106,25 +106,25 @@ std::string scene_text(const StudyData& data, const std::vector<std::size_t>& ro
   const RunRow& first = data.rows[rows.front()];
   scene["title"] = data.scenarios[first.scenario].name + " #" + std::to_string(first.repetition);
   thin_scene(scene);
-  return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return scene.dump(-1, ' ', false, host::Json::error_handler_t::replace);
 }
 
 /// A line of JSON, for each row what has changed since it was made, and after it the packed scene
 /// of those rows for which nothing has: a route belongs into the world that it was planned in.
 std::string pair_text(const StudyData& data, const std::vector<std::size_t>& rows,
                       const std::vector<std::string>& texts, const SceneOptions& options) {
-  Json changed = Json::array();
+  host::Json changed = host::Json::array();
   std::vector<std::size_t> drawn;
-  std::vector<StoredResult> results;
+  std::vector<host::StoredResult> results;
   for (std::size_t at = 0; at < rows.size(); ++at) {
-    StoredResult result = result_of(data, rows[at], texts[at], options);
+    host::StoredResult result = result_of(data, rows[at], texts[at], options);
     changed.push_back(what_changed(result));
     if (changed.back().empty()) {
       drawn.push_back(rows[at]);
       results.push_back(std::move(result));
     }
   }
-  return changed.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n" +
+  return changed.dump(-1, ' ', true, host::Json::error_handler_t::replace) + "\n" +
          (drawn.empty() ? "" : packed(scene_text(data, drawn, results)));
 }
 
@@ -183,7 +183,7 @@ class SceneMaker {
             const std::string& text) {
     const std::size_t line = std::min(text.find('\n'), text.size());
     const auto changes =
-        Json::parse(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
+        host::Json::parse(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
     PackedScene made;
     for (std::size_t at = 0; at < rows.size(); ++at) {
       for (const std::string& change : changes.at(at)) {
@@ -280,4 +280,4 @@ Scenes build_scenes(const StudyData& data, const Analysis& analysis, const Resul
   }
   return maker.take(pairs_of(data).size());
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

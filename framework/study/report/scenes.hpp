@@ -11,7 +11,7 @@
 #include "host/result/stored_result.hpp"
 #include "study/report/analysis.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 
 /// The result.json of a run, "" where there is none.
 using ResultSource = std::function<std::string(const RunRow&)>;
@@ -52,14 +52,14 @@ std::vector<std::vector<std::size_t>> choose_scenes(const StudyData& data, const
 
 /// What of a result's world is not as it was when the run was made: "hills.yaml has changed since",
 /// and builds of the plugins that make the world. Throws as load_config.
-std::vector<std::string> what_changed(const StoredResult& stored);
+std::vector<std::string> what_changed(const host::StoredResult& stored);
 
 /// What a page of many scenes can carry: ground and profiles of fewer samples.
-void thin_scene(Json& scene);
+void thin_scene(host::Json& scene);
 /// Without keys that end in time_s, at any depth.
-void drop_times(Json& json);
+void drop_times(host::Json& json);
 
 /// What `make` returns, made in a child process within a time; throws Error with what it throws, or
 /// with how the child ended.
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds);
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

@@ -5,7 +5,7 @@
 
 #include "study/report/analysis.hpp"
 
-namespace altiplan::host::report {
+namespace altiplan::study::report {
 namespace {
 
 /// A variant's name taken apart: "weighted", "weight_g,weight_h", "0.3,0.7".
@@ -84,4 +84,4 @@ std::vector<std::string> short_name_keys(const StudyData& data) {
   }
   return lines;
 }
-}  // namespace altiplan::host::report
+}  // namespace altiplan::study::report

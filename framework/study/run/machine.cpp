@@ -7,7 +7,7 @@
 #include <ctime>
 #include <fstream>
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 std::string processor() {
@@ -40,4 +40,4 @@ StoredSession this_session() {
   session.memory_mb = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) / 1e6;
   return session;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

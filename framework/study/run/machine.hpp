@@ -3,8 +3,8 @@
 
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// This machine, this version and this time; what was asked for is not filled in.
 StoredSession this_session();
-}  // namespace altiplan::host
+}  // namespace altiplan::study

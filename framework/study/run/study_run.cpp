@@ -14,7 +14,7 @@
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
@@ -52,7 +52,7 @@ class Study {
     row.result = outcome.result;
     row.trace = outcome.trace;
     if (!row.result.empty()) {
-      row.values = values_of(Json::parse(row.result));
+      row.values = values_of(host::Json::parse(row.result));
     }
     for (const auto& value : {std::pair<std::string, double>{"solved", row.outcome == "solved"},
                               {"wall_time_s", ended.wall_s},
@@ -67,7 +67,7 @@ class Study {
     return [this](const Job& job) {
       const PlannedRun& run = plan_.runs[job.index];
       const PlannedConfig planned{[&] { return load_run(plan_, run, options_.plugin_path); },
-                                  [&](const Config& config) {
+                                  [&](const host::Config& config) {
                                     return run.key == key_of(config, plan_.file.budget,
                                                              name_of_run(plan_, run), run.seed);
                                   }};
@@ -118,7 +118,7 @@ class Study {
       }
     }
     if (others > 0) {
-      throw Error("'" + store.file().string() + "' holds " + counted(others, "run") +
+      throw Error("'" + store.file().string() + "' holds " + host::counted(others, "run") +
                   " that this study does not have, such as " + first +
                   ": give another --out, or --fresh to begin anew");
     }
@@ -173,7 +173,7 @@ class Study {
       }
     }
     if (!outdated.empty()) {
-      options_.say(counted(outdated.size(), "stored run") +
+      options_.say(host::counted(outdated.size(), "stored run") +
                    " came of other files, budgets, plugins or another program: done again" +
                    (plan_.runs.size() < plan_.planned
                         ? "; so may others be, which this call does not look at"
@@ -190,7 +190,7 @@ class Study {
 /// Runs are made with the libraries that the plan has loaded, whatever becomes of their files.
 /// A file that is written slowly changes more than once: it is named once.
 void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs::path>& said) {
-  for (const std::shared_ptr<Registry>& registry : plan.registries) {
+  for (const std::shared_ptr<host::Registry>& registry : plan.registries) {
     for (const fs::path& file : registry->changed()) {
       if (said.insert(file).second) {
         options.say(file.string() +
@@ -250,7 +250,7 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   session.limits = pool.limits_kept();
   const std::int64_t session_id = store.add_session(session);
   if (const std::size_t found = harvest(study, plan, folder, store, session_id)) {
-    options.say(counted(found, "run") + " of the call before had ended unstored: stored now");
+    options.say(host::counted(found, "run") + " of the call before had ended unstored: stored now");
   }
   folder.clear();
   const std::vector<std::size_t> left = study.without(store.keys());
@@ -322,4 +322,4 @@ StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options)
   estimate.total_s = estimate.run_s * double(estimate.left) / double(options.jobs);
   return estimate;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -9,7 +9,7 @@
 
 #include "study/plan/study_plan.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 struct StudyProgress {
   std::size_t runs = 0;    ///< that are wanted
@@ -51,4 +51,4 @@ struct StudyEstimate {
   double total_s = 0;        ///< of what is left, `jobs` at a time
 };
 StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

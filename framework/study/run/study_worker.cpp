@@ -20,7 +20,7 @@
 #include "host/run/pipeline.hpp"
 #include "study/pool/job_record.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 // Exit codes of a worker that has left the result as far as it goes in Job::last_words; one that
@@ -32,11 +32,12 @@ constexpr std::size_t kResultAtMost = std::size_t(256) << 20;
 
 /// A payload is a line of JSON with the lengths of the texts that follow.
 std::string payload_of(const RunOutcome& run) {
-  const Json head = {{"outcome", run.outcome},
-                     {"message", run.message},
-                     {"result_bytes", run.result.size()},
-                     {"trace_bytes", run.trace.size()}};
-  return head.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + run.result + run.trace;
+  const host::Json head = {{"outcome", run.outcome},
+                           {"message", run.message},
+                           {"result_bytes", run.result.size()},
+                           {"trace_bytes", run.trace.size()}};
+  return head.dump(-1, ' ', false, host::Json::error_handler_t::replace) + "\n" + run.result +
+         run.trace;
 }
 
 RunOutcome bad_output(const std::string& why) { return {"bad_output", why, "", ""}; }
@@ -51,14 +52,14 @@ struct PayloadHead {
 /// nullopt where it is not as it was written.
 std::optional<PayloadHead> head_of(const std::string& payload) {
   const std::size_t end = payload.find('\n');
-  const Json json = Json::parse(payload.substr(0, end), nullptr, false);
+  const host::Json json = host::Json::parse(payload.substr(0, end), nullptr, false);
   PayloadHead head;
   try {
     head.run.outcome = json.at("outcome");
     head.run.message = json.at("message");
     head.result_bytes = json.at("result_bytes");
     head.trace_bytes = json.at("trace_bytes");
-  } catch (const Json::exception&) {
+  } catch (const host::Json::exception&) {
     return std::nullopt;
   }
   head.bytes = end + 1;
@@ -79,7 +80,7 @@ RunOutcome outcome_of_payload(const std::string& payload) {
   RunOutcome run = head->run;
   run.result = payload.substr(head->bytes, head->result_bytes);
   run.trace = payload.substr(head->bytes + head->result_bytes);
-  if (!run.result.empty() && !Json::accept(run.result)) {
+  if (!run.result.empty() && !host::Json::accept(run.result)) {
     return bad_output("its result is not JSON");
   }
   return run;
@@ -87,7 +88,8 @@ RunOutcome outcome_of_payload(const std::string& payload) {
 
 /// A message that ends with what the process cannot say any more: how it ended.
 std::string without_cause(std::string message) {
-  if (const std::size_t at = message.find(ProcessGuard::LastWords::kCause); at != message.npos) {
+  if (const std::size_t at = message.find(host::ProcessGuard::LastWords::kCause);
+      at != message.npos) {
     message.resize(at);
   }
   while (message.ends_with(' ')) {
@@ -96,34 +98,35 @@ std::string without_cause(std::string message) {
   return message;
 }
 
-ProcessGuard::LastWords last_words(const Job& job, const Config& config, const RunResult& result) {
-  ProcessGuard::LastWords words;
-  words.for_user = std::string("\n") + ProcessGuard::LastWords::kCause;
-  words.result = file_text(result_json(config, result));
+host::ProcessGuard::LastWords last_words(const Job& job, const host::Config& config,
+                                         const host::RunResult& result) {
+  host::ProcessGuard::LastWords words;
+  words.for_user = std::string("\n") + host::ProcessGuard::LastWords::kCause;
+  words.result = host::file_text(host::result_json(config, result));
   words.file = job.last_words;
   words.exit_code = kCrashed;
   return words;
 }
 
 /// A step that took more than the study gave it, beyond what stopping takes.
-const StepResult* overtime(const RunResult& result, const StudyBudget& budget) {
+const host::StepResult* overtime(const host::RunResult& result, const StudyBudget& budget) {
   const auto late = std::find_if(result.steps.begin(), result.steps.end(), [&](const auto& step) {
-    return budget.time_s && step.verb == Verb::plan && step.status == Status::solved &&
+    return budget.time_s && step.verb == host::Verb::plan && step.status == Status::solved &&
            step.time_s > 1.1 * *budget.time_s + 0.1;
   });
   return late == result.steps.end() ? nullptr : &*late;
 }
 
-bool out_of_memory(const RunResult& result) {
+bool out_of_memory(const host::RunResult& result) {
   return result.status == Status::failed &&
          result.message.find("std::bad_alloc") != std::string::npos;
 }
 
-RunOutcome outcome_of_result(const RunResult& result, const StudyBudget& budget) {
+RunOutcome outcome_of_result(const host::RunResult& result, const StudyBudget& budget) {
   RunOutcome run{name(result.status), result.message, "", ""};
   if (out_of_memory(result)) {
     run.outcome = "out_of_memory";
-  } else if (const StepResult* late = overtime(result, budget)) {
+  } else if (const host::StepResult* late = overtime(result, budget)) {
     run.outcome = name(Status::timed_out);
     run.message = late->id + ": '" + late->plugin +
                   "' says solved, but took more than the time budget of the study";
@@ -131,37 +134,37 @@ RunOutcome outcome_of_result(const RunResult& result, const StudyBudget& budget)
   return run;
 }
 
-RunOutcome run_pipeline(const Job& job, const Config& config, const StudyBudget& budget,
+RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyBudget& budget,
                         bool trace) {
-  RunOptions options;
+  host::RunOptions options;
   options.patience_s = std::numeric_limits<double>::max();  // the pool's limits decide
   if (trace) {
     options.trace = job.scratch;
   }
-  std::optional<ProcessGuard> process(std::in_place);
+  std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
-  options.on_call = [&](const RunResult& result) {
+  options.on_call = [&](const host::RunResult& result) {
     job.note(without_cause(result.message));
     process->set_last_words(last_words(job, config, result));
   };
-  options.on_stuck = [&](const RunResult& result) {
-    write_file(job.last_words, file_text(result_json(config, result)));
+  options.on_stuck = [&](const host::RunResult& result) {
+    host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
     ::_exit(kStuck);
   };
-  RunResult result = run(config, options);
+  host::RunResult result = run(config, options);
   process.reset();
   RunOutcome outcome = outcome_of_result(result, budget);
   if (trace) {
     result.trace.reset();  // it is not where the run has put it
     ReadText read = read_from(job.scratch, 0, kResultAtMost + 1);
     if (read.error != 0 && read.error != ENOENT) {
-      throw MachineFault(unreadable(job.scratch, read.error));
+      throw host::MachineFault(host::unreadable(job.scratch, read.error));
     }
     outcome.trace = std::move(read.text);
     std::error_code error;
     std::filesystem::remove(job.scratch, error);
   }
-  outcome.result = file_text(result_json(config, result));
+  outcome.result = host::file_text(host::result_json(config, result));
   return outcome;
 }
 
@@ -170,7 +173,7 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
                        bool trace, std::vector<std::filesystem::path>& files) {
   try {
     job.note("reading the files of the run");
-    const Config config = planned.load();
+    const host::Config config = planned.load();
     files = config.files;
     const RunOutcome changed{kChanged, "its files have changed since the runs were planned", "",
                              ""};
@@ -182,7 +185,7 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
   } catch (const std::system_error& error) {
     return {kNotDone, std::string("the system refuses a run what it needs: ") + error.what(), "",
             ""};
-  } catch (const MachineFault& fault) {
+  } catch (const host::MachineFault& fault) {
     return {kNotDone, fault.what(), "", ""};
   } catch (const PluginError& error) {
     return {"refused", error.what(), "", ""};
@@ -217,7 +220,8 @@ std::string signal_name(int number) {
 
 /// What plugins say need not be UTF-8: U+FFFD stands for what is not.
 std::string in_utf8(const std::string& text) {
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+  return host::Json::parse(
+      host::Json(text).dump(-1, ' ', false, host::Json::error_handler_t::replace));
 }
 
 /// With the end of what it wrote to stdout and stderr, in one line.
@@ -255,7 +259,7 @@ std::string cause_of(const Ended& ended, std::string& said) {
 RunOutcome crashed(const Ended& ended) {
   std::string said = ended.said;
   RunOutcome run{"crashed", ended.note + " " + cause_of(ended, said), "", ""};
-  const Json result = Json::parse(ended.last_words, nullptr, false);
+  const host::Json result = host::Json::parse(ended.last_words, nullptr, false);
   if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
     run.outcome = ended.exit_code == kStuck ? "failed" : "crashed";
     run.message = result["message"].get<std::string>();
@@ -287,7 +291,7 @@ std::string study_run(const Job& job, const PlannedConfig& planned, const StudyB
   if (is_unexplained(run.outcome) || run.outcome == kNotDone || run.outcome == kChanged) {
     job.retire();
     ::close_range(3, ~0U, 0);  // whatever a plugin has left open
-    if (const std::string why = first_unreadable(files); !why.empty()) {
+    if (const std::string why = host::first_unreadable(files); !why.empty()) {
       run = {kNotDone, why, "", ""};
     }
   }
@@ -367,4 +371,4 @@ RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget) {
   run.message = in_utf8(run.message);
   return run;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

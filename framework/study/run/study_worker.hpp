@@ -8,7 +8,7 @@
 #include "study/model/study_file.hpp"
 #include "study/pool/worker_pool.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// What became of a run of a study.
 struct RunOutcome {
@@ -28,8 +28,8 @@ inline constexpr const char* kChanged = "changed";
 
 /// The configuration of a run, and whether it is still what was planned.
 struct PlannedConfig {
-  std::function<Config()> load;
-  std::function<bool(const Config&)> is_current = [](const Config&) { return true; };
+  std::function<host::Config()> load;
+  std::function<bool(const host::Config&)> is_current = [](const host::Config&) { return true; };
   /// The configuration is on trial: what is wrong with it is the run's outcome, kBadParameters, and
   /// says nothing of changed files.
   bool is_on_trial = false;
@@ -48,4 +48,4 @@ Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std:
 
 /// In the parent: the outcome, whichever way the run ended.
 RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

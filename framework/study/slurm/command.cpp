@@ -16,7 +16,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// Two ends, neither of which outlives this object or goes to another program.
@@ -114,4 +114,4 @@ bool has_command(const std::string& program) {
   }
   return false;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

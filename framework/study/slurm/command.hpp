@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// What a program said, and its exit code (128 and the signal that ended it).
 struct CommandResult {
@@ -19,4 +19,4 @@ CommandResult run_command(std::vector<std::string> arguments);
 
 /// Whether PATH has such a program.
 bool has_command(const std::string& program);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

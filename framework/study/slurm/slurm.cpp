@@ -12,7 +12,7 @@
 #include "study/statistics/statistics.hpp"
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
@@ -219,4 +219,4 @@ double estimated_seconds(const StudyPlan& plan, const std::vector<fs::path>& sto
   }
   return plan.runs.empty() ? 0 : seconds;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -7,7 +7,7 @@
 
 #include "study/plan/study_plan.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A study as an array of tasks, each of which runs a shard, and a job that merges them.
 struct SlurmJob {
@@ -53,4 +53,4 @@ std::string still_queued(const std::vector<std::string>& jobs);
 /// stored: by the mean of the stored runs of the same pipeline and scenario, else of the same
 /// pipeline, else of all. NaN without any stored run.
 double estimated_seconds(const StudyPlan& plan, const std::vector<std::filesystem::path>& stores);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

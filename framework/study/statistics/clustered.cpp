@@ -7,7 +7,7 @@
 
 #include "host/base/words.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// Without a copy, as it is taken of 10,000 resamples of a sample that has no NaN.
@@ -44,7 +44,7 @@ bool is_of_scenarios(std::span<const std::size_t> groups) {
 }  // namespace
 
 std::string Units::words() const {
-  return counted(count, of_scenarios ? "scenario" : "repetition");
+  return host::counted(count, of_scenarios ? "scenario" : "repetition");
 }
 
 Units units_of(std::span<const std::size_t> groups) {
@@ -58,7 +58,7 @@ std::string why_no_bootstrap(std::span<const std::size_t> groups, double confide
   }
   const char* what = is_of_scenarios(groups) ? "scenarios" : "repetitions";
   return std::string("too few ") + what + ": at least " + std::to_string(fewest) + " for " +
-         per_cent(confidence);
+         host::per_cent(confidence);
 }
 
 void PairedSample::add(double of_first, double of_second, std::size_t group) {
@@ -104,9 +104,9 @@ ShareInterval share_interval(std::span<const double> results, std::span<const st
   if (is_independent || share == 0 || share == 1) {
     const auto interval =
         wilson(std::llround(share * double(units.count)), std::int64_t(units.count), confidence);
-    return {interval,
-            interval ? "Wilson, " + (is_independent ? counted(units.count, "pair") : units.words())
-                     : ""};
+    return {interval, interval ? "Wilson, " + (is_independent ? host::counted(units.count, "pair")
+                                                              : units.words())
+                               : ""};
   }
   const auto interval = bootstrap_interval(
       results, groups, [](std::span<double> sample) { return mean(sample); },
@@ -130,4 +130,4 @@ SuccessTest success_test(const PairedSample& sample) {
   }
   return test;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

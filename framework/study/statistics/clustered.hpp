@@ -5,7 +5,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 // Statistics of studies whose scenarios have repetitions. These are no independent evidence: tests
 // count a scenario once, intervals draw whole scenarios. Of one scenario, repetitions are what is
@@ -68,4 +68,4 @@ struct SuccessTest {
 };
 /// A pair's numbers are 1 where it succeeded, 0 where it did not.
 SuccessTest success_test(const PairedSample& sample);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -3,7 +3,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * kPi); }
@@ -96,4 +96,4 @@ double studentized_range_quantile(double p, int k) {
   }
   return high;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

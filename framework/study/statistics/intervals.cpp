@@ -6,7 +6,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 bool is_confidence(double confidence) { return confidence > 0 && confidence < 1; }
@@ -136,4 +136,4 @@ std::optional<Interval> bootstrap_interval(std::span<const double> sample,
   }
   return percentiles(std::move(estimates), confidence);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

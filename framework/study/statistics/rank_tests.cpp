@@ -5,7 +5,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 bool has_nan(std::span<const double> sample) {
@@ -246,4 +246,4 @@ std::vector<std::vector<std::size_t>> joined(std::span<const double> average_ran
   }
   return bars;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

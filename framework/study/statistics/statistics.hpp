@@ -10,7 +10,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 // Statistics of samples, without knowledge of studies. docs/statistics.md has each one's source and
 // the SciPy call that it equals. Where a sample holds a NaN the answer is NaN or nothing, unless
@@ -172,4 +172,4 @@ double critical_difference(int k, std::int64_t n, double alpha);
 /// which no two differ by the critical difference or more; indices by ascending rank.
 std::vector<std::vector<std::size_t>> joined(std::span<const double> average_ranks,
                                              double critical_difference);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

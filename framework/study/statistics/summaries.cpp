@@ -8,7 +8,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 bool has_nan(std::span<const double> sample) {
@@ -140,4 +140,4 @@ std::optional<std::vector<std::vector<CurvePoint>>> performance_profile(
   }
   return curves;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

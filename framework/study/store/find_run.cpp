@@ -5,7 +5,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 constexpr std::size_t kShortestKey = 4;
@@ -66,4 +66,4 @@ StoredRun find_run(const Store& store, const std::string& named) {
   }
   return *store.run(found.front().id);
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -5,9 +5,9 @@
 
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The run with this id, name, or key that begins so, with its result and trace. Throws Error where
 /// there is none, or more than one.
 StoredRun find_run(const Store& store, const std::string& named);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

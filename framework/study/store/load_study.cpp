@@ -12,7 +12,7 @@
 #include "host/config/yaml.hpp"
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// Index of each name in `all`, which grows by those that it lacks.
@@ -63,7 +63,7 @@ StudyFile study_file(const Store& store) {
   }
   StudyFile file;
   try {
-    const Value tree = parse_yaml(study["text"], study["path"]);
+    const Value tree = host::parse_yaml(study["text"], study["path"]);
     if (const ParamReport report = bind(file, &tree); !report.problems.empty()) {
       throw ConfigError(report.problems);
     }
@@ -122,4 +122,4 @@ StudyData load_study_data(const std::vector<std::string>& stores) {
   });
   return data;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

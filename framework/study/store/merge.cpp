@@ -11,7 +11,7 @@
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,8 +46,8 @@ bool is_same(const StoredSession& a, const StoredSession& b) {
 }
 
 /// A result without the places of its files, which are others where the study lies elsewhere.
-Json without_places(const std::string& result) {
-  Json json = result.empty() ? Json() : Json::parse(result, nullptr, false);
+host::Json without_places(const std::string& result) {
+  host::Json json = result.empty() ? host::Json() : host::Json::parse(result, nullptr, false);
   if (json.is_object()) {
     json.erase("pipeline");
     json.erase("scenario");
@@ -55,7 +55,7 @@ Json without_places(const std::string& result) {
       json["overrides"].erase("scenario");
     }
     if (json.contains("files") && json["files"].is_array()) {
-      for (Json& file : json["files"]) {
+      for (host::Json& file : json["files"]) {
         if (file.is_object()) {
           file.erase("path");
         }
@@ -65,15 +65,16 @@ Json without_places(const std::string& result) {
   return json;
 }
 
-std::optional<Difference> results_differ(const std::string& first, const std::string& second) {
+std::optional<host::Difference> results_differ(const std::string& first,
+                                               const std::string& second) {
   if (first == second) {
     return std::nullopt;
   }
-  const Json one = without_places(first);
-  const Json other = without_places(second);
+  const host::Json one = without_places(first);
+  const host::Json other = without_places(second);
   // What is no JSON is compared as it is.
-  return one.is_discarded() || other.is_discarded() ? first_difference(first, second)
-                                                    : first_difference(one, other);
+  return one.is_discarded() || other.is_discarded() ? host::first_difference(first, second)
+                                                    : host::first_difference(one, other);
 }
 
 class Merger {
@@ -155,9 +156,9 @@ class Merger {
   void compare(const StoredRun& run, const std::string& file) {
     flush();  // the run may be among those not written yet
     const StoredRun kept = *out_.run(run.key);
-    std::optional<Difference> difference;
+    std::optional<host::Difference> difference;
     if (kept.outcome != run.outcome) {
-      difference = Difference{"outcome", kept.outcome, run.outcome};
+      difference = host::Difference{"outcome", kept.outcome, run.outcome};
     } else {
       difference = results_differ(kept.result, run.result);
     }
@@ -243,4 +244,4 @@ Merged merge_stores(const std::vector<std::string>& stores, const std::filesyste
   unfinished.put_in_place();
   return merged;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

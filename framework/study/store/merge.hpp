@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 struct Merged {
   std::size_t runs = 0;   ///< in the new store
@@ -26,4 +26,4 @@ Merged merge_stores(const std::vector<std::string>& stores, const std::filesyste
 /// count.
 std::string studies_differ(const std::map<std::string, std::string>& first,
                            const std::map<std::string, std::string>& second);
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -11,7 +11,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/input_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,7 +157,7 @@ void remove_journal(const fs::path& database) {
 }
 
 NewDatabase::NewDatabase(const fs::path& place) : place_(place_of(place)) {
-  const auto lock = uninterrupted();
+  const auto lock = host::uninterrupted();
   file_ = new_file_in(place_.parent_path());
   unfinished_.emplace([file = file_.string()] {
     for (const char* suffix : {"", "-journal"}) {
@@ -173,7 +173,7 @@ NewDatabase::NewDatabase(const fs::path& place) : place_(place_of(place)) {
 }
 
 void NewDatabase::put_in_place() {
-  const auto lock = uninterrupted();
+  const auto lock = host::uninterrupted();
   remove_journal(place_);
   std::error_code error;
   fs::rename(file_, place_, error);
@@ -181,4 +181,4 @@ void NewDatabase::put_in_place() {
     throw Error("cannot write '" + place_.string() + "': " + error.message());
   }
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -7,7 +7,7 @@
 
 #include "host/base/unfinished.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// "altp", in a database's header: by it `file`, and this program, tell a store from others.
 constexpr std::int64_t kApplicationId = 0x616c7470;
@@ -44,6 +44,6 @@ class NewDatabase {
  private:
   std::filesystem::path place_;
   std::filesystem::path file_;
-  std::optional<Unfinished> unfinished_;
+  std::optional<host::Unfinished> unfinished_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

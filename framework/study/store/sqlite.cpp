@@ -11,7 +11,7 @@
 #include "altiplan/error.hpp"
 #include "study/store/place.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// SQLite does not keep the system's error of a COMMIT. That the disk is full it says itself.
@@ -199,4 +199,4 @@ void Transaction::commit() {
   database_.run("COMMIT");
   open_ = false;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

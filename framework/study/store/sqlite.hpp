@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// A prepared statement. Bind, then step; `reset` before it is used again.
 class Statement {
@@ -81,4 +81,4 @@ class Transaction {
   const Sqlite& database_;
   bool open_ = true;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -4,7 +4,7 @@
 #include "host/base/deflate.hpp"
 #include "study/store/store_database.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// A run is not kept waiting for its result to be packed; JSON shrinks to a fifth all the same.
@@ -98,8 +98,8 @@ void Store::add(const std::vector<StoredRun>& runs) {
     if (!is_new) {
       continue;
     }
-    result.bind(1, id).bind_blob(2, run.result.empty() ? "" : compressed(run.result, kLevel));
-    result.bind_blob(3, run.trace.empty() ? "" : compressed(run.trace, kLevel)).run();
+    result.bind(1, id).bind_blob(2, run.result.empty() ? "" : host::compressed(run.result, kLevel));
+    result.bind_blob(3, run.trace.empty() ? "" : host::compressed(run.trace, kLevel)).run();
     for (const auto& [name, number] : run.values) {
       quantity.bind(1, name).run();
       value.bind(1, id).bind(2, name).bind(3, number).run();
@@ -165,4 +165,4 @@ void Store::remove(const std::vector<std::string>& keys) {
 }
 
 const std::filesystem::path& Store::file() const { return database_->sqlite.file(); }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -13,7 +13,7 @@
 
 #include "study/model/records.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 enum class StoreMode { read, write };
 
@@ -62,4 +62,4 @@ class Store {
  private:
   std::unique_ptr<StoreDatabase> database_;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

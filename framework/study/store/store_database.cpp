@@ -8,7 +8,7 @@
 #include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,7 +111,8 @@ Sqlite opened(const fs::path& file, StoreMode mode) {
   std::error_code error;
   const bool is_absent = !fs::exists(file, error);
   if (is_absent && error) {
-    throw MachineFault(unreadable(file, error.value()));  // its journal may be all that saves it
+    throw host::MachineFault(
+        host::unreadable(file, error.value()));  // its journal may be all that saves it
   }
   if (is_absent || fs::is_empty(file, error)) {
     remove_journal(file);
@@ -244,7 +245,7 @@ std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
   const std::string name = std::string("the ") + what + " of '" + run_name(run) + "' ";
   std::optional<std::string> text;
   try {
-    text = decompressed(bytes, kMostBytes);
+    text = host::decompressed(bytes, kMostBytes);
   } catch (const Error&) {
     fail_damaged(name + "cannot be unpacked");
   }
@@ -272,4 +273,4 @@ std::optional<StoredRun> StoreDatabase::whole_run(Statement& row) const {
   }
   return run;
 }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

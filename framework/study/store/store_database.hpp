@@ -12,7 +12,7 @@
 #include "study/store/store.hpp"
 #include "study/store/store_lock.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The database of a store, and how its rows are read. Throws Error, naming the file, where it is
 /// no store or holds what no store does.
@@ -47,4 +47,4 @@ class StoreDatabase {
   std::string unpacked(const StoredRun& run, const char* what, std::string_view bytes) const;
   [[noreturn]] void fail_damaged(const std::string& why) const;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -10,7 +10,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::study {
 namespace {
 
 /// A lock of the open file, of which the system does not tell the owner: its length does.
@@ -50,4 +50,4 @@ StoreLock::StoreLock(const std::filesystem::path& file)
 }
 
 StoreLock::~StoreLock() { ::close(descriptor_); }
-}  // namespace altiplan::host
+}  // namespace altiplan::study

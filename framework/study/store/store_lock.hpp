@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace altiplan::host {
+namespace altiplan::study {
 
 /// The one writer of a store, by whatever name it is called: the lock is on the file itself, at
 /// bytes that neither it nor SQLite's locks reach, and goes with the process. Closing it gives up
@@ -19,4 +19,4 @@ class StoreLock {
  private:
   int descriptor_ = -1;
 };
-}  // namespace altiplan::host
+}  // namespace altiplan::study

@@ -141,7 +141,7 @@ int check_plugin(const Arguments& arguments) {
   CheckedLibrary library{arguments.library, host::examine_library(what.library).build, what.seed, 0,
                          ""};
   for (const std::string& word : options.command) {
-    library.command += (library.command.empty() ? "" : " ") + host::report::shell(word);
+    library.command += (library.command.empty() ? "" : " ") + study::report::shell(word);
   }
   if (arguments.here) {
     if (tests.size() > 1) {

@@ -66,7 +66,7 @@ std::size_t end_orphans(const fs::path& scratch) {
   std::size_t count = 0;
   for (bool more = true; more;) {  // children of those that end come after them
     more = false;
-    for (const pid_t child : host::children_of(::getpid())) {
+    for (const pid_t child : study::children_of(::getpid())) {
       if (stems_from(child, scratch)) {
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
@@ -135,7 +135,7 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
     verdict.peak_memory_mb = double(use.ru_maxrss) / 1024;
     return verdict;
   }
-  const double memory_mb = host::use_of(process_).memory_mb;
+  const double memory_mb = study::use_of(process_).memory_mb;
   peak_mb_ = std::max(peak_mb_, memory_mb);
   std::string over;
   if (time_s > options.time_limit_s) {
@@ -159,7 +159,7 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
 void TestProcess::become(char* const* arguments) const {
   ::setsid();  // what it sends to its group stays there, and the terminal's signals away
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  host::set_mark(mark_);
+  study::set_mark(mark_);
   const rlimit output{kMostOutput, kMostOutput};
   ::setrlimit(RLIMIT_FSIZE, &output);
   const int said = ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
@@ -186,7 +186,7 @@ void TestProcess::become(char* const* arguments) const {
 
 void TestProcess::end() {
   if (process_ > 0) {
-    host::ProcessTree{process_, mark_}.kill(process_);
+    study::ProcessTree{process_, mark_}.kill(process_);
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
     end_orphans(scratch_.path());
@@ -220,7 +220,7 @@ Verdict TestProcess::verdict_of(int status) {
     fault("ended with exit code " + std::to_string(WEXITSTATUS(status)) +
           (answer.empty() ? ", but without a result" : " after the test"));
   }
-  if (const std::size_t left = host::ProcessTree{0, mark_}.kill() + end_orphans(scratch_.path());
+  if (const std::size_t left = study::ProcessTree{0, mark_}.kill() + end_orphans(scratch_.path());
       left > 0) {
     fault("left " + std::to_string(left) + " processes behind");
   }
