@@ -7,6 +7,7 @@ function(altiplan_add_test name)
   target_link_libraries(test_${name} PRIVATE altiplan_test_support)
   # What is tested is built as it is shipped; the tests need not be, and this is a third quicker.
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  altiplan_precompile(test_${name} tests <gtest/gtest.h>)
   set_target_properties(test_${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-Nightly*:-*/Nightly*)

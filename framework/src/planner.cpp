@@ -48,8 +48,8 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
     PlanResult result;
     result.status = spent.cancelled() ? Status::cancelled : Status::timed_out;
     result.budget_hit = true;
-    result.message =
-        (spent.cancelled() ? "cancelled: " : "the budget was used up: ") + std::string(spent.what());
+    result.message = (spent.cancelled() ? "cancelled: " : "the budget was used up: ") +
+                     std::string(spent.what());
     result.counters = {{"expanded", 0}};
     return result;
   } catch (const std::exception& error) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles src/ with three.js and uPlot into one page that needs nothing beside itself.
 import {build} from 'esbuild';
-import {readFileSync, writeFileSync} from 'node:fs';
+import {createHash} from 'node:crypto';
+import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 
 const kPage = 'dist/viewer.html';
 const kMaxBytes = 1.5e6;
@@ -25,13 +26,25 @@ function licences() {
   return readFileSync('LICENSES.md', 'utf8').replaceAll('--', '—').trim();
 }
 
+// What the page is made of, in a number: a test that has no npm can tell a page that was forgotten.
+function sources() {
+  const files = readdirSync('src', {recursive: true, withFileTypes: true})
+    .filter((entry) => entry.isFile()).map(({path, name}) => `${path}/${name}`);
+  const hash = createHash('sha256');
+  for (const file of [...files, 'LICENSES.md', 'bundle.mjs', 'package-lock.json'].sort()) {
+    hash.update(`${file}\n`).update(readFileSync(file));
+  }
+  return hash.digest('hex');
+}
+
 const parts = {
+  SOURCES: sources(),
   LICENCES: licences(),
   STYLE: await bundled('src/style.css'),
   SCRIPT: await bundled('src/main.js'),
 };
 const page = readFileSync('src/page.html', 'utf8')
-  .replace(/LICENCES|(?<=<style>)STYLE|(?<=<script>)SCRIPT/g,
+  .replace(/LICENCES|(?<=content=")SOURCES(?=")|(?<=<style>)STYLE|(?<=<script>)SCRIPT/g,
     (name) => without_addresses(parts[name]))
   // Only shaders have lines that end in blanks; they do not mind.
   .replace(/[ \t]+$/gm, '');

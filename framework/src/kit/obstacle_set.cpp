@@ -116,8 +116,8 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, Solids& shapes, cons
   }
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a,
-                               const Vec3& b, double r) {
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a, const Vec3& b,
+                               double r) {
   std::array<std::int32_t, kMostOpen> open{0};
   std::size_t waiting = 1;
   const TreeLeg leg(a, b, r);
