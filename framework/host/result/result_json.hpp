@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -25,8 +24,4 @@ Json to_json(const Measures& measures);
 /// As files and stdout hold it, indented, with a last line end. What plugins say, damaged ones
 /// above all, need not be UTF-8: U+FFFD stands for what is not.
 std::string file_text(const Json& json);
-
-/// Writes the whole file or, where that fails, throws Error and leaves what was there: how, and
-/// what is refused, is told in host/base/output_file.hpp.
-void write_file(const std::filesystem::path& file, const std::string& text);
 }  // namespace altiplan::host

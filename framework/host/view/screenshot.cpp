@@ -63,6 +63,9 @@ std::vector<std::string> arguments_of(const fs::path& chromium, const fs::path& 
       "--use-gl=angle",
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
+      // In one process, frames need not be handed from one to another.
+      "--in-process-gpu",
+      "--disable-gpu-compositing",
       "--hide-scrollbars",
       "--force-device-scale-factor=1",
       "--window-size=1600,1000",
