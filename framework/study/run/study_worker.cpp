@@ -148,7 +148,10 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
     process->set_last_words(last_words(job, config, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
-    host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
+    try {
+      host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
+    } catch (const Error&) {  // its note says who is stuck
+    }
     ::_exit(kStuck);
   };
   host::RunResult result = run(config, options);
