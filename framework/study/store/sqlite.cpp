@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 
 namespace altiplan::study {
@@ -51,6 +52,9 @@ std::string meaning(const std::filesystem::path& file, int code, int error, cons
     case SQLITE_READONLY:
       return "it cannot be written to: " + why_read_only(file);
     case SQLITE_CANTOPEN:
+      if (error == ENOENT && host::is_there(file)) {
+        return "its journal cannot be made";  // nor is kept why: SQLite asks to read it then
+      }
       return "it cannot be opened: " + (error == 0 ? "is its path longer than 500 bytes?"
                                                    : std::string(std::strerror(error)));
     case SQLITE_NOTADB:

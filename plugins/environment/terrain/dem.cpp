@@ -132,7 +132,12 @@ void* read_band(const Params& params, void* dataset) {
 void read_crs(const Params& params, void* dataset, Dem& dem) {
   gdal::Reference asked = params.crs.empty() ? nullptr : gdal::reference(params.crs);
   if (!params.crs.empty() && !asked) {
-    refuse(params, "crs: expected EPSG: and a known code (EPSG:4326), found " + params.crs, "crs");
+    const std::string said = gdal::last_error();
+    const bool is_of_database = said.find("proj.db") != std::string::npos;
+    refuse(params,
+           "crs: expected EPSG: and a known code (EPSG:4326), found " + params.crs +
+               (is_of_database ? ": " + said : ""),
+           "crs");
   }
   if (OGRSpatialReferenceH own = api().GDALGetSpatialRef(dataset)) {
     dem.crs = gdal::copy(own);
