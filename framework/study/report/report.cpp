@@ -247,7 +247,7 @@ void put_in_place(const fs::path& beside, const fs::path& folder) {
 
 bool is_report(const fs::path& folder) {
   const std::string file = (folder / "index.html").string();
-  if (!host::is_there(file)) {
+  if (!fs::is_regular_file(host::status_of(file))) {
     return false;
   }
   kit::InputFile page(file);
