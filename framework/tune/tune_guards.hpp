@@ -4,12 +4,14 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::tune {
@@ -36,6 +38,9 @@ class FileWatch {
   static std::array<std::int64_t, 4> stamp(const std::string& file) {
     struct stat found {};
     if (::stat(file.c_str(), &found) != 0) {
+      if (host::is_machine_fault(errno)) {
+        throw host::MachineFault(host::unreadable(file, errno));
+      }
       return {};
     }
     return {std::int64_t(found.st_size), std::int64_t(found.st_mtim.tv_sec),

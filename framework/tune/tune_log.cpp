@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +12,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/pool/job_record.hpp"
 
@@ -44,8 +46,7 @@ std::string line_of(const RunId& id, const std::string& parameters, const Scored
 
 /// "" where it is not there.
 std::string text_of(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored)
+  return host::is_there(file)
              ? kit::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
              : "";
 }
@@ -83,6 +84,31 @@ std::string differences(const host::Json& before, const host::Json& now) {
   return text;
 }
 
+/// Whether a call that was killed while it wrote a file of ours has left it: "FILE.HEX.partial".
+bool is_left_over(const std::string& name) {
+  return name.ends_with(".partial") && std::ranges::any_of(kOurs, [&](const char* ours) {
+           return name.starts_with(std::string(ours) + ".");
+         });
+}
+
+/// The folder's files, without what a killed call has left over, which goes.
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::vector<fs::path> left_over;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+    if (is_left_over(names.back())) {
+      left_over.push_back(entry.path());
+      names.pop_back();
+    }
+  }
+  for (const fs::path& file : left_over) {
+    std::error_code ignored;
+    fs::remove(file, ignored);
+  }
+  return names;
+}
+
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
   throw Error("--out: '" + folder.string() + "' " + why);
 }
@@ -96,18 +122,19 @@ TuneLog::TuneLog(fs::path folder, const host::Json& settings, bool fresh)
     refuse(folder_, "cannot be made a folder: " + error.message());
   }
   const fs::path described = folder_ / kSettings;
-  if (!fs::exists(described, error)) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
-      if (entry.path().filename() != "work") {
-        refuse(folder_, "holds '" + entry.path().filename().string() +
-                            "' and no tuning: give a folder that is empty or not there");
+  const std::vector<std::string> files = files_in(folder_);
+  if (!host::is_there(described)) {
+    for (const std::string& name : files) {
+      if (name != "work") {
+        refuse(folder_,
+               "holds '" + name + "' and no tuning: give a folder that is empty or not there");
       }
     }
   } else if (fresh) {
     for (const char* ours : kOurs) {
       fs::remove(folder_ / ours, error);
     }
-  } else if (fs::exists(file_, error)) {  // else nothing has been run that could be lost
+  } else if (host::is_there(file_)) {  // else nothing has been run that could be lost
     const host::Json before = host::Json::parse(text_of(described), nullptr, false);
     if (!before.is_object()) {
       refuse(folder_, "holds a damaged settings.json: give another folder, or --fresh");

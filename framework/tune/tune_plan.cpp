@@ -6,6 +6,7 @@
 
 #include "altiplan/blame.hpp"
 #include "host/base/input.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
@@ -55,9 +56,8 @@ Value set_of(const std::string& text, const Location& where) {
 /// One entry of --scenarios or --hold-out: a file, or a file with keys set to each of their values.
 std::vector<study::Variant> scenarios_of(const std::string& entry, const std::string& option) {
   const Location where{"", 0, 0, option + " " + entry};
-  std::error_code error;
   const std::size_t bracket =
-      fs::exists(entry, error) || !entry.ends_with(']') ? std::string::npos : entry.find('[');
+      host::is_there(entry) || !entry.ends_with(']') ? std::string::npos : entry.find('[');
   const std::string file = entry.substr(0, bracket);
   if (const std::string why = host::file_problem(file); !why.empty()) {
     throw ConfigError(where, "", why);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "host/base/machine_fault.hpp"
 #include "study/claims/claim_pairs.hpp"
 #include "study/claims/claims.hpp"
 #include "study/model/run_values.hpp"
@@ -304,8 +305,8 @@ class TuningRun {
 }  // namespace
 
 Tuning run_tuning(const TunePlan& plan, const TuneOptions& options) {
-  std::error_code error;
-  if (fs::exists(options.out, error) && !fs::is_directory(options.out, error)) {
+  if (const fs::file_status status = host::status_of(options.out);
+      fs::exists(status) && !fs::is_directory(status)) {
     throw Error("--out: '" + options.out.string() + "' is not a folder");
   }
   return TuningRun(plan, options)();

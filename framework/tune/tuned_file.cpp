@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "altiplan/kit/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
@@ -177,9 +178,15 @@ std::string rebased(const std::string& path, const fs::path& from, const fs::pat
   }
   const fs::path target = (from / path).lexically_normal();
   // Where links are on the way, ".." does not lead where it seems to.
-  std::error_code error;
-  const bool is_plain = fs::weakly_canonical(folder, error) == folder &&
-                        fs::weakly_canonical(target, error) == target;
+  const auto is_itself = [](const fs::path& plain) {
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(plain, error);
+    if (host::is_machine_fault(error.value())) {
+      throw host::MachineFault(host::unreadable(plain, error.value()));
+    }
+    return canonical == plain;
+  };
+  const bool is_plain = is_itself(folder) && is_itself(target);
   const fs::path relative = target.lexically_relative(folder);
   return (is_plain && !relative.empty() ? relative : target).string();
 }

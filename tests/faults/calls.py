@@ -57,6 +57,24 @@ def read(path):
         return stream.read()
 
 
+def is_json(path):
+    try:
+        json.loads(read(path))
+    except ValueError:
+        return False
+    return True
+
+
+def is_of_failed_run(path):
+    """Whether it is the result of a run that failed, or a trace as far as such a run has come."""
+    try:
+        lines = [json.loads(line) for line in read(path).splitlines()] if path.endswith(
+            ".jsonl") else [json.loads(read(path))]
+        return lines[0].get("status") == "failed" or "altiplan_trace" in lines[0]
+    except (AttributeError, IndexError, ValueError):
+        return False
+
+
 def result(path):
     return without_times(json.loads(read(path)))
 

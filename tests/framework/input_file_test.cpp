@@ -85,6 +85,18 @@ TEST(InputFile, ReadsAllBytes) {
   EXPECT_EQ(line, "one");
 }
 
+TEST(InputFile, NamesWhatCannotBeReadOn) {
+  const std::string file = "/proc/self/mem";  // at its first byte there is no memory
+  InputFile stream(file);
+  std::string line;
+  try {
+    std::getline(stream, line);
+    FAIL() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), file + ": cannot be read: Input/output error");
+  }
+}
+
 TEST(InputFile, NeverReadsMoreThanItsCap) {
   const TempFolder folder;
   const std::string file = folder.write("file", "12345").string();

@@ -12,6 +12,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/base/base64.hpp"
+#include "host/base/machine_fault.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::study::report {
@@ -29,6 +30,9 @@ TEST(ReportScenes, CostNothingButThemselves) {
     return std::string("nothing");
   };
   EXPECT_EQ(why([]() -> std::string { throw Error("no such file"); }), "no such file");
+  EXPECT_THROW(made_in_child([]() -> std::string { throw std::bad_alloc(); }, 20), MachineFault);
+  EXPECT_THROW(made_in_child([]() -> std::string { throw Error("a: Input/output error"); }, 20),
+               MachineFault);
   EXPECT_EQ(why([]() -> std::string { throw 1; }),
             "something that is not a std::exception was thrown");
   EXPECT_EQ(why([]() -> std::string {

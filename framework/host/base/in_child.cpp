@@ -35,7 +35,8 @@ void say(Report& report, Said said, std::string_view text) {
   report.said = said;
 }
 
-[[noreturn]] void be_child(const std::function<void()>& use, Report& report) {
+[[noreturn]] void be_child(const std::string& prefix, const std::function<void()>& use,
+                           Report& report) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::signal(SIGALRM, SIG_DFL);
   ::alarm(kPatienceSeconds);
@@ -45,6 +46,8 @@ void say(Report& report, Said said, std::string_view text) {
     report.said = Said::well;
   } catch (const MachineFault& fault) {
     say(report, Said::machine_fault, fault.what());
+  } catch (const std::bad_alloc&) {
+    say(report, Said::machine_fault, prefix + "cannot be examined: " + std::strerror(ENOMEM));
   } catch (const std::exception& error) {
     say(report, Said::refused, error.what());
   } catch (...) {
@@ -94,13 +97,15 @@ void in_child(const std::string& prefix, const std::function<void()>& use) {
   const std::unique_ptr<Report, decltype(unmap)> report(new (shared) Report);
   int status = 0;
   // SIGKILL mostly comes from elsewhere, as when memory is short: a library that is killed so every
-  // time is refused.
+  // time is refused. What else the machine does may pass too.
   constexpr int kTries = 3;
-  for (int tries = 0;
-       tries == 0 || (tries < kTries && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-       ++tries) {
+  const auto may_pass = [&] {
+    return report->said == Said::machine_fault ||
+           (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  };
+  for (int tries = 0; tries == 0 || (tries < kTries && may_pass()); ++tries) {
     *report = {};
-    status = status_of_child([&] { be_child(use, *report); }, prefix);
+    status = status_of_child([&] { be_child(prefix, use, *report); }, prefix);
   }
   if (WIFSIGNALED(status) || report->said == Said::nothing) {
     throw PluginError(prefix + ending(status));

@@ -6,8 +6,8 @@
 namespace altiplan::host {
 
 std::string file_problem(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
+  std::error_code error;  // why_unreadable says which
+  if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) {
     return "there is no file '" + file.string() + "'";
   }
   const std::string why = kit::why_unreadable(file.string());

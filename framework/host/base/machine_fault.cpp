@@ -12,11 +12,13 @@
 namespace altiplan::host {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::array kOfTheMachine = {EIO,    EMFILE, ENFILE, ENOSPC, ENOMEM,
                                       EAGAIN, EDQUOT, ESTALE, ENOLCK, ETIMEDOUT};
 
 /// 0, or why the file cannot be read to its end.
-int reading_error(const std::filesystem::path& file) {
+int reading_error(const fs::path& file) {
   const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (from < 0) {
     return errno;
@@ -30,6 +32,14 @@ int reading_error(const std::filesystem::path& file) {
   ::close(from);
   return error;
 }
+
+fs::file_status as_told(const fs::file_status& status, const fs::path& file,
+                        const std::error_code& error) {
+  if (is_machine_fault(error.value())) {
+    throw MachineFault(unreadable(file, error.value()));
+  }
+  return status;
+}
 }  // namespace
 
 bool is_machine_fault(int error) { return std::ranges::count(kOfTheMachine, error) > 0; }
@@ -39,6 +49,22 @@ bool names_machine_fault(std::string_view message) {
       kOfTheMachine, [&](int error) { return message.find(std::strerror(error)) != message.npos; });
 }
 
+fs::file_status status_of(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  return as_told(status, file, error);
+}
+
+fs::file_status link_status_of(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(file, error);
+  return as_told(status, file, error);
+}
+
+bool is_there(const fs::path& file) { return fs::exists(status_of(file)); }
+
+bool is_folder(const fs::path& file) { return fs::is_directory(status_of(file)); }
+
 void fail_to_use(const std::string& why) {
   if (names_machine_fault(why)) {
     throw MachineFault(why);
@@ -46,12 +72,12 @@ void fail_to_use(const std::string& why) {
   throw PluginError(why);
 }
 
-std::string unreadable(const std::filesystem::path& file, int error) {
+std::string unreadable(const fs::path& file, int error) {
   return file.string() + ": cannot be read: " + std::strerror(error);
 }
 
-std::string first_unreadable(const std::vector<std::filesystem::path>& files) {
-  for (const std::filesystem::path& file : files) {
+std::string first_unreadable(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
     if (const int error = reading_error(file); error != 0) {
       return unreadable(file, error);
     }

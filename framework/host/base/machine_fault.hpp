@@ -23,6 +23,13 @@ bool is_machine_fault(int error);
 /// Whether a message, of the dynamic loader for one, holds the words of such an errno.
 bool names_machine_fault(std::string_view message);
 
+/// What stands under a name. Throws MachineFault where the machine does not say: what it cannot
+/// look at is not absent.
+std::filesystem::file_status status_of(const std::filesystem::path& file);
+std::filesystem::file_status link_status_of(const std::filesystem::path& file);
+bool is_there(const std::filesystem::path& file);
+bool is_folder(const std::filesystem::path& file);
+
 /// Throws why a library cannot be used: a MachineFault where that is the machine's, so that it is
 /// not attributed to the library, else a PluginError.
 [[noreturn]] void fail_to_use(const std::string& why);

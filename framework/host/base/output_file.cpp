@@ -91,6 +91,9 @@ OutputFile::OutputFile(fs::path place) : place_(std::move(place)) {
   absolute_place_ = fs::absolute(place_);
   struct stat before {};
   const bool is_there = ::lstat(absolute_place_.c_str(), &before) == 0;
+  if (!is_there && errno != ENOENT) {
+    fail(errno);  // its permissions are to be kept
+  }
   const auto lock = uninterrupted();
   do {
     beside_ = name_beside(absolute_place_);
@@ -137,7 +140,68 @@ void OutputFile::put_in_place() {
   unfinished_->is_finished();
 }
 
+namespace {
+
+/// 0, or why not all of it is written.
+int written(int to, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t count = ::write(to, text.data(), text.size());
+    if (count < 0 && errno != EINTR) {
+      return errno;
+    }
+    text.remove_prefix(count > 0 ? std::size_t(count) : 0);
+  }
+  return 0;
+}
+
+/// What systems say that know no files without a name, or have no /proc to give them one.
+bool is_unsupported(int error) {
+  return error == EOPNOTSUPP || error == EISDIR || error == EINVAL || error == ENOENT ||
+         error == EPERM || error == EXDEV;
+}
+
+/// Writes a file that has no name until it is whole, so that a process that is killed meanwhile
+/// leaves nothing. 0, or why not.
+int write_unnamed(const fs::path& place, std::string_view text) {
+  struct stat before {};
+  const bool is_there = ::lstat(place.c_str(), &before) == 0;
+  if (!is_there && errno != ENOENT) {
+    return errno;  // its permissions are to be kept
+  }
+  const int file = ::open(folder_of(place).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (file < 0) {
+    return errno;
+  }
+  int error = written(file, text);
+  const auto then = [&](auto&& step) { error = error == 0 && step() != 0 ? errno : error; };
+  then([&] { return is_there ? ::fchmod(file, before.st_mode & 0777) : 0; });
+  then([&] { return ::fsync(file); });
+  const std::string name = "/proc/self/fd/" + std::to_string(file);
+  const fs::path beside = name_beside(place);
+  const auto lock = uninterrupted();
+  then([&] {
+    return ::linkat(AT_FDCWD, name.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW);
+  });
+  const bool is_named = error == 0;
+  error = ::close(file) != 0 && error == 0 ? errno : error;
+  then([&] { return ::rename(beside.c_str(), place.c_str()); });
+  if (is_named && error != 0) {
+    ::unlink(beside.c_str());
+  }
+  return error;
+}
+}  // namespace
+
 void write_file(const fs::path& file, const std::string& text) {
+  if (output_problem(file).empty()) {
+    const int error = write_unnamed(file, text);
+    if (error == 0) {
+      return;
+    }
+    if (!is_unsupported(error)) {
+      throw Error(cannot_write(file, std::strerror(error)));
+    }
+  }
   OutputFile output(file);
   output.write(text);
   output.put_in_place();

@@ -1,15 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/sha256.hpp"
 
+#include <fcntl.h>
 #include <sha2.h>
+#include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <map>
 #include <mutex>
 #include <tuple>
 
-#include "altiplan/kit/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
+namespace {
+
+/// "" where the file cannot be read.
+std::string sum_of(const std::filesystem::path& file) {
+  const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  int error = from < 0 ? errno : 0;
+  SHA2_CTX context;
+  SHA256Init(&context);
+  std::array<std::uint8_t, 65536> bytes;
+  for (ssize_t got = 1; error == 0 && got != 0;) {
+    got = ::read(from, bytes.data(), bytes.size());
+    error = got < 0 && errno != EINTR ? errno : 0;
+    SHA256Update(&context, bytes.data(), std::size_t(got > 0 ? got : 0));
+  }
+  if (from >= 0) {
+    ::close(from);
+  }
+  if (is_machine_fault(error)) {
+    throw MachineFault(unreadable(file, error));
+  }
+  char text[SHA256_DIGEST_STRING_LENGTH];
+  return error == 0 ? SHA256End(&context, text) : "";
+}
+}  // namespace
 
 std::string sha256(const std::filesystem::path& file) {
   // A result is written down before each call of a plugin, and large files take seconds.
@@ -26,11 +54,10 @@ std::string sha256(const std::filesystem::path& file) {
   if (const auto found = known.find(state); is_settled && found != known.end()) {
     return found->second;
   }
-  if (!kit::why_unreadable(file.string()).empty()) {
+  if (!std::filesystem::is_regular_file(status_of(file))) {
     return "";
   }
-  char text[SHA256_DIGEST_STRING_LENGTH];
-  const std::string sum = SHA256File(file.c_str(), text) == nullptr ? "" : text;
+  const std::string sum = sum_of(file);
   if (is_settled && !sum.empty()) {
     known[state] = sum;
   }

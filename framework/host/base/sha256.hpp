@@ -7,7 +7,8 @@
 
 namespace altiplan::host {
 
-/// Hexadecimal SHA-256 of a file's bytes; "" where it cannot be read.
+/// Hexadecimal SHA-256 of a file's bytes; "" where it is none or may not be read. Throws
+/// MachineFault where the machine does not give it: no sum would say that it is another file.
 std::string sha256(const std::filesystem::path& file);
 std::string sha256_of(std::string_view bytes);
 }  // namespace altiplan::host

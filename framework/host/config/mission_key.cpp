@@ -7,6 +7,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/mission_file.hpp"
 #include "altiplan/params.hpp"
+#include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -160,7 +161,7 @@ std::vector<std::string> add_mission(Value& scenario, std::vector<fs::path>& fil
   }
   const std::string& file = named.file.text;
   const Location where = written->where;
-  if (!fs::exists(file)) {
+  if (!is_there(file)) {
     throw ConfigError(where, "mission", "there is no file '" + file + "'");
   }
   try {

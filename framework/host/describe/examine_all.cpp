@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/error.hpp"
 #include "host/base/in_child.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/config/shapes.hpp"
 #include "host/describe/describe.hpp"
 
@@ -13,6 +14,9 @@ using Json = nlohmann::ordered_json;
 std::vector<Library> examine_all(Registry& registry) {
   std::vector<Library> libraries = registry.libraries();
   for (Library& library : libraries) {
+    if (names_machine_fault(library.refused)) {
+      throw MachineFault(library.file.string() + ": " + library.refused);
+    }
     if (library.refused.empty()) {
       try {
         // Getting one tries all; this process itself is to load none.
@@ -52,8 +56,7 @@ std::string plugins_text(const Registry& registry, const std::vector<Library>& l
             ", which comes first\n";
   }
   for (const std::filesystem::path& folder : registry.folders()) {
-    text += "searched: " + folder.string() +
-            (std::filesystem::is_directory(folder) ? "" : " (no such folder)") + "\n";
+    text += "searched: " + folder.string() + (is_folder(folder) ? "" : " (no such folder)") + "\n";
   }
   return text;
 }

@@ -62,7 +62,10 @@ ElfFile::~ElfFile() { ::close(descriptor_); }
 
 void ElfFile::read_headers() {
   struct stat status;
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+  if (::fstat(descriptor_, &status) != 0) {
+    throw ElfError(std::string("cannot be read: ") + std::strerror(errno));
+  }
+  if (!S_ISREG(status.st_mode)) {
     throw ElfError("not a regular file");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);

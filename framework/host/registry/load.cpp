@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 
 #include "altiplan/error.hpp"
 #include "host/base/in_child.hpp"
@@ -73,8 +74,7 @@ void open_neighbours(const ElfFile& elf, const fs::path& folder) {
   const std::vector<fs::path> folders = own_folders(elf, folder);
   for (const std::string& name : elf.dynamic_texts(DT_NEEDED)) {
     const auto found = std::find_if(folders.begin(), folders.end(), [&](const fs::path& place) {
-      std::error_code error;
-      return fs::is_regular_file(place / name, error);
+      return fs::is_regular_file(status_of(place / name));
     });
     if (found != folders.end() && !is_loaded(name)) {
       auto& copy = *new PrivateCopy(*found / name);  // to the end, as what is loaded from it
@@ -164,6 +164,8 @@ void try_out(const Library& library, PrivateCopy& copy) {
         all.children.push_back(field.spec);
       }
       check_names(all);
+    } catch (const std::bad_alloc&) {
+      throw;  // which says nothing about the plugin
     } catch (const std::exception& error) {
       throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
                         entry->name + "': " + error.what());

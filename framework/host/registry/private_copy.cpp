@@ -45,11 +45,6 @@ fs::path path_of(int descriptor) {
   return "/proc" / process / "fd" / std::to_string(descriptor);
 }
 
-bool is_regular(int descriptor) {
-  struct stat status;
-  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
-}
-
 /// Whether all went over; else errno says why not.
 bool copy(int from, int to) {
   constexpr std::size_t kChunk = std::size_t{1} << 30;
@@ -68,7 +63,11 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
   if (from.get() < 0) {
     fail(" cannot be opened: ", errno);
   }
-  if (!is_regular(from.get())) {
+  struct stat status;
+  if (::fstat(from.get(), &status) != 0) {
+    fail(" cannot be read: ", errno);
+  }
+  if (!S_ISREG(status.st_mode)) {
     throw Error(file.string() + " is not a regular file");
   }
   const std::string name = file.filename().string().substr(0, 200);

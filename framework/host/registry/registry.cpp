@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <set>
@@ -96,6 +97,8 @@ FileStamp::FileStamp(const fs::path& file) {
     numbers_ = {std::int64_t(status.st_dev), std::int64_t(status.st_ino), status.st_size,
                 status.st_mtim.tv_sec,       status.st_mtim.tv_nsec,      status.st_ctim.tv_sec,
                 status.st_ctim.tv_nsec};
+  } else if (is_machine_fault(errno)) {
+    throw MachineFault(unreadable(file, errno));
   }
 }
 
@@ -105,6 +108,9 @@ Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders))
     for (const fs::path& file : libraries_in(folder)) {
       std::error_code error;
       const fs::path real = fs::canonical(file, error);
+      if (is_machine_fault(error.value())) {
+        throw MachineFault(unreadable(file, error.value()));
+      }
       if (!seen.insert(error ? file : real).second) {
         continue;
       }
@@ -236,7 +242,7 @@ std::string Registry::not_offered(std::string_view kind, std::string_view name) 
   text += "; present: " + joined(present);
   std::vector<std::string> searched;
   for (const fs::path& folder : folders_) {
-    searched.push_back(folder.string() + (fs::is_directory(folder) ? "" : " (no such folder)"));
+    searched.push_back(folder.string() + (is_folder(folder) ? "" : " (no such folder)"));
   }
   text += "; searched: " + joined(searched);
   return text + (refused.empty() ? "" : "; refused: " + joined(refused));

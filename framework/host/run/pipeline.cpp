@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/flight/events.hpp"
 #include "host/run/pipeline_run.hpp"
 
@@ -217,6 +218,8 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
     result = work(request);
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);
+  } catch (const MachineFault&) {
+    throw;  // which is no failure of the step
   } catch (const std::exception& error) {
     result = PlanResult{};
     result.message = std::string("threw: ") + error.what();

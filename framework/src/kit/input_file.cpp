@@ -77,6 +77,34 @@ Descriptor open_or_throw(const std::string& file) {
   return opened;
 }
 
+/// Says which file cannot be read, and why, where the library says "underflow error".
+class NamedBuffer : public __gnu_cxx::stdio_filebuf<char> {
+  template <class Read>
+  auto named(const Read& read) {
+    try {
+      return read();
+    } catch (const std::ios_base::failure& error) {
+      throw InputError(file_, "cannot be read: " + error.code().message());
+    }
+  }
+
+ public:
+  explicit NamedBuffer(const std::string& file)
+      : stdio_filebuf(open_or_throw(file).release(), std::ios::in | std::ios::binary),
+        file_(file) {}
+
+ protected:
+  int_type underflow() override {
+    return named([this] { return stdio_filebuf::underflow(); });
+  }
+  std::streamsize xsgetn(char* to, std::streamsize count) override {
+    return named([&] { return stdio_filebuf::xsgetn(to, count); });
+  }
+
+ private:
+  std::string file_;
+};
+
 std::string in_mega(std::uintmax_t bytes) {
   constexpr std::uintmax_t kMega = 1'000'000;
   return bytes % kMega == 0 ? std::to_string(bytes / kMega) + " MB"
@@ -93,9 +121,9 @@ std::string why_unreadable(const std::string& file) {
 }
 
 InputFile::InputFile(const std::string& file) : std::istream(nullptr) {
-  buffer_ = std::make_unique<__gnu_cxx::stdio_filebuf<char>>(open_or_throw(file).release(),
-                                                             std::ios::in | std::ios::binary);
+  buffer_ = std::make_unique<NamedBuffer>(file);
   rdbuf(buffer_.get());
+  exceptions(std::ios::badbit);  // what the buffer throws is thrown on
 }
 
 InputFile::~InputFile() = default;

@@ -3,9 +3,9 @@
 
 #include <dlfcn.h>
 
-#include <cerrno>
 #include <map>
 
+#include "altiplan/kit/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/registry/registry.hpp"
@@ -21,10 +21,9 @@ namespace {
 
 /// Of a folder there is none. A key without it would be another run's.
 std::string hash_of(const fs::path& file) {
-  errno = 0;
   const std::string hash = host::sha256(file);
-  if (const int error = errno; hash.empty() && error != EISDIR) {
-    throw host::MachineFault(host::unreadable(file, error));
+  if (hash.empty() && !host::is_folder(file)) {
+    throw host::MachineFault(file.string() + ": " + kit::why_unreadable(file.string()));
   }
   return hash;
 }

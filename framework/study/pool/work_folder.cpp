@@ -62,11 +62,22 @@ bool gone(const Holder& holder) {
   throw Error(folder.string() + ": " + what + ": " + std::strerror(error));
 }
 
+/// And the folder, where an earlier call has left no records in it.
+void remove_lock(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / "lock", ignored);
+  fs::remove(folder, ignored);
+}
+
 /// A locked descriptor, or -1 where the file was removed by the one who held the lock before.
 int try_lock(const fs::path& folder) {
   using Clock = std::chrono::steady_clock;
   const fs::path file = folder / "lock";
-  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool is_new = lock >= 0;
+  if (errno == EEXIST && !is_new) {
+    lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  }
   if (lock < 0) {
     refuse(folder, "cannot write to the work folder", errno);
   }
@@ -75,6 +86,9 @@ int try_lock(const fs::path& folder) {
     if (errno != EWOULDBLOCK && errno != EINTR) {
       const int error = errno;
       ::close(lock);
+      if (is_new) {
+        remove_lock(folder);
+      }
       refuse(folder, "cannot lock the work folder", error);
     }
     const Holder by = holder(lock);
@@ -106,7 +120,9 @@ void sign(const fs::path& folder, int lock) {
 /// Bit 62 is set so that nothing is ever near the limit that serves as the mark.
 std::uint64_t mark_of(const fs::path& folder) {
   struct stat status {};
-  ::stat(folder.c_str(), &status);
+  if (::stat(folder.c_str(), &status) != 0) {  // another folder's workers may have the mark else
+    refuse(folder, "cannot be looked at", errno);
+  }
   const std::size_t hash =
       std::hash<std::string>()(std::to_string(status.st_dev) + " " + std::to_string(status.st_ino));
   return (std::uint64_t(1) << 62) | (std::uint64_t(std::uint32_t(hash ^ (hash >> 32))) << 24);
@@ -142,23 +158,25 @@ WorkFolder::WorkFolder(const fs::path& folder)
     lock_ = try_lock(path_);
   } while (lock_ < 0);
   try {
+    mark_ = mark_of(path_);
     sign(path_, lock_);
   } catch (...) {
-    std::error_code ignored;
-    fs::remove(path_ / "lock", ignored);
-    fs::remove(path_, ignored);  // not where an earlier call has left records in it
+    remove_lock(path_);
     ::close(lock_);
     throw;
   }
-  mark_ = mark_of(path_);
   processes().kill();
   unfinished_.emplace([this] {
     try {
-      if (records().empty()) {
-        clear();
+      const bool is_done = records().empty();
+      for (const fs::path& file : files_of_workers(path_)) {
         std::error_code error;
-        fs::remove(path_ / "lock", error);
-        fs::remove(path_, error);  // not where somebody else has put something into it
+        if (is_done || file.extension() != ".records") {  // by which the next call goes on
+          fs::remove(file, error);
+        }
+      }
+      if (is_done) {
+        remove_lock(path_);
       }
     } catch (const host::MachineFault&) {
       // The next call looks again.

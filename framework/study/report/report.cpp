@@ -2,6 +2,7 @@
 #include "study/report/report.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,6 +15,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/drawing/text.hpp"
 #include "study/report/page.hpp"
@@ -184,9 +186,22 @@ void write_tables(const Content& content, const fs::path& folder) {
   host::write_file(folder / "scenarios.csv", csv_text(grid));
 }
 
+/// Unlike fs::create_directories it asks nothing, and so takes nothing that it cannot look at for
+/// absent.
+void make_folder(const fs::path& folder) {
+  int error = ::mkdir(folder.c_str(), 0777) == 0 ? 0 : errno;
+  if (error == ENOENT && folder.has_relative_path()) {
+    make_folder(folder.parent_path());
+    error = ::mkdir(folder.c_str(), 0777) == 0 ? 0 : errno;
+  }
+  if (error != 0 && error != EEXIST) {
+    throw fs::filesystem_error("mkdir", folder, std::error_code(error, std::generic_category()));
+  }
+}
+
 void write_parts(const Content& content, const std::string& page, const fs::path& folder) {
-  fs::create_directories(folder / "figures");
-  fs::create_directories(folder / "tables");
+  make_folder(folder / "figures");
+  make_folder(folder / "tables");
   for (const Figure& figure : all_figures(content)) {
     host::write_file(folder / "figures" / (figure.name + ".svg"), svg_text(figure, false));
     host::write_file(folder / "figures" / (figure.name + ".csv"), csv_text(figure.numbers));
@@ -232,7 +247,7 @@ void put_in_place(const fs::path& beside, const fs::path& folder) {
 
 bool is_report(const fs::path& folder) {
   const std::string file = (folder / "index.html").string();
-  if (!kit::why_unreadable(file).empty()) {
+  if (!fs::is_regular_file(host::status_of(file))) {
     return false;
   }
   kit::InputFile page(file);
@@ -243,14 +258,14 @@ bool is_report(const fs::path& folder) {
 }  // namespace
 
 void expect_report_folder(const fs::path& folder) {
-  std::error_code code;
-  if (!fs::exists(folder, code)) {
+  const fs::file_status status = host::status_of(folder);
+  if (!fs::exists(status)) {
     return;
   }
-  if (!fs::is_directory(folder, code)) {
+  if (!fs::is_directory(status)) {
     throw Error("-o: '" + folder.string() + "' is a file, expected a folder");
   }
-  if (!fs::is_empty(folder, code) && !is_report(folder)) {
+  if (!fs::is_empty(folder) && !is_report(folder)) {
     throw Error("-o: '" + folder.string() +
                 "' holds other files, expected a new folder or one of an earlier report");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <map>
 
+#include "host/base/machine_fault.hpp"
 #include "study/report/scenes.hpp"
 
 namespace altiplan::study::report {
@@ -23,9 +23,8 @@ std::map<std::string, std::string> world_builds(const host::Json& plugins) {
 std::vector<std::string> what_changed(const host::StoredResult& stored) {
   std::vector<std::string> changes;
   for (const std::string& file : stored.changed) {
-    std::error_code code;
-    changes.push_back(file + (std::filesystem::exists(file, code) ? " has changed since"
-                                                                  : " is not there any more"));
+    changes.push_back(file +
+                      (host::is_there(file) ? " has changed since" : " is not there any more"));
   }
   if (!changes.empty()) {
     return changes;  // what the files say now may name other plugins

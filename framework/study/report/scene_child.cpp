@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "study/report/scenes.hpp"
 
 namespace altiplan::study::report {
@@ -18,8 +19,15 @@ namespace {
 
 constexpr char kMade = 'm';
 constexpr char kFailed = 'f';
+constexpr char kNotGiven = 'n';  // by the machine
 constexpr char kEnd = '.';
 constexpr std::size_t kMostBytes = 64'000'000;
+
+/// Memory too, whoever has asked for it.
+bool is_of_machine(const std::exception& error) {
+  return host::names_machine_fault(error.what()) ||
+         std::string_view(error.what()).find("std::bad_alloc") != std::string_view::npos;
+}
 
 void write_all(int to, std::string_view text) {
   while (!text.empty()) {
@@ -43,7 +51,7 @@ void write_all(int to, std::string_view text) {
   try {
     text = kMade + make();
   } catch (const std::exception& error) {
-    text = std::string(1, kFailed) + error.what();
+    text = (is_of_machine(error) ? kNotGiven : kFailed) + std::string(error.what());
   } catch (...) {
     text = std::string(1, kFailed) + "something that is not a std::exception was thrown";
   }
@@ -88,14 +96,14 @@ std::string ending(int status) {
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) {
-    throw Error(std::string("no pipe for a scene: ") + std::strerror(errno));
+    throw host::MachineFault(std::string("no pipe for a scene: ") + std::strerror(errno));
   }
   const pid_t child = ::fork();
   if (child < 0) {
     const int error = errno;
     ::close(ends[0]);
     ::close(ends[1]);
-    throw Error(std::string("no process for a scene: ") + std::strerror(error));
+    throw host::MachineFault(std::string("no process for a scene: ") + std::strerror(error));
   }
   if (child == 0) {
     ::close(ends[0]);
@@ -123,6 +131,9 @@ std::string made_in_child(const std::function<std::string()>& make, unsigned sec
                      : ending(status));
   }
   const std::string content = text.substr(1, text.size() - 2);
+  if (text.front() == kNotGiven) {
+    throw host::MachineFault(content);
+  }
   if (text.front() != kMade) {
     throw Error(content);
   }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "altiplan/random.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/view/scene.hpp"
 #include "study/drawing/text.hpp"
 #include "study/report/packed.hpp"
@@ -128,6 +129,15 @@ std::string pair_text(const StudyData& data, const std::vector<std::size_t>& row
          (drawn.empty() ? "" : packed(scene_text(data, drawn, results)));
 }
 
+/// A fault of the machine may have passed the second time.
+std::string made_at_last(const std::function<std::string()>& make) {
+  try {
+    return made_in_child(make, kSeconds);
+  } catch (const host::MachineFault&) {
+    return made_in_child(make, kSeconds);
+  }
+}
+
 class SceneMaker {
  public:
   SceneMaker(const StudyData& data, const ResultSource& results, const SceneOptions& options)
@@ -149,9 +159,12 @@ class SceneMaker {
       ++empty_;
       return;
     }
+    const auto make = [&] { return pair_text(data_, rows, texts, options_); };
     try {
-      keep(chosen, rows,
-           made_in_child([&] { return pair_text(data_, rows, texts, options_); }, kSeconds));
+      keep(chosen, rows, made_at_last(make));
+    } catch (const host::MachineFault& fault) {
+      throw host::MachineFault("the scene of " + run_name(data_, data_.rows[chosen.front()]) +
+                               ": " + fault.what());
     } catch (const std::exception& error) {  // of JSON too: a plugin may spoil what its child says
       leave_out(chosen, error.what());
     }

@@ -42,7 +42,8 @@ struct Scenes {
 
 /// Scenes of runs that failed, of outliers, and of a sample that follows the study's seed, each
 /// with the other pipelines' runs of the same pair. Each is made in a process of its own: what a
-/// plugin does there costs its scene, which a note tells.
+/// plugin does there costs its scene, which a note tells. What the machine does not give is asked
+/// for once more; then it is thrown as a MachineFault.
 Scenes build_scenes(const StudyData& data, const Analysis& analysis, const ResultSource& results,
                     const SceneOptions& options);
 
@@ -60,6 +61,6 @@ void thin_scene(host::Json& scene);
 void drop_times(host::Json& json);
 
 /// What `make` returns, made in a child process within a time; throws Error with what it throws, or
-/// with how the child ended.
+/// with how the child ended, and MachineFault where the machine gave no file, memory or process.
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds);
 }  // namespace altiplan::study::report

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <set>
 
+#include "host/base/machine_fault.hpp"
 #include "host/base/words.hpp"
 #include "study/model/run_values.hpp"
 #include "study/plan/study_selection.hpp"
@@ -281,8 +282,7 @@ StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options)
   StudyEstimate estimate;
   std::vector<std::string> keys;
   double seconds = 0;
-  std::error_code absent;
-  if (!options.fresh && fs::exists(options.store, absent)) {
+  if (!options.fresh && host::is_there(options.store)) {
     const Store store(options.store, StoreMode::read);
     study.expect_same_study(store);
     for (const StoredRun& run : store.outlines()) {

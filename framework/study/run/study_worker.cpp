@@ -148,7 +148,10 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
     process->set_last_words(last_words(job, config, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
-    host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
+    try {
+      host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
+    } catch (const Error&) {  // its note says who is stuck
+    }
     ::_exit(kStuck);
   };
   host::RunResult result = run(config, options);
@@ -183,8 +186,11 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     RunOutcome run = run_pipeline(job, config, budget, trace);
     return planned.is_current(config) ? run : changed;  // what plugins read may have changed since
   } catch (const std::system_error& error) {
-    return {kNotDone, std::string("the system refuses a run what it needs: ") + error.what(), "",
-            ""};
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    return {kNotDone,
+            "the system refuses a run " +
+                std::string(no_thread ? "a thread: " : "what it needs: ") + error.what(),
+            "", ""};
   } catch (const host::MachineFault& fault) {
     return {kNotDone, fault.what(), "", ""};
   } catch (const PluginError& error) {

@@ -10,6 +10,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -24,9 +25,6 @@ std::string head_of(const fs::path& file) {
   kit::InputFile in(file.string());
   std::string head(kHeader, '\0');
   in.read(head.data(), std::streamsize(kHeader));
-  if (in.bad() || (!in && in.gcount() == 0 && !in.eof())) {
-    throw Error("cannot read '" + file.string() + "': " + std::strerror(errno));
-  }
   head.resize(std::size_t(in.gcount()));
   return head;
 }
@@ -42,8 +40,7 @@ std::uint32_t word_at(const std::string& head, std::size_t at) {
 
 Kind kind_of(const fs::path& file) {
   expect_regular_or_absent(file);
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) {
+  if (!host::is_there(file)) {
     return Kind::absent;
   }
   constexpr std::size_t kIdAt = 68;
@@ -59,8 +56,7 @@ Kind kind_of(const fs::path& file) {
 
 /// By its first word: a rollback journal (zeros where it is done with) or a write-ahead log.
 bool is_of_sqlite(const fs::path& journal) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(fs::symlink_status(journal, ignored))) {
+  if (!fs::is_regular_file(host::link_status_of(journal))) {
     return false;
   }
   const std::string head = head_of(journal);
@@ -100,7 +96,7 @@ fs::path place_of(const fs::path& file) {
   constexpr int kMostLinks = 40;
   std::error_code error;
   fs::path place = fs::absolute(file);
-  for (int n = 0; n < kMostLinks && fs::is_symlink(place, error); ++n) {
+  for (int n = 0; n < kMostLinks && fs::is_symlink(host::link_status_of(place)); ++n) {
     const fs::path target = fs::read_symlink(place, error);
     place = place.parent_path() / target;  // the target alone, where it is absolute
   }
@@ -111,8 +107,7 @@ fs::path place_of(const fs::path& file) {
 fs::path work_folder_of(const fs::path& store) { return place_of(store).string() + ".work"; }
 
 void expect_regular_or_absent(const fs::path& file) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(file, ignored);
+  const fs::file_status status = host::status_of(file);
   if (fs::is_directory(status)) {
     throw Error("'" + file.string() + "' is a folder, expected a database");
   }
@@ -143,8 +138,7 @@ void expect_replaceable(const fs::path& file) {
 void remove_journal(const fs::path& database) {
   for (const char* suffix : {"-journal", "-wal"}) {
     const fs::path journal = place_of(database).string() + suffix;
-    std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(journal, ignored))) {
+    if (!fs::exists(host::link_status_of(journal))) {
       continue;
     }
     if (!is_of_sqlite(journal)) {
@@ -166,7 +160,7 @@ NewDatabase::NewDatabase(const fs::path& place) : place_(place_of(place)) {
     }
   });
   std::error_code ignored;
-  const fs::file_status status = fs::status(place_, ignored);
+  const fs::file_status status = host::status_of(place_);
   if (fs::exists(status)) {
     fs::permissions(file_, status.permissions(), ignored);
   }

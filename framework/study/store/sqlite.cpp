@@ -2,6 +2,7 @@
 #include "study/store/sqlite.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <limits>
 
 #include "altiplan/error.hpp"
+#include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 
 namespace altiplan::study {
@@ -27,8 +29,15 @@ std::string cause(int error, const char* words) {
   return error != 0 ? std::strerror(error) : words;
 }
 
+/// SQLite, refused by the system, goes on with reading alone, and keeps no error.
+std::string why_read_only(const std::filesystem::path& file) {
+  const std::filesystem::path folder = place_of(file).parent_path();
+  return std::strerror(
+      ::access(file.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0 ? errno : EACCES);
+}
+
 /// SQLite's own words for what users meet say little. `error` is the system's.
-std::string meaning(int code, int error, const char* words) {
+std::string meaning(const std::filesystem::path& file, int code, int error, const char* words) {
   if (code == SQLITE_READONLY_ROLLBACK) {
     return "a program that wrote it was killed in the middle, which SQLite undoes where the file "
            "and its folder may be written to: here they may not. Have their owner open it, or copy "
@@ -41,8 +50,11 @@ std::string meaning(int code, int error, const char* words) {
     case SQLITE_FULL:
       return "the disk is full; what was written before is intact";
     case SQLITE_READONLY:
-      return "it is read-only";
+      return "it cannot be written to: " + why_read_only(file);
     case SQLITE_CANTOPEN:
+      if (error == ENOENT && host::is_there(file)) {
+        return "its journal cannot be made";  // nor is kept why: SQLite asks to read it then
+      }
       return "it cannot be opened: " + (error == 0 ? "is its path longer than 500 bytes?"
                                                    : std::string(std::strerror(error)));
     case SQLITE_NOTADB:
@@ -63,7 +75,7 @@ std::string meaning(int code, int error, const char* words) {
 [[noreturn]] void fail(const std::filesystem::path& file, int code, sqlite3* database) {
   const int error = database == nullptr ? 0 : system_error(code, database);
   const char* words = database == nullptr ? "out of memory" : sqlite3_errmsg(database);
-  throw Error("the database '" + file.string() + "': " + meaning(code, error, words));
+  throw Error("the database '" + file.string() + "': " + meaning(file, code, error, words));
 }
 }  // namespace
 

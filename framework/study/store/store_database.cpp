@@ -97,8 +97,7 @@ StoredRun run_of(const Statement& row) {
 /// A call that was killed while it wrote has left a journal, by which SQLite undoes what it had
 /// begun; a reader alone may not.
 void undo_half_a_write(const fs::path& file) {
-  std::error_code absent;
-  if (fs::exists(place_of(file).string() + "-journal", absent) && fs::exists(file, absent)) {
+  if (host::is_there(place_of(file).string() + "-journal") && host::is_there(file)) {
     pragma(Sqlite(file, SQLITE_OPEN_READWRITE), "PRAGMA schema_version");
   }
 }
@@ -108,13 +107,7 @@ Sqlite opened(const fs::path& file, StoreMode mode) {
     undo_half_a_write(file);
     return {file, SQLITE_OPEN_READONLY};
   }
-  std::error_code error;
-  const bool is_absent = !fs::exists(file, error);
-  if (is_absent && error) {
-    throw host::MachineFault(
-        host::unreadable(file, error.value()));  // its journal may be all that saves it
-  }
-  if (is_absent || fs::is_empty(file, error)) {
+  if (!host::is_there(file) || fs::is_empty(file)) {  // else its journal may be all that saves it
     remove_journal(file);
   }
   return {file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dem.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/input_file.hpp"
 #include "whole.hpp"
 
 namespace terrain {
+namespace fs = std::filesystem;
 
 void refuse(const Params& params, const std::string& why, const char* key) {
   throw altiplan::ParameterError(key, params.file.text + ": " + why);
@@ -28,19 +33,42 @@ namespace {
 
 using gdal::api;
 
-/// GDAL also opens what stands beside the file under its name (.hdr, .prj, .aux.xml …).
-void expect_files_beside(const Params& params) {
-  const std::filesystem::path file = std::filesystem::absolute(params.file.text);
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), ignored)) {
-    const std::filesystem::path& beside = entry.path();
-    if ((beside.stem() == file.stem() || beside.stem() == file.filename() ||
-         beside.stem().stem() == file.filename()) &&
-        entry.is_other(ignored)) {
+/// The file, and what stands beside it under its name (.hdr, .prj, .aux.xml …), which GDAL opens
+/// too.
+std::vector<fs::path> files_of(const Params& params) {
+  const fs::path file = fs::absolute(params.file.text);
+  std::vector<fs::path> files{file};
+  std::error_code unknown;  // of a folder that may not be listed, which GDAL does not list either
+  for (const auto& entry : fs::directory_iterator(file.parent_path(), unknown)) {
+    const fs::path& beside = entry.path();
+    if (beside == file || (beside.stem() != file.stem() && beside.stem() != file.filename() &&
+                           beside.stem().stem() != file.filename())) {
+      continue;
+    }
+    const fs::file_type type = entry.status().type();
+    if (type == fs::file_type::regular &&
+        (::access(beside.c_str(), R_OK) == 0 || errno != EACCES)) {
+      files.push_back(beside);
+    } else if (type != fs::file_type::regular && type != fs::file_type::directory &&
+               type != fs::file_type::not_found) {
       refuse(params, "'" + beside.filename().string() + "' beside it " +
                          altiplan::kit::why_unreadable(beside.string()));
     }
   }
+  if (unknown && unknown != std::errc::permission_denied) {
+    refuse(params, "its folder cannot be read: " + unknown.message());
+  }
+  return files;
+}
+
+/// What is larger is read from the disk, so that a part of it costs no more than that part.
+bool is_small(const std::vector<fs::path>& files) {
+  constexpr std::uintmax_t kMost = 16'000'000;
+  std::uintmax_t bytes = 0;
+  for (const fs::path& file : files) {
+    bytes += fs::file_size(file);
+  }
+  return bytes <= kMost;
 }
 
 gdal::Dataset open(const Params& params) {
@@ -52,10 +80,17 @@ gdal::Dataset open(const Params& params) {
   if (const std::string why = altiplan::kit::why_unreadable(file); !why.empty()) {
     refuse(params, why);
   }
-  expect_files_beside(params);
+  const std::vector<fs::path> files = files_of(params);
+  gdal::CloseDataset close;
+  std::string name = file;
+  if (is_small(files)) {
+    close.files = std::make_shared<gdal::MemoryFiles>(files);
+    name = close.files->name_of(files.front());
+  }
   const char* const drivers[] = {"GTiff", "SRTMHGT", "AAIGrid", "DTED", "ENVI", nullptr};
-  gdal::Dataset dataset(api().GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
-                                         drivers, nullptr, nullptr));
+  gdal::Dataset dataset(api().GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                         drivers, nullptr, nullptr),
+                        std::move(close));
   if (!dataset) {
     refuse(params,
            "expected an elevation model (GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid, ENVI); " +
@@ -97,7 +132,12 @@ void* read_band(const Params& params, void* dataset) {
 void read_crs(const Params& params, void* dataset, Dem& dem) {
   gdal::Reference asked = params.crs.empty() ? nullptr : gdal::reference(params.crs);
   if (!params.crs.empty() && !asked) {
-    refuse(params, "crs: expected EPSG: and a known code (EPSG:4326), found " + params.crs, "crs");
+    const std::string said = gdal::last_error();
+    const bool is_of_database = said.find("proj.db") != std::string::npos;
+    refuse(params,
+           "crs: expected EPSG: and a known code (EPSG:4326), found " + params.crs +
+               (is_of_database ? ": " + said : ""),
+           "crs");
   }
   if (OGRSpatialReferenceH own = api().GDALGetSpatialRef(dataset)) {
     dem.crs = gdal::copy(own);
@@ -209,7 +249,7 @@ void expect_few(const Params& params, const Dem& dem, const Part& part) {
   }
 }
 
-Dem read_dem(const Params& params, bool may_read_a_part) {
+Dem read_dem(const Params& params, bool may_read_a_part) try {
   const gdal::Quiet quiet;
   Dem dem;
   dem.dataset = open(params);
@@ -223,5 +263,10 @@ Dem read_dem(const Params& params, bool may_read_a_part) {
   dem.from_north = read_position(params, dataset, dem);
   read_meaning(params, dem);
   return dem;
+} catch (const altiplan::kit::InputError& error) {
+  throw altiplan::ParameterError("file", error.what());
+} catch (const fs::filesystem_error& error) {
+  throw altiplan::ParameterError(
+      "file", error.path1().string() + ": cannot be read: " + error.code().message());
 }
 }  // namespace terrain

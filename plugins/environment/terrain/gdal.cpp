@@ -55,7 +55,7 @@ Quiet::~Quiet() { api().CPLPopErrorHandler(); }
 
 std::string last_error() {
   const std::string text = api().CPLGetLastErrorMsg();
-  return text.empty() ? "no reason given" : text;
+  return text.empty() ? "no reason given" : with_own_names(text);
 }
 
 Reference copy(OGRSpatialReferenceH reference) {
@@ -74,8 +74,9 @@ Reference reference(const std::string& crs) {
   }
   const Quiet quiet;
   Reference made(api().OSRNewSpatialReference(nullptr));
-  if (api().OSRImportFromEPSG(made.get(), code) != OGRERR_NONE) {
-    return nullptr;
+  if (api().OSRImportFromEPSG(made.get(), code) != OGRERR_NONE &&
+      api().OSRImportFromEPSG(made.get(), code) != OGRERR_NONE) {
+    return nullptr;  // a database that could not be read is not what failed twice
   }
   api().OSRSetAxisMappingStrategy(made.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return made;

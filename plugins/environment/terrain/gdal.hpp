@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cpl_vsi.h>
 #include <gdal.h>
 #include <gdal_frmts.h>
 #include <ogr_srs_api.h>
@@ -9,6 +10,8 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+
+#include "memory_files.hpp"
 
 namespace gdal {
 
@@ -42,6 +45,9 @@ struct Api {
   X(GDALRasterIOEx)                     \
   X(GDALGetBlockSize)                   \
   X(GDALSetCacheMax64)                  \
+  X(VSIFileFromMemBuffer)               \
+  X(VSIFCloseL)                         \
+  X(VSIUnlink)                          \
   X(CPLPushErrorHandler)                \
   X(CPLPopErrorHandler)                 \
   X(CPLQuietErrorHandler)               \
@@ -81,7 +87,11 @@ class Quiet {
 std::string last_error();
 
 struct CloseDataset {
-  void operator()(void* dataset) const { api().GDALClose(dataset); }
+  void operator()(void* dataset) {
+    api().GDALClose(dataset);
+    files.reset();
+  }
+  std::shared_ptr<MemoryFiles> files = nullptr;  ///< that it reads, if it does not read the disk's
 };
 using Dataset = std::unique_ptr<void, CloseDataset>;
 

@@ -44,8 +44,7 @@ std::string missing_from_envi(const std::string& file, void* dataset, std::int64
   void* band = api().GDALGetRasterBand(dataset, 1);
   const std::int64_t bytes = posts * api().GDALGetRasterCount(dataset) *
                              api().GDALGetDataTypeSizeBytes(api().GDALGetRasterDataType(band));
-  std::error_code error;
-  const auto size = std::int64_t(std::filesystem::file_size(file, error));
+  const auto size = std::int64_t(std::filesystem::file_size(file));
   return size >= bytes ? ""
                        : "its header declares " + std::to_string(bytes) +
                              " bytes of heights, it has " + std::to_string(size);

@@ -28,7 +28,7 @@ class ALTIPLAN_API InputError : public Error {
 /// a socket or a device may never end, so none of them is input, nor is what links to one.
 ALTIPLAN_API std::string why_unreadable(const std::string& file);
 
-/// A regular file as a stream of bytes; throws InputError where it is not one or cannot be opened.
+/// A regular file as a stream of bytes. Opening it, and whatever reads from it, throws InputError.
 class ALTIPLAN_API InputFile : public std::istream {
  public:
   explicit InputFile(const std::string& file);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "memory_files.hpp"
+
+#include <atomic>
+#include <cstdio>
+
+#include "altiplan/kit/input_file.hpp"
+#include "gdal.hpp"
+
+namespace gdal {
+namespace {
+
+constexpr std::string_view kFolder = "/vsimem/altiplan_";
+constexpr std::size_t kDigits = 8;
+
+std::string new_prefix() {
+  static std::atomic<unsigned> made = 0;
+  char number[kDigits + 1];
+  std::snprintf(number, sizeof number, "%08u", made++ % 100'000'000);
+  return std::string(kFolder) + number;
+}
+}  // namespace
+
+MemoryFiles::MemoryFiles(const std::vector<std::filesystem::path>& files) : prefix_(new_prefix()) {
+  for (const std::filesystem::path& file : files) {
+    contents_.push_back(altiplan::kit::read_file(file.string()));
+  }
+  for (std::size_t n = 0; n < files.size(); ++n) {  // now that none of them moves any more
+    names_.push_back(name_of(files[n]));
+    constexpr int kOurs = 0;  // GDAL does not free them
+    VSILFILE* const made = api().VSIFileFromMemBuffer(names_.back().c_str(),
+                                                      reinterpret_cast<GByte*>(contents_[n].data()),
+                                                      contents_[n].size(), kOurs);
+    if (made != nullptr) {
+      api().VSIFCloseL(made);
+    }
+  }
+}
+
+MemoryFiles::~MemoryFiles() {
+  for (const std::string& name : names_) {
+    api().VSIUnlink(name.c_str());
+  }
+}
+
+std::string with_own_names(std::string message) {
+  for (std::size_t at = 0; (at = message.find(kFolder, at)) != std::string::npos;) {
+    message.erase(at, kFolder.size() + kDigits);
+  }
+  return message;
+}
+}  // namespace gdal

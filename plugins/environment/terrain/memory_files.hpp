@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gdal {
+
+/// Copies of files in memory under names that GDAL opens. GDAL does not say why a file cannot be
+/// read, takes one that cannot for damaged, and its reader of ESRI ASCII grids then never ends.
+class MemoryFiles {
+ public:
+  /// Throws altiplan::kit::InputError where one cannot be read. The paths are absolute.
+  explicit MemoryFiles(const std::vector<std::filesystem::path>& files);
+  ~MemoryFiles();
+  MemoryFiles(const MemoryFiles&) = delete;
+  MemoryFiles& operator=(const MemoryFiles&) = delete;
+
+  std::string name_of(const std::filesystem::path& file) const { return prefix_ + file.string(); }
+
+ private:
+  std::string prefix_;
+  std::vector<std::string> names_;
+  std::vector<std::string> contents_;
+};
+
+/// A message of GDAL with the files' own names.
+std::string with_own_names(std::string message);
+}  // namespace gdal
