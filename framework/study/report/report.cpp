@@ -294,9 +294,12 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   const fs::path beside = host::name_beside(fs::absolute(folder) / "report");
   // What has taken its place is not in it any more, and the folder goes where nothing has.
   const host::Unfinished unfinished([beside] {
-    std::error_code ignored;
-    fs::remove_all(beside, ignored);
-    fs::remove(beside.parent_path(), ignored);
+    std::error_code error;
+    constexpr int kTries = 8;  // a folder that cannot be opened cannot be emptied
+    for (int tries = 0; tries == 0 || (error && tries < kTries); ++tries) {
+      fs::remove_all(beside, error);
+    }
+    fs::remove(beside.parent_path(), error);
   });
   try {
     write_parts(content, page, beside);

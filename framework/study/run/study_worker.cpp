@@ -200,10 +200,10 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     for (const Problem& problem : error.problems()) {
       all += (all.empty() ? "" : "; ") + problem.text();
     }
-    if (planned.is_on_trial) {
+    if (planned.is_on_trial && !host::names_machine_fault(all)) {
       return {kBadParameters, all, "", ""};
     }
-    // All was read and checked when the study began.
+    // All was read and checked when the study began, or cannot be read now.
     return {kNotDone, all + " (unlike when the runs were planned)", "", ""};
   } catch (const std::bad_alloc&) {
     return {"out_of_memory", "no memory was left", "", ""};
