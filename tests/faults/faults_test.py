@@ -29,8 +29,10 @@ from injector import ERRORS, SCOPES, Fault, Injector, counting, end_all, with_id
 TIMEOUT_S = 120
 CODES = (3, 4)  # of a call that a fault has ended
 NO_MEANS = 5  # … for lack of memory, threads or descriptors
-# Other words for what the system says, and for calls without a file.
-SYNONYMS = {"ENOSPC": ("is full",), "ENOMEM": ("out of memory", "no memory", "bad_alloc"),
+# Other words for what the system says, and for calls without a file. A permission that comes back is
+# a change.
+SYNONYMS = {"EACCES": ("have changed since the runs were planned",),
+            "ENOSPC": ("is full",), "ENOMEM": ("out of memory", "no memory", "bad_alloc"),
             "ENOLCK": ("another program is writing",)}
 # SQLite does not say why it could not make a journal: it tries again to open one to read alone.
 OF_SQLITE = ("disk I/O error", "malformed", "its journal cannot be made")
@@ -202,6 +204,7 @@ class Campaign:
         for _, path in ended.failed:
             names += [os.path.basename(path), os.path.basename(os.path.dirname(path))]
         names += [output for output in CALLS[name].makes] + [CALLS[name].store]
+        names += [word for word in CALLS[name].arguments if "." in word]  # its folder has failed
         expect(any(word and word in said for word in names), "does not say what failed")
 
     def judge_files(self, name, fault, ended):
