@@ -152,7 +152,7 @@ class Faults(StudyCase):
 
     def test_one_call_at_a_time_by_every_name(self):
         self.write("astar.yaml", "altiplan: 1\nscenario: one.yaml\nsteps: [{plan: rrt_star, "
-                   "within_s: 2}]\n")
+                   "within_s: 2, with: {max_iterations: 100000000}}]\n")
         self.call("study", "study.yaml", "--out", "out.db", "--filter", "nothing", code=3)
         open(self.path("out.db"), "w").close()
         os.link(self.path("out.db"), self.path("hard.db"))
