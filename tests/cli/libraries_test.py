@@ -56,6 +56,12 @@ class Libraries(unittest.TestCase):
         (self.folder / "rpath.cmake").write_text(cmake % {"file": self.file, "old": old})
         self.change(["cmake", "-P", "rpath.cmake"])
 
+    def test_a_folder_that_cannot_be_read_is_not_an_empty_one(self):
+        os.symlink("loop", self.folder / "loop")
+        done = self.call("plugins", "--plugin-path", "loop", code=3)
+        self.assertIn("loop: cannot be read: Too many levels of symbolic links", done.stderr)
+        self.call("plugins", "--plugin-path", "nowhere", code=0)
+
     def test_stripped(self):
         before = self.listed()
         self.assertIsNone(before["refused"])

@@ -34,8 +34,12 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
       files.push_back(it->path());
     }
   }
-  if (is_machine_fault(error.value())) {  // else a folder that is not there
+  if (is_machine_fault(error.value())) {
     throw MachineFault(unreadable(folder, error.value()));
+  }
+  if (error && error != std::errc::no_such_file_or_directory &&
+      error != std::errc::not_a_directory) {
+    throw Error(unreadable(folder, error.value()));
   }
   std::sort(files.begin(), files.end());
   return files;
