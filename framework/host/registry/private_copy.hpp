@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "altiplan/kit/descriptor.hpp"
+
 namespace altiplan::host {
 
 /// A copy of a file in memory that nobody can change any more. Libraries are mapped from such
@@ -13,10 +15,6 @@ class PrivateCopy {
  public:
   /// Throws Error where the file cannot be read, or there is no memory for it.
   explicit PrivateCopy(const std::filesystem::path& file);
-  ~PrivateCopy();
-  PrivateCopy(PrivateCopy&& other) noexcept;
-  PrivateCopy(const PrivateCopy&) = delete;
-  PrivateCopy& operator=(const PrivateCopy&) = delete;
 
   /// Names the copy as long as this process lives, for its debugger too.
   std::filesystem::path path() const;
@@ -25,6 +23,6 @@ class PrivateCopy {
   std::filesystem::path path_to_load();
 
  private:
-  int descriptor_ = -1;
+  kit::Descriptor descriptor_{-1};
 };
 }  // namespace altiplan::host

@@ -9,7 +9,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
+
+#include "altiplan/kit/descriptor.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -28,25 +29,6 @@ std::string why_not_opened(int error) {
   return error == ENOENT ? "there is no such file"
                          : std::string("cannot be opened: ") + std::strerror(error);
 }
-
-/// An open file that is closed with this object.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) {
-      ::close(number_);
-    }
-  }
-  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
 
 /// Opens a regular file; `why` says why it is none, where it is none.
 Descriptor open_regular(const std::string& file, std::string& why) {

@@ -39,15 +39,12 @@ std::string why_not_locked(int descriptor, int error) {
 StoreLock::StoreLock(const std::filesystem::path& file)
     : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
   struct flock range = range_for(::getpid());
-  if (descriptor_ < 0 || ::fcntl(descriptor_, F_OFD_SETLK, &range) != 0) {
+  if (descriptor_.number() < 0 || ::fcntl(descriptor_.number(), F_OFD_SETLK, &range) != 0) {
     const int error = errno;
-    const std::string why = descriptor_ < 0
+    const std::string why = descriptor_.number() < 0
                                 ? std::string("cannot be opened: ") + std::strerror(error)
-                                : why_not_locked(descriptor_, error);
-    ::close(descriptor_);
+                                : why_not_locked(descriptor_.number(), error);
     throw Error("the database '" + file.string() + "' " + why);
   }
 }
-
-StoreLock::~StoreLock() { ::close(descriptor_); }
 }  // namespace altiplan::study

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "altiplan/kit/descriptor.hpp"
+
 namespace altiplan::study {
 
 /// The one writer of a store, by whatever name it is called: the lock is on the file itself, at
@@ -12,11 +14,8 @@ class StoreLock {
  public:
   /// Throws Error where another has it, with that one's process id.
   explicit StoreLock(const std::filesystem::path& file);
-  ~StoreLock();
-  StoreLock(const StoreLock&) = delete;
-  StoreLock& operator=(const StoreLock&) = delete;
 
  private:
-  int descriptor_ = -1;
+  kit::Descriptor descriptor_;
 };
 }  // namespace altiplan::study
