@@ -11,7 +11,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/pool/job_record.hpp"

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <optional>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"

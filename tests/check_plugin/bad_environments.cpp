@@ -3,7 +3,7 @@
 #include <functional>
 #include <limits>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "bad_entries.hpp"
 
 namespace {

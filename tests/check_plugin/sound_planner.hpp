@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "altiplan/kit/heading_search.hpp"
+#include "altiplan/kit/lattice/heading_search.hpp"
 #include "misdeeds.hpp"
 
 namespace altiplan::bad {

@@ -108,8 +108,14 @@ def main():
     for page in sorted(PAGES.glob("*.md")):
         problems += up_to_date(page) + unknown_messages(page, code)
     kit = (PAGES / "kit.md").read_text()
-    headers = {file.name for file in (SOURCE / "framework/include/altiplan/kit").glob("*.hpp")}
-    named = set(re.findall(r"`(\w+\.hpp)`", kit))
+    root = SOURCE / "framework/include/altiplan/kit"
+    headers = {str(file.relative_to(root)) for file in root.glob("**/*.hpp")}
+    named = set()
+    for section in re.split(r"^(?=## )", kit, flags=re.MULTILINE):
+        heading, _, rows = section.partition("\n")
+        folder = re.findall(r"`(\w+/)`", heading)
+        of_all = folder[0] if len(folder) == 1 else ""  # the heading names the folder of its rows
+        named |= {of_all + name for name in re.findall(r"`([\w/]+\.hpp)`", rows)}
     problems += [f"kit.md: does not list {name}" for name in sorted(headers - named)]
     problems += [f"kit.md: there is no {name}" for name in sorted(named - headers)]
     shown = {name for page in PAGES.glob("*.md")

@@ -2,10 +2,10 @@
 // The pieces of code that pages of docs/interfaces show: what stands between `// name {` and
 // `// }` is written into the page by interfaces_test.py. Compiled, never run.
 #include <altiplan/check.hpp>
-#include <altiplan/kit/leg_rules.hpp>
-#include <altiplan/kit/leg_tree.hpp>
-#include <altiplan/kit/open_list.hpp>
-#include <altiplan/kit/point_grid.hpp>
+#include <altiplan/kit/lattice/open_list.hpp>
+#include <altiplan/kit/sampling/leg_rules.hpp>
+#include <altiplan/kit/sampling/leg_tree.hpp>
+#include <altiplan/kit/sampling/point_grid.hpp>
 #include <altiplan/kit/scratch.hpp>
 #include <altiplan/plugin.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/lattice/bucket_queue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/colony.hpp"
+#include "altiplan/kit/colony/colony.hpp"
 
 namespace altiplan::kit {
 namespace {

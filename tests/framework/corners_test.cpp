@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Obstacle sets against FCL: another tree and another way to decide.
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "framework/shape_oracle.hpp"
 #include "reference/fcl_peer.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/ground.hpp"
+#include "altiplan/kit/layers/ground.hpp"
 
 #include <gtest/gtest.h>
 

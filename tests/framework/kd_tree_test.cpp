@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/kd_tree.hpp"
+#include "altiplan/kit/sampling/kd_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/lattice.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
 
 #include <gtest/gtest.h>
 
 #include <queue>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::kit {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/leg_rules.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
 
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::kit {

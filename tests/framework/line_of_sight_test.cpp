@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/line_of_sight.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "altiplan/kit/free_blocks.hpp"
+#include "altiplan/kit/lattice/free_blocks.hpp"
 #include "altiplan/random.hpp"
 #include "framework/sight_oracle.hpp"
 

@@ -3,8 +3,8 @@
 // all edges, which the functions on shapes are.
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/obstacle_set.hpp"
-#include "altiplan/kit/polygon.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/kit/layers/polygon.hpp"
 #include "framework/shape_oracle.hpp"
 
 namespace altiplan {

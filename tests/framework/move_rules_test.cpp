@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
 #include "reference/random_problem.hpp"
 
 namespace altiplan::kit {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 
 #include <gtest/gtest.h>
 

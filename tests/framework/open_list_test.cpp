@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/open_list.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/point_grid.hpp"
+#include "altiplan/kit/sampling/point_grid.hpp"
 
 #include <gtest/gtest.h>
 

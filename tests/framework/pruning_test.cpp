@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/pruning.hpp"
+#include "altiplan/kit/lattice/pruning.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/route_costs.hpp"
+#include "altiplan/kit/lattice/route_costs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/sampling.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
 
 #include <gtest/gtest.h>
 

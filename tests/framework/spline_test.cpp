@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/spline.hpp"
+#include "altiplan/kit/smoothing/spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/star_search.hpp"
+#include "altiplan/kit/sampling/star_search.hpp"
 
 #include <gtest/gtest.h>
 

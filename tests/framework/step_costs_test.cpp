@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/step_costs.hpp"
+#include "altiplan/kit/lattice/step_costs.hpp"
 
 #include <gtest/gtest.h>
 

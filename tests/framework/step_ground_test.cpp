@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/step_ground.hpp"
+#include "altiplan/kit/lattice/step_ground.hpp"
 
 #include <gtest/gtest.h>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 #include "support/folders.hpp"
 #include "support/support.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "altiplan/kit/trimming.hpp"
+#include "altiplan/kit/smoothing/trimming.hpp"
 #include "altiplan/random.hpp"
 
 namespace altiplan::kit {

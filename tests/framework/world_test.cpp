@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/frame.hpp"
-#include "altiplan/kit/iso_time.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/planner.hpp"
 #include "support/support.hpp"
 

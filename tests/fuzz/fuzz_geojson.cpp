@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of GeoJSON. The bits of the first byte say which properties are asked for.
 #include "altiplan/error.hpp"
-#include "altiplan/kit/geojson.hpp"
+#include "altiplan/kit/formats/geojson.hpp"
 #include "fuzz/memory_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "host/flight/flight.hpp"
 #include "support/support.hpp"
 

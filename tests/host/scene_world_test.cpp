@@ -4,7 +4,7 @@
 #include <set>
 
 #include "altiplan/height_field.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "host/flight/events.hpp"
 #include "scene_files.hpp"
 #include "support/support.hpp"

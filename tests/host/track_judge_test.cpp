@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::host {

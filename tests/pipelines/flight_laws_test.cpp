@@ -2,7 +2,7 @@
 // Laws of whole flights with apf, hand-overs and ends included: turns, and mirrored worlds.
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "reference/moving_worlds.hpp"
 #include "support/instrumented.hpp"
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <span>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 

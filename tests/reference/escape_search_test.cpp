@@ -2,7 +2,7 @@
 // The search for ways out, and who is to blame: cases whose answer is known, and laws.
 #include <gtest/gtest.h>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "reference/escape_blame.hpp"
 #include "support/support.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "host/flight/flight.hpp"
 #include "support/support.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 
 namespace altiplan::testing {
 

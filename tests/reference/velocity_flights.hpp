@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "support/support.hpp"
 
 namespace velocity_field {

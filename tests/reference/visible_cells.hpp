@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/kit/cell_layer.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/random.hpp"
 #include "support/support.hpp"
 

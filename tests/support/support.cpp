@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "host/config/yaml.hpp"
 #include "host/registry/registry.hpp"
 #include "support/folders.hpp"

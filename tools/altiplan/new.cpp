@@ -5,7 +5,7 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/unfinished.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "study/slurm/command.hpp"

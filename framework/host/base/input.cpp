@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/input.hpp"
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 
 namespace altiplan::host {
 

@@ -8,6 +8,6 @@ namespace altiplan::host {
 
 /// Why a file that is named in another one cannot be read, as a sentence: "there is no file 'a'",
 /// "'a' is a pipe, expected a file"; "" where it can. How files are read:
-/// altiplan/kit/input_file.hpp.
+/// altiplan/kit/formats/input_file.hpp.
 std::string file_problem(const std::filesystem::path& file);
 }  // namespace altiplan::host

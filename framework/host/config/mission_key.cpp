@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/params.hpp"
 #include "host/base/machine_fault.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/value.hpp"
 
 namespace altiplan::host {

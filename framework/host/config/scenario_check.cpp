@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <set>
 
-#include "altiplan/kit/iso_time.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/config/yaml_reader.hpp"
 
 namespace altiplan::host {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/route.hpp"
 #include "altiplan/world.hpp"
 

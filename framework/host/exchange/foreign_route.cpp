@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/exchange/route_csv.hpp"
 #include "host/result/stored_result.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 
 namespace altiplan::host {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -8,7 +8,7 @@
 #include "altiplan/blame.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
-#include "altiplan/kit/iso_time.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/shapes.hpp"
 
 namespace altiplan::host {

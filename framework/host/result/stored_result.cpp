@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/sha256.hpp"
 
 namespace altiplan::host {

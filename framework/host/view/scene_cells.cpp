@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {

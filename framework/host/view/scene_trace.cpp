@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/base64.hpp"
 #include "host/view/scene_parts.hpp"
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/output_file.hpp"
 
 namespace altiplan::host {

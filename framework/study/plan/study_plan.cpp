@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/registry/registry.hpp"

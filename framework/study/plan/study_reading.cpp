@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/plan/study_reading.hpp"
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/input.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"

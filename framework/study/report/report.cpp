@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/drawing/text.hpp"

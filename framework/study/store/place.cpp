@@ -9,7 +9,7 @@
 #include <string>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 
 namespace altiplan::study {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "altiplan/kit/descriptor.hpp"
+#include "altiplan/kit/formats/descriptor.hpp"
 
 namespace altiplan::study {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 #include "buildings.hpp"
 #include "generator.hpp"

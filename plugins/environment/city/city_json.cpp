@@ -5,8 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "altiplan/kit/input_file.hpp"
-#include "altiplan/kit/polygon.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/layers/polygon.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {

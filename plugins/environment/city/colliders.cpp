@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {

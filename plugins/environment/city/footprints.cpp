@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/kit/geojson.hpp"
+#include "altiplan/kit/formats/geojson.hpp"
 #include "altiplan/world.hpp"
 #include "buildings.hpp"
 

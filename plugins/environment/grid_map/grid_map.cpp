@@ -4,8 +4,8 @@
 // characters, the first row northernmost.
 #include <charconv>
 
-#include "altiplan/kit/cell_layer.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
-#include "altiplan/kit/ground.hpp"
-#include "altiplan/kit/ground_within.hpp"
+#include "altiplan/kit/layers/ground.hpp"
+#include "altiplan/kit/layers/ground_within.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
 #include "surface.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "altiplan/geometry.hpp"
-#include "altiplan/kit/ground_within.hpp"
+#include "altiplan/kit/layers/ground_within.hpp"
 
 namespace hills {
 

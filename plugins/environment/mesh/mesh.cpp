@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/kit/solid.hpp"
+#include "altiplan/kit/layers/solid.hpp"
 #include "altiplan/plugin.hpp"
 #include "model.hpp"
 #include "surface.hpp"

@@ -13,7 +13,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "text_check.hpp"
 
 namespace altiplan::mesh {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/solid.hpp"
+#include "altiplan/kit/layers/solid.hpp"
 
 namespace altiplan::mesh {
 namespace {

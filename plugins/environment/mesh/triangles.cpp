@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "altiplan/kit/solid.hpp"
+#include "altiplan/kit/layers/solid.hpp"
 
 namespace altiplan::mesh {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/solid.hpp"
+#include "altiplan/kit/layers/solid.hpp"
 #include "random_triangles_test.hpp"
 
 namespace altiplan::mesh {

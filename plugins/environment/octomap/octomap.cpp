@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/what_blocks.hpp"
 #include "octree.hpp"

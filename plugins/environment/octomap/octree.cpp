@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 
 namespace altiplan::octomap {
 namespace {

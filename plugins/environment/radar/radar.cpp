@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/world.hpp"
 #include "radar_equation.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <random>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

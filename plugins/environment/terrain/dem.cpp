@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "whole.hpp"
 
 namespace terrain {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "altiplan/kit/ground_within.hpp"
+#include "altiplan/kit/layers/ground_within.hpp"
 
 namespace terrain {
 

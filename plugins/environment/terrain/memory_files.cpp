@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdio>
 
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "gdal.hpp"
 
 namespace gdal {

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "altiplan/kit/ground.hpp"
+#include "altiplan/kit/layers/ground.hpp"
 #include "altiplan/plugin.hpp"
 #include "ground_search.hpp"
 #include "model.hpp"

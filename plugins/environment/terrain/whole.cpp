@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/input_file.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "gdal.hpp"
 
 namespace terrain {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/polygon.hpp"
+#include "altiplan/kit/layers/polygon.hpp"
 #include "altiplan/world.hpp"
 
 namespace altiplan::zones {

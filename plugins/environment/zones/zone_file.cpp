@@ -5,7 +5,7 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/geojson.hpp"
+#include "altiplan/kit/formats/geojson.hpp"
 
 namespace altiplan::zones {
 namespace {

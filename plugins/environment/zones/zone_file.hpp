@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "altiplan/frame.hpp"
-#include "altiplan/kit/mission_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/params.hpp"
 
 namespace altiplan::zones {

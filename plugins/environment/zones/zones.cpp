@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/kit/iso_time.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
 #include "clip.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "apf_field.hpp"
 #include "support/counted_allocations.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "altiplan/kit/colony.hpp"
+#include "altiplan/kit/colony/colony.hpp"
 
 namespace altiplan::ant_colony {
 

@@ -17,8 +17,8 @@
 // Symbols: g travelled cost, h heuristic, f = w_g g + w_h h.
 #include <memory>
 
-#include "altiplan/kit/heading_search.hpp"
-#include "altiplan/kit/search_params.hpp"
+#include "altiplan/kit/lattice/heading_search.hpp"
+#include "altiplan/kit/lattice/search_params.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
 #include "cell_search.hpp"

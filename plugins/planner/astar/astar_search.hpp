@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/goal_search.hpp"
+#include "altiplan/kit/lattice/goal_search.hpp"
 #include "altiplan/kit/scratch.hpp"
 
 namespace altiplan::astar {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/kit/bucket_queue.hpp"
-#include "altiplan/kit/lattice_search.hpp"
-#include "altiplan/kit/pruning.hpp"
+#include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/lattice_search.hpp"
+#include "altiplan/kit/lattice/pruning.hpp"
 #include "altiplan/kit/scratch.hpp"
 
 namespace altiplan::astar {

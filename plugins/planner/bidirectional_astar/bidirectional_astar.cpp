@@ -14,7 +14,7 @@
 // Symbols: g travelled cost of a side, h its heuristic, f = w_g g + w_h h.
 #include <memory>
 
-#include "altiplan/kit/search_params.hpp"
+#include "altiplan/kit/lattice/search_params.hpp"
 #include "altiplan/plugin.hpp"
 #include "two_sided_search.hpp"
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "altiplan/kit/lattice_search.hpp"
-#include "altiplan/kit/open_list.hpp"
+#include "altiplan/kit/lattice/lattice_search.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
 #include "altiplan/kit/scratch.hpp"
 
 namespace altiplan::bidirectional {

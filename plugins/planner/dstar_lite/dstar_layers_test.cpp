@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "dstar_worlds_test.hpp"
 
 namespace altiplan {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "altiplan/kit/lattice_search.hpp"
+#include "altiplan/kit/lattice/lattice_search.hpp"
 #include "cell_graph.hpp"
 #include "open_queue.hpp"
 #include "vertices.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/search_params.hpp"
+#include "altiplan/kit/lattice/search_params.hpp"
 #include "altiplan/planner.hpp"
 #include "plan.hpp"
 

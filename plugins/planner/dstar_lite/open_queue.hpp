@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "altiplan/kit/bucket_queue.hpp"
-#include "altiplan/kit/open_list.hpp"
+#include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
 
 namespace altiplan::dstar_lite {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "altiplan/kit/lattice_search.hpp"
+#include "altiplan/kit/lattice/lattice_search.hpp"
 
 namespace altiplan::dstar_lite {
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "altiplan/kit/bucket_queue.hpp"
-#include "altiplan/kit/lattice.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
+#include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
 
 namespace altiplan::improved_ant_colony {
 

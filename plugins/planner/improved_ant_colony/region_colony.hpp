@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "altiplan/kit/colony.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
-#include "altiplan/kit/trimming.hpp"
+#include "altiplan/kit/colony/colony.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
+#include "altiplan/kit/smoothing/trimming.hpp"
 #include "geodesic.hpp"
 #include "neighbourhood.hpp"
 

@@ -12,8 +12,8 @@
 //   route has become shorter by 1 %.
 // Symbols: those of rrt_star; the foci are start and goal, the sum of distances the best length
 //   (with the goal's tolerance).
+#include "altiplan/kit/sampling/star_params.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "altiplan/kit/star_params.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "altiplan/kit/lattice.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
 
 namespace altiplan::jps {
 

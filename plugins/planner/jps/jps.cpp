@@ -15,7 +15,7 @@
 // Symbols: g length so far, h octile distance to the goal, f = g + h.
 #include <memory>
 
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/plugin.hpp"
 #include "jps_search.hpp"
 

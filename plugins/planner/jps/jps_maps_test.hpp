@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 

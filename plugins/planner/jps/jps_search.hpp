@@ -8,9 +8,9 @@
 #include <string>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/lattice.hpp"
-#include "altiplan/kit/pruning.hpp"
-#include "altiplan/kit/step_costs.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/pruning.hpp"
+#include "altiplan/kit/lattice/step_costs.hpp"
 #include "altiplan/planner.hpp"
 #include "bit_lines.hpp"
 #include "search_parts.hpp"

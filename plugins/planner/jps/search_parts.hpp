@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "altiplan/kit/bucket_queue.hpp"
+#include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/step_costs.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "altiplan/kit/step_costs.hpp"
 #include "bit_lines.hpp"
 
 namespace altiplan::jps {

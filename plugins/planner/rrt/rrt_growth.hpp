@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/sampling.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/request.hpp"
 #include "rrt_tree.hpp"

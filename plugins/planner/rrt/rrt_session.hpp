@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "altiplan/kit/leg_rules.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
 #include "altiplan/planner.hpp"
 #include "rrt_repair.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "reference/pop_ups.hpp"
 #include "support/support.hpp"
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/kit/kd_tree.hpp"
-#include "altiplan/kit/leg_tree.hpp"
+#include "altiplan/kit/sampling/kd_tree.hpp"
+#include "altiplan/kit/sampling/leg_tree.hpp"
 #include "altiplan/trace.hpp"
 
 namespace altiplan::rrt {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/kit/leg_rules.hpp"
-#include "altiplan/kit/leg_tree.hpp"
-#include "altiplan/kit/point_grid.hpp"
-#include "altiplan/kit/sampling.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
+#include "altiplan/kit/sampling/leg_tree.hpp"
+#include "altiplan/kit/sampling/point_grid.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/plan_result.hpp"
 
 namespace altiplan::rrt_connect {

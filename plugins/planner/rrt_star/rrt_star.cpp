@@ -18,8 +18,8 @@
 // Symbols: x_rand the sample, x_new the new node, eta the range, d the axes, n the nodes, gamma =
 //   radius_scale (2 (1 + 1/d) volume / unit ball)^(1/d), the radius min(eta, gamma (log
 //   n/n)^(1/d)).
+#include "altiplan/kit/sampling/star_params.hpp"
 #include "altiplan/kit/scratch.hpp"
-#include "altiplan/kit/star_params.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "altiplan/kit/lattice.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
 
 namespace altiplan::slicing {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/kit/lattice.hpp"
-#include "altiplan/kit/leg_rules.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
 #include "altiplan/planner.hpp"
 #include "planes.hpp"
 

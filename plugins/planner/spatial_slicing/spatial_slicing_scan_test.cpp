@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "altiplan/kit/line_of_sight.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 #include "support/support.hpp"
 
 namespace altiplan {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "altiplan/kit/lattice.hpp"
-#include "altiplan/kit/open_list.hpp"
+#include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
 
 namespace altiplan::stratified {
 

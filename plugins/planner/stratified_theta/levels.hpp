@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "altiplan/kit/any_angle.hpp"
+#include "altiplan/kit/any_angle/any_angle.hpp"
 #include "altiplan/route.hpp"
 
 namespace altiplan::stratified {

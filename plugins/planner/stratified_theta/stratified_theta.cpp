@@ -15,7 +15,7 @@
 #include <cmath>
 #include <optional>
 
-#include "altiplan/kit/any_angle_planner.hpp"
+#include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "corridor.hpp"
 #include "levels.hpp"

@@ -12,7 +12,7 @@
 //   at the parent's parent the cell is reached by way of the expanded cell; ways are sums of whole
 //   numbers (kit/any_angle.hpp); f that falls from a cell to its successor counts as the last f.
 // Symbols: g length of the way from the start, h straight line to the goal, f = g + h.
-#include "altiplan/kit/any_angle_planner.hpp"
+#include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

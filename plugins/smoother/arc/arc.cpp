@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

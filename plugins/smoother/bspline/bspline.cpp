@@ -14,8 +14,8 @@
 // Symbols: C a corner, u and v the directions into and out of it, d the spacing of control points.
 #include <algorithm>
 
-#include "altiplan/kit/corners.hpp"
-#include "altiplan/kit/spline.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
+#include "altiplan/kit/smoothing/spline.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

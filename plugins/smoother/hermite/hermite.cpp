@@ -23,7 +23,7 @@
 #include <charconv>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

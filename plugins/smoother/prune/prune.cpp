@@ -15,7 +15,7 @@
 #include <queue>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

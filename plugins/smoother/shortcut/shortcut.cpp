@@ -16,7 +16,7 @@
 #include <algorithm>
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

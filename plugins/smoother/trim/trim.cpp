@@ -10,10 +10,10 @@
 // Deviations: legs are judged exactly, with the turns at both ends of a stride (the paper looks at
 //   obstacles alone). The nodes are the route's waypoints, however far apart.
 // Symbols: l_c(v) the stride of round v, of kit/trimming.hpp.
-#include "altiplan/kit/trimming.hpp"
+#include "altiplan/kit/smoothing/trimming.hpp"
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

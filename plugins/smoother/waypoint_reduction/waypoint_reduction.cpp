@@ -12,7 +12,7 @@
 //   admissible, which the paper does not speak of, the next point stays.
 // Symbols: p_begin, p_end the two pointers into the route.
 #include "altiplan/check.hpp"
-#include "altiplan/kit/corners.hpp"
+#include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <altiplan/kit/move_rules.hpp>
-#include <altiplan/kit/open_list.hpp>
+#include <altiplan/kit/lattice/move_rules.hpp>
+#include <altiplan/kit/lattice/open_list.hpp>
 #include <altiplan/kit/scratch.hpp>
 #include <altiplan/plugin.hpp>
 

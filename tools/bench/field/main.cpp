@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "host/config/config.hpp"
 #include "host/registry/registry.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "host/config/config.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "altiplan/distance_field.hpp"
-#include "altiplan/kit/line_of_sight.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
 #include "altiplan/random.hpp"
 #include "ompl_peer.hpp"
 #include "rows.hpp"

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <memory>
 
-#include "altiplan/kit/obstacle_set.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "reference/fcl_peer.hpp"
 #include "rows.hpp"

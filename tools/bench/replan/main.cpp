@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/cell_layer.hpp"
-#include "altiplan/kit/move_rules.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/random.hpp"
 #include "host/config/config.hpp"

@@ -2,7 +2,7 @@
 #include "city.hpp"
 
 #include "altiplan/check.hpp"
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 
 namespace altiplan::bench {
 namespace {

@@ -16,8 +16,8 @@
 #include <chrono>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/cell_layer.hpp"
-#include "altiplan/kit/leg_rules.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
 
 // NOLINTBEGIN(readability-identifier-naming): names of OMPL
 namespace altiplan::bench {

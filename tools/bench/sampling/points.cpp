@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "altiplan/kit/kd_tree.hpp"
+#include "altiplan/kit/sampling/kd_tree.hpp"
 #include "altiplan/random.hpp"
 #include "rows.hpp"
 

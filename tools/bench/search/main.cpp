@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "altiplan/kit/cell_layer.hpp"
+#include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/route.hpp"

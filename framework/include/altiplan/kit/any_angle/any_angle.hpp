@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/free_blocks.hpp"
+#include "altiplan/kit/lattice/lattice_search.hpp"
+#include "altiplan/kit/scratch.hpp"
+
+/// \file Searches whose routes go straight between cells that see each other: Theta*, Lazy Theta*,
+/// and what is built of them.
+namespace altiplan::kit {
+
+/// When a leg is held to the obstacles.
+enum class Sight {
+  eager,  ///< as soon as it would be taken: Theta*
+  lazy,   ///< when its last node is expanded: Lazy Theta*
+};
+
+/// How a leg is held to the limits on turns and climb while nodes are generated.
+enum class AngleRule {
+  printed,           ///< the step to the node; the leg that is taken in its place is not looked at
+  route_consistent,  ///< the leg that is taken, and again when its last node is expanded
+};
+
+struct AnyAngleSettings {
+  Sight sight = Sight::lazy;
+  AngleRule angles = AngleRule::route_consistent;
+  double weight_h = 1;  ///< of the straight line to the goal in f
+  std::size_t max_bytes = ~std::size_t{0};
+  Progress before;  ///< what other searches of the same budget have done
+};
+
+/// The nodes of a search: places in rows along the axes, each at a cell of a lattice.
+struct ALTIPLAN_API AnyAngleNodes {
+  /// Every free cell; a step whose cells are free is a leg whose cells are.
+  static AnyAngleNodes every_cell(const VoxelGrid& occupancy);
+
+  const VoxelGrid* grid = nullptr;       ///< a bit a place; blocked: no node
+  CornerRule corner = CornerRule::any;   ///< free_box: nodes are neighbours by that rule
+  std::array<std::vector<int>, 3> cell;  ///< number of the cell on each axis, rising
+};
+
+/// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them (4 x 4 on a level). The number of
+/// a cell has bits of its own for each axis, so that both are quick to tell from each other; as
+/// many numbers as the axes have, rounded up to powers of two.
+class BrickIndex {
+ public:
+  explicit BrickIndex(const Cell& counts) {
+    int shift = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bits_[axis] = std::bit_width(std::uint32_t(counts[axis] - 1));
+      low_[axis] = {shift, std::min(bits_[axis], 2)};
+      shift += low_[axis].bits;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      high_[axis] = {shift, bits_[axis] - low_[axis].bits};
+      shift += high_[axis].bits;
+    }
+    all_bits_ = shift;
+  }
+
+  /// Whether four bytes hold all numbers, and two more.
+  bool fits() const { return all_bits_ < 32; }
+  std::size_t size() const { return std::size_t{1} << all_bits_; }
+  /// The number of a cell is the sum of what its place on each axis adds.
+  std::uint32_t part(std::size_t axis, int k) const {
+    const auto place = std::uint32_t(k);
+    const Field& low = low_[axis];
+    return (place & low.mask()) << low.shift | place >> low.bits << high_[axis].shift;
+  }
+  std::uint32_t index(const Cell& c) const { return part(0, c[0]) + part(1, c[1]) + part(2, c[2]); }
+  Cell cell(std::uint32_t index) const {
+    Cell c;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Field& low = low_[axis];
+      const Field& high = high_[axis];
+      c[axis] =
+          int((index >> low.shift & low.mask()) | (index >> high.shift & high.mask()) << low.bits);
+    }
+    return c;
+  }
+
+ private:
+  struct Field {
+    int shift = 0;
+    int bits = 0;
+    std::uint32_t mask() const { return (1U << bits) - 1; }
+  };
+  std::array<int, 3> bits_{};
+  std::array<Field, 3> low_;   ///< within a brick
+  std::array<Field, 3> high_;  ///< of the brick
+  int all_bits_ = 0;
+};
+
+struct AnyAngleMemory {
+  /// By node: whether it is closed, how much shorter than the longest the way to it is, and the
+  /// number of its parent; 0: not reached. Nodes lie in bricks, so that neighbours are near.
+  ScratchArray<std::uint64_t, 512> reached;
+  ScratchArray<std::uint64_t> closed;  ///< a bit a node, laid out like the grid of the nodes
+  BucketQueue open;
+  FreeBlocks sight;
+
+  /// Without the open list, rounded up.
+  static constexpr std::size_t kBytesPerNode = 9;
+  std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
+  /// Starts anew for the nodes of a grid. Room once made is kept: the largest grid comes best
+  /// first.
+  void reset(const VoxelGrid& nodes) {
+    reached.reset(BrickIndex(nodes.spec().counts).size() + 2);
+    closed.reset(nodes.words().size());
+  }
+};
+
+/// One search from request.start to request.goal. A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*:
+/// Any-Angle Path Planning on Grids. AAAI 2007; A. Nash, S. Koenig, C. Tovey: Lazy Theta*:
+/// Any-Angle Path Planning and Path Length Analysis in 3D. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
+///
+/// Ways are sums of legs as whole numbers of one small length, a 1e9th of what ways are allowed:
+/// the open list is one of buckets, and a node does with 8 bytes and a bit. An end of the route
+/// that is no node is one more: the nodes up to the next row on each axis are its neighbours.
+class ALTIPLAN_API AnyAngleSearch {
+ public:
+  /// All of it must outlive the search; the rules are those of the lattice, by cells.
+  AnyAngleSearch(const Request& request, const Lattice& lattice, MoveRules& rules,
+                 const AnyAngleNodes& nodes, const AnyAngleSettings& settings,
+                 AnyAngleMemory& memory);
+
+  struct Result {
+    Status status = Status::no_route;
+    Route route;
+    bool at_goal = false;  ///< not only within its tolerance
+    bool budget_hit = false;
+    Progress progress;  ///< of the searches before too
+    Counters more;      ///< of who makes several searches
+  };
+  Result run();
+
+ private:
+  using Node = std::uint32_t;
+  using Place = std::array<double, 3>;  ///< in units of costs
+  static constexpr Node kNone = ~Node{0};
+  /// Start or goal.
+  struct End {
+    Node node;
+    bool centred;  ///< it is the centre of a cell
+    Cell cell;     ///< of the lattice
+    Place place;
+    Vec3 position;
+    std::vector<Node> links;  ///< its neighbours, where it is none of the nodes
+  };
+  End end_at(const Vec3& p, Node beyond) const;
+  void begin(double longest_m);
+  std::optional<Status> search();
+  void expand(Node s);
+  void update_vertex(Node s, Node v, std::uint32_t through_parent, std::uint32_t h);
+  bool set_vertex(Node s);
+  bool may_take(Node a, Node b);
+  void remember_fallback(Node s);
+  void add_to_trace(Node s) const;
+  bool sees(Node a, Node b);
+  bool keeps_limits(Node a, Node b);
+  void take(Node v, Node parent, std::uint32_t g, std::uint32_t h);
+  Route route_to(Node last) const;
+
+  static constexpr std::uint32_t kClosed = 1U << 31;
+  static constexpr std::uint32_t kLongest = kClosed - 1;  ///< no way is longer
+  /// What is known of a node, the greater the shorter its way is; greatest where it is closed.
+  std::uint32_t known(Node n) const { return std::uint32_t(reached_[n] >> 32); }
+  std::uint32_t g(Node n) const { return kLongest - (known(n) & ~kClosed); }
+  bool is_closed(Node n) const { return known(n) >= kClosed; }
+  /// Whether a way of that length is of use.
+  bool is_shorter(std::uint32_t g, Node n) const { return kLongest - g > known(n); }
+  Node parent(Node n) const { return Node(reached_[n]); }
+  const End* end(Node n) const {
+    return n == goal_.node ? &goal_ : n == start_.node ? &start_ : nullptr;
+  }
+  Cell cell_at(const Cell& key) const {
+    return {nodes_.cell[0][std::size_t(key[0])], nodes_.cell[1][std::size_t(key[1])],
+            nodes_.cell[2][std::size_t(key[2])]};
+  }
+  Cell cell_of(Node n) const {
+    const End* e = end(n);
+    return e != nullptr ? e->cell : cell_at(numbers_.cell(n));
+  }
+  Place place(Node n) const {
+    const End* e = end(n);
+    return e != nullptr ? e->place : place_at(numbers_.cell(n));
+  }
+  Place place_at(const Cell& key) const {
+    const Cell c = cell_at(key);
+    return {unit_[0] * c[0], unit_[1] * c[1], unit_[2] * c[2]};
+  }
+  Vec3 position(Node n) const {
+    const End* e = end(n);
+    return e != nullptr ? e->position : lattice_.position(cell_of(n));
+  }
+  std::uint32_t apart(const Place& a, const Place& b) const;
+  std::uint32_t distance(Node a, Node b) const { return apart(place(a), place(b)); }
+  std::uint32_t heuristic(Node n) const;
+  std::optional<Approach> before(Node n) const;
+  bool is_end(Node n) const { return n >= numbers_.size(); }
+  bool memory_full() const;
+  void close(Node n);
+  DirectionMask closed_around(const Cell& key) const {
+    return bits_around(*nodes_.grid, closed_.data(), nodes_.grid->bit(key));
+  }
+  DirectionMask steps(const Cell& key) const {
+    return lattice_steps_ & free_steps(blocked_around(*nodes_.grid, key), nodes_.corner);
+  }
+  bool line_of_sight(const Cell& a, const Cell& b);
+
+  const Request& request_;
+  const Lattice& lattice_;
+  MoveRules& rules_;
+  const AnyAngleNodes& nodes_;
+  AnyAngleSettings settings_;
+  AnyAngleMemory& memory_;
+  ScratchArray<std::uint64_t, 512>& reached_;
+  ScratchArray<std::uint64_t>& closed_;
+  BucketQueue& open_;
+  BudgetWatch watch_;
+  BrickIndex numbers_;
+  bool cells_decide_;    ///< a leg is free if its cells are
+  bool steps_are_free_;  ///< and so are the cells of a step
+  DirectionMask lattice_steps_;
+  double per_metre_ = 1;
+  std::array<double, 3> unit_{};  ///< edges of a cell
+  std::uint32_t longest_ = kNone;
+  End start_;
+  End goal_;
+  Node least_link_ = kNone;  ///< of the goal's
+  Node most_link_ = 0;
+  Node fallback_ = kNone;  ///< ends within the tolerance
+  std::uint32_t nearest_ = kNone;
+  Progress progress_;
+};
+}  // namespace altiplan::kit

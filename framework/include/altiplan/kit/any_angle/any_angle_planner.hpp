@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "altiplan/kit/any_angle/any_angle.hpp"
+#include "altiplan/kit/lattice/heading_search.hpp"
+#include "altiplan/params.hpp"
+
+namespace altiplan::kit {
+
+/// The parameters that planners of straight legs between cells have in common.
+struct AnyAngleParams {
+  enum class Angles { printed, route_consistent, complete };
+
+  Vec3 cell_m{50, 50, 10};
+  Angles angle_rule = Angles::complete;
+  int max_memory_mb = 4096;
+
+  void describe(Fields& f) {
+    f("cell_m", cell_m)
+        .unit("m")
+        .at_least(0.001)
+        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+    f("angle_rule", angle_rule,
+      {{"printed", Angles::printed},
+       {"route_consistent", Angles::route_consistent},
+       {"complete", Angles::complete}})
+        .doc(
+            "limits on turns and climb while nodes are generated: tested for the step, not for the "
+            "leg that is taken (printed, paper 003), for that leg, and again when its end is "
+            "expanded (route_consistent), or so and, where that finds nothing, by an A* search "
+            "over cell and heading, whose steps may touch edges (complete)");
+    f("max_memory_mb", max_memory_mb)
+        .unit("MB")
+        .at_least(1)
+        .doc("a lattice that needs more is refused before anything is allocated");
+  }
+  std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
+  AngleRule angles() const {
+    return angle_rule == Angles::printed ? AngleRule::printed : AngleRule::route_consistent;
+  }
+};
+
+/// What a planner of straight legs between cells does beside its search.
+class ALTIPLAN_API AnyAnglePlanner : public Planner {
+ protected:
+  /// `bytes_per_cell`: what a search keeps for each cell of the lattice, without its open list.
+  AnyAnglePlanner(const AnyAngleParams& params, std::size_t bytes_per_cell)
+      : params_(params), bytes_per_cell_(bytes_per_cell) {}
+
+  /// A problem in cells, and what its searches need.
+  struct Task {
+    const Request& request;
+    const Lattice& lattice;
+    MoveRules& rules;
+    AnyAngleMemory& memory;
+    AnyAngleSettings settings;
+  };
+
+  const AnyAngleParams& params() const { return params_; }
+
+ private:
+  virtual AnyAngleSearch::Result search(Task& task) const = 0;
+  /// Whether such a search that finds nothing has looked at every way over the cells.
+  virtual bool looks_everywhere() const = 0;
+
+  PlanResult do_plan(const Request& request) const final;
+  PlanResult by_heading(const Request& request, std::size_t cells, const PlanResult& found) const;
+
+  AnyAngleParams params_;
+  std::size_t bytes_per_cell_;
+  mutable ScratchPool<AnyAngleMemory> memory_;
+  mutable ScratchPool<HeadingMemory> heading_memory_;
+};
+
+/// The planner whose nodes are all free cells.
+class ALTIPLAN_API EveryCellPlanner : public AnyAnglePlanner {
+ protected:
+  EveryCellPlanner(const AnyAngleParams& params, Sight sight)
+      : AnyAnglePlanner(params, AnyAngleMemory::kBytesPerNode), sight_(sight) {}
+
+ private:
+  AnyAngleSearch::Result search(Task& task) const final;
+  bool looks_everywhere() const final { return true; }
+  Traits do_traits() const final {
+    return {.complete = params().angle_rule == AnyAngleParams::Angles::complete, .any_angle = true};
+  }
+
+  Sight sight_;
+};
+}  // namespace altiplan::kit

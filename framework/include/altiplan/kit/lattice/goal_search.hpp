@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "altiplan/kit/lattice/lattice_search.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
+
+namespace altiplan::kit {
+
+/// What searches by real numbers have in common, whether a node is a cell or an arrival at one: how
+/// the start and the goal join the lattice.
+class GoalSearch : protected LatticeSearch {
+ protected:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kGoal = kNone - 1;  ///< the goal on the open list
+
+  GoalSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+             double best_cost, OpenList& open)
+      : LatticeSearch(request, settings, lattice, best_cost), open_(open) {}
+
+  /// How the vehicle comes to a cell reached by the step `in`; nothing when it starts there without
+  /// a velocity.
+  std::optional<Approach> before(int in, const Vec3& here) const {
+    return rules_.approach(in, here, at_start_);
+  }
+
+  /// Reaches the goal from a node at cell c if that has a link to it, at the cost g and the length
+  /// of the way to the node.
+  void try_goal(std::uint32_t node, double g, double length, const Cell& c, const Vec3& here,
+                const std::optional<Approach>& from) {
+    if (const Lattice::Link* link = to_goal_.link_of(c)) {
+      if (length + link->length <= longest_ &&
+          (link->length == 0 || rules_.any_leg_ok(from, here, goal_))) {
+        if (const double at_goal = g + link_cost(here, goal_, link->length); at_goal < goal_g_) {
+          goal_g_ = at_goal;
+          goal_parent_ = node;
+          open_.push(settings_.weight_g * (at_goal + costs_.at(goal_)), at_goal, kGoal);
+        }
+        return;
+      }
+    }
+    if (g < fallback_g_ && length <= longest_ && request_.goal.reached_at(here)) {
+      fallback_g_ = g;
+      fallback_ = node;
+    }
+  }
+
+  OpenList& open_;
+  bool at_start_ = false;  ///< the start is the centre of its cell
+  double goal_g_ = kInfinity;
+  std::uint32_t goal_parent_ = kNone;
+  double fallback_g_ = kInfinity;
+  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "altiplan/kit/lattice/goal_search.hpp"
+#include "altiplan/kit/scratch.hpp"
+
+namespace altiplan::kit {
+
+/// What a search by cell and heading knows of a cell.
+struct HeadingCell {
+  double g;        ///< of the cheapest arrival that waits, or waited
+  StepMask taken;  ///< steps out of the cell that need no further arrival
+  MoveRules::KnownClearance clearance;
+  std::uint16_t stamp;
+  std::uint8_t in;  ///< step of that arrival
+  bool is_open;     ///< steps that no arrival may take are among `taken`
+};
+inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kHere, false};
+
+/// A node of the search: a cell, reached by a step.
+struct Arrival {
+  std::uint32_t cell;
+  std::uint32_t from;  ///< the arrival before
+  std::uint8_t in;     ///< the step that led here; kHere: linked to the start
+};
+
+struct HeadingMemory {
+  NodeStore<HeadingCell> cells;
+  OpenList open;
+  std::vector<Arrival> arrivals;
+  std::vector<double> lengths;  ///< of the ways to them, where costs are others
+};
+
+/// A* over (cell, step by which it is reached): complete where rules look at two legs, and optimal
+/// under them.
+///
+/// What follows a step depends on the step alone. So the cheapest arrival at a cell that may take a
+/// step takes it for good, and arrivals later on, none of them cheaper, take what is left:
+/// each step is judged, and each node opened, once at most. An arrival that has nothing left to
+/// take, or may take nothing that a cheaper one at the cell could not, is dropped.
+class HeadingSearch : GoalSearch {
+ public:
+  HeadingSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+                double best_cost, HeadingMemory& memory)
+      : GoalSearch(request, settings, lattice, best_cost, memory.open),
+        cells_(memory.cells),
+        arrivals_(memory.arrivals),
+        lengths_(memory.lengths) {}
+
+  Found run() {
+    begin();
+    Status status = Status::no_route;
+    while (!open_.empty()) {
+      const auto [f, g, index] = open_.pop();
+      if (index == kGoal) {
+        return with(route_to(goal_parent_, true), goal_g_, true, false);
+      }
+      HeadingCell& cell = cells_[arrivals_[index].cell];
+      if (nothing_left(cell, arrivals_[index])) {
+        continue;
+      }
+      if (watch_.spent(progress_.expanded) || memory_full()) {
+        status = ended();
+        break;
+      }
+      expand(index, g, cell);
+    }
+    if (fallback_ != kNone) {
+      return with(route_to(fallback_, false), fallback_g_, false, status != Status::no_route);
+    }
+    progress_.memory_full = memory_full();
+    Found none = without(status, lengths_prove());
+    none.result.message += "; searched by cell and heading";
+    return none;
+  }
+
+ private:
+  void begin() {
+    cells_.reset(lattice_.size());
+    open_.clear(quantum());
+    arrivals_.clear();
+    lengths_.clear();
+    for (const Lattice::Link& link : lattice_.links(start_)) {
+      const Vec3 there = lattice_.position(link.cell);
+      if (rules_.cell_blocked(link.cell) ||
+          (link.length > 0 && !rules_.any_leg_ok(request_.before_start(), start_, there))) {
+        continue;
+      }
+      at_start_ = link.length == 0;
+      cells_.at(lattice_.index(link.cell), kFreshCell);
+      push({lattice_.index(link.cell), kNone, kHere}, link.cell, there,
+           link_cost(start_, there, link.length), link.length);
+    }
+  }
+
+  void push(const Arrival& arrival, const Cell& c, const Vec3& at, double g, double length) {
+    ++progress_.generated;
+    open_.push(evaluation(g, c, at), g, std::uint32_t(arrivals_.size()));
+    arrivals_.push_back(arrival);
+    if (keeps_lengths()) {
+      lengths_.push_back(length);
+    }
+  }
+
+  bool nothing_left(const HeadingCell& cell, const Arrival& arrival) const {
+    return (rules_.after(arrival.in) & ~cell.taken) == 0 && cell.is_open &&
+           to_goal_.link_of(lattice_.cell(arrival.cell)) == nullptr;
+  }
+
+  /// Whether an arrival at the cell by a step can do nothing that another cannot, as cheaply.
+  bool is_needless(HeadingCell& cell, const Cell& c, int step, double g) const {
+    const StepMask left = rules_.after(step) & ~cell.taken;
+    const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 &&
+                          !rules_.is_first(cell.in) && !rules_.looks_beyond_turns();
+    if ((left == 0 || by_other) && to_goal_.link_of(c) == nullptr) {
+      return true;
+    }
+    if (g < cell.g) {
+      cell.g = g;
+      cell.in = std::uint8_t(step);
+    }
+    return false;
+  }
+
+  void expand(std::uint32_t index, double g_here, HeadingCell& cell) {
+    const Arrival arrival = arrivals_[index];  // pushes move it
+    const Cell c = lattice_.cell(arrival.cell);
+    const Vec3 here = arrival.in == kHere && at_start_ ? start_ : lattice_.position(c);
+    const std::optional<Approach> from = before(arrival.in, here);
+    const double length_here = keeps_lengths() ? lengths_[index] : g_here;
+    ++progress_.expanded;
+    remember_nearest(here);
+    if (request_.trace != nullptr) {
+      request_.trace->add({TraceEvent::Kind::expanded, index,
+                           arrival.from == kNone ? -1 : std::int64_t(arrival.from), here,
+                           evaluation(g_here, c, here)});
+    }
+    try_goal(index, g_here, length_here, c, here, from);
+    if (!cell.is_open) {
+      cell.is_open = true;
+      cell.taken = ~steps_in(rules_.out_of(c));
+    }
+    // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
+    const bool judged_whole = rules_.is_first(arrival.in) && from;
+    const StepMask left = ~cell.taken;
+    rules_.count_turns(left, rules_.after(arrival.in));
+    for (StepMask open = left & rules_.after(arrival.in); open != 0; open &= open - 1) {
+      const int step = std::countr_zero(open);
+      const int d = direction_of(step);
+      const Cell o = offset(d);
+      const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
+      const Vec3 there = lattice_.position(to);
+      const double g = g_here + step_cost(d, here, there);
+      const double length = length_here + lattice_.step_length(d);
+      if (too_long(length, there) || too_dear(g, there)) {
+        continue;
+      }
+      const auto next = std::uint32_t(std::int64_t(arrival.cell) + lattice_.stride(d));
+      HeadingCell& successor = cells_.at(next, kFreshCell);
+      const bool is_free =
+          rules_.place_free(c, d, here, there, cell.clearance, successor.clearance);
+      if (is_free && (!rules_.admits(from, here, there) ||
+                      (judged_whole && !rules_.any_leg_ok(from, here, there)))) {
+        continue;  // another arrival may take it
+      }
+      cell.taken |= StepMask{1} << step;
+      if (is_free && !is_needless(successor, to, step, g)) {
+        push({next, index, std::uint8_t(step)}, to, there, g, length);
+      }
+    }
+  }
+
+  /// Of this search, not of what the pool's memory has grown to.
+  bool memory_full() const {
+    return lattice_.size() * sizeof(HeadingCell) + arrivals_.size() * sizeof(Arrival) +
+               open_.size() * sizeof(OpenList::Entry) >
+           settings_.max_bytes;
+  }
+
+  Route route_to(std::uint32_t last, bool at_goal) const {
+    Route route;
+    for (std::uint32_t index = last; index != kNone; index = arrivals_[index].from) {
+      route.push_back(lattice_.position(lattice_.cell(arrivals_[index].cell)));
+    }
+    if (at_start_) {
+      route.pop_back();
+    }
+    route.push_back(start_);
+    std::reverse(route.begin(), route.end());
+    if (at_goal) {
+      const Cell c = lattice_.cell(arrivals_[last].cell);
+      end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
+    }
+    return route;
+  }
+
+  NodeStore<HeadingCell>& cells_;
+  std::vector<Arrival>& arrivals_;
+  std::vector<double>& lengths_;
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "altiplan/kit/lattice/lattice_search.hpp"
+#include "altiplan/params.hpp"
+
+namespace altiplan::kit {
+
+/// The parameters that searches over the cells of a lattice have in common.
+struct SearchParams {
+  enum class Moves { automatic, exact, cells };
+
+  SearchSettings search;
+  int neighbours = 26;
+  Moves moves = Moves::automatic;
+  int max_memory_mb = 4096;
+
+  void describe(Fields& f) {
+    describe_lattice(f);
+    f("heuristic", search.heuristic,
+      {{"octile", Heuristic::octile},
+       {"euclidean", Heuristic::euclidean},
+       {"manhattan", Heuristic::manhattan},
+       {"zero", Heuristic::zero}})
+        .doc(
+            "estimate of the way to go: octile is the length on an empty lattice; manhattan is "
+            "not admissible with 26 neighbours, and octile with 6");
+    f("weight_g", search.weight_g)
+        .range(0, 1)
+        .doc("weight of the travelled cost in f, paper 002 eq. (10)");
+    f("weight_h", search.weight_h).range(0, 1).doc("weight of the heuristic in f");
+    f.check(search.weight_g + search.weight_h > 0, "weight_g and weight_h must not both be 0");
+    f.check(is_weight(search.weight_g) && is_weight(search.weight_h),
+            "weight_g and weight_h must each be 0 or at least 1e-9");
+    f("state", search.state,
+      {{"auto", SearchState::automatic},
+       {"parent", SearchState::parent},
+       {"cell_and_heading", SearchState::cell_and_heading}})
+        .doc(
+            "what limits on turns are held against: the one parent of a cell, which can lose a "
+            "route, or every direction in which it is reached; auto: the second where the first "
+            "finds nothing");
+    describe_costs(f);
+    f("anytime", search.anytime)
+        .doc("a quick route first, then better ones, the last as good as without this");
+    describe_memory(f);
+  }
+
+  void describe_lattice(Fields& f) {
+    f("cell_m", search.cell_m)
+        .unit("m")
+        .at_least(0.001)
+        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+    f("neighbours", neighbours)
+        .doc("26 (8 in level flight) or 6 (4 in level flight) neighbours of a cell")
+        .range(6, 26);
+    f.check(neighbours == 6 || neighbours == 26, "neighbours must be 6 or 26");
+    f("corner", search.corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
+        .doc(
+            "with moves by cells: a step needs its two cells free (any), or every cell of the box "
+            "that it spans (free_box)");
+    f("moves", moves,
+      {{"auto", Moves::automatic}, {"exact", Moves::exact}, {"cells", Moves::cells}})
+        .doc(
+            "how a move is held to the obstacles: the straight leg against the exact world, or "
+            "the cells it leads through; auto: cells where every layer has cells of its own and "
+            "the vehicle needs no clearance, else exact");
+  }
+
+  void describe_memory(Fields& f) {
+    f("max_memory_mb", max_memory_mb)
+        .unit("MB")
+        .at_least(1)
+        .doc("a lattice that needs more is refused before anything is allocated");
+  }
+
+  void describe_costs(Fields& f) {
+    CostWeights& cost = search.cost;
+    f("weight_length", cost.length)
+        .range(0, 1000)
+        .doc("weight w_L of the length in the cost, paper 002 eq. (11)");
+    f("weight_altitude", cost.altitude)
+        .range(0, 1000)
+        .doc("weight w_C of the altitude above sea, eq. (13)");
+    f("weight_threat", cost.threat)
+        .range(0, 1000)
+        .doc("weight w_T of 10 / distance on the plane to a threat's centre, summed, eq. (14)");
+    f("accumulate", cost.accumulate, {{"length", Accumulate::length}, {"none", Accumulate::none}})
+        .doc(
+            "altitude and threats count along the whole route (length), or as printed only where "
+            "a node is (none): they then order the search, and choose between no two ways");
+    f("length_unit_m", cost.unit_m)
+        .unit("m")
+        .range(0.001, 1e6)
+        .doc("unit of lengths, altitudes and distances in the cost");
+    f.check(is_weight(cost.length) && is_weight(cost.altitude) && is_weight(cost.threat),
+            "weight_length, weight_altitude and weight_threat must each be 0 or at least 1e-9");
+    f.check(cost.length + cost.altitude + cost.threat > 0,
+            "weight_length, weight_altitude and weight_threat must not all be 0");
+  }
+
+  /// What a planner that is made with them searches by.
+  SearchSettings settings() const {
+    SearchSettings settings = search;
+    settings.neighbours = neighbours == 26 ? Neighbourhood::all : Neighbourhood::faces;
+    if (neighbours == 6 && search.heuristic == Heuristic::manhattan) {
+      // On an empty lattice of faces the two are one; beside it the goal's last leg is straight.
+      settings.heuristic = Heuristic::octile;
+    }
+    return settings;
+  }
+  SearchSettings settings(const Request& request) const {
+    SearchSettings settings = this->settings();
+    settings.moves = move_check(request);
+    settings.max_bytes = std::min(max_bytes(), request.budget.max_memory_bytes);
+    return settings;
+  }
+  std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
+
+  Traits traits() const {
+    const SearchSettings s = settings();
+    const bool shortest = s.cost.length_alone() && s.cost.length > 0;
+    Traits traits;
+    traits.complete = true;
+    traits.optimal = shortest && s.weight_g > 0 && s.stretch() * s.weight_h <= s.weight_g &&
+                     s.costs == StepCosts::Scale::fine;
+    traits.anytime = s.anytime && shortest;
+    return traits;
+  }
+
+ private:
+  /// Sums of costs keep a digit of the least of them.
+  static bool is_weight(double weight) { return weight == 0 || weight >= 1e-9; }
+
+  MoveCheck move_check(const Request& request) const {
+    if (moves != Moves::automatic) {
+      return moves == Moves::exact ? MoveCheck::exact : MoveCheck::cells;
+    }
+    const bool all_cells =
+        std::all_of(request.world->layers().begin(), request.world->layers().end(),
+                    [](const Layer& layer) { return layer.environment->native_grid(); });
+    const bool no_clearance = request.limits.min_clearance <= 0 && request.vehicle.radius_m <= 0;
+    return all_cells && no_clearance && !request.world->layers().empty() ? MoveCheck::cells
+                                                                         : MoveCheck::exact;
+  }
+};
+
+/// A search that takes one parent a cell, and one by (cell, heading) where the settings ask for it,
+/// or where the first found nothing and another parent might have. Both are called with a request;
+/// the second keeps `heading_bytes` a cell.
+template <class ByParent, class ByHeading>
+Found search_by_state(const SearchSettings& settings, const Request& request, double best_cost,
+                      std::size_t heading_bytes, const ByParent& by_parent,
+                      const ByHeading& by_heading) {
+  const bool looks_back = request.limits.turns() || !request.constraints.empty();
+  if (settings.state == SearchState::cell_and_heading && looks_back) {
+    return by_heading(request);
+  }
+  Found found = by_parent(request);
+  if (settings.state == SearchState::parent || found.result.status != Status::no_route ||
+      !found.parent_mattered || best_cost < kInfinity) {
+    return found;
+  }
+  const auto cells = std::size_t(found.result.counters.back().value);
+  if (cells * heading_bytes > settings.max_bytes) {
+    found.result.message += "; the memory allowed is too little for a search by cell and heading";
+    return found;
+  }
+  Found second = by_heading(after(request, found.result.counters));
+  add(second.result.counters, found.result.counters);
+  second.result.message += ", after one parent a cell led nowhere";
+  return second;
+}
+}  // namespace altiplan::kit

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/any_angle/any_angle_planner.hpp"
+
+#include <algorithm>
+
+#include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+/// Whether a leg between two cells may be refused for another reason than what lies below and
+/// beside it: then a cell may be out of reach from one parent alone.
+bool legs_differ(const Request& request) {
+  const Limits& limits = request.limits;
+  return limits.turns() || !request.constraints.empty() || limits.max_climb < kPi / 2 ||
+         limits.min_leg > 0 || limits.max_leg < kInfinity || limits.max_route_length < kInfinity;
+}
+
+PlanResult result_of(AnyAngleSearch::Result found, const Request& request, const Lattice& lattice,
+                     const MoveRules& rules) {
+  PlanResult result;
+  if (found.status == Status::solved) {
+    result = solved(std::move(found.route), found.progress, lattice, rules);
+  } else {
+    result.status = found.status;
+    result.message = explanation(found.status, found.progress, request, lattice, rules);
+    result.counters = counters(found.progress, lattice, rules);
+  }
+  result.budget_hit = found.budget_hit;
+  result.counters.insert(result.counters.end(), found.more.begin(), found.more.end());
+  return result;
+}
+}  // namespace
+
+PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
+  const Lattice lattice(request, params_.cell_m, Neighbourhood::all,
+                        {params_.max_bytes(), bytes_per_cell_});
+  if (auto refused = beyond_budget(lattice, bytes_per_cell_, request.budget)) {
+    return *std::move(refused);
+  }
+  if (!BrickIndex(lattice.spec().counts).fits()) {
+    throw ParameterError("cell_m",
+                         "the axes of the lattice, each rounded up to a power of two, come "
+                         "to more than 2^31 cells: choose larger cells or a smaller volume");
+  }
+  MoveRules rules(request, lattice, MoveCheck::cells, CornerRule::free_box);
+  PlanResult result;
+  {
+    const auto memory = memory_.take();
+    Task task{request, lattice, rules, *memory, {}};
+    task.settings.angles = params_.angles();
+    task.settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
+    result = result_of(search(task), request, lattice, rules);
+  }
+  if (result.status == Status::solved && params_.angle_rule == AnyAngleParams::Angles::printed) {
+    if (const CheckResult judged = check(result.route, request); !judged.ok()) {
+      result.status = result.budget_hit ? Status::timed_out : Status::no_route;
+      result.route.clear();
+      result.message =
+          "the rule as printed gave a route that breaks one: " + judged.violations.front().message;
+      result.counters.push_back({"routes_refused", 1});
+    }
+    return result;
+  }
+  if (result.status != Status::no_route) {
+    return result;
+  }
+  result.proved = looks_everywhere() && !legs_differ(request);
+  const bool again = params_.angle_rule == AnyAngleParams::Angles::complete && !result.proved;
+  return again ? by_heading(request, lattice.size(), result) : result;
+}
+
+PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells,
+                                       const PlanResult& found) const {
+  SearchSettings settings;
+  settings.cell_m = params_.cell_m;
+  settings.corner = CornerRule::any;  // a step that touches edges keeps the rules too
+  settings.moves = MoveCheck::cells;
+  settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
+  constexpr std::size_t kBytes = sizeof(HeadingCell) + 1;
+  if (cells * kBytes > settings.max_bytes) {
+    PlanResult result = found;
+    result.message += "; the memory allowed is too little for a search by cell and heading";
+    return result;
+  }
+  const Request rest = after(request, found.counters);
+  const Lattice lattice(rest, settings.cell_m, settings.neighbours, {settings.max_bytes, kBytes});
+  const auto memory = heading_memory_.take();
+  PlanResult second = HeadingSearch(rest, settings, lattice, kInfinity, *memory).run().result;
+  add(second.counters, found.counters);
+  second.message += ", after straight legs between cells led nowhere";
+  return second;
+}
+
+AnyAngleSearch::Result EveryCellPlanner::search(Task& task) const {
+  task.settings.sight = sight_;
+  const AnyAngleNodes nodes = AnyAngleNodes::every_cell(*task.rules.grid());
+  return AnyAngleSearch(task.request, task.lattice, task.rules, nodes, task.settings, task.memory)
+      .run();
+}
+}  // namespace altiplan::kit

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/formats/mission_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "altiplan/kit/formats/input_file.hpp"
+#include "mission_parts.hpp"
+#include "text_file.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+constexpr double kMaxAltitude = 100'000;
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+/// The kind of item that a MAV_CMD is, none for a command that is no place on the way.
+/// DO_LAND_START (189) carries a place, but marks where landing begins and is not flown to.
+std::optional<MissionItem::Kind> kind_of(int command) {
+  using Kind = MissionItem::Kind;
+  switch (command) {
+    case 16:  // NAV_WAYPOINT
+    case 82:  // NAV_SPLINE_WAYPOINT
+      return Kind::waypoint;
+    case 17:  // NAV_LOITER_UNLIM
+    case 18:  // NAV_LOITER_TURNS
+    case 19:  // NAV_LOITER_TIME
+    case 31:  // NAV_LOITER_TO_ALT
+      return Kind::loiter;
+    case 22:  // NAV_TAKEOFF
+    case 84:  // NAV_VTOL_TAKEOFF
+      return Kind::takeoff;
+    case 21:  // NAV_LAND
+    case 85:  // NAV_VTOL_LAND
+      return Kind::land;
+    default:
+      return std::nullopt;
+  }
+}
+
+MissionFile read_json_mission(const std::string& file, const std::string& text) {
+  const nlohmann::json json = parse_json(file, text);
+  try {
+    return json.is_object() && json.value("type", nlohmann::json()) == "FeatureCollection"
+               ? read_geojson_route(json)
+               : read_qgc_plan(json);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
+}
+
+bool is_nowhere(double lon, double lat) {
+  return (lon == 0 && lat == 0) || (std::isnan(lon) && std::isnan(lat));
+}
+}  // namespace
+
+void expect_position(double lon, double lat) {
+  if (std::isfinite(lon) && std::isfinite(lat) && std::abs(lon) <= 180 && std::abs(lat) <= 90) {
+    return;
+  }
+  const bool swapped = std::abs(lat) > 90 && std::abs(lat) <= 180 && std::abs(lon) <= 90;
+  throw Error("expected longitude in [-180, 180] and latitude in [-90, 90], found longitude " +
+              number_text(lon) + " and latitude " + number_text(lat) +
+              (swapped ? ": are the axes swapped?" : ""));
+}
+
+void expect_altitude(double altitude_m) {
+  if (!(std::abs(altitude_m) <= kMaxAltitude)) {
+    throw Error("expected an altitude within 100 km of its reference, found " +
+                number_text(altitude_m) + " m");
+  }
+}
+
+AltitudeFrame frame_of(int mav_frame) {
+  switch (mav_frame) {
+    case 0:  // GLOBAL, and its form with whole numbers
+    case 5:
+      return AltitudeFrame::sea;
+    case 3:  // GLOBAL_RELATIVE_ALT
+    case 6:
+      return AltitudeFrame::home;
+    case 10:  // GLOBAL_TERRAIN_ALT
+    case 11:
+      return AltitudeFrame::ground;
+    default:
+      throw Error("expected the frame 0 (sea level), 3 (relative to home) or 10 (ground), found " +
+                  std::to_string(mav_frame));
+  }
+}
+
+void check_zone(MissionZone& zone) {
+  if (zone.polygon.outline.empty()) {
+    expect_position(zone.centre[0], zone.centre[1]);
+    if (!(zone.radius_m > 0 && zone.radius_m <= 1e7)) {
+      throw Error("expected a radius above 0 m, found " + number_text(zone.radius_m));
+    }
+    return;
+  }
+  zone.polygon.outline = without_repeats(zone.polygon.outline);
+  for (Ring& hole : zone.polygon.holes) {
+    hole = without_repeats(hole);
+  }
+  if (const std::string problem = polygon_problem(zone.polygon); !problem.empty()) {
+    throw Error(problem);
+  }
+}
+
+MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kind) const {
+  MissionPoint at{command.lon, command.lat, command.altitude_m, frame_of(command.frame)};
+  if (is_nowhere(at.lon, at.lat)) {
+    // Autopilots take off, loiter and land where the vehicle is.
+    if (kind == MissionItem::Kind::waypoint) {
+      throw Error("a waypoint needs a position, found longitude " + number_text(at.lon) +
+                  " and latitude " + number_text(at.lat));
+    }
+    const MissionPoint* here = !mission_.items.empty() ? &mission_.items.back().at
+                               : mission_.home         ? &*mission_.home
+                                                       : nullptr;
+    if (here == nullptr) {
+      throw Error("begins where the vehicle is, and the file has no home position");
+    }
+    at.lon = here->lon;
+    at.lat = here->lat;
+  }
+  expect_position(at.lon, at.lat);
+  expect_altitude(at.altitude_m);
+  return at;
+}
+
+void CommandList::add(const Command& command) {
+  const auto kind = kind_of(command.number);
+  if (!kind) {
+    ++skipped_;
+    skipped_numbers_.insert(command.number);
+    return;
+  }
+  mission_.items.push_back(
+      {*kind, place_of(command, *kind), std::max(0.0, command.acceptance_m), command.place});
+}
+
+void CommandList::finish() {
+  if (skipped_ > 0) {
+    std::string numbers;
+    for (const int number : skipped_numbers_) {
+      numbers += (numbers.empty() ? "" : ", ") + std::to_string(number);
+    }
+    mission_.notes.push_back(std::to_string(skipped_) +
+                             " commands that are no places on the way skipped (" + numbers + ")");
+  }
+  if (taken_ > 0) {
+    mission_.notes.push_back(std::to_string(taken_) + " commands taken out of survey items");
+  }
+  if (complex_ > 0) {
+    mission_.notes.push_back(std::to_string(complex_) +
+                             " complex items skipped: they carry no waypoints");
+  }
+}
+
+bool is_mission_file(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  return ending == ".plan" || ending == ".waypoints" || ending == ".txt" || ending == ".kml";
+}
+
+MissionFile read_mission(const std::string& file) { return read_mission(file, read_file(file)); }
+
+MissionFile read_mission(const std::string& file, const std::string& text) {
+  const std::string mark = "\xEF\xBB\xBF";  // some editors begin UTF-8 with it
+  const std::string body = text.starts_with(mark) ? text.substr(mark.size()) : text;
+  const std::size_t first = body.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) {
+    throw Error(file + ": is empty, expected a mission (.plan, QGC WPL 110, KML, GPX, GeoJSON)");
+  }
+  if (body[first] == '{' || body[first] == '[') {
+    return read_json_mission(file, body);
+  }
+  if (body[first] == '<') {
+    return read_kml_or_gpx(file, body);
+  }
+  return read_waypoints(file, body);
+}
+}  // namespace altiplan::kit

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/lattice/lattice.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+/// Slack for "this centre is still inside", in cells: what rounding can do, and the judge's
+/// tolerance lets pass.
+double rounding(double edge) { return std::min(1e-9, kLengthTolerance / 2 / edge); }
+
+/// Where centres may lie: the volume, and the altitude bands over sea.
+Box room(const Request& request) {
+  Box box = request.volume;
+  for (const AltitudeBand& band : request.limits.altitude) {
+    if (band.datum == AltitudeBand::Datum::sea) {
+      box.min.z() = std::max(box.min.z(), band.min);
+      box.max.z() = std::min(box.max.z(), band.max);
+    }
+  }
+  return box;
+}
+}  // namespace
+
+Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neighbourhood,
+                 const LatticeMemory& memory)
+    : level_m_(request.level_m), neighbourhood_(neighbourhood) {
+  const Box box = room(request);
+  const std::optional<GridSpec> native = request.world->native_grid();
+  spec_.cell = native ? native->cell : cell_m;
+  const Vec3 anchor = native ? native->centre({0, 0, 0}) : request.start.position;
+  double total = 1;
+  std::array<double, 3> counts{1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = spec_.cell[axis];
+    double first = std::ceil((box.min[axis] - anchor[axis]) / edge - rounding(edge));
+    double last = std::floor((box.max[axis] - anchor[axis]) / edge + rounding(edge));
+    if (axis == 2 && level_m_) {
+      first = last = native ? std::floor((*level_m_ - anchor.z()) / edge + 0.5) : 0;
+    }
+    if (!(last >= first)) {
+      throw ParameterError("cell_m", "no cell of " + std::to_string(edge) +
+                                         " m has its centre within the volume on axis " +
+                                         "xyz"[axis]);
+    }
+    spec_.origin[axis] = anchor[axis] + (first - 0.5) * edge;
+    counts[std::size_t(axis)] = last - first + 1;
+    total *= counts[std::size_t(axis)];
+  }
+  const double bytes = total * double(memory.bytes_per_cell);
+  if (!(bytes <= double(memory.max_bytes)) || total > 4e9) {
+    const double mb = 1.0 / (1024 * 1024);
+    const auto whole = [](double value) { return std::to_string(std::int64_t(value)); };
+    const double allowed_mb = std::min(double(memory.max_bytes) * mb, 1e15);
+    const std::string allowed = allowed_mb < 1 ? "less than 1" : whole(allowed_mb);
+    throw ParameterError(
+        "cell_m",
+        "the lattice would have " +
+            (total < 1e18 ? whole(counts[0]) + " x " + whole(counts[1]) + " x " + whole(counts[2])
+                          : std::string("more than 1e18")) +
+            " cells, which need " +
+            (total < 1e18 ? whole(std::ceil(bytes * mb)) : std::string("far too many")) +
+            " MB; allowed are " + allowed +
+            " MB and 4e9 cells: choose larger cells or a smaller volume");
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    spec_.counts[axis] = int(counts[axis]);
+  }
+  numbers_ = CellIndex(spec_.counts);
+  std::array<double, 8> along{};  // by the axes, as bits, that a step leads along
+  for (int set = 0; set < 8; ++set) {
+    along[std::size_t(set)] = step(direction(set & 1, set >> 1 & 1, set >> 2 & 1)).norm();
+  }
+  for (int d = 0; d < kDirections; ++d) {
+    const Cell o = offset(d);
+    lengths_[std::size_t(d)] = along[std::size_t((o[0] & 1) | (o[1] & 1) << 1 | (o[2] & 1) << 2)];
+    strides_[std::size_t(d)] = numbers_.stride(d);
+    const int moved = (o[0] != 0) + (o[1] != 0) + (o[2] != 0);
+    const bool wanted = neighbourhood_ == Neighbourhood::all ? moved > 0 : moved == 1;
+    if (wanted && (o[2] == 0 || !level_m_)) {
+      steps_ |= DirectionMask{1} << d;
+    }
+  }
+}
+
+DirectionMask Lattice::inside(const Cell& c) const {
+  // Directions with a component of -1 along each axis; those with +1 are the same bits, shifted.
+  constexpr std::array<DirectionMask, 3> kLow = {0x1249249, 0x01C0E07, 0x00001FF};
+  constexpr std::array<int, 3> kShift = {2, 6, 18};
+  DirectionMask outside = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    outside |= c[axis] == 0 ? kLow[axis] : 0;
+    outside |= c[axis] == spec_.counts[axis] - 1 ? kLow[axis] << kShift[axis] : 0;
+  }
+  return ~outside & ((DirectionMask{1} << kDirections) - 1);
+}
+
+double Lattice::distance(const Cell& a, const Cell& b) const {
+  const auto apart = [&](std::size_t axis) { return double(std::abs(a[axis] - b[axis])); };
+  const std::array<double, 3> n = {apart(0), apart(1), apart(2)};
+  if (neighbourhood_ == Neighbourhood::faces) {
+    return n[0] * spec_.cell.x() + n[1] * spec_.cell.y() + n[2] * spec_.cell.z();
+  }
+  std::size_t most = 0;
+  std::size_t middle = 1;
+  std::size_t least = 2;
+  if (n[most] < n[middle]) {
+    std::swap(most, middle);
+  }
+  if (n[middle] < n[least]) {
+    std::swap(middle, least);
+  }
+  if (n[most] < n[middle]) {
+    std::swap(most, middle);
+  }
+  const auto along = [&](std::size_t set) {  // axes as bits: any direction along them
+    return lengths_[std::size_t(direction(int(set & 1), int(set >> 1 & 1), int(set >> 2 & 1)))];
+  };
+  const std::size_t two = (std::size_t{1} << most) | (std::size_t{1} << middle);
+  return n[least] * along(7) + (n[middle] - n[least]) * along(two) +
+         (n[most] - n[middle]) * along(std::size_t{1} << most);
+}
+
+Lattice::Link Lattice::nearest(const Vec3& p) const {
+  Cell c{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = std::size_t(axis);
+    const double at = std::floor((p[axis] - spec_.origin[axis]) / spec_.cell[axis]);
+    c[a] = int(std::clamp(at, 0.0, spec_.counts[a] - 1.0));  // level flight: the only layer
+  }
+  Vec3 way = position(c) - p;
+  way.z() = level_m_ ? 0 : way.z();
+  const bool centred = (way.cwiseAbs().array() <= kLengthTolerance / 2).all();
+  return {c, centred ? 0 : way.norm()};
+}
+
+std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
+  if (const Link own = nearest(p); own.length == 0) {
+    return {own};
+  }
+  Cell low{};
+  Cell high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = std::size_t(axis);
+    if (axis == 2 && level_m_) {
+      low[a] = high[a] = 0;
+      continue;
+    }
+    const double at = (p[axis] - spec_.origin[axis]) / spec_.cell[axis] - 0.5;
+    // Level with a centre: the cells on both sides of it.
+    const bool level = std::abs(at - std::round(at)) * spec_.cell[axis] <= kLengthTolerance / 2;
+    const double clamped = std::clamp(at, -2.0, spec_.counts[a] + 1.0);
+    low[a] = level ? int(std::round(clamped)) - 1 : int(std::floor(clamped));
+    high[a] = low[a] + (level ? 2 : 1);
+  }
+  std::vector<Link> found;
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const Cell c = {i, j, k};
+        if (spec_.holds(c)) {
+          found.push_back({c, (position(c) - p).norm()});
+        }
+      }
+    }
+  }
+  return found;
+}
+
+std::optional<PlanResult> beyond_budget(const Lattice& lattice, std::size_t bytes_per_cell,
+                                        const Budget& budget) {
+  const std::size_t bytes = lattice.size() * bytes_per_cell;
+  if (bytes <= budget.max_memory_bytes) {
+    return std::nullopt;
+  }
+  const auto mb = [](std::size_t count) { return std::to_string(count >> 20); };
+  PlanResult result;
+  result.status = Status::timed_out;
+  result.budget_hit = true;
+  result.message = "the lattice has " + std::to_string(lattice.size()) + " cells, which need " +
+                   mb(bytes + (1 << 20) - 1) + " MiB; the budget is " +
+                   mb(budget.max_memory_bytes) + " MiB";
+  result.counters = {{"expanded", 0}};
+  return result;
+}
+}  // namespace altiplan::kit

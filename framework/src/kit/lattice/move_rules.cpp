@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/lattice/move_rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/check.hpp"
+#include "altiplan/kit/lattice/line_of_sight.hpp"
+
+namespace altiplan::kit {
+
+namespace {
+bool length_kept(double length, const Limits& limits) {
+  return length >= limits.min_leg - kLengthTolerance && length <= limits.max_leg + kLengthTolerance;
+}
+
+bool climb_kept(const Vec3& leg, const Limits& limits) {
+  return climb_angle(leg) <= limits.max_climb + kAngleTolerance;
+}
+
+/// What the cosine of an angle tells of it and a limit: a product of two vectors, and of their
+/// lengths, against the limit's cosine.
+enum class Told { kept, broken, nothing };
+Told by_cosine(double dot, double lengths, double limit_cosine) {
+  const double over = dot - limit_cosine * lengths;
+  return std::abs(over) <= 1e-9 * lengths ? Told::nothing : over > 0 ? Told::kept : Told::broken;
+}
+
+bool has_ground_rules(const Request& request) {
+  const auto& bands = request.limits.altitude;
+  return request.world->has_ground() ||
+         std::any_of(bands.begin(), bands.end(), [](const AltitudeBand& band) {
+           return band.datum == AltitudeBand::Datum::ground;
+         });
+}
+}  // namespace
+
+bool MoveRules::cells_decide(const Request& request) {
+  return !has_ground_rules(request) && request.constraints.empty() && !request.limits.turns() &&
+         request.limits.max_route_length == kInfinity;
+}
+
+std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice& lattice) {
+  GridSpec spec = lattice.spec();
+  spec.inflation = std::max(request.limits.min_clearance, request.vehicle.radius_m);
+  const auto& layers = request.world->layers();
+  const bool own_cells = std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
+    return layer.environment->native_grid().has_value();
+  });
+  spec.rule = own_cells && !layers.empty() && spec.inflation == 0 ? GridSpec::Rule::native
+                                                                  : GridSpec::Rule::touched;
+  return request.world->voxels(spec, request.budget);
+}
+
+MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck check,
+                     CornerRule corner)
+    : request_(request),
+      lattice_(lattice),
+      corner_(corner),
+      needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
+      spare_(needed_ + request.world->slack() + kLengthTolerance),
+      asks_world_(check == MoveCheck::exact) {
+  const Limits& limits = request.limits;
+  const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
+  cosines_ = {cosine(limits.max_climb), cosine(limits.max_turn_horizontal),
+              cosine(limits.max_turn_space)};
+  if (check == MoveCheck::cells) {
+    grid_ = occupancy(request, lattice);
+  }
+  has_ground_rules_ = has_ground_rules(request);
+  if (asks_world_) {
+    sort_layers();
+    wants_clearance_ = !obstacles_.layers().empty();
+  }
+  if (has_ground_rules_) {
+    find_gaps();
+    ground_.emplace(lattice, *request.world);
+  }
+  for (const NamedConstraint& named : request.constraints) {
+    constraints_.push_back(named);
+  }
+  steps_ = directions_kept();
+  headings_last_ = request.headings_last();
+  find_turns();
+}
+
+void MoveRules::find_turns() {
+  const bool limited = request_.limits.turns();
+  for (int in = 0; in < (headings_last_ ? kSteps : kDirections); ++in) {
+    for (int d = 0; d < kDirections; ++d) {
+      const int out = step_after(in, d);
+      const Approach before(-lattice_.step(direction_of(in)), heading_vector(in));
+      if (in == kHere || d == kHere || !limited ||
+          turn_ok(before, Vec3::Zero(), lattice_.step(d), request_)) {
+        after_[std::size_t(in)] |= StepMask{1} << out;
+        before_[std::size_t(out)] |= StepMask{1} << in;
+      }
+    }
+  }
+}
+
+Vec3 MoveRules::heading_vector(int step) const {
+  const int heading = heading_of(step);
+  if (heading < 0) {
+    return Vec3::Zero();
+  }
+  const Cell o = heading_offset(heading);
+  return lattice_.spec().cell.cwiseProduct(Vec3(o[0], o[1], 0));
+}
+
+std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_start) const {
+  const std::optional<Approach> first = request_.before_start();
+  if (step == kHere) {
+    return at_start ? first : std::optional(onward(first, request_.start.position));
+  }
+  const Vec3 from = here - lattice_.step(direction_of(step));
+  if (heading_of(step) >= 0) {
+    return Approach(from, heading_vector(step));
+  }
+  // Straight up or down from the start, or from the cell that a link led to, in the same column.
+  return Approach(from, onward(first, request_.start.position).heading_at(here));
+}
+
+void MoveRules::sort_layers() {
+  obstacles_ = *request_.world;
+  for (const Layer& layer : request_.world->layers()) {
+    if (layer.environment->has_ground() && layer.environment->ground_alone()) {
+      obstacles_ = obstacles_.without(layer.id);
+      bare_ground_ = bare_ground_.with(layer);
+    }
+  }
+}
+
+void MoveRules::find_gaps() {
+  constexpr double kRounding = 1e-5;  // of what StepGround has learned, in metres
+  double slope = 0;
+  for (const Layer& layer : bare_ground_.layers()) {
+    // What is below this blocks the leg itself.
+    needed_gap_ = 0;
+    too_low_ = by_clearance;
+    refused_layer_ = layer.id;
+    if (needed_ > 0) {
+      slope = std::max(slope, layer.environment->ground_slope(request_.volume.grown(needed_)));
+    }
+  }
+  const bool other_ground =
+      std::any_of(obstacles_.layers().begin(), obstacles_.layers().end(),
+                  [](const Layer& layer) { return layer.environment->has_ground(); });
+  needed_gap_ = other_ground ? -kInfinity : needed_gap_;
+  certain_gap_ = needed_ > 0 ? needed_ * std::hypot(1, slope) : 0;
+  const auto held_to = [&](double gap, Rule rule) {
+    too_low_ = gap >= needed_gap_ ? rule : too_low_;
+    needed_gap_ = std::max(needed_gap_, gap);
+    certain_gap_ = std::max(certain_gap_, gap);
+  };
+  for (const AltitudeBand& band : request_.limits.altitude) {
+    if (band.datum == AltitudeBand::Datum::ground) {
+      held_to(band.min, by_altitude);
+      has_ceiling_over_ground_ = has_ceiling_over_ground_ || band.max < kInfinity;
+    }
+  }
+  if (request_.limits.min_ground_clearance) {
+    held_to(*request_.limits.min_ground_clearance, by_ground);
+  }
+  needed_gap_ -= kLengthTolerance + kRounding;
+  certain_gap_ += kRounding;
+}
+
+DirectionMask MoveRules::directions_kept() {
+  const Limits& limits = request_.limits;
+  DirectionMask kept = 0;
+  int climb = 0;
+  int leg = 0;
+  for (int d = 0; d < kDirections; ++d) {
+    if ((lattice_.steps() >> d & 1) == 0) {
+      continue;
+    }
+    const bool keeps_climb = climb_kept(lattice_.step(d), limits);
+    const bool keeps_length = length_kept(lattice_.step_length(d), limits);
+    climb += !keeps_climb;
+    leg += !keeps_length;
+    kept |= DirectionMask(keeps_climb && keeps_length) << d;
+  }
+  const auto sentence = [&](const char* rule, int count) {
+    return std::string(steps_refused_by_.empty() ? "" : ", ") + rule + " rules out " +
+           std::to_string(count) + " of " + std::to_string(__builtin_popcount(lattice_.steps())) +
+           " directions";
+  };
+  if (climb > 0) {
+    steps_refused_by_ += sentence("climb_angle", climb);
+  }
+  if (leg > 0) {
+    steps_refused_by_ += sentence("leg_length", leg);
+  }
+  return kept;
+}
+
+bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
+  const World& world = *request_.world;
+  const Limits& limits = request_.limits;
+  if (!world.ground_below(a, b)) {
+    ++refused_[by_no_ground];
+    return false;
+  }
+  if (limits.min_ground_clearance && world.ground_gap(a, b, *limits.min_ground_clearance) <
+                                         *limits.min_ground_clearance - kLengthTolerance) {
+    ++refused_[by_ground];
+    return false;
+  }
+  for (const AltitudeBand& band : limits.altitude) {
+    if (band.datum == AltitudeBand::Datum::ground &&
+        (world.ground_gap(a, b, band.min) < band.min - kLengthTolerance ||
+         (band.max < kInfinity && world.ground_gap_max(a, b) > band.max + kLengthTolerance))) {
+      ++refused_[by_altitude];
+      return false;
+    }
+  }
+  return true;
+}
+
+bool MoveRules::admitted(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    const auto from = before ? std::optional(before->from) : std::nullopt;
+    if (!constraints_[i].admits({from, a, b})) {
+      ++refused_[by_constraint];
+      refused_constraint_ = request_.constraints[i].name;
+      admit_needed_parent_ =
+          admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b}));
+      return false;
+    }
+  }
+  return true;
+}
+
+bool MoveRules::keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b) {
+  const Cell o = offset(d);
+  const Cell to = {c[0] + o[0], c[1] + o[1], c[2]};
+  const auto ends_too_low = [&] {
+    return a.z() - ground_->height(c) < needed_gap_ || b.z() - ground_->height(to) < needed_gap_;
+  };
+  const double low = std::min(a.z(), b.z());
+  const double high = std::max(a.z(), b.z());
+  StepGround::Top& top = ground_->below(c, d);
+  if (low - top.most >= certain_gap_ && !has_ceiling_over_ground_) {
+    return true;
+  }
+  if (top.least < StepGround::kNone && !ends_too_low() && high - top.least >= needed_gap_ &&
+      low - top.most < certain_gap_) {
+    const double gap = request_.world->ground_gap(a, b, certain_gap_);
+    // Where it is enough, the gap that is told may be more than there is.
+    StepGround::learn(top, low, high, std::min(gap, certain_gap_), gap < certain_gap_);
+    if (gap >= certain_gap_ && !has_ceiling_over_ground_) {
+      return true;
+    }
+  }
+  if (top.least == StepGround::kNone) {
+    ++refused_[by_no_ground];
+    return false;
+  }
+  if (high - top.least < needed_gap_ || ends_too_low()) {
+    ++refused_[too_low_];
+    return false;
+  }
+  return keeps_ground(a, b) && (!asks_world_ || keeps_off(bare_ground_, a, b));
+}
+
+bool MoveRules::keeps_off(const World& layers, const Vec3& a, const Vec3& b) {
+  const Layer* layer = layers.blocked_by(a, b, needed_);
+  if (layer != nullptr) {
+    ++refused_[by_clearance];
+    refused_layer_ = layer->id;
+  }
+  return layer == nullptr;
+}
+
+void MoveRules::ask(KnownClearance& known, const Vec3& at) const {
+  if (!known.asked) {
+    known.asked = true;
+    // Rounded toward the obstacle.
+    known.least =
+        std::nextafterf(float(obstacles_.clearance(at)), -std::numeric_limits<float>::infinity());
+  }
+}
+
+bool MoveRules::keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                          KnownClearance& near_b) {
+  const double length = lattice_.step_length(d);
+  // Clearance is 1-Lipschitz: what is known of a tells of b, and two balls of half the leg around
+  // its ends hold all of it.
+  near_b.learn(near_a.least - length);
+  const double half = spare_ + length / 2;
+  if (near_a.least <= half) {
+    ask(near_a, a);
+    near_b.learn(near_a.least - length);
+  }
+  if (near_b.least <= spare_) {
+    ask(near_b, b);
+  }
+  return near_a.least > spare_ + length || std::min(near_a.least, near_b.least) > half ||
+         keeps_off(obstacles_, a, b);
+}
+
+bool MoveRules::place_free(const Cell& c, int d, const Vec3& a, const Vec3& b,
+                           KnownClearance& near_a, KnownClearance& near_b) {
+  ++moves_checked_;
+  return (!has_ground_rules_ || keeps_ground(c, d, a, b)) &&
+         (!wants_clearance_ || keeps_off(d, a, b, near_a, near_b));
+}
+
+bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const Cell& b) {
+  ++moves_checked_;
+  if (grid_ != nullptr && !line_of_sight(*grid_, a, b)) {
+    ++refused_[by_cells];
+    return false;
+  }
+  return keeps_rules(before, lattice_.position(a), lattice_.position(b));
+}
+
+bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+  return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
+         (constraints_.empty() || admitted(before, a, b)) &&
+         (!asks_world_ || keeps_off(*request_.world, a, b));
+}
+
+bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+                             double length) {
+  const Limits& limits = request_.limits;
+  if (!length_kept(length, limits)) {
+    ++refused_[by_leg_length];
+    return false;
+  }
+  const Vec3 leg = b - a;
+  if (limits.max_climb < kPi / 2) {
+    const Told told = by_cosine(leg.head<2>().norm(), length, cosines_.climb);
+    if (told == Told::broken || (told == Told::nothing && !climb_kept(leg, limits))) {
+      ++refused_[by_climb];
+      return false;
+    }
+  }
+  if (before && limits.turns() && !keeps_turn(*before, a, leg)) {
+    ++refused_[by_turn];
+    return false;
+  }
+  return true;
+}
+
+bool MoveRules::keeps_turn(const Approach& before, const Vec3& a, const Vec3& outgoing) const {
+  const Limits& limits = request_.limits;
+  const Vec3 incoming = a - before.from;
+  const double runs = incoming.head<2>().squaredNorm() * outgoing.head<2>().squaredNorm();
+  constexpr double kUpright = 1e-9;  // of the squares: beyond it a leg has a heading
+  const double all = incoming.squaredNorm() * outgoing.squaredNorm();
+  if (limits.min_turn_radius > 0 || runs < kUpright * all || !has_heading(incoming) ||
+      !has_heading(outgoing)) {
+    return turn_ok(before, a, a + outgoing, request_);
+  }
+  const Told flat =
+      limits.max_turn_horizontal >= kPi
+          ? Told::kept
+          : by_cosine(incoming.head<2>().dot(outgoing.head<2>()), std::sqrt(runs), cosines_.turn);
+  const Told space = limits.max_turn_space >= kPi
+                         ? Told::kept
+                         : by_cosine(incoming.dot(outgoing), std::sqrt(all), cosines_.turn_space);
+  return flat == Told::kept && space == Told::kept
+             ? true
+             : flat != Told::broken && space != Told::broken &&
+                   turn_ok(before, a, a + outgoing, request_);
+}
+
+bool MoveRules::any_leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+  ++moves_checked_;
+  if (leg_ok(before, a, b, request_)) {
+    return true;
+  }
+  if (!before || !leg_ok(std::nullopt, a, b, request_)) {
+    ++refused_[by_link];
+    const auto found = leg_violations(before, a, b, request_, 0);
+    refused_link_ = found.empty() ? "" : found.front().constraint;
+  } else {
+    ++refused_[by_turn];
+  }
+  return false;
+}
+
+std::string MoveRules::refusals() const {
+  const std::string names[rule_count] = {
+      "blocked cells",
+      "leg_length",
+      "climb_angle",
+      request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
+      "clearance to '" + refused_layer_ + "'",
+      "no ground below",
+      "ground_clearance",
+      "altitude",
+      refused_constraint_,
+      refused_link_ + " where start or goal join the lattice"};
+  std::vector<int> order;
+  for (int rule = 0; rule < rule_count; ++rule) {
+    if (refused_[std::size_t(rule)] > 0) {
+      order.push_back(rule);
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return refused_[std::size_t(a)] > refused_[std::size_t(b)];
+  });
+  std::string text;
+  for (const int rule : order) {
+    text += (text.empty() ? "" : ", ") + names[rule] + " (" +
+            std::to_string(refused_[std::size_t(rule)]) + ")";
+  }
+  return text.empty() || steps_refused_by_.empty() ? text + steps_refused_by_
+                                                   : text + "; " + steps_refused_by_;
+}
+}  // namespace altiplan::kit

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/lattice/step_costs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace altiplan::kit {
+namespace {
+
+// Whole numbers of which sqrt 2, or sqrt 2 and sqrt 3, times them are nearer to whole numbers than
+// for any smaller one (the coarsest is the customary ratio).
+constexpr std::uint32_t kSquares[] = {70, 408, 985, 2378, 5741, 33461, 195025, 1136689, 6625109};
+constexpr std::uint32_t kCubes[] = {41, 1463, 4109, 20586, 192070, 326491, 2151016};
+// Steps that are this exact need no finer ones; a search is quicker with coarser keys.
+constexpr double kFineEdge = 25000;
+
+/// Cost of an edge: one of the records where there are some, else any.
+double edge_cost(std::span<const std::uint32_t> records, StepCosts::Scale scale, double most) {
+  if (scale == StepCosts::Scale::ratio) {
+    return std::min(most, double(records.front()));
+  }
+  if (scale == StepCosts::Scale::fine) {
+    most = std::min(most, kFineEdge);
+  }
+  const auto beyond = std::upper_bound(records.begin(), records.end(), most);
+  return beyond == records.begin() ? std::floor(most) : double(*(beyond - 1));
+}
+}  // namespace
+
+StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
+  const double most_per_metre = kMost / longest_m;
+  const Vec3& cell = lattice.spec().cell;
+  const bool level = lattice.spec().counts[2] == 1;
+  const bool square = cell.x() == cell.y();
+  const bool cube = square && cell.y() == cell.z();
+  const double edge = level ? cell.head<2>().minCoeff() : cell.minCoeff();
+  if (cube || (level && square)) {
+    const std::span<const std::uint32_t> records =
+        level ? std::span<const std::uint32_t>(kSquares) : kCubes;
+    per_metre_ = edge_cost(records, scale, most_per_metre * edge) / edge;
+  } else {
+    per_metre_ = scale == Scale::ratio ? std::min(most_per_metre, 41 / edge) : most_per_metre;
+  }
+  for (int d = 0; d < kDirections; ++d) {
+    const double length = lattice.step_length(d);
+    costs_[std::size_t(d)] = of(length);
+    if ((lattice.steps() >> d & 1) != 0) {
+      const double error = std::abs(costs_[std::size_t(d)] / (length * per_metre_) - 1);
+      error_ = costs_[std::size_t(d)] > 0 ? std::max(error_, error) : kInfinity;
+    }
+  }
+  // Rounding takes at most half a unit of a step's cost and one of the bound's fall along it.
+  const double least_cost = edge * per_metre_;
+  bound_per_metre_ = per_metre_ * std::max(0.0, 1 - 2 / least_cost);
+  const bool faces = (lattice.steps() >> direction(1, 1, 0) & 1) == 0;
+  for (int set = 0; set < 8; ++set) {
+    const auto cost = [&](int axes) {
+      return costs_[std::size_t(direction(axes & 1, axes >> 1 & 1, axes >> 2 & 1))];
+    };
+    along_[std::size_t(set)] = faces ? cost(set & 1) + cost(set & 2) + cost(set & 4) : cost(set);
+  }
+  alike_ = along_[1] == along_[2] && along_[2] == along_[4] && along_[3] == along_[5] &&
+           along_[5] == along_[6];
+}
+
+StepCosts::Scale StepCosts::between(Scale wanted, const Lattice& lattice, const Vec3& start,
+                                    const Vec3& goal) {
+  const auto is_centre = [&](const Vec3& p) {
+    const std::vector<Lattice::Link> links = lattice.links(p);
+    return links.size() == 1 && links.front().length == 0;
+  };
+  const bool linked = !is_centre(start) || !is_centre(goal);
+  return wanted == Scale::fine && linked ? Scale::finest : wanted;
+}
+
+std::uint32_t StepCosts::apart_unlike(std::array<std::uint32_t, 3> n) const {
+  std::array<std::size_t, 3> axes = {0, 1, 2};
+  std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return n[a] > n[b]; });
+  const std::size_t one = std::size_t{1} << axes[0];
+  const std::size_t two = one | std::size_t{1} << axes[1];
+  return n[axes[2]] * along_[7] + (n[axes[1]] - n[axes[2]]) * along_[two] +
+         (n[axes[0]] - n[axes[1]]) * along_[one];
+}
+}  // namespace altiplan::kit

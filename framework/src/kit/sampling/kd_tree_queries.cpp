@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is asked of KdTree.
+#include <algorithm>
+
+#include "../../multiversion.hpp"
+#include "kd_search.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+using namespace kd;
+
+struct Nearest {
+  const Vec3& p;
+  Best best{};
+  double limit() const { return limit_of(best.least); }
+  void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
+  void see(const Leaf& leaf) {
+    Four square[4];
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      squares(leaf, quarter, p, square[quarter]);
+    }
+    best.see(leaf, square);
+  }
+};
+
+ALTIPLAN_CLONES void find_nearest(const Leaf* leaves, const Branch* branches, std::uint32_t root,
+                                  std::uint32_t height, Nearest& query) {
+  search(leaves, branches, root, height, query);
+}
+
+// F(x) = p_weight |x − p| + q_weight |x − q| is convex: over a box it is at least what its tangent
+// at any c of the box says, that is F(c) and, for each axis, the lesser of the gradient times the
+// ways from c to both sides. The nearer c is to where F is least in the box, the better; that is
+// about where the box is nearest to the segment p–q. Rounding errs by less than `slack`, 450 times
+// the precision of doubles of what is added up: each part of it by less than 30 times.
+struct LeastSum {
+  const Vec3& p;
+  double p_weight;
+  const Vec3& q;
+  double q_weight;
+  Vec3 way = q - p;
+  double inverse = 1 / std::max(way.squaredNorm(), 1e-200);
+  double slack = 0;
+  Best best{};
+
+  double limit() const { return limit_of(best.least + slack); }
+
+  void keys_of(const Branch& branch, Keys& keys) const {
+    for (int half = 0; half < 2; ++half) {
+      bound(branch, half, keys.half[half]);
+    }
+    make_keys(branch.count, keys);
+  }
+
+  void bound(const Branch& branch, int half, Four& least) const {
+    Four t{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four& low = four(&branch.side[axis][0][4 * half]);
+      const Four& high = four(&branch.side[axis][1][4 * half]);
+      t += (0.5 * (low + high) - p[axis]) * way[axis];
+    }
+    t *= inverse;
+    t = t > 0.0 ? t : Four{};
+    t = t < 1.0 ? t : 1.0 + Four{};
+    Four c[3];
+    Four p_distance{};
+    Four q_distance{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four& low = four(&branch.side[axis][0][4 * half]);
+      const Four& high = four(&branch.side[axis][1][4 * half]);
+      const Four at = p[axis] + t * way[axis];
+      const Four above = at > low ? at : low;
+      c[axis] = above < high ? above : high;
+      p_distance += (c[axis] - p[axis]) * (c[axis] - p[axis]);
+      q_distance += (c[axis] - q[axis]) * (c[axis] - q[axis]);
+    }
+    take_roots(p_distance);
+    take_roots(q_distance);
+    constexpr double kNoDistance = 1e-100;
+    const Four p_pull = p_weight / (p_distance > kNoDistance ? p_distance : kNoDistance + Four{});
+    const Four q_pull = q_weight / (q_distance > kNoDistance ? q_distance : kNoDistance + Four{});
+    least = p_weight * p_distance + q_weight * q_distance;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four& low = four(&branch.side[axis][0][4 * half]);
+      const Four& high = four(&branch.side[axis][1][4 * half]);
+      const Four gradient = p_pull * (c[axis] - p[axis]) + q_pull * (c[axis] - q[axis]);
+      const Four down = gradient * (low - c[axis]);
+      const Four up = gradient * (high - c[axis]);
+      least += down < up ? down : up;
+    }
+    least = least > 0.0 ? least : Four{};
+  }
+
+  void see(const Leaf& leaf) {
+    Four sum[4];
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      Four p_distance;
+      Four q_distance;
+      squares(leaf, quarter, p, p_distance);
+      squares(leaf, quarter, q, q_distance);
+      take_roots(p_distance);
+      take_roots(q_distance);
+      sum[quarter] = p_weight * p_distance + q_weight * q_distance;
+    }
+    best.see(leaf, sum);
+  }
+};
+
+ALTIPLAN_CLONES void find_least_sum(const Leaf* leaves, const Branch* branches, std::uint32_t root,
+                                    std::uint32_t height, LeastSum& query) {
+  search(leaves, branches, root, height, query);
+}
+
+struct WithinBall {
+  const Vec3& p;
+  double square;
+  std::vector<std::size_t>& found;
+  double limit() const { return limit_of(square); }
+  void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
+  void see(const Leaf& leaf) {
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      Four here;
+      squares(leaf, quarter, p, here);
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::uint32_t slot = 4 * std::uint32_t(quarter) + i;
+        if (here[i] <= square && slot < leaf.count) {
+          found.push_back(leaf.number[slot]);
+        }
+      }
+    }
+  }
+};
+
+struct WithinBox {
+  const Box& box;
+  std::vector<std::size_t>& found;
+  double limit() const { return limit_of(0); }
+  void keys_of(const Branch& branch, Keys& keys) const {
+    for (int half = 0; half < 2; ++half) {
+      Four outside{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const Four& low = four(&branch.side[axis][0][4 * half]);
+        const Four& high = four(&branch.side[axis][1][4 * half]);
+        outside = low > box.max[axis] || high < box.min[axis] ? 1.0 + Four{} : outside;
+      }
+      keys.half[half] = outside;
+    }
+    make_keys(branch.count, keys);
+  }
+  void see(const Leaf& leaf) {
+    for (std::uint32_t slot = 0; slot < leaf.count; ++slot) {
+      if (box.contains({leaf.at[0][slot], leaf.at[1][slot], leaf.at[2][slot]})) {
+        found.push_back(leaf.number[slot]);
+      }
+    }
+  }
+};
+}  // namespace
+
+std::size_t KdTree::nearest(const Vec3& p) const {
+  if (root_ == kOut) {
+    return kNone;
+  }
+  Nearest query{p};
+  find_nearest(leaves_.data(), branches_.data(), root_, height_, query);
+  return query.best.number;
+}
+
+std::size_t KdTree::least_sum(const Vec3& p, double p_weight, const Vec3& q,
+                              double q_weight) const {
+  if (root_ == kOut) {
+    return kNone;
+  }
+  LeastSum query{p, p_weight, q, q_weight};
+  if (height_ > 0) {
+    const Box all = box_of(branches_[root_]);
+    const double farthest =
+        (all.max - all.min).sum() + (p - all.min).cwiseAbs().sum() + (q - all.min).cwiseAbs().sum();
+    query.slack = 1e-13 * (p_weight + q_weight) * farthest;
+  }
+  find_least_sum(leaves_.data(), branches_.data(), root_, height_, query);
+  return query.best.number;
+}
+
+void KdTree::within(const Vec3& p, double radius, std::vector<std::size_t>& found) const {
+  found.clear();
+  if (root_ != kOut) {
+    WithinBall query{p, radius * radius, found};
+    search(leaves_.data(), branches_.data(), root_, height_, query);
+    std::sort(found.begin(), found.end());
+  }
+}
+
+void KdTree::within(const Box& box, std::vector<std::size_t>& found) const {
+  found.clear();
+  if (root_ != kOut) {
+    WithinBox query{box, found};
+    search(leaves_.data(), branches_.data(), root_, height_, query);
+    std::sort(found.begin(), found.end());
+  }
+}
+}  // namespace altiplan::kit
