@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// The one file that includes Boost.Math, which takes longer to compile than all else here.
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "study/statistics/statistics.hpp"
@@ -6,22 +11,18 @@
 namespace altiplan::study {
 namespace {
 
-double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * kPi); }
+namespace math = boost::math;
 
-/// The z <= 0 with P(Z <= z) = p, for p in (0, 0.5].
-double lower_quantile(double p) {
-  // A start within 5e-4 (Abramowitz and Stegun 1964, 26.2.23), then Halley's method, which triples
-  // the digits at each step.
-  const double t = std::sqrt(-2 * std::log(p));
-  double z = (2.515517 + t * (0.802853 + t * 0.010328)) /
-                 (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) -
-             t;
-  for (int step = 0; step < 3; ++step) {
-    const double newton = (normal_tail(-z) - p) / normal_density(z);
-    z -= newton / (1 + z * newton / 2);
-  }
-  return z;
-}
+/// Nothing is thrown: what has no value is NaN, what is too great infinite. Doubles are not
+/// promoted, so that a result does not depend on how long the machine's long double is.
+using Quiet = math::policies::policy<math::policies::domain_error<math::policies::ignore_error>,
+                                     math::policies::pole_error<math::policies::ignore_error>,
+                                     math::policies::overflow_error<math::policies::ignore_error>,
+                                     math::policies::evaluation_error<math::policies::ignore_error>,
+                                     math::policies::promote_double<false>>;
+using Normal = math::normal_distribution<double, Quiet>;
+using ChiSquared = math::chi_squared_distribution<double, Quiet>;
+using Binomial = math::binomial_distribution<double, Quiet>;
 
 /// P(a < Z <= b), both taken from the tail in which they are small.
 double normal_between(double a, double b) {
@@ -31,40 +32,21 @@ double normal_between(double a, double b) {
 
 double normal_tail(double z) { return std::erfc(z / std::sqrt(2.0)) / 2; }
 
-double normal_quantile(double p) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (!(p >= 0 && p <= 1)) {
-    return kNone;
-  }
-  if (p == 0 || p == 1) {
-    return p == 0 ? -kInfinity : kInfinity;
-  }
-  return p <= 0.5 ? lower_quantile(p) : -lower_quantile(1 - p);
-}
+double normal_quantile(double p) { return math::quantile(Normal(), p); }
 
-// The regularised incomplete gamma function Q(degrees / 2, x / 2), which is a finite sum of
-// positive terms for whole degrees: Abramowitz and Stegun 1964, 26.4.4 and 26.4.5.
 double chi_squared_tail(double x, int degrees) {
   if (std::isnan(x) || degrees < 1) {
     return kNone;
   }
-  if (x <= 0) {
-    return 1;
+  if (x <= 0 || std::isinf(x)) {  // outside of what Boost takes
+    return x <= 0 ? 1 : 0;
   }
-  const double half = x / 2;
-  const bool even = degrees % 2 == 0;
-  double sum = even ? 0 : std::erfc(std::sqrt(half));
-  double term = even ? std::exp(-half) : std::exp(-half) * std::sqrt(half) * 2 / std::sqrt(kPi);
-  for (double i = even ? 1 : 1.5; 2 * i <= degrees && term > 0; ++i) {
-    sum += term;
-    term *= half / i;
-  }
-  return std::min(sum, 1.0);
+  return math::cdf(math::complement(ChiSquared(degrees), x));
 }
 
-// k ∫ φ(z) [Φ(z) - Φ(z - q)]^(k-1) dz, over the greatest of the k variables. The trapezoidal rule
-// converges faster than any power of the step for such a function, which ends like a normal density
-// on both sides: this step gives all digits that erfc has.
+// k ∫ φ(z) [Φ(z) - Φ(z - q)]^(k-1) dz, over the greatest of the k variables; Boost.Math has no such
+// distribution. The trapezoidal rule converges faster than any power of the step for such a
+// function, which ends like a normal density on both sides: this step gives all digits.
 double studentized_range(double q, int k) {
   if (std::isnan(q) || k < 2) {
     return kNone;
@@ -76,7 +58,7 @@ double studentized_range(double q, int k) {
   constexpr double kStep = 1.0 / 32;
   double sum = 0;
   for (double z = -kEnd; z <= kEnd; z += kStep) {
-    sum += normal_density(z) * std::pow(normal_between(z - q, z), k - 1);
+    sum += math::pdf(Normal(), z) * std::pow(normal_between(z - q, z), k - 1);
   }
   return std::min(k * sum * kStep, 1.0);
 }
@@ -86,14 +68,21 @@ double studentized_range_quantile(double p, int k) {
     return kNone;
   }
   double low = 0;
-  double high = 1;
-  while (studentized_range(high, k) < p && high < 64) {
-    low = high;
-    high *= 2;
-  }
-  for (double middle = (low + high) / 2; low < middle && middle < high; middle = (low + high) / 2) {
+  double high = 64;  // where no double is left between the probability and 1
+  while (std::nextafter(low, high) < high) {
+    const double middle = (low + high) / 2;
     (studentized_range(middle, k) < p ? low : high) = middle;
   }
   return high;
+}
+
+// The binomial distribution of only_first among all discordant pairs, with chance 1/2, which is
+// symmetric.
+double mcnemar(std::int64_t only_first, std::int64_t only_second) {
+  if (only_first < 0 || only_second < 0) {
+    return kNone;
+  }
+  const Binomial chance(double(only_first) + double(only_second), 0.5);
+  return std::min(1.0, 2 * math::cdf(chance, double(std::min(only_first, only_second))));
 }
 }  // namespace altiplan::study

@@ -66,33 +66,6 @@ constexpr std::size_t kGreatestExact = 1000;
 constexpr std::size_t kGreatestAutomatic = 50;
 }  // namespace
 
-// The binomial distribution of only_first among all discordant pairs, with p = 1/2.
-double mcnemar(std::int64_t only_first, std::int64_t only_second) {
-  if (only_first < 0 || only_second < 0) {
-    return kNone;
-  }
-  const std::int64_t n = only_first + only_second;
-  const std::int64_t fewer = std::min(only_first, only_second);
-  // P(fewer) = C(n, fewer) / 2^n, halved on the way so that it never overflows.
-  double chance = 1;
-  std::int64_t halvings = n;
-  for (std::int64_t i = 1; i <= fewer; ++i) {
-    chance *= double(n - fewer + i) / double(i);
-    for (; chance > 1 && halvings > 0; --halvings) {
-      chance /= 2;
-    }
-  }
-  chance = std::ldexp(chance, -int(std::min<std::int64_t>(halvings, 1 << 20)));
-  // P(0) + … + P(fewer), from the greatest downwards, in units of it.
-  double sum = 0;
-  double term = 1;
-  for (std::int64_t i = fewer; i >= 0 && term > 0; --i) {
-    sum += term;
-    term *= double(i) / double(n - i + 1);
-  }
-  return std::min(1.0, 2 * chance * sum);
-}
-
 std::vector<double> ranks(std::span<const double> sample) {
   if (has_nan(sample)) {
     return std::vector<double>(sample.size(), kNone);
