@@ -104,7 +104,7 @@ planners, local planners, smoothers and tuners of one's own. The command
 'altiplan new' writes a project to begin with.
 .
 This package holds altiplan-bench too, which plans the scenarios of published
-grid maps.")
+grid maps and times planners and pilots.")
 
 include(AltiplanGdal)
 # GDAL is opened at the first read, where no tool sees it; Debian names the package after it.

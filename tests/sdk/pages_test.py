@@ -19,7 +19,7 @@ NOT_RUN = {
     r"tools/bench/": "draws what a benchmark of minutes measured",
     r"(cmake|ctest)\b": "builds all; that its outcome works, the other commands show",
     r"(cd|export) ": "of another folder",
-    r"altiplan-(bench|search|queries|any-angle|replan|sampling|ants)\b":
+    r"altiplan-bench\b":
         "minutes of measuring, or on published maps; the tests bench_… run such programs",
     r"altiplan tune\b": "minutes; tests/tune tunes less",
     r"altiplan study configs/studies/(?!quick)": "minutes to hours; study_every_study runs a part of each",

@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grid.hpp"
-
-#include <malloc.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 
 #include "altiplan/check.hpp"
 #include "altiplan/route.hpp"
 #include "host/config/config.hpp"
+#include "measuring.hpp"
 #include "scenarios.hpp"
+#include "subcommand.hpp"
 
 namespace altiplan::bench {
 namespace {
+
+struct Arguments {
+  std::string map;
+  std::string scenarios;
+  std::string planner = "astar";
+  std::optional<std::string> corner;
+  std::vector<std::string> with;  ///< further parameters of the planner, KEY=VALUE
+  std::size_t limit = ~std::size_t{0};
+  int repeat = 1;     ///< times that each scenario is planned; its time is the median
+  bool each = false;  ///< a line for each scenario on stdout
+};
 
 Value map_of(const std::vector<std::pair<std::string, std::string>>& texts) {
   Value map;
@@ -46,7 +55,7 @@ World load_map(host::Registry& registry, const std::string& file) {
 }
 
 /// The planner under the rule by which the printed lengths were made, where it has such a rule.
-std::unique_ptr<Planner> make_planner(host::Registry& registry, const GridArguments& arguments) {
+std::unique_ptr<Planner> make_planner(host::Registry& registry, const Arguments& arguments) {
   const PluginEntry& entry = host::plugin(registry, "planner", arguments.planner);
   const std::vector<BoundField> fields = entry.describe(nullptr, "").fields;
   const bool has_corner = std::any_of(fields.begin(), fields.end(), [](const BoundField& field) {
@@ -67,12 +76,6 @@ std::unique_ptr<Planner> make_planner(host::Registry& registry, const GridArgume
   return entry.planner(&parameters);
 }
 
-/// Bytes that the program holds from the C library.
-std::size_t allocated() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-}
-
 /// What the scenarios came to.
 struct Tally {
   std::size_t matched = 0;
@@ -83,11 +86,6 @@ struct Tally {
   std::vector<double> times_us;
   double expanded = 0;
   std::size_t bytes = 0;
-
-  double quantile_us(double q) {
-    std::sort(times_us.begin(), times_us.end());
-    return times_us[std::size_t(std::ceil(q * double(times_us.size() - 1)))];
-  }
 };
 
 Request request_for(std::shared_ptr<const World> world, const GridSpec& spec, bool is_3d) {
@@ -100,31 +98,27 @@ Request request_for(std::shared_ptr<const World> world, const GridSpec& spec, bo
   return request;
 }
 
-PlanResult timed_plan(const Planner& planner, const Request& request, int repeat, double& median) {
+PlanResult timed_plan(const Planner& planner, const Request& request, int repeat,
+                      double& median_us) {
   PlanResult result;
   std::vector<double> times_us;
   for (int n = 0; n < repeat; ++n) {
-    const auto began = std::chrono::steady_clock::now();
+    const double began = wall_s();
     result = planner.plan(request);
-    const auto took = std::chrono::steady_clock::now() - began;
-    times_us.push_back(std::chrono::duration<double, std::micro>(took).count());
+    times_us.push_back(1e6 * (wall_s() - began));
   }
-  std::nth_element(times_us.begin(), times_us.begin() + repeat / 2, times_us.end());
-  median = times_us[std::size_t(repeat / 2)];
+  median_us = median(times_us);
   return result;
 }
 
 void run_scenario(const Planner& planner, Request& request, const GridScenario& scenario,
-                  const GridArguments& arguments, Tally& tally) {
+                  const Arguments& arguments, Tally& tally) {
   const Environment& map = *request.world->layers().front().environment;
   request.start.position = *map.cell_centre(scenario.start);
   request.goal = {*map.cell_centre(scenario.goal), 0};
   double time_us = 0;
   const PlanResult result = timed_plan(planner, request, arguments.repeat, time_us);
-  double expanded = 0;
-  for (const Counter& counter : result.counters) {
-    expanded += counter.name == "expanded" ? double(counter.value) : 0;
-  }
+  const double expanded = counter(result, "expanded");
   const bool solved = result.status == Status::solved;
   if (arguments.each) {
     std::printf("%zu %d %.9g %.0f %.3f\n", tally.times_us.size(), int(solved),
@@ -143,10 +137,9 @@ void run_scenario(const Planner& planner, Request& request, const GridScenario& 
   tally.matched += error <= (scenario.decimals <= 2 ? 0.006 : 1e-3);
   tally.unsound += !check(result.route, request).ok();
 }
-}  // namespace
 
-nlohmann::ordered_json run_grid(const GridArguments& arguments) {
-  host::Registry registry(host::Registry::search_path(arguments.plugin_path));
+/// Plans every scenario on the map, loaded once, and compares the lengths with those printed.
+Json plan_scenarios(host::Registry& registry, const Arguments& arguments) {
   const std::unique_ptr<Planner> planner = make_planner(registry, arguments);
   const auto world = std::make_shared<const World>(load_map(registry, arguments.map));
   const GridSpec spec = world->native_grid().value();
@@ -163,7 +156,7 @@ nlohmann::ordered_json run_grid(const GridArguments& arguments) {
     tally.bytes = std::max(tally.bytes, allocated() - std::min(before, allocated()));
   }
   const double total_us = std::accumulate(tally.times_us.begin(), tally.times_us.end(), 0.0);
-  nlohmann::ordered_json json;
+  Json json;
   json["map"] = arguments.map;
   json["planner"] = arguments.planner;
   json["scenarios"] = scenarios.list.size();
@@ -174,10 +167,43 @@ nlohmann::ordered_json run_grid(const GridArguments& arguments) {
   }
   json["unsound"] = tally.unsound;
   json["worst_error"] = tally.worst_error;
-  json["median_us"] = tally.quantile_us(0.5);
-  json["p99_us"] = tally.quantile_us(0.99);
+  json["median_us"] = median(tally.times_us);
+  json["p99_us"] = quantile(tally.times_us, 0.99);
   json["expansions_per_s"] = tally.expanded / (total_us * 1e-6);
   json["bytes_per_cell"] = double(tally.bytes) / double(spec.cell_count());
   return json;
+}
+}  // namespace
+
+void add_grid(Subcommands& all) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      all.add("grid", "plan a grid map's scenarios and compare with their lengths",
+              [=](const Given& given) { return plan_scenarios(*given.registry, *arguments); });
+  command.add_option("map", arguments->map, "a MovingAI .map or a Warframe .3dmap")->required();
+  command.add_option("scenarios", arguments->scenarios, "its .scen or .3dscen file")->required();
+  command.add_option("--planner", arguments->planner, "planner plugin; astar by default")
+      ->type_name("NAME");
+  command
+      .add_option("--corner", arguments->corner,
+                  "the planner's rule for diagonal steps; free_box by default, by which the "
+                  "printed lengths were made")
+      ->type_name("RULE");
+  command
+      .add_option("--with", arguments->with,
+                  "a further parameter of the planner: heuristic=euclidean")
+      ->type_name("KEY=VALUE");
+  command
+      .add_option("--repeat", arguments->repeat,
+                  "plan each scenario N times and take the median of its times")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  command.add_flag("--each", arguments->each,
+                   "first print a line for each scenario: number from 0, solved (0 or 1), length "
+                   "in cells, cells expanded, microseconds");
+  command.add_option("--limit", arguments->limit, "plan the first N scenarios only")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command.footer("Example:\n  altiplan-bench grid arena.map arena.map.scen --limit 100");
 }
 }  // namespace altiplan::bench

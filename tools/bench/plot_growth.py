@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws how the time of an expansion grows with the map, from what altiplan-search prints.
+"""Draws how the time of an expansion grows with the map, from what `search` prints.
 
-altiplan-search --benchmark_format=json > growth.json
+altiplan-bench search --json > growth.json
 plot_growth.py growth.json docs/images/growth.svg
 """
 import json

@@ -34,7 +34,7 @@ GROUPS = [
                     "docs/interfaces/*.md"]),
     ("Plugins", plugins.KINDS),
     ("Papers", ["docs/papers/README.md", "docs/papers/*.md", "docs/benchmarks.md"]),
-    ("Reference", ["docs/cli.md", "docs/api.md"]),
+    ("Reference", ["docs/cli.md", "docs/altiplan-bench.md", "docs/api.md"]),
     ("Decisions", ["docs/decisions/README.md", "docs/decisions/*.md"]),
     ("The project", ["CONTRIBUTING.md", "CHANGELOG.md", "tools/viewer/*.md"]),
 ]

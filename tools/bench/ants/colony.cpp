@@ -5,9 +5,6 @@
 #include <thread>
 #include <vector>
 
-#include "altiplan/check.hpp"
-#include "altiplan/error.hpp"
-#include "altiplan/route.hpp"
 #include "host/config/config.hpp"
 #include "host/config/yaml.hpp"
 #include "host/mission/mission.hpp"
@@ -26,25 +23,21 @@ void set(Value& map, const std::string& key, const std::string& yaml) {
 
 std::shared_ptr<const Planner> make(host::Registry& registry, const Setting& setting,
                                     int iterations) {
-  const std::string& text = setting.planner;
-  const std::size_t space = std::min(text.find(' '), text.size());
-  const std::string yaml = text.substr(space);
-  Value parameters = host::parse_yaml(yaml.empty() ? "{}" : yaml, text);
-  set(parameters, "iterations", std::to_string(iterations));
+  Chosen colony = chosen(registry, "planner", setting.planner);
+  set(colony.parameters, "iterations", std::to_string(iterations));
   if (setting.cell_m > 0) {
     const std::string edge = std::to_string(setting.cell_m);
-    set(parameters, "cell_m", "[" + edge + ", " + edge + ", " + edge + "]");
+    set(colony.parameters, "cell_m", "[" + edge + ", " + edge + ", " + edge + "]");
   }
-  return host::plugin(registry, "planner", text.substr(0, space)).planner(&parameters);
+  return colony.entry.planner(&colony.parameters);
 }
 
 double counted(const PlanResult& result, const std::string& what, const std::string& planner) {
-  for (const Counter& counter : result.counters) {
-    if (counter.name == what) {
-      return double(counter.value);
-    }
+  if (std::none_of(result.counters.begin(), result.counters.end(),
+                   [&](const Counter& counter) { return counter.name == what; })) {
+    throw Error(planner + ": has no counter '" + what + "'");
   }
-  throw Error(planner + ": has no counter '" + what + "'");
+  return counter(result, what);
 }
 }  // namespace
 
@@ -64,13 +57,7 @@ Run Colony::run(const Planner& planner, const Request& request) const {
   run.time = Time::now().since(began);
   run.steps = counted(result, "expanded", name_);
   run.alive = counted(result, "alive", name_);
-  run.length = kInfinity;
-  if (result.status == Status::solved) {
-    if (!check(result.route, request).ok()) {
-      throw Error(name_ + ": a route that the judge refuses");
-    }
-    run.length = length(result.route);
-  }
+  run.length = judged_length(result, request, name_);
   return run;
 }
 

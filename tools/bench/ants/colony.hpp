@@ -6,13 +6,23 @@
 #include <string>
 
 #include "altiplan/planner.hpp"
-#include "clock.hpp"
-#include "host/registry/registry.hpp"
+#include "measuring.hpp"
 
 namespace altiplan::bench {
 
 /// The problem of a scenario, its world made anew: no grid of it is there yet.
 Request problem_of(const std::filesystem::path& scenario);
+
+/// A plan's time by two clocks, in milliseconds.
+struct Time {
+  double wall_ms = 0;
+  double processor_ms = 0;  ///< of all threads
+
+  static Time now() { return {1e3 * wall_s(), 1e3 * process_s()}; }
+  Time since(const Time& before) const {
+    return {wall_ms - before.wall_ms, processor_ms - before.processor_ms};
+  }
+};
 
 /// How a colony is asked to plan.
 struct Setting {

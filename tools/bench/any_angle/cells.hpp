@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "altiplan/request.hpp"
-#include "host/registry/registry.hpp"
+#include "measuring.hpp"
 
 namespace altiplan::bench {
 
@@ -21,8 +21,8 @@ struct Way {
 /// A world of one layer that has cells.
 class Cells {
  public:
-  Cells(host::Registry& registry, const std::string& plugin, const std::string& yaml,
-        const Site& site = {});
+  /// `text`: the layer's plugin and parameters.
+  Cells(host::Registry& registry, const std::string& text, const Site& site = {});
 
   const GridSpec& spec() const { return spec_; }
   double build_ms() const { return build_ms_; }          ///< of the layer

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/planner.hpp"
 #include "cells.hpp"
+#include "subcommand.hpp"
 
 namespace altiplan::bench {
 
@@ -21,13 +21,14 @@ class Row {
     double length;  ///< cells; infinite without a route
     double expanded;
   };
-  /// Throws Error where the judge refuses the route.
+  /// Throws WrongAnswer where the judge refuses the route.
   Plan plan(const Cells& cells, const Way& way);
   /// As many plans of each way as passes.
   void add(const std::vector<Plan>& passes);
 
   const std::string& name() const { return name_; }
-  void print(const Row& first, std::size_t cells) const;
+  /// Its figures, lengths beside those of the first, memory over that many cells.
+  Json figures(const Row& first, std::size_t cells) const;
 
  private:
   std::string name_;
@@ -41,6 +42,6 @@ class Row {
 
 /// Plans every way by every row, in turn, so that what else the machine does meets all of them.
 void plan_all(std::vector<Row>& rows, const Cells& cells, const std::vector<Way>& ways, int passes);
-void print(const std::vector<Row>& rows, std::size_t cells);
-double peak_mb();
+/// A table of rows, and the program's peak of memory, added to the figures of a world.
+void add(Json& figures, const std::vector<Row>& rows, std::size_t cells);
 }  // namespace altiplan::bench

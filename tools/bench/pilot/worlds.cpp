@@ -2,11 +2,12 @@
 #include "worlds.hpp"
 
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
-#include "host/config/config.hpp"
+#include "measuring.hpp"
 
 namespace altiplan::bench {
 namespace {
@@ -15,47 +16,23 @@ constexpr int kPosts = 10;
 constexpr double kLength = 16e3;
 constexpr double kHeight = 1500;
 
-Value scalar(double number) {
-  Value value;
-  value.text = std::to_string(number);
-  return value;
-}
-
-Value list(double first, double second) {
-  Value value;
-  value.kind = Value::Kind::list;
-  value.items = {scalar(first), scalar(second)};
-  return value;
-}
-
-Value map(std::vector<Value::Entry> entries) {
-  Value value;
-  value.kind = Value::Kind::map;
-  value.entries = std::move(entries);
-  return value;
-}
-
 /// Their tops come up to the height of the way, so that the ground is part of every decision.
 Layer hills(const Box& volume, RandomStream& random, host::Registry& registry) {
-  Value peaks;
-  peaks.kind = Value::Kind::list;
+  std::ostringstream text;
+  text << std::fixed << "hills {base_m: 0, cap_m: " << kHeight - 60 << ", peaks: [";
   for (int i = 0; i < 16; ++i) {
     const double x = random.uniform(0, volume.max.x());
     const double y = random.uniform(volume.min.y(), volume.max.y());
-    peaks.items.push_back(
-        map({{"at_m", {}, list(x, y)},
-             {"height_m", {}, scalar(random.uniform(300, 1500))},
-             {"sigma_m", {}, list(random.uniform(600, 2500), random.uniform(600, 2500))}}));
+    const double height = random.uniform(300, 1500);
+    const double north = random.uniform(600, 2500);
+    const double east = random.uniform(600, 2500);
+    text << (i == 0 ? "" : ", ") << "{at_m: [" << x << ", " << y << "], height_m: " << height
+         << ", sigma_m: [" << east << ", " << north << "]}";
   }
-  const Value parameters = map({{"base_m", {}, scalar(0)},
-                                {"cap_m", {}, scalar(kHeight - 60)},
-                                {"peaks", {}, std::move(peaks)}});
-  const World nothing;
+  text << "]}";
   Site site;
   site.volume = volume;
-  site.before = &nothing;
-  return {"hills", "hills",
-          host::plugin(registry, "environment", "hills").environment(&parameters, site)};
+  return {"hills", "hills", environment(registry, text.str(), site)};
 }
 
 Layer post(int i, RandomStream& random) {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "altiplan/error.hpp"
+#include "measuring.hpp"
 
 namespace altiplan::bench {
 
@@ -24,12 +24,12 @@ void add_row(const std::string& name, const Ask& ask) {
   });
 }
 
-/// Throws Error naming the row and the first query whose answers do not agree.
+/// Throws WrongAnswer naming the row and the first query whose answers do not agree.
 template <class Agrees>
 void require(const std::string& name, const Agrees& agrees) {
   for (std::size_t n = 0; n < kQueries; ++n) {
     if (!agrees(n)) {
-      throw Error(name + ": query " + std::to_string(n) + " has two answers");
+      throw WrongAnswer(name + ": query " + std::to_string(n) + " has two answers");
     }
   }
 }

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree of `rrt` over real ground, the main layout of paper 000's page: whole plans, what a
 // threat that appears costs, and growth to a million nodes.
-#include <chrono>
-#include <utility>
-
-#include "altiplan/check.hpp"
-#include "city.hpp"
 #include "host/mission/mission.hpp"
 #include "reference/pop_ups.hpp"
 #include "rows.hpp"
@@ -33,19 +28,6 @@ Request with_seed(std::uint64_t seed) {
   return request;
 }
 
-template <class Call>
-double seconds(const Call& call) {
-  const auto before = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-}
-
-void expect_sound(const PlanResult& result, const Request& request) {
-  if (result.status != Status::solved || !check(result.route, request).ok()) {
-    throw Error("rrt: a seed without a sound route: " + result.message);
-  }
-}
-
 /// A row whose iteration times a case for each seed: median and 99th percentile in microseconds.
 template <class Case>
 void add_row(const std::string& name, const Case& time_case) {
@@ -60,7 +42,7 @@ void add_row(const std::string& name, const Case& time_case) {
                                    }
                                    state.SetIterationTime(total / double(kSeeds));
                                  }
-                                 state.counters["median_us"] = 1e6 * quantile(times, 0.5);
+                                 state.counters["median_us"] = 1e6 * median(times);
                                  state.counters["p99_us"] = 1e6 * quantile(times, 0.99);
                                })
       ->UseManualTime()
@@ -68,35 +50,35 @@ void add_row(const std::string& name, const Case& time_case) {
       ->Unit(benchmark::kMicrosecond);
 }
 
-double time_plan(std::uint64_t seed) {
-  static const auto kPlanner = planner("rrt", "{step_m: 150}");
+double time_plan(const Planner& planner, std::uint64_t seed) {
   const Request request = with_seed(seed);
-  PlanResult result;
-  const double time = seconds([&] { result = kPlanner->plan(request); });
-  expect_sound(result, request);
+  const double before = wall_s();
+  const PlanResult result = planner.plan(request);
+  const double time = wall_s() - before;
+  solved_length(result, request, "rrt");
   return time;
 }
 
 double time_update(const Planner& planner, std::uint64_t seed) {
   Request request = with_seed(seed);
   const auto session = planner.begin(request);
-  expect_sound(session->result(), request);
+  solved_length(session->result(), request, "rrt");
   const testing::PopUp pop_up = testing::draw_pop_up(session->result().route, request, kThreat,
                                                      kRoom, request.random.sub("pop-up"));
   request.world = pop_up.world;
   request.start = pop_up.state;
-  const double time = seconds([&] {
-    session->update(pop_up.state, request.goal, pop_up.world, std::span(&pop_up.change, 1), {});
-  });
-  expect_sound(session->result(), request);
+  const double before = wall_s();
+  session->update(pop_up.state, request.goal, pop_up.world, std::span(&pop_up.change, 1), {});
+  const double time = wall_s() - before;
+  solved_length(session->result(), request, "rrt");
   return time;
 }
 
 /// No route is short enough, so the tree of the basic choice grows for as many iterations: nodes a
 /// second as the mean from the first to the last.
-void grow(benchmark::State& state, bool over_ground) {
-  const auto tree = planner("rrt",
-                            "{step_m: 150, weight_goal: 0, random_share: 1, max_failures: 0, "
+void grow(host::Registry& registry, benchmark::State& state, bool over_ground) {
+  const auto tree = planner(registry,
+                            "rrt {step_m: 150, weight_goal: 0, random_share: 1, max_failures: 0, "
                             "toward_goal_once: false, max_iterations: 100000000}");
   Request request = with_seed(1);
   request.limits = {};
@@ -111,26 +93,24 @@ void grow(benchmark::State& state, bool over_ground) {
   for (auto _ : state) {
     result = tree->plan(request);
   }
-  double nodes = 0;
-  for (const Counter& counter : result.counters) {
-    nodes = counter.name == "nodes" ? double(counter.value) : nodes;
-  }
+  const double nodes = counter(result, "nodes");
   state.counters["nodes"] = nodes;
   state.counters["nodes_per_s"] =
       benchmark::Counter(nodes, benchmark::Counter::kIsIterationInvariantRate);
 }
 }  // namespace
 
-void add_tree_rows() {
-  add_row("tree/plan", time_plan);
-  for (const char* cut_off : {"afresh", "drop", "reconnect"}) {
-    const auto rrt = planner("rrt", std::string("{step_m: 150, cut_off: ") + cut_off + "}");
-    add_row(std::string("tree/threat/") + cut_off,
-            [=](std::uint64_t seed) { return time_update(*rrt, seed); });
+void add_tree_rows(host::Registry& registry) {
+  const auto plain = planner(registry, "rrt {step_m: 150}");
+  add_row("tree/plan", [=](std::uint64_t seed) { return time_plan(*plain, seed); });
+  for (const std::string cut_off : {"afresh", "drop", "reconnect"}) {
+    const auto rrt = planner(registry, "rrt {step_m: 150, cut_off: " + cut_off + "}");
+    add_row("tree/threat/" + cut_off, [=](std::uint64_t seed) { return time_update(*rrt, seed); });
   }
   for (const bool over_ground : {false, true}) {
-    benchmark::RegisterBenchmark(over_ground ? "tree/growth/ground" : "tree/growth/open",
-                                 [=](benchmark::State& state) { grow(state, over_ground); })
+    benchmark::RegisterBenchmark(
+        over_ground ? "tree/growth/ground" : "tree/growth/open",
+        [=, &registry](benchmark::State& state) { grow(registry, state, over_ground); })
         ->RangeMultiplier(10)
         ->Range(1000, 1000000)
         ->Unit(benchmark::kMillisecond);

@@ -13,11 +13,10 @@
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
 
-#include <chrono>
-
 #include "altiplan/error.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/kit/sampling/leg_rules.hpp"
+#include "measuring.hpp"
 
 // NOLINTBEGIN(readability-identifier-naming): names of OMPL
 namespace altiplan::bench {
@@ -128,12 +127,11 @@ OmplResult OmplPlanner::solve(const Request& request, double seconds, bool measu
   impl_->planner->clear();
   impl_->planner->setProblemDefinition(problem);
   impl_->planner->setup();
-  using Clock = std::chrono::steady_clock;
-  const auto before = Clock::now();
+  const double before = wall_s();
   const ob::PlannerStatus status =
       impl_->planner->solve(ob::timedPlannerTerminationCondition(seconds));
   OmplResult result;
-  result.seconds = std::chrono::duration<double>(Clock::now() - before).count();
+  result.seconds = wall_s() - before;
   result.solved = status == ob::PlannerStatus::EXACT_SOLUTION;
   if (measure) {
     ob::PlannerData data(impl_->info);

@@ -143,7 +143,7 @@ void add_row(const std::string& name, const std::shared_ptr<LatePoints>& late, A
     const Points& points = late->get();
     for (std::size_t n = 0; n < kCompared; ++n) {
       if (ask(points.tree, points.samples[n]) != other(points.tree, points.samples[n])) {
-        throw Error(name + ": query " + std::to_string(n) + " has two answers");
+        throw WrongAnswer(name + ": query " + std::to_string(n) + " has two answers");
       }
     }
     std::size_t n = 0;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
+#include "host/registry/registry.hpp"
+
 namespace altiplan::bench {
 
 /// Rows on the worlds of paper 002: the searches within its angle limits, and both ways beside one
-/// way. Throws Error where two that must agree do not.
-void add_paper_rows();
+/// way. Throws WrongAnswer where two that must agree do not.
+void add_paper_rows(const std::shared_ptr<host::Registry>& registry);
 }  // namespace altiplan::bench

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-search: times planners on grids beside a plain A*, on one city in three sizes. A row is
-// timed only after all its lengths have been compared.
-#include <benchmark/benchmark.h>
-#include <malloc.h>
-
+// Planners on grids beside a plain A*, on one city in three sizes. A row is timed only after all
+// its lengths have been compared.
 #include <cmath>
-#include <iostream>
 #include <string>
-#include <string_view>
 
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/random.hpp"
-#include "altiplan/route.hpp"
-#include "host/config/config.hpp"
+#include "google_rows.hpp"
 #include "paper_worlds.hpp"
 #include "plain_astar.hpp"
 
@@ -106,11 +100,6 @@ struct City {
   }
 };
 
-std::size_t allocated() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-}
-
 void report(benchmark::State& state, double expanded) {
   using benchmark::Counter;
   state.counters["expanded"] = expanded / kQueries;
@@ -131,20 +120,20 @@ void add_plain_row(const std::shared_ptr<const City>& city) {
 }
 
 void add_row(const std::shared_ptr<const City>& city, const std::string& name,
-             std::shared_ptr<const Planner> planner) {
+             host::Registry& registry) {
+  const std::shared_ptr<const Planner> planner = bench::planner(registry, name);
   const std::size_t before = allocated();
   double expanded = 0;
   for (std::size_t n = 0; n < kQueries; ++n) {
-    const PlanResult result = planner->plan(city->request(city->queries[n]));
-    const double way = result.status == Status::solved ? length(result.route) : kInfinity;
+    const Request request = city->request(city->queries[n]);
+    const PlanResult result = planner->plan(request);
+    const std::string row = city->name + "/" + name + ": query " + std::to_string(n);
+    const double way = solved_length(result, request, row);
     if (!(std::abs(way - city->queries[n].length) <= 1e-6 * way)) {
-      throw Error(city->name + "/" + name + ": query " + std::to_string(n) + " has the length " +
-                  std::to_string(way) + ", by the plain A* " +
-                  std::to_string(city->queries[n].length) + ": " + result.message);
+      throw WrongAnswer(row + " has the length " + std::to_string(way) + ", by the plain A* " +
+                        std::to_string(city->queries[n].length));
     }
-    for (const Counter& counter : result.counters) {
-      expanded += counter.name == "expanded" ? double(counter.value) : 0;
-    }
+    expanded += counter(result, "expanded");
   }
   const double bytes_per_cell =
       double(allocated() - before) / double(city->grid().spec().cell_count());
@@ -159,50 +148,33 @@ void add_row(const std::shared_ptr<const City>& city, const std::string& name,
   });
 }
 
-std::shared_ptr<const Planner> planner(host::Registry& registry, const std::string& name) {
-  Value parameters;
-  parameters.kind = Value::Kind::map;
-  return host::plugin(registry, "planner", name).planner(&parameters);
-}
-
-void add_rows() {
-  static host::Registry registry(host::Registry::search_path({}));
+void add_rows(host::Registry& registry) {
   for (const int scale : {1, 2, 4}) {  // 1, 8 and 64 times the cells
     const std::string name = "city_3d/" + std::to_string(scale * scale * scale) + "x";
     const auto city = std::make_shared<const City>(name, Cell{64, 64, 64}, scale);
-    add_row(city, "astar", planner(registry, "astar"));
+    add_row(city, "astar", registry);
     add_plain_row(city);
   }
   for (const int scale : {1, 3, 8}) {  // 1, 9 and 64 times the cells
     const std::string name = "city_2d/" + std::to_string(scale * scale) + "x";
     const auto city = std::make_shared<const City>(name, Cell{256, 256, 1}, scale);
-    add_row(city, "astar", planner(registry, "astar"));
-    add_row(city, "jps", planner(registry, "jps"));
+    add_row(city, "astar", registry);
+    add_row(city, "jps", registry);
     add_plain_row(city);
   }
 }
 }  // namespace
-}  // namespace altiplan::bench
 
-int main(int argc, char** argv) {
-  // The cities take a minute to build and compare.
-  const bool paper_alone = argc > 1 && std::string_view(argv[1]) == "--paper-worlds";
-  argc -= paper_alone;
-  argv += paper_alone;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
-    return 2;
-  }
-  try {
-    altiplan::bench::add_paper_rows();
-    if (!paper_alone) {
-      altiplan::bench::add_rows();
-    }
-    benchmark::RunSpecifiedBenchmarks();
-  } catch (const std::exception& error) {
-    std::cerr << "altiplan-search: " << error.what() << '\n';
-    return 1;
-  }
-  benchmark::Shutdown();
-  return 0;
+void add_search(Subcommands& all) {
+  const auto paper_alone = std::make_shared<bool>(false);
+  add_google(all, "search", "time planners on grids beside a plain A*, and on worlds of paper 002",
+             [=](const Given& given) {
+               add_paper_rows(given.registry);
+               if (!*paper_alone) {
+                 add_rows(*given.registry);
+               }
+             })
+      .add_flag("--paper-worlds", *paper_alone,
+                "only on those of the paper: the others take a minute to build and compare");
 }
+}  // namespace altiplan::bench

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-field: the time of a step by the velocity field among 12, 80 and 10,000 threats. A step
-// takes less than a clock does, so blocks of steps are timed.
-#include <CLI/CLI.hpp>
+// The time of a step by the velocity field among 12, 80 and 10,000 threats. A step takes less than
+// a clock does, so blocks of steps are timed.
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <iostream>
+#include <cmath>
 #include <string>
 #include <vector>
 
-#include "altiplan/error.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
-#include "host/config/config.hpp"
-#include "host/registry/registry.hpp"
+#include "measuring.hpp"
+#include "subcommand.hpp"
 
 namespace altiplan::bench {
 namespace {
@@ -77,12 +73,6 @@ struct Times {
   std::size_t steps = 0;
 };
 
-double now_us() {
-  return std::chrono::duration<double, std::micro>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 /// Flies once, in blocks.
 void fly(const LocalPlanner& planner, const Row& row, const Request& request, int most_steps,
          Times& times) {
@@ -94,7 +84,7 @@ void fly(const LocalPlanner& planner, const Row& row, const Request& request, in
   seen.goal = request.goal;
   seen.world = request.world.get();
   for (int done = 0; done < most_steps; done += kBlock) {
-    const double began = now_us();
+    const double began = wall_s();
     for (int i = 0; i < kBlock; ++i) {
       const PilotStep step = pilot->step(seen);
       if (step.outcome != PilotStep::Outcome::flying) {
@@ -102,7 +92,7 @@ void fly(const LocalPlanner& planner, const Row& row, const Request& request, in
       }
       seen.state = step.next;
     }
-    times.us.push_back((now_us() - began) / kBlock);
+    times.us.push_back(1e6 * (wall_s() - began) / kBlock);
     times.steps += kBlock;
     const Vec3& p = seen.state.position;
     times.in_reach +=
@@ -113,26 +103,11 @@ void fly(const LocalPlanner& planner, const Row& row, const Request& request, in
   }
 }
 
-void print(const Row& row, Times& times) {
-  std::sort(times.us.begin(), times.us.end());
-  const auto at = [&](double share) {
-    return times.us[std::size_t(share * double(times.us.size() - 1))];
-  };
-  std::printf(
-      "%-12s %6zu threats, %4.1f in reach: p50 %.3f us, p99 %.3f us, max %.3f us (%zu steps)\n",
-      row.name, row.threats.size(), times.in_reach / double(times.looked), at(0.5), at(0.99), at(1),
-      times.steps);
-}
-
 /// Rows in turn, so that what else the machine does meets all of them.
-void time_rows(const std::string& variant, int passes, host::Registry& registry) {
-  Value parameters;
-  parameters.kind = Value::Kind::map;
-  Value word;
-  word.text = variant;
-  parameters.entries.push_back({"variant", {}, word});
-  const auto planner =
-      host::plugin(registry, "local_planner", "velocity_field").local_planner(&parameters);
+Json time_rows(host::Registry& registry, const std::string& variant, int passes) {
+  const Chosen field =
+      chosen(registry, "local_planner", "velocity_field {variant: " + variant + "}");
+  const auto planner = field.entry.local_planner(&field.parameters);
   const std::vector<Row> rows{{"table 1", kTable1, 50e3},
                               {"random", drawn(80, 90e3, 1000, 5000), 90e3},
                               {"crowd", crowd(), 86e3}};
@@ -146,30 +121,33 @@ void time_rows(const std::string& variant, int passes, host::Registry& registry)
       fly(*planner, rows[i], requests[i], 4000, times[i]);
     }
   }
+  Json figures;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    print(rows[i], times[i]);
+    figures["steps"].push_back({{"world", rows[i].name},
+                                {"threats", rows[i].threats.size()},
+                                {"in_reach", times[i].in_reach / double(times[i].looked)},
+                                {"p50_us", median(times[i].us)},
+                                {"p99_us", quantile(times[i].us, 0.99)},
+                                {"max_us", quantile(times[i].us, 1)},
+                                {"steps", times[i].steps}});
   }
+  return figures;
 }
 }  // namespace
-}  // namespace altiplan::bench
 
-int main(int argc, char** argv) {
-  CLI::App app("Times the steps of the velocity field, through Pilot::step.", "altiplan-field");
-  int passes = 20;
-  app.add_option("--passes", passes, "flights in each world")->check(CLI::Range(1, 10000));
-  std::string variant = "paper";
-  app.add_option("--variant", variant, "of velocity_field");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    altiplan::host::Registry registry(altiplan::host::Registry::search_path({}));
-    altiplan::bench::time_rows(variant, passes, registry);
-  } catch (const std::exception& error) {
-    std::cerr << "altiplan-field: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+void add_field(Subcommands& all) {
+  struct Arguments {
+    int passes = 20;
+    std::string variant = "paper";
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      all.add("field", "time the steps of the velocity field, through Pilot::step",
+              [=](const Given& given) {
+                return time_rows(*given.registry, arguments->variant, arguments->passes);
+              });
+  command.add_option("--passes", arguments->passes, "flights in each world")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--variant", arguments->variant, "of velocity_field");
 }
+}  // namespace altiplan::bench

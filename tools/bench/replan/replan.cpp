@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-replan: how long dstar_lite takes to repair its plan where cells change, beside astar
-// planning afresh by cells in the same world. Each is timed once, one after the other, and every
-// length is compared. Arguments: trials for each row (20), voxel maps (MovingAI .3dmap) to use
-// beside the cities.
+// How long dstar_lite takes to repair its plan where cells change, beside astar planning afresh by
+// cells in the same world. Each is timed once, one after the other, and every length is compared.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <functional>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,46 +11,21 @@
 
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
-#include "altiplan/planner.hpp"
 #include "altiplan/random.hpp"
-#include "host/config/config.hpp"
-#include "host/config/yaml.hpp"
+#include "altiplan/route.hpp"
+#include "measuring.hpp"
+#include "subcommand.hpp"
 
 namespace altiplan::bench {
 namespace {
 
-host::Registry& registry() {
-  static host::Registry all(host::Registry::search_path({}));
-  return all;
-}
-
-std::shared_ptr<const Planner> planner(const std::string& name, const std::string& with) {
-  const Value parameters = host::parse_yaml(with, name);
-  return host::plugin(registry(), "planner", name).planner(&parameters);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// On this thread's own clock: what else runs does not count.
-double now_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
-}
-
 double ms_of(const std::function<void()>& work) {
-  const double before = now_ms();
+  const double before = thread_s();
   work();
-  return now_ms() - before;
+  return 1e3 * (thread_s() - before);
 }
 
-std::int64_t expanded(const PlanResult& result) {
-  return result.counters.empty() ? 0 : result.counters.front().value;
-}
+double expanded(const PlanResult& result) { return counter(result, "expanded"); }
 
 /// A world of cells, and a way through it.
 struct Map {
@@ -79,12 +49,8 @@ Request request_in(const Map& map, const std::shared_ptr<const World>& world) {
   return request;
 }
 
-Map city(int seed) {
-  const std::string with = "{generate: complex, seed: " + std::to_string(seed) + "}";
-  const Value parameters = host::parse_yaml(with, "city");
+Map city(host::Registry& registry, int seed) {
   Site site;
-  const World none;
-  site.before = &none;
   GridSpec spec;
   spec.cell = Vec3::Constant(10);
   spec.counts = {80, 80, 100};
@@ -92,38 +58,37 @@ Map city(int seed) {
   site.start = spec.centre({1, 2, 4});
   site.goal = spec.centre({67, 64, 4});
   VoxelGrid cells(spec);
-  host::plugin(registry(), "environment", "city").environment(&parameters, site)->rasterize(cells);
+  const std::string text = "city {generate: complex, seed: " + std::to_string(seed) + "}";
+  environment(registry, text, site)->rasterize(cells);
   return {"city " + std::to_string(seed), std::move(cells), {1, 2, 4}, {67, 64, 4}};
 }
 
+Cell random_cell(const GridSpec& spec, RandomStream& random) {
+  Cell c{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    c[axis] = int(random.integer(0, spec.counts[axis] - 1));
+  }
+  return c;
+}
+
 /// Free cells far apart that are not easily joined; nothing where many tries find none.
-std::optional<Map> voxel_map(const std::string& file, RandomStream& random) {
-  const Value parameters = host::parse_yaml("{file: '" + file + "'}", "voxel_map");
-  Site site;
-  const World none;
-  site.before = &none;
-  const auto layer =
-      host::plugin(registry(), "environment", "voxel_map").environment(&parameters, site);
+std::optional<Map> voxel_map(host::Registry& registry, const std::string& file,
+                             RandomStream& random) {
+  const auto layer = environment(registry, "voxel_map {file: '" + file + "'}");
   VoxelGrid cells(*layer->native_grid());
   layer->rasterize(cells);
   Map map{file.substr(file.rfind('/') + 1), std::move(cells), {}, {}};
-  const Cell& counts = map.cells.spec().counts;
-  const auto draw = [&] {
-    Cell c{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      c[axis] = int(random.integer(0, counts[axis] - 1));
-    }
-    return c;
-  };
+  const auto astar = planner(registry, "astar {moves: cells}");
   const auto world = std::make_shared<const World>(world_of(map.cells));
   for (int tries = 0; tries < 1000; ++tries) {
-    map.start = draw();
-    map.goal = draw();
+    map.start = random_cell(map.cells.spec(), random);
+    map.goal = random_cell(map.cells.spec(), random);
     const double apart = std::hypot(map.start[0] - map.goal[0], map.start[1] - map.goal[1]);
-    if (map.cells.blocked(map.start) || map.cells.blocked(map.goal) || apart < 0.3 * counts[0]) {
+    if (map.cells.blocked(map.start) || map.cells.blocked(map.goal) ||
+        apart < 0.3 * map.cells.spec().counts[0]) {
       continue;
     }
-    const PlanResult way = planner("astar", "{moves: cells}")->plan(request_in(map, world));
+    const PlanResult way = astar->plan(request_in(map, world));
     if (way.status == Status::solved && expanded(way) > 5000) {
       return map;
     }
@@ -136,14 +101,6 @@ struct Kind {
   std::string name;
   std::function<void(VoxelGrid&, const Map&, const Route&, RandomStream&)> edit;
 };
-
-Cell random_cell(const GridSpec& spec, RandomStream& random) {
-  Cell c{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    c[axis] = int(random.integer(0, spec.counts[axis] - 1));
-  }
-  return c;
-}
 
 void flip(VoxelGrid& cells, const Map& map, const Cell& c) {
   if (cells.spec().holds(c) && c != map.start && c != map.goal) {
@@ -217,15 +174,15 @@ struct Row {
   std::vector<double> share;
 };
 
-/// Whether the two lengths are one.
-bool time_one(const Planner& astar, const Planner& dstar, const Map& map, const Kind& kind,
+/// Throws WrongAnswer where the two lengths differ.
+void time_one(const Planner& astar, const Planner& dstar, const Map& map, const Kind& kind,
               std::uint64_t trial, Row& row) {
   const auto world = std::make_shared<const World>(world_of(map.cells));
   Request request = request_in(map, world);
   const auto session = dstar.begin(request);
   const PlanResult first = session->result();
   if (first.status != Status::solved) {
-    return true;
+    return;
   }
   RandomStream random = RandomStream(trial).sub(kind.name);
   VoxelGrid cells = map.cells;
@@ -252,28 +209,29 @@ bool time_one(const Planner& astar, const Planner& dstar, const Map& map, const 
   row.afresh_ms.push_back(plan_ms);
   row.repair_ms.push_back(repair_ms);
   row.ratio.push_back(plan_ms / repair_ms);
-  row.expanded.push_back(double(expanded(repaired)));
-  row.share.push_back(double(expanded(repaired)) / double(expanded(first)));
+  row.expanded.push_back(expanded(repaired));
+  row.share.push_back(expanded(repaired) / expanded(first));
   const bool same =
       repaired.status == afresh.status && std::abs(length(repaired.route) - length(afresh.route)) <=
                                               1e-9 * std::max(1.0, length(afresh.route));
   if (!same) {
-    std::cerr << map.name << ", " << kind.name << ": repaired " << length(repaired.route)
-              << " m, planned afresh " << length(afresh.route) << " m\n";
+    throw WrongAnswer(map.name + ", " + kind.name + ": repaired " +
+                      std::to_string(length(repaired.route)) + " m, planned afresh " +
+                      std::to_string(length(afresh.route)) + " m");
   }
-  return same;
 }
 
-void first_plans(const std::vector<Map>& maps) {
-  const auto astar = planner("astar", "{moves: cells}");
-  const auto dstar = planner("dstar_lite", "{moves: cells}");
+/// Medians over the maps.
+Json first_plans(host::Registry& registry, const std::string& name, const std::vector<Map>& maps) {
+  const auto astar = planner(registry, "astar {moves: cells}");
+  const auto dstar = planner(registry, "dstar_lite {moves: cells}");
   std::vector<double> ratio;
   std::vector<double> dstar_ms;
   std::vector<double> expansions;
   for (const Map& map : maps) {
     const Request request = request_in(map, std::make_shared<const World>(world_of(map.cells)));
-    const std::int64_t by_astar = expanded(astar->plan(request));
-    const std::int64_t by_dstar = expanded(dstar->plan(request));
+    const double by_astar = expanded(astar->plan(request));
+    const double by_dstar = expanded(dstar->plan(request));
     std::vector<double> a;
     std::vector<double> d;
     for (int n = 0; n < 5; ++n) {
@@ -282,67 +240,75 @@ void first_plans(const std::vector<Map>& maps) {
     }
     ratio.push_back(median(d) / median(a));
     dstar_ms.push_back(median(d));
-    expansions.push_back(double(by_dstar) / double(std::max<std::int64_t>(by_astar, 1)));
+    expansions.push_back(by_dstar / std::max(by_astar, 1.0));
   }
-  std::printf("first plan: %.3f ms, %.2f times astar's time, %.2f times its expansions (medians)\n",
-              median(dstar_ms), median(ratio), median(expansions));
+  return {{"maps", name},
+          {"ms", median(dstar_ms)},
+          {"times_of_astar", median(ratio)},
+          {"expansions_of_astar", median(expansions)}};
 }
 
-bool time_all(const std::string& name, const std::vector<Map>& maps, std::size_t trials) {
-  std::printf("%s\n", name.c_str());
-  first_plans(maps);
-  std::printf(
-      "| change | afresh, ms | repair, ms | ratio: median | least tenth | least | expanded | of "
-      "the first plan |\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n");
-  const auto astar = planner("astar", "{moves: cells}");
-  const auto dstar = planner("dstar_lite", "{moves: cells}");
-  bool same = true;
+void time_all(Json& figures, host::Registry& registry, const std::string& name,
+              const std::vector<Map>& maps, std::size_t trials) {
+  figures["first_plans"].push_back(first_plans(registry, name, maps));
+  const auto astar = planner(registry, "astar {moves: cells}");
+  const auto dstar = planner(registry, "dstar_lite {moves: cells}");
   for (const Kind& kind : kinds()) {
     Row row;
     for (std::size_t trial = 0; trial < trials; ++trial) {
-      same = time_one(*astar, *dstar, maps[trial % maps.size()], kind, trial, row) && same;
+      time_one(*astar, *dstar, maps[trial % maps.size()], kind, trial, row);
     }
     if (row.ratio.empty()) {
       continue;
     }
-    std::sort(row.ratio.begin(), row.ratio.end());
-    std::printf("| %s | %.3f | %.4f | %.1f | %.1f | %.1f | %.0f | %.4f |\n", kind.name.c_str(),
-                median(row.afresh_ms), median(row.repair_ms), median(row.ratio),
-                row.ratio[row.ratio.size() / 10], row.ratio.front(), median(row.expanded),
-                median(row.share));
-    std::fflush(stdout);
+    figures["repairs"].push_back({{"change", kind.name},
+                                  {"maps", name},
+                                  {"afresh_ms", median(row.afresh_ms)},
+                                  {"repair_ms", median(row.repair_ms)},
+                                  {"ratio", median(row.ratio)},
+                                  {"least_tenth", quantile(row.ratio, 0.1)},
+                                  {"least", quantile(row.ratio, 0)},
+                                  {"expanded", median(row.expanded)},
+                                  {"of_first_plan", median(row.share)}});
   }
-  return same;
 }
 
-bool run(int argc, char** argv) {
-  const std::size_t trials = argc > 1 ? std::size_t(std::stoul(argv[1])) : 20;
+struct Arguments {
+  std::size_t trials = 20;
+  std::vector<std::string> maps;
+};
+
+Json time_repairs(host::Registry& registry, const Arguments& arguments) {
   std::vector<Map> cities;
-  for (int seed = 0; seed < int(std::min<std::size_t>(trials, 20)); ++seed) {
-    cities.push_back(city(seed));
+  for (int seed = 0; seed < int(std::min<std::size_t>(arguments.trials, 20)); ++seed) {
+    cities.push_back(city(registry, seed));
   }
-  bool same = time_all("complex cities, 80 x 80 x 100 cells", cities, trials);
+  Json figures;
+  time_all(figures, registry, "complex cities", cities, arguments.trials);
   RandomStream random(1);
-  for (int n = 2; n < argc; ++n) {
+  for (const std::string& file : arguments.maps) {
     std::vector<Map> maps;
     for (int way = 0; way < 10; ++way) {
-      if (auto map = voxel_map(argv[n], random)) {
+      if (auto map = voxel_map(registry, file, random)) {
         maps.push_back(*std::move(map));
       }
     }
-    same = !maps.empty() && time_all(argv[n], maps, trials) && same;
+    if (maps.empty()) {
+      throw Error(file + ": found no way that takes a search");
+    }
+    time_all(figures, registry, maps.front().name, maps, arguments.trials);
   }
-  return same;
+  return figures;
 }
 }  // namespace
-}  // namespace altiplan::bench
 
-int main(int argc, char** argv) {
-  try {
-    return altiplan::bench::run(argc, argv) ? 0 : 1;
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 2;
-  }
+void add_replan(Subcommands& all) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      all.add("replan", "time repairs of dstar_lite beside planning afresh with astar",
+              [=](const Given& given) { return time_repairs(*given.registry, *arguments); });
+  command.add_option("maps", arguments->maps, "Warframe .3dmap files to use beside the cities");
+  command.add_option("--trials", arguments->trials, "changes of each kind")
+      ->check(CLI::PositiveNumber);
 }
+}  // namespace altiplan::bench

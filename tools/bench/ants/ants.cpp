@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-ants: what a step of an ant, an iteration and the set-up of the colonies take, by the
-// number of cells, and on two threads.
-#include <CLI/CLI.hpp>
+// What a step of an ant, an iteration and the set-up of the colonies take, by the number of cells,
+// and on two threads.
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
-#include "altiplan/error.hpp"
 #include "colony.hpp"
-#include "guarded.hpp"
+#include "subcommand.hpp"
 #include "topology.hpp"
 
 namespace altiplan::bench {
@@ -23,14 +20,12 @@ struct Arguments {
 };
 
 template <class Item, class Figure>
-double median(const std::vector<Item>& items, const Figure& figure) {
+double median_of(const std::vector<Item>& items, const Figure& figure) {
   std::vector<double> values;
   for (const Item& item : items) {
     values.push_back(figure(item));
   }
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return bench::median(values);
 }
 
 double cell_count(const Request& request, double cell_m) {
@@ -38,30 +33,33 @@ double cell_count(const Request& request, double cell_m) {
   return size.x() * size.y() / (cell_m * cell_m);
 }
 
-void print(const Setting& setting, const std::vector<Pass>& passes, const Request& request) {
-  const auto of = [&](const auto& figure) { return median(passes, figure); };
+Json row_of(const Setting& setting, const std::vector<Pass>& passes, const Request& request) {
+  const auto of = [&](const auto& figure) { return median_of(passes, figure); };
   const double others = setting.iterations - 1;
   const double set_up = of([](const Pass& p) { return p.set_up_ms(p.first); });
-  std::printf("%-24s", setting.planner.c_str());
+  Json row;
+  row["planner"] = setting.planner;
   if (setting.cell_m > 0) {
     const double cells = cell_count(request, setting.cell_m);
-    std::printf(" %6g %8.0f %8.1f", setting.cell_m, cells, 1e6 * set_up / cells);
-  } else {
-    std::printf(" %6s %8s %8s", "-", "-", "-");
+    row["cell_m"] = setting.cell_m;
+    row["cells"] = cells;
+    row["ns_per_cell"] = 1e6 * set_up / cells;
   }
-  std::printf(" %8.2f %8.2f %9.0f %8.1f %8.3f %9.2f %9.2f %5.0f %9.2f\n", set_up,
-              of([](const Pass& p) { return p.set_up_ms(p.again); }),
-              of([&](const Pass& p) { return (p.again.steps - p.single.steps) / others; }),
-              of([](const Pass& p) { return p.step_ns(); }),
-              of([&](const Pass& p) { return p.iterations_ms(&Time::processor_ms) / others; }),
-              of([](const Pass& p) { return p.first.time.processor_ms; }),
-              of([](const Pass& p) { return p.again.time.processor_ms; }),
-              of([](const Pass& p) { return p.again.alive; }),
-              of([](const Pass& p) { return p.again.length; }));
+  row["set_up_ms"] = set_up;
+  row["again_set_up_ms"] = of([](const Pass& p) { return p.set_up_ms(p.again); });
+  row["steps"] = of([&](const Pass& p) { return (p.again.steps - p.single.steps) / others; });
+  row["ns_per_step"] = of([](const Pass& p) { return p.step_ns(); });
+  row["ms_per_iteration"] =
+      of([&](const Pass& p) { return p.iterations_ms(&Time::processor_ms) / others; });
+  row["first_ms"] = of([](const Pass& p) { return p.first.time.processor_ms; });
+  row["again_ms"] = of([](const Pass& p) { return p.again.time.processor_ms; });
+  row["alive"] = of([](const Pass& p) { return p.again.alive; });
+  row["length"] = of([](const Pass& p) { return p.again.length; });
+  return row;
 }
 
 /// All settings in turn, pass by pass, so that what else the machine does meets all of them.
-void time_steps(host::Registry& registry, const Arguments& arguments,
+Json time_steps(host::Registry& registry, const Arguments& arguments,
                 const std::vector<Setting>& settings) {
   std::vector<std::vector<Pass>> passes(settings.size());
   for (int pass = 0; pass < arguments.passes; ++pass) {
@@ -69,12 +67,11 @@ void time_steps(host::Registry& registry, const Arguments& arguments,
       passes[n].push_back(plan_once(registry, settings[n], problem_of(arguments.scenario), pass));
     }
   }
-  std::printf("%-24s %6s %8s %8s %8s %8s %9s %8s %8s %9s %9s %5s %9s\n", "planner", "cell m",
-              "cells", "ns/cell", "set-up", "again", "steps", "ns/step", "ms/iter", "first ms",
-              "again ms", "alive", "length");
+  Json rows = Json::array();
   for (std::size_t n = 0; n < settings.size(); ++n) {
-    print(settings[n], passes[n], problem_of(arguments.scenario));
+    rows.push_back(row_of(settings[n], passes[n], problem_of(arguments.scenario)));
   }
+  return rows;
 }
 
 /// Wall times of the same plan, the least of all passes: another program that takes a processor
@@ -104,21 +101,24 @@ struct Threads {
   }
 };
 
-void time_threads(host::Registry& registry, const Arguments& arguments,
+Json time_threads(host::Registry& registry, const Arguments& arguments,
                   const std::vector<Setting>& settings) {
   const Request request = problem_of(arguments.scenario);
-  std::printf("\n%s\n%-24s %9s %9s %11s %11s %11s\n", topology().c_str(), "planner", "1: ms",
-              "2: ms", "efficiency", "of a plan", "two plans");
+  Json rows = Json::array();
   for (const Setting& setting : settings) {
     const Colony colony(registry, setting);
     Threads least;
     for (int pass = 0; pass < 3 * arguments.passes; ++pass) {
       least.add(colony, request);
     }
-    std::printf("%-24s %9.2f %9.2f %11.2f %11.2f %11.2f\n", setting.planner.c_str(), least.one_ms,
-                least.two_ms, least.efficiency_of_iterations(), least.efficiency(),
-                least.one_ms / least.two_plans_ms);
+    rows.push_back({{"planner", setting.planner},
+                    {"one_ms", least.one_ms},
+                    {"two_ms", least.two_ms},
+                    {"efficiency", least.efficiency_of_iterations()},
+                    {"of_a_plan", least.efficiency()},
+                    {"two_plans", least.one_ms / least.two_plans_ms}});
   }
+  return rows;
 }
 
 /// The colonies of paper 004 that there are, in its cells.
@@ -137,8 +137,7 @@ std::vector<Setting> paper_colonies(const host::Registry& registry, int iteratio
   return found;
 }
 
-void time_all(const Arguments& arguments) {
-  host::Registry registry(host::Registry::search_path({}));
+Json time_all(host::Registry& registry, const Arguments& arguments) {
   std::vector<Setting> colonies;
   for (const std::string& planner : arguments.planners) {
     colonies.push_back({planner, 0, arguments.iterations});
@@ -149,43 +148,42 @@ void time_all(const Arguments& arguments) {
   std::vector<Setting> by_cells;
   for (const Setting& colony : colonies) {
     for (const double cell_m : arguments.cells) {
-      by_cells.push_back({colony.planner, cell_m, arguments.iterations});
+      if (cell_m != 0) {
+        by_cells.push_back({colony.planner, cell_m, arguments.iterations});
+      }
     }
   }
-  time_steps(registry, arguments, colonies);
-  time_threads(registry, arguments, colonies);
+  Json figures;
+  figures["machine"] = topology();
+  figures["steps"] = time_steps(registry, arguments, colonies);
+  figures["threads"] = time_threads(registry, arguments, colonies);
   if (!by_cells.empty()) {
-    std::printf("\n");
-    time_steps(registry, arguments, by_cells);
+    figures["by_cells"] = time_steps(registry, arguments, by_cells);
   }
-}
-
-int run(int argc, char** argv) {
-  CLI::App app("Times ant colonies.", "altiplan-ants");
-  Arguments arguments;
-  app.add_option("scenario", arguments.scenario, "in level flight, without a mission of its own")
-      ->required()
-      ->check(CLI::ExistingFile);
-  app.add_option("--planner", arguments.planners,
-                 "name and parameters in YAML: 'ant_colony {ants: 50}'; again for more. By default "
-                 "the colonies that there are")
-      ->type_name("TEXT");
-  app.add_option("--iterations", arguments.iterations, "of a plan")->check(CLI::Range(2, 100'000));
-  app.add_option("--cells", arguments.cells, "edges of a cell to grow by, in metres; 0 for none");
-  app.add_option("--passes", arguments.passes, "each with its own seed; printed are medians")
-      ->check(CLI::Range(1, 1000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::kDone : cli::kUsage;
-  }
-  std::erase(arguments.cells, 0.0);
-  return cli::guarded("altiplan-ants", [&] {
-    time_all(arguments);
-    return cli::kDone;
-  });
+  return figures;
 }
 }  // namespace
-}  // namespace altiplan::bench
 
-int main(int argc, char** argv) { return altiplan::bench::run(argc, argv); }
+void add_ants(Subcommands& all) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      all.add("ants", "time a step, an iteration and the set-up of ant colonies",
+              [=](const Given& given) { return time_all(*given.registry, *arguments); });
+  command
+      .add_option("scenario", arguments->scenario, "in level flight, without a mission of its own")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command
+      .add_option(
+          "--planner", arguments->planners,
+          "name and parameters in YAML: 'ant_colony {ants: 50}'; again for more. By default "
+          "the colonies that there are")
+      ->type_name("TEXT");
+  command.add_option("--iterations", arguments->iterations, "of a plan")
+      ->check(CLI::Range(2, 100'000));
+  command.add_option("--cells", arguments->cells,
+                     "edges of a cell to grow by, in metres; 0 for none");
+  command.add_option("--passes", arguments->passes, "each with its own seed; printed are medians")
+      ->check(CLI::Range(1, 1000));
+}
+}  // namespace altiplan::bench

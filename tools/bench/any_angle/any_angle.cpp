@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-any-angle: planners over cells side by side, in cities of paper 003 and on maps in
-// space. Times are the thread's, of whole calls of Planner::plan; lengths are in cells.
-#include <CLI/CLI.hpp>
+// Planners over cells side by side, in cities of paper 003 and on maps in space. Times are the
+// thread's, of whole calls of Planner::plan; lengths are in cells.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <optional>
 
-#include "guarded.hpp"
 #include "rows.hpp"
 
 namespace altiplan::bench {
@@ -46,7 +44,7 @@ std::vector<Row> make_rows(host::Registry& registry, std::vector<std::string> pl
   return rows;
 }
 
-void time_cities(const Arguments& arguments, host::Registry& registry) {
+Json time_cities(const Arguments& arguments, host::Registry& registry) {
   std::vector<Row> rows = make_rows(registry, arguments.planners);
   CityKind kind = arguments.city;
   kind.complex = arguments.kind == "complex";
@@ -63,10 +61,11 @@ void time_cities(const Arguments& arguments, host::Registry& registry) {
     blocked += double(cells.blocked()) / double(cell_count) / arguments.seeds;
     plan_all(rows, cells, {kind.way()}, arguments.passes);
   }
-  std::printf("%d %s cities of %zu cells, %.1f %% blocked: built in %.3f ms, occupancy %.3f ms\n",
-              arguments.seeds, arguments.kind.c_str(), cell_count, 100 * blocked, build_ms,
-              occupancy_ms);
-  print(rows, cell_count);
+  Json figures{{"cities", arguments.seeds}, {"kind", arguments.kind},
+               {"cells", cell_count},       {"blocked", blocked},
+               {"build_ms", build_ms},      {"occupancy_ms", occupancy_ms}};
+  add(figures, rows, cell_count);
+  return figures;
 }
 
 /// A line for each way as soon as it is read, for a program that asks two systems in turn.
@@ -81,7 +80,7 @@ void print_each(const Arguments& arguments, const Cells& cells, Row& row, Ways& 
   }
 }
 
-void time_map(const Arguments& arguments, host::Registry& registry) {
+Json time_map(const Arguments& arguments, host::Registry& registry) {
   std::vector<Row> rows = make_rows(registry, arguments.planners);
   std::ifstream file;
   if (arguments.ways != "-") {
@@ -94,7 +93,7 @@ void time_map(const Arguments& arguments, host::Registry& registry) {
   const Cells cells = load_map(registry, arguments.map);
   if (arguments.each) {
     print_each(arguments, cells, rows.front(), ways);
-    return;
+    return nullptr;
   }
   std::vector<Way> all;
   while (const std::optional<Way> way = ways.next()) {
@@ -103,53 +102,51 @@ void time_map(const Arguments& arguments, host::Registry& registry) {
   const std::size_t cell_count = cells.spec().cell_count();
   plan_all(rows, cells, spread(std::move(all), arguments.least_cells, arguments.limit),
            arguments.passes);
-  std::printf("%s: %zu cells, %.3f %% blocked: read in %.3f ms, occupancy %.3f ms\n",
-              arguments.map.c_str(), cell_count, 100 * double(cells.blocked()) / double(cell_count),
-              cells.build_ms(), cells.occupancy_ms());
-  print(rows, cell_count);
-}
-
-int run(int argc, char** argv) {
-  CLI::App app("Times planners over cells side by side.", "altiplan-any-angle");
-  app.require_subcommand(1);
-  Arguments arguments;
-  app.add_option("--planner", arguments.planners,
-                 "name and parameters in YAML: 'astar {corner: free_box}'; again for more. By "
-                 "default astar and those for straight legs that there are")
-      ->type_name("TEXT");
-  app.add_option("--passes", arguments.passes, "plans of each way; its time is their median")
-      ->check(CLI::Range(1, 1000));
-  CLI::App* city = app.add_subcommand("city", "drawn cities, a way across each")->fallthrough();
-  city->add_option("--kind", arguments.kind, "of city")
-      ->check(CLI::IsMember({"simple", "complex"}));
-  city->add_option("--seeds", arguments.seeds, "how many cities")->check(CLI::PositiveNumber);
-  city->add_option("--first-seed", arguments.first_seed, "of the first; the others follow")
-      ->check(CLI::NonNegativeNumber);
-  city->add_option("--cells", arguments.counts, "cells along x, y and z")->expected(3);
-  city->add_option("--buildings", arguments.city.buildings, "how many a complex city draws");
-  CLI::App* map = app.add_subcommand("map", "a map, and ways from a file")->fallthrough();
-  map->add_option("map", arguments.map, "a Warframe .3dmap")->required();
-  map->add_option("ways", arguments.ways,
-                  "a .3dscen file, or lines of start x y z and goal x y z; - for standard input")
-      ->required();
-  map->add_option("--limit", arguments.limit, "ways, from the shortest to the longest, evenly")
-      ->check(CLI::PositiveNumber);
-  map->add_option("--least-cells", arguments.least_cells, "between the ends of a way");
-  map->add_flag("--each", arguments.each,
-                "answer all ways by the first planner, one by one as they are read, --passes times "
-                "each: solved (0 or 1), length in cells, cells expanded, microseconds");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::kDone : cli::kUsage;
-  }
-  return cli::guarded("altiplan-any-angle", [&] {
-    host::Registry registry(host::Registry::search_path({}));
-    city->parsed() ? time_cities(arguments, registry) : time_map(arguments, registry);
-    return cli::kDone;
-  });
+  Json figures{{"map", arguments.map},
+               {"cells", cell_count},
+               {"blocked", double(cells.blocked()) / double(cell_count)},
+               {"build_ms", cells.build_ms()},
+               {"occupancy_ms", cells.occupancy_ms()}};
+  add(figures, rows, cell_count);
+  return figures;
 }
 }  // namespace
-}  // namespace altiplan::bench
 
-int main(int argc, char** argv) { return altiplan::bench::run(argc, argv); }
+void add_any_angle(Subcommands& all) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      all.add("any-angle", "time planners over cells side by side", [=](const Given& given) {
+        return arguments->map.empty() ? time_cities(*arguments, *given.registry)
+                                      : time_map(*arguments, *given.registry);
+      });
+  command.require_subcommand(1);
+  command
+      .add_option("--planner", arguments->planners,
+                  "name and parameters in YAML: 'astar {corner: free_box}'; again for more. By "
+                  "default astar and those for straight legs that there are")
+      ->type_name("TEXT");
+  command.add_option("--passes", arguments->passes, "plans of each way; its time is their median")
+      ->check(CLI::Range(1, 1000));
+  CLI::App* city = command.add_subcommand("city", "drawn cities, a way across each");
+  city->fallthrough();
+  city->add_option("--kind", arguments->kind, "of city")
+      ->check(CLI::IsMember({"simple", "complex"}));
+  city->add_option("--seeds", arguments->seeds, "how many cities")->check(CLI::PositiveNumber);
+  city->add_option("--first-seed", arguments->first_seed, "of the first; the others follow")
+      ->check(CLI::NonNegativeNumber);
+  city->add_option("--cells", arguments->counts, "cells along x, y and z")->expected(3);
+  city->add_option("--buildings", arguments->city.buildings, "how many a complex city draws");
+  CLI::App* map = command.add_subcommand("map", "a map, and ways from a file");
+  map->fallthrough();
+  map->add_option("map", arguments->map, "a Warframe .3dmap")->required();
+  map->add_option("ways", arguments->ways,
+                  "a .3dscen file, or lines of start x y z and goal x y z; - for standard input")
+      ->required();
+  map->add_option("--limit", arguments->limit, "ways, from the shortest to the longest, evenly")
+      ->check(CLI::PositiveNumber);
+  map->add_option("--least-cells", arguments->least_cells, "between the ends of a way");
+  map->add_flag("--each", arguments->each,
+                "answer all ways by the first planner, one by one as they are read, --passes times "
+                "each: solved (0 or 1), length in cells, cells expanded, microseconds");
+}
+}  // namespace altiplan::bench

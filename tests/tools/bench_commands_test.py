@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""bench_commands_test.py PROGRAM SOURCES: each subcommand of altiplan-bench measures as little as it can, as a
+table and as JSON, and says what a build has left out.
+"""
+import json
+import subprocess
+import sys
+import unittest
+
+PROGRAM, SOURCES = sys.argv[1:3]
+ANTS = f"{SOURCES}/configs/scenarios/ant_colony.yaml"
+# What is measured, and the columns of a table or the names of Google Benchmark's rows.
+CALLS = {
+    "ants": ([ANTS, "--iterations", "2", "--cells", "20", "--passes", "1"],
+             {"steps": "ns_per_step", "threads": "efficiency", "by_cells": "ns_per_cell"}),
+    "any-angle": (["city", "--seeds", "1", "--passes", "1"], {"planners": "median_ms"}),
+    "field": (["--passes", "1"], {"steps": "p99_us"}),
+    "pilot": (["--flights", "1"], {"steps": "p99.9_us"}),
+    "replan": (["--trials", "1"], {"first_plans": "ms", "repairs": "ratio"}),
+    "queries": (["--benchmark_filter=point/", "--benchmark_min_time=0.001"], "point/altiplan"),
+    "sampling": (["--benchmark_filter=nearest/scattered/1000/", "--benchmark_min_time=0.001"],
+                 "nearest/scattered/1000/tree"),
+    "search": (["--paper-worlds", "--benchmark_filter=fitted/plan$", "--benchmark_min_time=0.001"],
+               "fusion_fitted/plan"),
+}
+
+
+def bench(*arguments):
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
+                          check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Subcommands(unittest.TestCase):
+    def each(self):
+        """Those that this build has; the others must say what they need."""
+        listed = bench("--help")[1]
+        for name, (arguments, expected) in CALLS.items():
+            with self.subTest(name):
+                self.assertIn(f"  {name} ", listed)
+                code, out, err = bench(name, *arguments, "--json")
+                if code == 3 and "left out of this build: needs " in err:
+                    self.assertEqual(out, "")
+                    continue
+                self.assertEqual(code, 0, err)
+                yield [name, *arguments], json.loads(out), expected
+
+    def test_figures(self):
+        for call, figures, expected in self.each():
+            if isinstance(expected, str):
+                names = [row["name"] for row in figures["benchmarks"]]
+                self.assertIn(expected, names)
+                continue
+            code, out, err = bench(*call)
+            self.assertEqual(code, 0, err)
+            for table, column in expected.items():
+                self.assertGreater(len(figures[table]), 0)
+                self.assertTrue(all(list(row) == list(figures[table][0]) for row in figures[table]))
+                self.assertIsInstance(figures[table][0][column], (int, float))
+                self.assertIn(f"\n{table}\n", out)
+                self.assertIn(f" {column}", out)
+
+    def test_wrong_usage(self):
+        for arguments in ([], ["grids"], ["field", "--passes", "0"], ["any-angle"],
+                          ["field", "--benchmark_filter=a"]):
+            self.assertEqual(bench(*arguments)[0], 2, arguments)
+        code, _, err = bench("search", "--paper-words")
+        self.assertIn((code, "left out" in err), ((2, False), (3, True)))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
