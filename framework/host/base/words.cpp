@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdio>
 
 namespace altiplan::host {
 
@@ -13,8 +15,24 @@ std::string with_digits(double number, int digits) {
   return {text.data(), end.ptr};
 }
 
+std::string with_commas(std::string digits) {
+  const std::size_t end = std::min(digits.find('.'), digits.size());
+  const std::size_t first = digits[0] == '-' ? 1 : 0;
+  for (std::size_t at = end; at > first + 3;) {
+    at -= 3;
+    digits.insert(at, ",");
+  }
+  return digits;
+}
+
 std::string counted(std::size_t count, std::string_view what) {
-  return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
+  return with_commas(std::to_string(count)) + " " + std::string(what) + (count == 1 ? "" : "s");
+}
+
+std::string place(const Vec3& p) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
+  return text.data();
 }
 
 std::string sentence(const std::string& text) { return text + (text.ends_with('?') ? "" : "."); }

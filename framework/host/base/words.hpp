@@ -5,13 +5,21 @@
 #include <string>
 #include <string_view>
 
+#include "altiplan/geometry.hpp"
+
 namespace altiplan::host {
 
 /// The number in so many significant digits.
 std::string with_digits(double number, int digits);
 
-/// "1 pair", "2 pairs".
+/// With a comma between groups of three digits: "-12,345.6".
+std::string with_commas(std::string digits);
+
+/// "1 pair", "2,000 pairs".
 std::string counted(std::size_t count, std::string_view what);
+
+/// "(12, 34, 56)", in whole metres, for messages.
+std::string place(const Vec3& p);
 
 /// The text with a full stop, unless it ends in a question.
 std::string sentence(const std::string& text);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
+#include "host/base/utf8.hpp"
 #include "host/config/yaml_source.hpp"
 
 namespace altiplan::host {
@@ -11,27 +12,6 @@ namespace {
 // characters of comments and text too, so they stay far above the caps.
 constexpr std::ptrdiff_t kMaxOpenBrackets = 10'000;
 constexpr std::size_t kMaxMarksInBrackets = 4 * kMaxNodes;
-
-/// Bytes of the UTF-8 character at the front of `text`; 0 where it is none.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) {
-    return 1;
-  }
-  const std::size_t length = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : 2;
-  if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < length) {
-    return 0;
-  }
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) {
-      return 0;
-    }
-  }
-  const bool overlong = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
-  const bool surrogate = byte(0) == 0xED && byte(1) > 0x9F;
-  const bool too_large = byte(0) == 0xF4 && byte(1) > 0x8F;
-  return overlong || surrogate || too_large ? 0 : length;
-}
 
 std::string hexadecimal(unsigned char byte) {
   constexpr const char* kDigits = "0123456789abcdef";

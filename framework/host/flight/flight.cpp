@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/flight/flight_run.hpp"
 
 namespace altiplan::host {
@@ -14,12 +15,6 @@ namespace {
 constexpr int kMostSteps = 1'000'000;
 constexpr double kTimesDuration = 10;
 }  // namespace
-
-std::string place(const Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
-  return text;
-}
 
 Flight::Flight(const FlightSetup& setup)
     : setup_(setup),

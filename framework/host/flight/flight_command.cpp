@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "host/base/words.hpp"
 #include "host/flight/flight_run.hpp"
 #include "host/flight/track_judge.hpp"
 

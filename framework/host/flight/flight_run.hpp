@@ -92,7 +92,4 @@ class Flight {
   std::vector<Vec3> rest_;
   FlightResult result_;
 };
-
-/// "(12, 34, 56)", for messages.
-std::string place(const Vec3& p);
 }  // namespace altiplan::host

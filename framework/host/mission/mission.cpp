@@ -9,20 +9,11 @@
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/iso_time.hpp"
+#include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
 
 namespace altiplan::host {
 namespace {
-
-/// Where a key of the scenario stands.
-Location place(const Value& tree, std::string_view key) {
-  for (const Value::Entry& entry : tree.entries) {
-    if (entry.key == key) {
-      return entry.where;
-    }
-  }
-  return tree.where;
-}
 
 /// An optional corner of the volume, completed from the layers' box.
 Box volume_of(const Config& config, const World& truth, const std::optional<double>& level) {
@@ -39,7 +30,7 @@ Box volume_of(const Config& config, const World& truth, const std::optional<doub
     box.max.z() = *level;
   }
   static constexpr const char* kAxes[] = {"x", "y", "z"};
-  const Location where = place(config.scenario_tree, "volume");
+  const Location where = place_of(config.scenario_tree, "volume");
   std::vector<Problem> problems;
   for (const auto& [key, side, corner] : {std::tuple("volume.min_m", "below", box.min),
                                           std::tuple("volume.max_m", "above", box.max)}) {
@@ -108,7 +99,7 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
     } catch (const ConfigError&) {
       throw;
     } catch (const Error& error) {
-      throw ConfigError(place(tree, entry.shape), "moving." + std::to_string(i), error.what());
+      throw ConfigError(place_of(tree, entry.shape), "moving." + std::to_string(i), error.what());
     }
   }
   return all;
@@ -212,7 +203,7 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
   } catch (const PluginError& error) {
     throw PluginError("the environment '" + plugin_name + "' (" + key + ") " + error.what());
   } catch (const ParameterError& error) {
-    throw ConfigError(place(parameters, error.key()), key + "." + error.key(), error.what());
+    throw ConfigError(place_of(parameters, error.key()), key + "." + error.key(), error.what());
   } catch (const Error& error) {
     throw ConfigError(parameters.where, key, error.what());
   }
@@ -320,7 +311,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   build_layers(config, mission, calling);
   World& truth = mission.truth;
   if (!file.frame.crs.empty() && !truth.has_ground()) {
-    throw ConfigError(place(tree, "frame"), "frame.crs",
+    throw ConfigError(place_of(tree, "frame"), "frame.crs",
                       "only an elevation model (terrain) can be brought into a coordinate system, "
                       "and the world has none: give origin_lonlat, a place near the flight");
   }
@@ -339,8 +330,8 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   request.threads = threads;
   request.random = site.random;
   request.start.position =
-      resolve_point(file.start.point, site, level, place(tree, "start"), "start");
-  request.goal = {resolve_point(file.goal.point, site, level, place(tree, "goal"), "goal"),
+      resolve_point(file.start.point, site, level, place_of(tree, "start"), "start");
+  request.goal = {resolve_point(file.goal.point, site, level, place_of(tree, "goal"), "goal"),
                   file.goal.tolerance_m};
   site.start = request.start.position;
   site.goal = request.goal.position;

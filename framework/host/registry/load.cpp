@@ -111,20 +111,14 @@ bool has_maker(const PluginEntry& entry) {
           (kind == "tuner" && entry.tuner != nullptr));
 }
 
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
-
 /// Whether files can hold these parameters: names that lie in damaged data are no names.
 void check_names(const FieldSpec& spec) {
   for (const FieldSpec& field : spec.children) {
     const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
                           field.type == FieldType::plugin;
     if (!is_snake_case(field.name) && !(nameless && field.name.empty())) {
-      throw PluginError("a parameter is named '" + printable(field.name) +
-                        "', expected lower-case letters, digits and '_'");
+      throw PluginError("a parameter is named " + excerpt(field.name) +
+                        ", expected lower-case letters, digits and '_'");
     }
     check_names(field);
   }

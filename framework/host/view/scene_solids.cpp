@@ -4,6 +4,7 @@
 
 #include "altiplan/blame.hpp"
 #include "host/base/base64.hpp"
+#include "host/base/words.hpp"
 #include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {
@@ -216,12 +217,6 @@ class Stays {
  private:
   std::vector<Stay> all_;
 };
-
-std::string place(const Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
-  return text;
-}
 
 std::string event_text(const FlightEvent& event) {
   using Kind = FlightEvent::Kind;

@@ -12,17 +12,6 @@ namespace {
 
 constexpr std::string_view kDash = "–";
 
-/// With a comma between groups of three digits.
-std::string with_commas(std::string digits) {
-  const std::size_t end = std::min(digits.find('.'), digits.size());
-  const std::size_t first = digits[0] == '-' ? 1 : 0;
-  for (std::size_t at = end; at > first + 3;) {
-    at -= 3;
-    digits.insert(at, ",");
-  }
-  return digits;
-}
-
 std::string to_text(double value, std::chars_format format, int precision) {
   char text[400];
   const auto done = std::to_chars(text, text + sizeof text, value, format, precision);
@@ -79,7 +68,7 @@ std::string readable(double value, int digits) {
   if (value == std::round(value) && text.find('.') != std::string::npos) {
     text.resize(text.find('.'));  // counts are written as counts
   }
-  return with_commas(text);
+  return host::with_commas(text);
 }
 
 bool is_straight(std::string_view metric, double value) {
@@ -106,11 +95,7 @@ std::string percent(double share) {
   return (text.ends_with(".0") ? text.substr(0, text.size() - 2) : text) + " %";
 }
 
-std::string grouped(std::size_t count) { return with_commas(std::to_string(count)); }
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return grouped(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
-}
+std::string grouped(std::size_t count) { return host::with_commas(std::to_string(count)); }
 
 std::string p_text(double p) {
   if (!std::isfinite(p)) {

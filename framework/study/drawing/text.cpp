@@ -3,55 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace altiplan::study::report {
 namespace {
-
-constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
-
-/// Length of the character of UTF-8 that stands at the front, 0 where none does.
-std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) {
-    return 1;
-  }
-  const std::size_t length = lead >= 0xF5   ? 0
-                             : lead >= 0xF0 ? 4
-                             : lead >= 0xE0 ? 3
-                             : lead >= 0xC2 ? 2
-                                            : 0;
-  if (length == 0 || text.size() < length) {
-    return 0;
-  }
-  std::uint32_t code = lead & (0xFFu >> (length + 1));
-  for (std::size_t at = 1; at < length; ++at) {
-    if ((byte(at) & 0xC0) != 0x80) {
-      return 0;
-    }
-    code = code << 6 | (byte(at) & 0x3Fu);
-  }
-  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  const bool no_character = (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF;
-  return too_long || no_character ? 0 : length;
-}
-
-/// Line and paragraph separators, C1 controls, and what turns the direction of writing.
-bool hidden_control(std::string_view character) {
-  if (character.size() == 2 && character[0] == '\xC2') {
-    return static_cast<unsigned char>(character[1]) < 0xA0;
-  }
-  if (character.size() == 3 && character.substr(0, 2) == "\xE2\x80") {
-    const auto last = static_cast<unsigned char>(character[2]);
-    return last >= 0xA8 && last <= 0xAE;
-  }
-  return character.size() == 3 && character.substr(0, 2) == "\xE2\x81" &&
-         static_cast<unsigned char>(character[2]) >= 0xA6 &&
-         static_cast<unsigned char>(character[2]) <= 0xA9;
-}
 
 bool is_number(std::string_view text) {
   double value = 0;
@@ -92,27 +48,6 @@ const std::vector<std::pair<char, std::string_view>> kLatex{{'\\', "\\textbacksl
                                                             {'[', "{[}"},
                                                             {']', "{]}"}};
 }  // namespace
-
-std::string printable(std::string_view bytes, bool keep_lines) {
-  std::string out;
-  out.reserve(bytes.size());
-  while (!bytes.empty()) {
-    const std::size_t length = character_length(bytes);
-    const std::string_view character = bytes.substr(0, std::max<std::size_t>(length, 1));
-    const auto letter = static_cast<unsigned char>(character[0]);
-    if (length == 0) {
-      out += kReplacement;
-    } else if (letter < ' ' || letter == 0x7F) {
-      out += keep_lines && (letter == '\n' || letter == '\t') ? character[0] : ' ';
-    } else if (hidden_control(character)) {
-      out += ' ';
-    } else {
-      out += character;
-    }
-    bytes.remove_prefix(character.size());
-  }
-  return out;
-}
 
 std::string html(std::string_view text) { return replaced(printable(text), kHtml); }
 
@@ -182,7 +117,7 @@ std::string shortened(const std::string& text, std::size_t most) {
   const auto first_bytes = [&](std::size_t wanted) {
     std::size_t at = 0;
     while (at < text.size() && wanted > 0) {
-      at += std::max<std::size_t>(1, character_length(std::string_view(text).substr(at)));
+      at += std::max<std::size_t>(1, host::utf8_length(std::string_view(text).substr(at)));
       --wanted;
     }
     return at;

@@ -5,14 +5,16 @@
 #include <string>
 #include <string_view>
 
+#include "host/base/utf8.hpp"
+#include "host/base/words.hpp"
+
 namespace altiplan::study::report {
 
 // Names of scenarios and messages of plugins may hold any bytes. Everything that goes into a file
 // of the report passes through one of these.
 
-/// Valid UTF-8: U+FFFD in place of every byte that is none, a blank in place of control characters
-/// (line ends and tabs too, unless they are kept).
-std::string printable(std::string_view bytes, bool keep_lines = false);
+using host::counted;
+using host::printable;
 
 /// For HTML and SVG, between tags and within quoted attributes.
 std::string html(std::string_view text);
@@ -49,8 +51,6 @@ bool is_straight(std::string_view metric, double value);
 std::string percent(double share);
 /// "1,234".
 std::string grouped(std::size_t count);
-/// "1 run", "2 runs".
-std::string counted(std::size_t count, std::string_view noun);
 /// A p-value: "0.013", "< 0.0001".
 std::string p_text(double p);
 /// "p = 0.013", "p < 0.0001".

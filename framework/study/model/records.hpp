@@ -8,20 +8,24 @@
 
 namespace altiplan::study {
 
-/// A run as the store holds it; the tables are in docs/study-database.md.
-struct StoredRun {
+/// What a store and a table of runs have in common.
+struct RunFacts {
   std::int64_t id = 0;  ///< given by the store; not kept by `merge`
   std::string key;
-  std::string scenario;  ///< name of the variant
-  std::string pipeline;
   int repetition = 0;
   std::int64_t seed = 0;
   std::string outcome;  ///< a status of a run, or crashed, out_of_memory, bad_output, refused
   std::string message;
+  int place = 0;  ///< how many runs the process had done before (--reuse)
+};
+
+/// A run as the store holds it; the tables are in docs/study-database.md.
+struct StoredRun : RunFacts {
+  std::string scenario;  ///< name of the variant
+  std::string pipeline;
   double wall_time_s = 0;  ///< of the run in its process
   double cpu_time_s = 0;
   double peak_memory_mb = 0;
-  int place = 0;             ///< how many runs the process had done before (--reuse)
   std::int64_t session = 0;  ///< which call of `study` ran it
   std::string result;        ///< result.json, "" where there is none; compressed in the file
   std::string trace;         ///< likewise

@@ -11,17 +11,10 @@
 namespace altiplan::study {
 
 /// A run in a table: what statistics and figures read.
-struct RunRow {
-  std::size_t store = 0;  ///< index into StudyData::stores
-  std::int64_t id = 0;    ///< in that store
-  std::string key;
+struct RunRow : RunFacts {
+  std::size_t store = 0;     ///< index into StudyData::stores; `id` is that in this store
   std::size_t scenario = 0;  ///< index into StudyData::scenarios
   std::size_t pipeline = 0;
-  int repetition = 0;
-  std::int64_t seed = 0;
-  std::string outcome;
-  std::string message;
-  int place = 0;
   /// One per StudyData::columns, to 12 significant digits; NaN where it does not apply.
   std::vector<double> values;
 

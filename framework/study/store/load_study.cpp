@@ -35,14 +35,8 @@ std::map<std::string, std::size_t> gather(std::vector<StoredVariant>& all,
 
 RunRow row_of(const StoredRun& run, std::size_t store, const std::vector<std::string>& columns) {
   RunRow row;
+  static_cast<RunFacts&>(row) = run;
   row.store = store;
-  row.id = run.id;
-  row.key = run.key;
-  row.repetition = run.repetition;
-  row.seed = run.seed;
-  row.outcome = run.outcome;
-  row.message = run.message;
-  row.place = run.place;
   row.values.assign(columns.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [name, value] : run.values) {  // both are sorted
     row.values[std::size_t(std::lower_bound(columns.begin(), columns.end(), name) -

@@ -78,7 +78,8 @@ class Lines {
   int number_ = 0;
 };
 
-std::string printable(char c) {
+/// A byte as a message shows it.
+std::string quoted(char c) {
   constexpr char kHex[] = "0123456789abcdef";
   const auto byte = static_cast<unsigned char>(c);
   return byte >= ' ' && byte < 0x7f ? std::string{'\'', c, '\''}
@@ -134,8 +135,8 @@ VoxelGrid read(const Params& params) {
         first_blocked = column + 1;
       } else if (c != '@' && c != 'O' && c != 'T') {
         lines.refuse("cell " + std::to_string(column + 1) +
-                     ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " +
-                     printable(c) + " (swamp and water have costs of their own, which no " +
+                     ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " + quoted(c) +
+                     " (swamp and water have costs of their own, which no " +
                      "planner here knows)");
       }
     }

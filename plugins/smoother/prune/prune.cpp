@@ -33,9 +33,9 @@ struct Cost {
 };
 
 /// The fewest waypoints of one route.
-class Thinning {
+class Pruning {
  public:
-  Thinning(const Route& route, const Request& request)
+  Pruning(const Route& route, const Request& request)
       : route_(route),
         request_(request),
         watch_(request.budget),
@@ -203,9 +203,9 @@ class Prune final : public Smoother {
     result.status = Status::solved;
     result.route = route;
     const Route clean = without_repeats(route);
-    Thinning thinning(clean, request);
-    const std::vector<std::size_t> kept = thinning.fewest();
-    result.budget_hit = thinning.budget_hit();
+    Pruning pruning(clean, request);
+    const std::vector<std::size_t> kept = pruning.fewest();
+    result.budget_hit = pruning.budget_hit();
     Route thinned;
     for (const std::size_t index : kept) {
       thinned.push_back(clean[index]);
@@ -220,8 +220,8 @@ class Prune final : public Smoother {
     if (result.route.size() == route.size()) {
       result.message += result.budget_hit ? " (the budget ended)" : "";
     }
-    result.counters = {{"expanded", thinning.expanded()},
-                       {"legs_checked", thinning.legs_checked()},
+    result.counters = {{"expanded", pruning.expanded()},
+                       {"legs_checked", pruning.legs_checked()},
                        {"removed", std::int64_t(route.size() - result.route.size())}};
     return result;
   }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "host/base/utf8.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -35,30 +36,16 @@ std::string indented(const std::string& text, std::size_t by) {
   return all;
 }
 
-/// What a plugin says need not be text: without control characters, which a terminal obeys and XML
-/// does not know, and as UTF-8.
-std::string printable(const std::string& text) {
-  using Json = nlohmann::json;
-  std::string all = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace))
-                        .get<std::string>();
-  std::replace_if(
-      all.begin(), all.end(),
-      [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7F; }, '?');
-  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"}) {  // U+FFFE and U+FFFF
-    for (std::size_t at = all.find(none); at != std::string::npos; at = all.find(none)) {
-      all.replace(at, 3, "?");
-    }
-  }
-  return all;
-}
+/// What a plugin says need not be text.
+std::string text_of(const std::string& said) { return host::printable(said, true); }
 
 std::string findings_text(const CheckedLibrary& library, const Verdict& verdict) {
   std::string all;
   for (const conformance::Finding& finding : verdict.findings) {
-    all += "  " + printable(finding.law) + "\n" + indented(printable(finding.message), 4);
+    all += "  " + text_of(finding.law) + "\n" + indented(text_of(finding.message), 4);
   }
   if (!verdict.said.empty()) {
-    all += "  it said:\n" + indented(printable(verdict.said), 4);
+    all += "  it said:\n" + indented(text_of(verdict.said), 4);
   }
   return all + "  again: " + reproduce(library, verdict) + "\n";
 }
@@ -78,7 +65,7 @@ std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict) 
     return "FAILED  " + verdict.test + time + findings_text(library, verdict);
   }
   if (!verdict.skipped.empty()) {
-    return "skipped " + verdict.test + ": " + printable(verdict.skipped) + "\n";
+    return "skipped " + verdict.test + ": " + text_of(verdict.skipped) + "\n";
   }
   return "passed  " + verdict.test + time;
 }
@@ -89,7 +76,7 @@ std::string summary_text(const CheckedLibrary& library, const std::vector<Verdic
   for (const Verdict& verdict : verdicts) {
     peak = std::max(peak, verdict.peak_memory_mb);
   }
-  return printable(library.file) + ": " + std::to_string(all.passed) + " passed, " +
+  return text_of(library.file) + ": " + std::to_string(all.passed) + " passed, " +
          std::to_string(all.failed) + " failed" +
          (all.skipped > 0 ? ", " + std::to_string(all.skipped) + " skipped" : "") + " in " +
          fixed(library.time_s, 1) + " s; at most " + fixed(peak, 0) + " MB\n";
@@ -129,7 +116,7 @@ std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verd
   }
   pugi::xml_document document;
   pugi::xml_node root = document.append_child("testsuites");
-  root.append_attribute("name") = printable(library.file).c_str();
+  root.append_attribute("name") = text_of(library.file).c_str();
   for (const auto& [name, tests] : suites) {
     const Count all = count(tests);
     pugi::xml_node suite = root.append_child("testsuite");
@@ -145,11 +132,10 @@ std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verd
       test.append_attribute("time") = fixed(verdict.time_s, 3).c_str();
       if (verdict.failed()) {
         pugi::xml_node failure = test.append_child("failure");
-        failure.append_attribute("message") = printable(verdict.findings.front().law).c_str();
-        failure.text() = printable(findings_text(library, verdict)).c_str();
+        failure.append_attribute("message") = text_of(verdict.findings.front().law).c_str();
+        failure.text() = text_of(findings_text(library, verdict)).c_str();
       } else if (!verdict.skipped.empty()) {
-        test.append_child("skipped").append_attribute("message") =
-            printable(verdict.skipped).c_str();
+        test.append_child("skipped").append_attribute("message") = text_of(verdict.skipped).c_str();
       }
     }
   }
