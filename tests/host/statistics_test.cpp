@@ -52,6 +52,17 @@ TEST(Distributions, OutsideOfTheirRangeAreNaN) {
   EXPECT_TRUE(std::isnan(studentized_range_quantile(0.95, 1)));
   EXPECT_EQ(studentized_range(0, 3), 0);
   EXPECT_EQ(studentized_range(kInfinity, 3), 1);
+  // The smallest and the largest that a call may be given: Boost.Math is not to throw.
+  EXPECT_LT(normal_quantile(5e-324), -38);
+  EXPECT_GT(normal_quantile(1 - 1e-16), 8);
+  EXPECT_EQ(chi_squared_tail(kInfinity, 1), 0);
+  EXPECT_NEAR(chi_squared_tail(5e-324, 1), 1, 1e-15);
+  EXPECT_NEAR(chi_squared_tail(1e9, 1'000'000'000), 0.5, 1e-4);
+  EXPECT_GT(studentized_range_quantile(1 - 1e-16, 3), 10);
+  EXPECT_EQ(mcnemar(0, 0), 1);
+  EXPECT_TRUE(std::isnan(mcnemar(-1, 2)));
+  EXPECT_EQ(mcnemar(0, 1'000'000'000), 0);
+  EXPECT_EQ(mcnemar(1'000'000'000, 1'000'000'000), 1);
 }
 
 TEST(Summaries, OfNothingAndOfNaN) {
