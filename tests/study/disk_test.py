@@ -14,7 +14,7 @@ from study_kit import Study, runs
 
 PROGRAM, PLUGINS = (os.path.abspath(path) for path in sys.argv[1:3])
 SKIPPED = 77
-PIPELINES = {"straight": "{plan: told}", "long": "{plan: rogue, with: {does: million}}"}
+PIPELINES = {"straight": "{plan: told}", "long": "{plan: rogue, with: {does: thousands}}"}
 MORE = "repetitions: 6\n"
 
 
@@ -51,7 +51,7 @@ def sound_part(store, expected):
 def disk_of_the_store_fills_up(study, folder, expected):
     disk = os.path.join(folder, "small")
     store = os.path.join(disk, "study.db")
-    for leave_kb in (0, 64, 2048, 20000):
+    for leave_kb in (0, 64, 1000, 10000):
         mount(disk, "size=200m")
         fill(disk, leave_kb << 10)
         process = study.start(store, "--jobs", 2)
