@@ -125,7 +125,7 @@ class Campaign:
             last = len(all_of_them) - 1
             places = range(last + 1)
             if each and places:
-                places = sorted({last * k // (each - 1) for k in range(each)})
+                places = sorted({last * k // max(1, each - 1) for k in range(each)})
             for at in places:
                 yield name, Fault(kind, all_of_them[at], times, error, "tree", "files")
 
