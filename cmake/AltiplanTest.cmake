@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# altiplan_add_test(NAME SOURCES…): a GoogleTest program, each of its cases a ctest.
-# Suites whose name starts with Nightly carry the label nightly.
+# altiplan_add_test(NAME SOURCES…): a GoogleTest program, as one test. It is labelled quick unless it is
+# among these, which take more than two seconds. Suites whose name starts with Nightly are a test of their
+# own, labelled nightly.
+set(ALTIPLAN_SLOW_TESTS
+  environment_terrain framework_many_corners framework_obstacle_tree framework_shape host_report
+  host_watchdog host_worker_pool_limits host_worker_pool_parent host_yaml local_planner_velocity_field
+  pipelines_every_pipeline pipelines_fusion_flights pipelines_profiles planner_dstar_lite
+  planner_lazy_theta_star planner_ompl planner_stratified_theta reference_colony_oracle
+  reference_random_colonies reference_zone_maps)
 
 function(altiplan_add_test name)
   add_executable(test_${name} ${ARGN})
@@ -12,6 +19,9 @@ function(altiplan_add_test name)
     RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-Nightly*:-*/Nightly*)
   set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  if(NOT name IN_LIST ALTIPLAN_SLOW_TESTS)
+    set_tests_properties(${name} PROPERTIES LABELS quick)
+  endif()
   set(nightly)
   foreach(source IN LISTS ARGN)
     file(STRINGS ${source} cases REGEX "^TEST(_F|_P)?\\(Nightly")

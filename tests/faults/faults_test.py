@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""faults_test.py PROGRAM LIBRARY COUNT [SEED]: so many calls of the program in which one call of the
-system fails, or all from then on, or some, or in which a process is killed there.
+"""faults_test.py PROGRAM LIBRARY COUNT EACH [SEED]: so many calls of the program in which one call of the
+system fails, or all from then on, or some, or in which a process is killed there; before them, what was once
+not survived: of each such fault EACH places from its first to its last (0: all).
 
 Each ends by itself with a documented exit code, names what failed and why, leaves every output as it
 was or as it shall be, and no other file; the same call without faults then gives what it always gives,
@@ -117,11 +118,16 @@ class Campaign:
         times = 1 if once else dice.choice((0, 1, 1, 5))
         return Fault(kind, nth, times, error, dice.choices(SCOPES, (6, 1, 1))[0], below)
 
-    def mended(self):
+    def mended(self, each):
         """Calls, each with a fault."""
         for name, kind, which, times, error in MENDED:
-            for nth in range(1, self.count(name, "files")[kind] + 1)[which]:
-                yield name, Fault(kind, nth, times, error, "tree", "files")
+            all_of_them = range(1, self.count(name, "files")[kind] + 1)[which]
+            last = len(all_of_them) - 1
+            places = range(last + 1)
+            if each and places:
+                places = sorted({last * k // max(1, each - 1) for k in range(each)})
+            for at in places:
+                yield name, Fault(kind, all_of_them[at], times, error, "tree", "files")
 
     def drawn(self, dice, count, names):
         for n in range(count):
@@ -289,12 +295,12 @@ class Campaign:
                "the next call leaves files:", files_in(self.inputs.work) - files_in(self.inputs.kept))
 
 
-def campaign(program, library, count, seed, names):
+def campaign(program, library, count, each, seed, names):
     dice = random.Random(seed)
     wrong, happened = [], collections.Counter()
     with tempfile.TemporaryDirectory(prefix="altiplan_faults_") as folder:
         under_test = Campaign(program, library, folder)
-        for name, fault in itertools.chain(under_test.mended(),
+        for name, fault in itertools.chain(under_test.mended(each),
                                            under_test.drawn(dice, count, names)):
             try:
                 happened[under_test.try_out(name, fault)] += 1
@@ -314,9 +320,10 @@ def main():
         with tempfile.TemporaryDirectory(prefix="altiplan_faults_") as folder:
             Campaign(program, library, folder).try_out(name, Fault.read(fault))
         return
-    seed = sys.argv[4] if len(sys.argv) > 4 else "1"
-    names = sys.argv[5:] or list(CALLS)
-    sys.exit(1 if campaign(program, library, int(sys.argv[3]), seed, names) else 0)
+    count, each = map(int, sys.argv[3:5])
+    seed = sys.argv[5] if len(sys.argv) > 5 else "1"
+    names = sys.argv[6:] or list(CALLS)
+    sys.exit(1 if campaign(program, library, count, each, seed, names) else 0)
 
 
 if __name__ == "__main__":

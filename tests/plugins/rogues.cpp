@@ -163,8 +163,8 @@ class RoguePlanner final : public Planner {
       route.insert(route.begin() + 1, Vec3(kInfinity, 0, 0));
     } else if (does_ == "huge") {
       route.insert(route.begin() + 1, Vec3(1e300, -1e300, 0));
-    } else if (does_ == "million") {
-      route.insert(route.begin() + 1, 100000, Vec3(500, 500, 500));
+    } else if (does_ == "million" || does_ == "thousands") {
+      route.insert(route.begin() + 1, does_ == "million" ? 100000 : 50000, Vec3(500, 500, 500));
     } else if (does_ == "wrong_level") {
       route.insert(route.begin() + 1, Vec3(500, 500, 600));
     } else if (does_ == "sharp") {

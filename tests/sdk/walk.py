@@ -8,6 +8,7 @@ are written into the page first.
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -47,13 +48,26 @@ def shows(output, expected):
     return re.search(pattern, " ".join(output.split()), re.S)
 
 
+def compiler_cache(folder):
+    """Variables by which what lies in the folder is not compiled again when another folder of a moment ago
+    held the same."""
+    if not shutil.which("ccache"):
+        return {}
+    cache = subprocess.run(["ccache", "--get-config", "cache_dir"], check=True, text=True,
+                           stdout=subprocess.PIPE).stdout.strip()
+    if not os.access(cache, os.W_OK):
+        return {}
+    return {"CMAKE_CXX_COMPILER_LAUNCHER": "ccache", "CCACHE_DIR": cache,
+            "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1"}
+
+
 class Shell:
     """A bash session that tells the output and exit code of each command."""
 
     def __init__(self, folder, program=("bash", "--norc")):
         environment = {name: value for name, value in os.environ.items()
                        if not name.startswith("ALTIPLAN_")}
-        environment |= {"HOME": str(folder), "NO_COLOR": "1"}
+        environment |= {"HOME": str(folder), "NO_COLOR": "1"} | compiler_cache(folder)
         self.bash = subprocess.Popen(program, cwd=folder, env=environment, text=True,
                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                      stderr=subprocess.STDOUT)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of studies share: a folder with a small study in it, and the program's calls."""
+import concurrent.futures
+import io
 import os
 import shutil
 import sqlite3
@@ -38,6 +40,37 @@ metrics:
   - {{name: plan_time_s}}
 """
 RUNS = 12
+
+
+class AtOnce:
+    """A runner of so many tests at a time, for those that wait more than they work."""
+
+    def __init__(self, count):
+        self.count = count
+
+    def run(self, suite):
+        def run_alone(test):
+            said = io.StringIO()
+            return unittest.TextTestRunner(said).run(test), said.getvalue()
+
+        result = unittest.TestResult()
+        with concurrent.futures.ThreadPoolExecutor(self.count) as pool:
+            for of_one, said in pool.map(run_alone, tests_in(suite)):
+                if not of_one.wasSuccessful():
+                    print(said)
+                result.testsRun += of_one.testsRun
+                result.failures += of_one.failures
+                result.errors += of_one.errors
+        print(result)
+        return result
+
+
+def tests_in(suite):
+    for part in suite:
+        if isinstance(part, unittest.TestSuite):
+            yield from tests_in(part)
+        else:
+            yield part
 
 
 class StudyCase(unittest.TestCase):

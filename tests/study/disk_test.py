@@ -14,7 +14,7 @@ from study_kit import Study, runs
 
 PROGRAM, PLUGINS = (os.path.abspath(path) for path in sys.argv[1:3])
 SKIPPED = 77
-PIPELINES = {"straight": "{plan: told}", "long": "{plan: rogue, with: {does: million}}"}
+PIPELINES = {"straight": "{plan: told}", "long": "{plan: rogue, with: {does: thousands}}"}
 MORE = "repetitions: 6\n"
 
 
@@ -51,10 +51,10 @@ def sound_part(store, expected):
 def disk_of_the_store_fills_up(study, folder, expected):
     disk = os.path.join(folder, "small")
     store = os.path.join(disk, "study.db")
-    for leave_kb in (0, 64, 2048, 20000):
+    for leave_kb, jobs in ((0, 2), (64, 2), (1000, 1), (10000, 2)):  # one after the other: some are stored
         mount(disk, "size=200m")
         fill(disk, leave_kb << 10)
-        process = study.start(store, "--jobs", 2)
+        process = study.start(store, "--jobs", jobs)
         said = process.communicate(timeout=280)[0].decode(errors="replace")
         expect(said, disk)
         there = sound_part(store, expected)

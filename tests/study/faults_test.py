@@ -11,7 +11,7 @@ import sys
 import time
 import unittest
 
-from case import StudyCase
+from case import AtOnce, StudyCase
 
 FAILING = ""
 MAP = "type octile\nheight 8\nwidth 8\nmap\n" + 3 * "........\n" + "..@@@@..\n" + 4 * "........\n"
@@ -177,4 +177,4 @@ class Faults(StudyCase):
 
 if __name__ == "__main__":
     StudyCase.program, FAILING = map(os.path.abspath, sys.argv[1:3])
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], testRunner=AtOnce(4))

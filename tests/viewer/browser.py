@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chromium without a screen, the processor in place of a graphics card, and only our page."""
+import atexit
+import functools
 import json
 import os
 import shutil
@@ -14,14 +16,25 @@ QUIET = ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run",
 # In one process, frames need not be handed from one to another: a third less time.
 SOFTWARE_GL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                "--in-process-gpu", "--disable-gpu-compositing"]
-NO_GL = ["--disable-3d-apis"]
+NO_WEBGL = """const all = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return /webgl/.test(kind) ? null : all.call(this, kind, ...more);
+};"""
+
+
+@functools.cache
+def shared():
+    """The one browser of a test program: starting one takes as long as some tests."""
+    browser = Browser()
+    atexit.register(browser.close)
+    return browser
 
 
 class Browser:
-    def __init__(self, graphics=SOFTWARE_GL, size=(1280, 720), dark=False):
+    def __init__(self):
         self.folder = tempfile.mkdtemp(prefix="altiplan_viewer_")
         options = webdriver.ChromeOptions()
-        for argument in QUIET + graphics:
+        for argument in QUIET + SOFTWARE_GL:
             options.add_argument(argument)
         options.add_argument(f"--user-data-dir={self.folder}/profile")
         options.binary_location = shutil.which("chromium")
@@ -29,8 +42,9 @@ class Browser:
         self.driver = webdriver.Chrome(
             options=options, service=Service(shutil.which("chromedriver")))
         self.driver.set_script_timeout(30)
-        self.size(*size)
-        self.scheme("dark" if dark else "light")
+        self.without_webgl = None
+        self.size(1280, 720)
+        self.scheme("light")
 
     def close(self):
         self.driver.quit()
@@ -39,6 +53,18 @@ class Browser:
     def size(self, width, height):
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+
+    def webgl(self, there):
+        """Whether pages that are opened from now on find WebGL."""
+        if there == (self.without_webgl is None):
+            return
+        if there:
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument",
+                                        {"identifier": self.without_webgl})
+            self.without_webgl = None
+        else:
+            self.without_webgl = self.driver.execute_cdp_cmd(
+                "Page.addScriptToEvaluateOnNewDocument", {"source": NO_WEBGL})["identifier"]
 
     def scheme(self, scheme):
         """The reader's light or dark; and no motion, so that flights of the eye end at once."""

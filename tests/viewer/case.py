@@ -7,8 +7,8 @@ import unittest
 
 from selenium.webdriver import ActionChains
 
+import browser
 import scenes
-from browser import Browser
 
 VIEWER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "viewer")
 with open(os.path.join(VIEWER, "dist", "viewer.html"), encoding="utf-8") as file:
@@ -16,17 +16,20 @@ with open(os.path.join(VIEWER, "dist", "viewer.html"), encoding="utf-8") as file
 CENTIMETRE = 0.01
 
 
+def own_scene(test):
+    """Of a test that opens scenes of its own: none is opened for it before, which takes most of its time."""
+    test.own_scene = True
+    return test
+
+
 class Case(unittest.TestCase):
-    """One browser for all tests of a class; after each: no error, no request but the page."""
-    graphics = None
+    """One browser for all tests; after each: no error, no request but the page."""
+    webgl = True
 
     @classmethod
     def setUpClass(cls):
-        cls.browser = Browser(cls.graphics) if cls.graphics else Browser()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
+        cls.browser = browser.shared()
+        cls.browser.webgl(cls.webgl)
 
     def setUp(self):
         self.expected = []
@@ -76,21 +79,27 @@ class Case(unittest.TestCase):
         """Moves the mouse to x, y from the top left of an element."""
         left, top = self.run_js("const r = document.querySelector(arguments[0])"
                                 ".getBoundingClientRect(); return [r.left, r.top]", selector)
-        actions = ActionChains(self.browser.driver)
+        actions = ActionChains(self.browser.driver, duration=0)  # or each move takes 250 ms
         actions.w3c_actions.pointer_action.move_to_location(round(left + x) - 2, round(top + y))
         actions.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
         actions.perform()
         self.browser.settle()
 
     def pixel(self, x, y):
+        return self.pixels([(x, y)])[0]
+
+    def pixels(self, places):
+        """Their colours, in one picture."""
         picture = self.browser.driver.get_screenshot_as_base64()
         return self.browser.driver.execute_async_script(
-            "const [data, x, y, done] = arguments; const image = new Image();"
+            "const [data, places, done] = arguments; const image = new Image();"
             "image.onload = () => { const canvas = document.createElement('canvas');"
             "canvas.width = image.width; canvas.height = image.height;"
-            "const context = canvas.getContext('2d'); context.drawImage(image, 0, 0);"
-            "done([...context.getImageData(x, y, 1, 1).data].slice(0, 3)); };"
-            "image.src = 'data:image/png;base64,' + data;", picture, round(x), round(y))
+            "const context = canvas.getContext('2d', {willReadFrequently: true});"
+            "context.drawImage(image, 0, 0);"
+            "done(places.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data].slice(0, 3))); };"
+            "image.src = 'data:image/png;base64,' + data;", picture,
+            [(round(x), round(y)) for x, y in places])
 
     def mark(self, name):
         """Where a mark is on the stage."""

@@ -6,6 +6,7 @@ import math
 from selenium.webdriver import ActionChains
 
 import scenes
+from case import own_scene
 
 # Numbers of the events that are drawn now.
 SHOWN = """
@@ -31,6 +32,7 @@ class Colony:
                            "document.querySelector(arguments[0]).textContent : null",
                            f".convergence .chart.{chart} .caption")
 
+    @own_scene
     def test_a_colony_is_played_iteration_by_iteration(self):
         self.open_search(scenes.colony)
         self.click("#search_shown")
@@ -46,6 +48,7 @@ class Colony:
         self.slide("searched", 1)
         self.assertIn("Iteration 1 of 5: best –, mean –, 0 alive.", self.text("#search_text"))
 
+    @own_scene
     def test_the_routes_of_an_iteration_are_seen_until_the_next(self):
         self.open_search(scenes.colony)
         self.click("#search_shown")
@@ -60,11 +63,12 @@ class Colony:
         away = []
         for iteration in (1, 2, 3):
             self.slide("searched", iteration)
-            colors = [self.pixel(left + place["x"] + dx, top + place["y"] + dy)
-                      for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+            colors = self.pixels([(left + place["x"] + dx, top + place["y"] + dy)
+                                  for dx in (-1, 0, 1) for dy in (-1, 0, 1)])
             away.append(min(math.dist(color, [0, 158, 115]) for color in colors))
         self.assertLess(away[1], min(away[0], away[2]) - 20)
 
+    @own_scene
     def test_it_runs(self):
         self.open_search(scenes.colony)
         self.run_js("let now = 0; window.requestAnimationFrame = (callback) =>"
@@ -76,6 +80,7 @@ class Colony:
                 "setTimeout(look, 20); look();")
         self.assertTrue(self.browser.driver.execute_async_script(wait))
 
+    @own_scene
     def test_how_it_converged(self):
         self.open_search(scenes.colony)
         self.assertEqual(self.curves("length"), "Length by iteration, m best 10,500 m  mean 10,750 m ")
@@ -94,6 +99,7 @@ class Colony:
         self.press("d")
         self.assertEqual(self.curves("length"), "Length by iteration, m best 11,500 m  mean 11,750 m ")
 
+    @own_scene
     def test_of_a_tree_its_best_length(self):
         self.open_search(scenes.improvements)
         self.click("#search_shown")
@@ -109,6 +115,7 @@ class Colony:
         self.click("#tab_search")
         self.assertFalse(self.visible(".convergence"))
 
+    @own_scene
     def test_thinned_by_routes(self):
         self.open_search(scenes.colony, kept_of=4)
         self.assertIn("Thinned: every 4th route shown (41 of 164 events kept).",

@@ -5,6 +5,7 @@ import math
 from selenium.webdriver import Keys
 
 import scenes
+from case import own_scene
 
 HOUSE = [[600, 600], [700, 600], [700, 700], [600, 700]]
 SLAB = [[800, 150], [950, 150], [950, 300], [800, 300]]
@@ -33,6 +34,7 @@ class Cut:
     # (cut, shapes that begin below it)
     COUNTS = ((100, 6), (55, 6), (50, 5), (30, 4), (20, 3), (10, 2), (5, 2))
 
+    @own_scene
     def test_what_begins_above_the_cut_is_left_out(self):
         self.open(storeys())
         found = []
@@ -55,6 +57,7 @@ class Cut:
             shapes.append(self.drawn()["solids"])
         self.assertEqual(shapes, [0, 1, 1])
 
+    @own_scene
     def test_the_cut_in_the_address(self):
         self.open(storeys(), "?still&cut=30")
         self.assertEqual(self.drawn()["solids"], 4)
@@ -68,6 +71,7 @@ class Cut:
             self.assertEqual(self.drawn()["solids"], 6)
             self.expected = [sentence]
 
+    @own_scene
     def test_keys_of_the_cut(self):
         self.open(storeys())
         heights = []
@@ -86,6 +90,7 @@ class Cut:
         self.press(key)
         return self.text("#legend")
 
+    @own_scene
     def test_the_slider_shows_the_cut(self):
         self.open(storeys())
         shown = "return document.getElementById('cut').parentElement.querySelector('output')" \
@@ -98,6 +103,7 @@ class Cut:
         self.press(Keys.ARROW_LEFT)
         self.assertLess(self.run_js("return altiplan.state.cut"), 30)
 
+    @own_scene
     def test_what_is_cut_off_has_no_name(self):
         self.open(storeys())
         names = []
@@ -118,6 +124,7 @@ class CutIn3:
                                 ".getBoundingClientRect(); return [r.left, r.top]")
         return self.pixel(left + place["x"], top + place["y"])
 
+    @own_scene
     def test_nothing_in_the_buffers_is_higher(self):
         self.open(storeys())
         heights = [self.drawn()["highest"]]
@@ -127,6 +134,7 @@ class CutIn3:
         for height, expected in zip(heights, (90, 85, 60, 30, 7.5), strict=True):
             self.assertAlmostEqual(height, expected, delta=1e-3)
 
+    @own_scene
     def test_the_cut_shows_what_was_hidden(self):
         self.open(storeys(), "?theme=light")
         inside = [650, 650, 25]
@@ -134,6 +142,7 @@ class CutIn3:
         self.slide("cut", 20)
         self.assertLess(math.dist(self.stage_pixel(inside), [0, 114, 178]), 30)
 
+    @own_scene
     def test_a_sphere_is_as_wide_as_its_section(self):
         """Below its middle it is narrower than in its middle, and closed."""
         scene = scenes.empty([[0, 0, 0], [100, 100, 100]])
@@ -165,6 +174,7 @@ class CutIn3:
         said = float(self.text("#readout").split("ground ")[1].split(" m")[0].replace(",", ""))
         self.assertAlmostEqual(said, scenes.hills(5.2, 4.8), delta=15)
 
+    @own_scene
     def test_what_moves_up_is_cut_where_it_is(self):
         scene = storeys()
         scene["solids"], scene["boxes"] = [], []
@@ -181,6 +191,7 @@ class CutIn3:
         self.assertEqual({time: top and round(top, 3) for time, top in tops.items()},
                          {0: 20, 4: 28, 10: 30, 16: None})
 
+    @own_scene
     def test_obstacles_are_lighter_the_higher_and_stay_grey(self):
         self.open(storeys(), "?theme=light")
         self.press("t")

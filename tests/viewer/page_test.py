@@ -21,8 +21,7 @@ if MISSING:
 
 import scenes
 from both import Both
-from browser import NO_GL
-from case import TEMPLATE, Case
+from case import TEMPLATE, Case, own_scene
 from colony import Colony
 from cut import Cut, CutIn3
 from signs import Signs
@@ -54,6 +53,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.assertAlmostEqual(pitch, 35, delta=0.01)
         self.assertAlmostEqual(math.degrees(math.atan2(away[0], away[1])), -135, delta=0.01)
 
+    @own_scene
     def test_far_from_the_origin(self):
         """100 km around a place 4,000 km off, heights stretched: still right to a centimetre."""
         low = [4_000_000.0, 5_500_000.0, 0.0]
@@ -65,6 +65,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.open(scene, "?z=5")
         self.assert_all_lines(scene)
 
+    @own_scene
     def test_ground_corners_and_holes(self):
         scene = scenes.empty([[0.0, 0.0, 0.0], [5000.0, 4000.0, 1500.0]])
         scene["ground"] = scenes.ground(51, 41, scene["box"], hole=(20, 10))
@@ -115,6 +116,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.click("#do_theme")
         self.assertGreater(sum(self.pixel(1100, 60)), 600)
 
+    @own_scene
     def test_a_failed_result_shows_its_world_and_why(self):
         scene = copy.deepcopy(self.scene)
         scene["results"] = [scene["results"][2]]
@@ -125,11 +127,13 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
             self.assertTrue(self.visible(place))
             self.assertIn("the goal is closed in by wall", self.text(place))
 
+    @own_scene
     def test_no_result_and_no_extent(self):
         self.open(scenes.empty([[7, 7, 7], [7, 7, 7]]))
         self.assertTrue(self.run_js("return altiplan.ready"))
         self.assertEqual(self.drawn()["solids"], 0)
 
+    @own_scene
     def test_names_are_text(self):
         scene = copy.deepcopy(self.scene)
         bad = "</script><img src=x onerror=\"altiplan.errors.push('ran')\"><b>$&"
@@ -142,6 +146,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.assertEqual(self.text("#title"), bad)
         self.assertEqual(self.run_js("return document.images.length"), 0)
 
+    @own_scene
     def test_narrow_screen(self):
         self.browser.size(400, 780)
         self.open(self.scene)
@@ -152,6 +157,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.assertEqual(wide, 400)
         self.assertTrue(opened)
 
+    @own_scene
     def test_what_is_no_scene(self):
         short = scenes.ridge(20, 20)
         short["ground"]["nx"] = 21
@@ -167,6 +173,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
             self.assertFalse(self.run_js("return altiplan.ready"))
             self.expected = [sentence]
 
+    @own_scene
     def test_many_boxes(self):
         scene = scenes.empty([[0, 0, 0], [1000, 1000, 400]])
         places = [(x * 5, y * 5, z * 40) for x in range(200) for y in range(100) for z in range(10)]
@@ -175,6 +182,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.open(scene)
         self.assertEqual(self.drawn()["solids"], 200_000)
 
+    @own_scene
     def test_a_million_posts(self):
         """Within two seconds by itself; three times that, the best of three, beside other work."""
         page = scenes.page(TEMPLATE, scenes.ridge(1000, 1000))
@@ -189,7 +197,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
 
 class Flat(Both, Colony, Cut, Signs, Case):
     """Without WebGL: the same from above."""
-    graphics = NO_GL
+    webgl = False
     view = "2d"
 
     def test_it_says_so(self):

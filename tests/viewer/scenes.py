@@ -200,7 +200,7 @@ def flight(route, times_of_events):
                         "turn": [None] * len(track)}}
 
 
-def ridge(nx=180, ny=150):
+def ridge(nx=101, ny=81):
     """All that a scene can hold, over 10 × 8 km of hills."""
     box = [[0.0, 0.0, 100.0], [10000.0, 8000.0, 2000.0]]
     height = lambda x, y: hills(x / 1000, y / 1000)

@@ -4,6 +4,7 @@ import copy
 import re
 
 import scenes
+from case import own_scene
 
 SOURCES = ["Buildings: © OpenStreetMap contributors, ODbL 1.0", "Terrain: Copernicus DEM GLO-30, "
            "© DLR e.V. 2010-2014 and © Airbus Defence and Space GmbH 2014-2018"]
@@ -50,6 +51,7 @@ def level(altitudes):
 
 
 class Signs:
+    @own_scene
     def test_labels_are_within_the_picture_and_beside_the_panels(self):
         for size in ([1000, 1000, 60], [40, 15, 3], [300, 4000, 50], [10000, 8000, 2000]):
             scene = scenes.empty([[-size[0] / 4, -size[1] / 2, 0],
@@ -88,6 +90,7 @@ class Signs:
         moved = self.run_js("return document.querySelector('.altitude .dot').style.transform")
         return float(re.findall(r"-?[\d.]+(?=px)", moved)[1]) / high
 
+    @own_scene
     def test_a_level_route_looks_level(self):
         self.open(level([10, 10.1, 10]))
         ends, middle = self.dot_height(0.03), self.dot_height(0.5)
@@ -96,6 +99,7 @@ class Signs:
         self.open(level([10, 50, 10]))
         self.assertGreater(self.dot_height(0.03) - self.dot_height(0.5), 0.6)
 
+    @own_scene
     def test_attribution_of_a_picture(self):
         scene = copy.deepcopy(self.scene)
         scene["attribution"] = SOURCES

@@ -10,11 +10,12 @@ import subprocess
 
 HOSTILE = "</script><script>altiplan_report.errors.push('ran')</script>\"'&$_%\n\\x<b>"
 
+# No hill reaches the cap: how far a route is from a plateau takes twenty times as long to find.
 SCENARIO = """altiplan: 1
 name: Hills
 environment:
-  - hills: {count: 12, extent_m: 20000, cap_m: 2000}
-volume: {min_m: [0, 0, 0], max_m: [20000, 20000, 2600]}
+  - hills: {count: 12, extent_m: 20000}
+volume: {min_m: [0, 0, 0], max_m: [20000, 20000, 4600]}
 start: {at_m: [1000, 1000], above_ground_m: 200}
 goal: {at_m: [19000, 19000], above_ground_m: 200, tolerance_m: 50}
 """
