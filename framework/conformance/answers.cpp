@@ -111,14 +111,17 @@ std::string of_environment(const EnvironmentFactory& make, const Setup& setup) {
   std::ostringstream all;
   for (int n = 0; n < 200; ++n) {
     const Probe::AskedLeg leg = probe.leg();
-    all << text(layer.clearance(leg.a)) << ' ' << layer.blocked(leg.a, leg.b, leg.r) << ' '
-        << text(layer.ground(leg.a.x(), leg.a.y()).value_or(-1e99)) << ' '
-        << text(layer.ground_gap(leg.a, leg.b)) << '\n';
+    all << text(layer.clearance(leg.a)) << ' ' << layer.blocked(leg.a, leg.b, leg.r);
+    if (const Ground* ground = layer.ground()) {
+      all << ' ' << text(ground->height(leg.a.x(), leg.a.y()).value_or(-1e99)) << ' '
+          << text(ground->gap(leg.a, leg.b));
+    }
+    all << '\n';
     layer.near(leg.a, leg.r, [&](const Nearby& nearby) {
       all << nearby.id << ' ' << text(nearby.point) << '\n';
     });
   }
-  for (const std::string& note : layer.notes()) {
+  for (const std::string& note : layer.info().notes) {
     all << note << '\n';
   }
   return all.str();

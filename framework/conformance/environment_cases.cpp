@@ -29,9 +29,11 @@ Answers ask(const Environment& layer, const std::vector<Probe::AskedLeg>& legs) 
   Answers answers;
   for (const auto& [a, b, r] : legs) {
     answers.numbers.push_back(layer.clearance(a));
-    answers.numbers.push_back(layer.ground(a.x(), a.y()).value_or(-1e99));
-    answers.numbers.push_back(layer.ground_gap(a, b));
-    answers.numbers.push_back(layer.ground_gap_max(a, b));
+    if (const Ground* ground = layer.ground()) {
+      answers.numbers.push_back(ground->height(a.x(), a.y()).value_or(-1e99));
+      answers.numbers.push_back(ground->gap(a, b));
+      answers.numbers.push_back(ground->gap_max(a, b));
+    }
     answers.yes.push_back(layer.blocked(a, b, r));
     double sum = 0;
     layer.near(a, r, [&](const Nearby& nearby) { sum += nearby.distance + nearby.point.sum(); });
@@ -65,7 +67,7 @@ void pure(const Bench& bench, Report& report) {
 void clearances(const Bench& bench, Report& report) {
   Probe probe(bench, "clearance");
   const Environment& layer = probe.layer();
-  report.expect(probe.has_surface() || !layer.threats().empty(),
+  report.expect(probe.has_surface() || !layer.info().threats.empty(),
                 "Suite: there must be something "
                 "to judge",
                 [&] {
@@ -219,6 +221,7 @@ void near_by(const Bench& bench, Report& report) {
 void bounds_hold(const Bench& bench, Report& report) {
   Probe probe(bench, "bounds");
   const Environment& layer = probe.layer();
+  const Ground* ground = layer.ground();
   const Box bounds = layer.bounds();
   for (int n = 0; n < 500 * bench.options.rounds; ++n) {
     const Vec3 p = probe.point();
@@ -228,12 +231,16 @@ void bounds_hold(const Bench& bench, Report& report) {
                " to " + text(bounds.max);
       });
     }
-    const auto ground = layer.ground(p.x(), p.y());
-    report.expect(!ground || bounds.contains({p.x(), p.y(), *ground}, kDeep), kEnvironmentBounds,
-                  [&] {
-                    return "ground of " + text(ground.value_or(0)) + " m at " + text(p) +
-                           ", outside the bounds " + text(bounds.min) + " to " + text(bounds.max);
-                  });
+    if (ground == nullptr) {
+      continue;
+    }
+    if (const auto height = ground->height(p.x(), p.y())) {
+      const Vec3 top(p.x(), p.y(), *height);
+      report.expect(bounds.contains(top, kDeep), kEnvironmentBounds, [&] {
+        return "ground at " + text(top) + ", outside the bounds " + text(bounds.min) + " to " +
+               text(bounds.max);
+      });
+    }
   }
 }
 
@@ -265,6 +272,7 @@ void bounds_from_outside(const Bench& bench, Report& report) {
 void odd_places(const Bench& bench, Report&) {
   Probe probe(bench, "odd");
   const Environment& layer = probe.layer();
+  const Ground* ground = layer.ground();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 p = probe.point();
   for (const double x : {nan, kInfinity, -kInfinity, 1e300, -1e300, 1e12}) {
@@ -275,34 +283,39 @@ void odd_places(const Bench& bench, Report&) {
       (void)layer.blocked(p, odd, 1);
       (void)layer.blocked(odd, odd, 1);
       layer.near(odd, 10, [](const Nearby&) {});
-      (void)layer.ground(odd.x(), odd.y());
-      (void)layer.ground_gap(p, odd);
-      (void)layer.ground_gap_max(odd, p);
-      (void)layer.ground_slope({p.cwiseMin(odd), p.cwiseMax(odd)});
+      if (ground != nullptr) {
+        (void)ground->height(odd.x(), odd.y());
+        (void)ground->gap(p, odd);
+        (void)ground->gap_max(odd, p);
+        (void)ground->slope({p.cwiseMin(odd), p.cwiseMax(odd)});
+      }
     }
     (void)layer.blocked(p, p + Vec3(1, 1, 1), x);
     layer.near(p, x, [](const Nearby&) {});
   }
-  (void)layer.ground_slope(Box{});
-  (void)layer.ground_slope(Box::empty());
+  if (ground != nullptr) {
+    (void)ground->slope(Box{});
+    (void)ground->slope(Box::empty());
+  }
 }
 
 void kin(const Bench& bench, Report& report) {
   Probe probe(bench, "kin");
   const Environment& layer = probe.layer();
+  const LayerInfo& info = layer.info();
   report.expect(layer.slack() >= 0 && std::isfinite(layer.slack()), kEnvironmentKin,
                 [&] { return "slack is " + text(layer.slack()); });
   const Box bounds = layer.bounds();
   report.expect(!bounds.min.hasNaN() && !bounds.max.hasNaN(), kEnvironmentBounds,
                 [&] { return "bounds are " + text(bounds.min) + " to " + text(bounds.max); });
-  for (const Threat& threat : layer.threats()) {
+  for (const Threat& threat : info.threats) {
     report.expect(is_finite(threat.centre) && threat.radius >= 0 && std::isfinite(threat.radius),
                   kEnvironmentKin, [&] {
                     return "threat '" + threat.id + "' at " + text(threat.centre) + ", radius " +
                            text(threat.radius);
                   });
   }
-  if (const auto spec = layer.native_grid()) {
+  if (const auto& spec = info.native_grid) {
     const bool whole = spec->cell.minCoeff() > 0 && is_finite(spec->origin) &&
                        *std::min_element(spec->counts.begin(), spec->counts.end()) > 0;
     report.expect(whole, kEnvironmentKin,
@@ -314,7 +327,7 @@ void kin(const Bench& bench, Report& report) {
              ", lies outside the bounds";
     });
   }
-  if (const auto frame = layer.frame(); frame && frame->has_position()) {
+  if (const auto& frame = info.frame; frame && frame->has_position()) {
     for (int n = 0; n < 20 * bench.options.rounds; ++n) {
       const Vec3 p = probe.point();
       const auto lonlat = frame->to_lonlat(p.x(), p.y());
@@ -325,7 +338,6 @@ void kin(const Bench& bench, Report& report) {
       });
     }
   }
-  (void)layer.notes();
 }
 }  // namespace
 

@@ -80,7 +80,7 @@ void rasters(const Bench& bench, Report& report) {
       }
     }
   }
-  if (auto native = probe.layer().native_grid()) {
+  if (auto native = probe.layer().info().native_grid) {
     native->rule = Rule::native;
     VoxelGrid grid(*native);
     probe.layer().rasterize(grid);

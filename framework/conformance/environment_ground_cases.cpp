@@ -9,65 +9,55 @@ namespace {
 
 using Bench = EnvironmentBench;
 
-void without_ground(const Environment& layer, Probe& probe, Report& report) {
-  for (int n = 0; n < 50; ++n) {
-    const Vec3 p = probe.point();
-    report.expect(!layer.ground(p.x(), p.y()) && layer.height_field() == nullptr,
-                  kEnvironmentGround,
-                  [&] { return "has_ground is false, and there is ground at " + text(p); });
-  }
-}
-
 void points(const Bench& bench, Report& report) {
   Probe probe(bench, "ground");
   const Environment& layer = probe.layer();
-  if (!layer.has_ground()) {
-    without_ground(layer, probe, report);
+  const Ground* ground = layer.ground();
+  if (ground == nullptr) {
     return;
   }
-  const HeightField* field = layer.height_field();
+  const HeightField* field = ground->height_field();
   int found = 0;
   for (int n = 0; n < 300 * bench.options.rounds; ++n) {
     Vec3 p = probe.point();
-    const auto ground = layer.ground(p.x(), p.y());
+    const auto height = ground->height(p.x(), p.y());
     if (field != nullptr) {
       const auto of_field = field->at(p.x(), p.y());
-      report.expect(of_field == ground, kEnvironmentGround, [&] {
-        return "at " + text(p) + " ground is " + text(ground.value_or(kInfinity)) +
+      report.expect(of_field == height, kEnvironmentGround, [&] {
+        return "at " + text(p) + " ground is " + text(height.value_or(kInfinity)) +
                ", the height field's " + text(of_field.value_or(kInfinity));
       });
     }
-    if (!ground) {
+    if (!height) {
       report.expect(!layer.blocked(p, p, 0), kEnvironmentGround,
                     [&] { return "there is no ground below " + text(p) + ", which is blocked"; });
-      report.expect(layer.ground_gap(p, p) == -kInfinity && layer.ground_gap_max(p, p) == kInfinity,
+      report.expect(ground->gap(p, p) == -kInfinity && ground->gap_max(p, p) == kInfinity,
                     kEnvironmentGround, [&] {
-                      return "there is no ground below " + text(p) + ", and ground_gap is " +
-                             text(layer.ground_gap(p, p)) + ", ground_gap_max " +
-                             text(layer.ground_gap_max(p, p));
+                      return "there is no ground below " + text(p) + ", and gap is " +
+                             text(ground->gap(p, p)) + ", gap_max " + text(ground->gap_max(p, p));
                     });
       continue;
     }
     ++found;
-    for (const double gap : {layer.ground_gap(p, p), layer.ground_gap_max(p, p)}) {
-      report.expect(std::abs(gap - (p.z() - *ground)) <= kLengthTolerance, kEnvironmentGround, [&] {
-        return "ground at " + text(p) + " is " + text(*ground) + ", the gap " + text(gap);
+    for (const double gap : {ground->gap(p, p), ground->gap_max(p, p)}) {
+      report.expect(std::abs(gap - (p.z() - *height)) <= kLengthTolerance, kEnvironmentGround, [&] {
+        return "ground at " + text(p) + " is " + text(*height) + ", the gap " + text(gap);
       });
     }
-    p.z() = *ground - 1;
+    p.z() = *height - 1;
     report.expect(layer.blocked(p, p, 0), kEnvironmentGround,
                   [&] { return text(p) + " is 1 m below ground, and free"; });
   }
   report.expect(found > 0, kEnvironmentGround, [&] {
-    return "has_ground is true, and no ground was found between " + text(probe.volume().min) +
+    return "there is a ground, and no height was found between " + text(probe.volume().min) +
            " and " + text(probe.volume().max);
   });
 }
 
 void legs(const Bench& bench, Report& report) {
   Probe probe(bench, "ground legs");
-  const Environment& layer = probe.layer();
-  if (!layer.has_ground()) {
+  const Ground* ground = probe.layer().ground();
+  if (ground == nullptr) {
     return;
   }
   constexpr int kSamples = 200;
@@ -80,19 +70,19 @@ void legs(const Bench& bench, Report& report) {
     bool whole = true;
     for (int k = 0; k <= kSamples; ++k) {
       const Vec3 p = k == kSamples ? b : Vec3(a + (b - a) * k / kSamples);
-      const auto ground = layer.ground(p.x(), p.y());
-      whole = whole && ground;
-      if (ground) {
-        least = std::min(least, p.z() - *ground);
-        most = std::max(most, p.z() - *ground);
+      const auto height = ground->height(p.x(), p.y());
+      whole = whole && height;
+      if (height) {
+        least = std::min(least, p.z() - *height);
+        most = std::max(most, p.z() - *height);
       }
     }
-    const double gap = layer.ground_gap(a, b);
-    const double gap_max = layer.ground_gap_max(a, b);
+    const double gap = ground->gap(a, b);
+    const double gap_max = ground->gap_max(a, b);
     if (!whole) {
       report.expect(gap == -kInfinity && gap_max == kInfinity, kEnvironmentGround, [&] {
-        return text(leg) + " has no ground below part of it, and ground_gap is " + text(gap) +
-               ", ground_gap_max " + text(gap_max);
+        return text(leg) + " has no ground below part of it, and gap is " + text(gap) +
+               ", gap_max " + text(gap_max);
       });
       continue;
     }
@@ -100,69 +90,93 @@ void legs(const Bench& bench, Report& report) {
       continue;  // a hole between two samples
     }
     // Between samples the height changes at most by the leg's own slope and the ground's.
-    const double steepest = layer.ground_slope(leg_box(a, b));
+    const double steepest = ground->slope(leg_box(a, b));
     const double step = (b - a).norm() / kSamples;
     const double between = (1 + steepest) * step + kLengthTolerance;
     report.expect(gap <= least + kLengthTolerance && gap >= least - between, kEnvironmentGround,
                   [&] {
-                    return text(leg) + ": ground_gap is " + text(gap) + ", the samples' least " +
+                    return text(leg) + ": gap is " + text(gap) + ", the samples' least " +
                            text(least) + ", the ground's slope " + text(steepest);
                   });
     report.expect(
         gap_max >= most - kLengthTolerance && gap_max <= most + between, kEnvironmentGround, [&] {
-          return text(leg) + ": ground_gap_max is " + text(gap_max) + ", the samples' greatest " +
+          return text(leg) + ": gap_max is " + text(gap_max) + ", the samples' greatest " +
                  text(most) + ", the ground's slope " + text(steepest);
         });
     const double enough = gap + probe.random().uniform(-1, 1) * (1 + std::abs(gap));
-    const double shown = layer.ground_gap(a, b, enough);
+    const double shown = ground->gap(a, b, enough);
     const bool right = gap >= enough ? shown >= enough : std::abs(shown - gap) <= kLengthTolerance;
     report.expect(right, kEnvironmentGround, [&] {
-      return text(leg) + ": ground_gap is " + text(gap) + ", and " + text(shown) + " where " +
+      return text(leg) + ": gap is " + text(gap) + ", and " + text(shown) + " where " +
              text(enough) + " is enough";
+    });
+  }
+}
+
+void distances(const Bench& bench, Report& report) {
+  Probe probe(bench, "ground distances");
+  const Environment& layer = probe.layer();
+  const Ground* ground = layer.ground();
+  constexpr double kWithin = 1e-5;
+  for (int n = 0; n < 40 * bench.options.rounds && ground != nullptr && ground->is_all(); ++n) {
+    const Probe::AskedLeg leg = probe.leg();
+    if (!(ground->gap(leg.a, leg.b) > 0)) {
+      continue;
+    }
+    const auto distance = ground->distance(leg.a, leg.b);
+    if (!distance) {
+      return;  // it does not tell
+    }
+    const bool too_far = layer.blocked(leg.a, leg.b, *distance - kWithin);
+    const bool too_near = !layer.blocked(leg.a, leg.b, *distance + kWithin);
+    report.expect(!too_far && !too_near, kEnvironmentGround, [&] {
+      return text(leg) + ": distance is " + text(*distance) + ", and within 1e-5 m " +
+             (too_far ? "less it is blocked" : "more it is free");
     });
   }
 }
 
 void slopes(const Bench& bench, Report& report) {
   Probe probe(bench, "slopes");
-  const Environment& layer = probe.layer();
-  for (int n = 0; n < 150 * bench.options.rounds && layer.has_ground(); ++n) {
+  const Ground* ground = probe.layer().ground();
+  for (int n = 0; n < 150 * bench.options.rounds && ground != nullptr; ++n) {
     const Probe::AskedLeg leg = probe.leg();
     const Vec3& a = leg.a;
     const Vec3& b = leg.b;
-    const auto ground_a = layer.ground(a.x(), a.y());
-    const auto ground_b = layer.ground(b.x(), b.y());
+    const auto at_a = ground->height(a.x(), a.y());
+    const auto at_b = ground->height(b.x(), b.y());
     const double run = std::hypot(b.x() - a.x(), b.y() - a.y());
-    if (!ground_a || !ground_b || run < 1e-3) {
+    if (!at_a || !at_b || run < 1e-3) {
       continue;
     }
-    const double rise = std::abs(*ground_b - *ground_a);
-    const double steepest = layer.ground_slope(leg_box(a, b));
+    const double rise = std::abs(*at_b - *at_a);
+    const double steepest = ground->slope(leg_box(a, b));
     report.expect(rise <= steepest * run * (1 + 1e-9) + kLengthTolerance, kEnvironmentGround, [&] {
       return "ground rises " + text(rise) + " m over " + text(run) + " m from " + text(a) + " to " +
-             text(b) + ", ground_slope says " + text(steepest);
+             text(b) + ", slope says " + text(steepest);
     });
   }
 }
+
 /// Climbs to where the ground is steep, by steps of chance that grow smaller.
 void steepest_slopes(const Bench& bench, Report& report) {
   Probe probe(bench, "steepest");
-  const Environment& layer = probe.layer();
+  const Ground* ground = probe.layer().ground();
   const double apart = std::max(1e-6 * probe.size(), 1e-3);
-  // The rise along the gradient: what ground_slope promises holds for it, whichever cells it meets.
+  // The rise along the gradient: what its slope promises holds for it, whichever cells it meets.
   const auto slope = [&](double x, double y) {
-    const auto at = layer.ground(x, y);
-    const auto east = layer.ground(x + apart, y);
-    const auto north = layer.ground(x, y + apart);
+    const auto at = ground->height(x, y);
+    const auto east = ground->height(x + apart, y);
+    const auto north = ground->height(x, y + apart);
     if (!at || !east || !north) {
       return 0.0;
     }
     const double length = std::hypot(*east - *at, *north - *at);
     const auto up =
-        layer.ground(x + apart * (*east - *at) / length, y + apart * (*north - *at) / length);
+        ground->height(x + apart * (*east - *at) / length, y + apart * (*north - *at) / length);
     return length > 0 && up ? std::abs(*up - *at) / apart : 0.0;
   };
-  for (int n = 0; n < 2 * bench.options.rounds && layer.has_ground(); ++n) {
+  for (int n = 0; n < 2 * bench.options.rounds && ground != nullptr; ++n) {
     Vec3 best = probe.random().in(probe.volume());
     double most = slope(best.x(), best.y());
     for (int k = 0; k < 200; ++k) {
@@ -174,10 +188,10 @@ void steepest_slopes(const Bench& bench, Report& report) {
       }
     }
     const Box box{best - Vec3::Constant(2 * apart), best + Vec3::Constant(2 * apart)};
-    report.expect(most <= layer.ground_slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
+    report.expect(most <= ground->slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
                   kEnvironmentGround, [&] {
                     return "at " + text(best) + " the ground's slope is " + text(most) +
-                           ", ground_slope says " + text(layer.ground_slope(box));
+                           ", slope says " + text(ground->slope(box));
                   });
   }
 }
@@ -189,6 +203,7 @@ Cases environment_ground_cases(const EnvironmentBench& bench) {
                      [bench, body](Report& report) { body(bench, report); });
   };
   return {made("ground_at_points", points), made("ground_along_legs", legs),
-          made("ground_slopes", slopes), made("steepest_slopes", steepest_slopes)};
+          made("ground_distances", distances), made("ground_slopes", slopes),
+          made("steepest_slopes", steepest_slopes)};
 }
 }  // namespace altiplan::conformance

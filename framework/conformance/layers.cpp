@@ -5,6 +5,12 @@
 
 namespace altiplan::conformance {
 
+Balls::Balls(std::vector<Sphere> balls) : balls_(std::move(balls)) {
+  for (const Sphere& ball : balls_) {
+    info_.threats.push_back({ball.centre, ball.radius, "ball", ""});
+  }
+}
+
 Box Balls::do_bounds() const {
   Box box = Box::empty();
   for (const Sphere& ball : balls_) {
@@ -36,14 +42,6 @@ void Balls::do_near(const Vec3& p, double reach, const NearSink& sink) const {
       sink({balls_[i].centre + normal * balls_[i].radius, distance, normal, int(i)});
     }
   }
-}
-
-std::vector<Threat> Balls::do_threats() const {
-  std::vector<Threat> threats;
-  for (const Sphere& ball : balls_) {
-    threats.push_back({ball.centre, ball.radius, "ball", ""});
-  }
-  return threats;
 }
 
 Box BallField::do_bounds() const {
@@ -108,7 +106,7 @@ Box Ridge::do_bounds() const {
 double Ridge::do_clearance(const Vec3& p) const {
   const Vec2 at{p.x() - x_, p.z() - top_};
   const double distance = std::min(side_distance(at, slope_, -1), side_distance(at, slope_, 1));
-  return p.z() < height(p.x()) ? -distance : distance;
+  return p.z() < height_at(p.x()) ? -distance : distance;
 }
 
 bool Ridge::do_blocked(const Vec3& a, const Vec3& b, double r) const {
@@ -124,8 +122,8 @@ bool Ridge::do_blocked(const Vec3& a, const Vec3& b, double r) const {
   return least < r - kLengthTolerance;
 }
 
-double Ridge::do_ground_gap(const Vec3& a, const Vec3& b, double) const {
-  double least = std::min(a.z() - height(a.x()), b.z() - height(b.x()));
+double Ridge::do_gap(const Vec3& a, const Vec3& b, double) const {
+  double least = std::min(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
   const double t = a.x() == b.x() ? -1 : (x_ - a.x()) / (b.x() - a.x());
   if (t > 0 && t < 1) {
     least = std::min(least, a.z() + t * (b.z() - a.z()) - top_);
@@ -133,8 +131,8 @@ double Ridge::do_ground_gap(const Vec3& a, const Vec3& b, double) const {
   return least;
 }
 
-double Ridge::do_ground_gap_max(const Vec3& a, const Vec3& b) const {
-  return std::max(a.z() - height(a.x()), b.z() - height(b.x()));
+double Ridge::do_gap_max(const Vec3& a, const Vec3& b) const {
+  return std::max(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
 }
 
 double Watched::do_clearance(const Vec3& p) const {

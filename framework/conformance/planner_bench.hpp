@@ -53,6 +53,11 @@ struct PlannerBench {
   }
 };
 
+/// A case of a planner: what escapes breaks law 3, but where Planner::plan has found a route's ends
+/// wrong.
+Case planner_case(const PlannerBench& bench, const char* name,
+                  void (*body)(const PlannerBench&, Report&));
+
 /// Holds a result to laws 1 to 3; whether it is solved.
 bool judge(Report& report, const PlanResult& result, const Scene& scene);
 

@@ -59,10 +59,11 @@ void no_iterations(const PlannerBench& bench, Report& report) {
                       bench.world(0, bench.flight()), bench.cells(0, bench.flight())}) {
     scene.request.budget.max_iterations = 0;
     const PlanResult result = bench.make()->plan(scene.request);
-    report.expect(result.status == Status::timed_out && result.route.empty(), kPlannerBudget, [&] {
-      return scene.name + ", a budget of 0 iterations: expected timed_out, the planner said " +
-             text(result);
-    });
+    report.expect(
+        result.status == PlanStatus::timed_out && result.route.empty(), kPlannerBudget, [&] {
+          return scene.name + ", a budget of 0 iterations: expected timed_out, the planner said " +
+                 text(result);
+        });
   }
 }
 
@@ -83,10 +84,11 @@ void iterations_kept(const PlannerBench& bench, Report& report) {
         return scene.name + ": of a budget of " + std::to_string(most) +
                " iterations the planner used " + std::to_string(expanded);
       });
-      report.expect(result.status != Status::timed_out || result.budget_hit, kPlannerBudget, [&] {
-        return scene.name + ": timed_out without budget_hit, of " + std::to_string(most) +
-               " iterations";
-      });
+      report.expect(result.status != PlanStatus::timed_out || result.budget_hit, kPlannerBudget,
+                    [&] {
+                      return scene.name + ": timed_out without budget_hit, of " +
+                             std::to_string(most) + " iterations";
+                    });
     }
   }
 }
@@ -98,8 +100,8 @@ void stopped_before(const PlannerBench& bench, Report& report) {
     scene.request.budget.stop = source.get_token();
     const PlanResult result = bench.make()->plan(scene.request);
     judge(report, result, scene);
-    report.expect(result.status == Status::cancelled || result.status == Status::solved ||
-                      result.status == Status::no_route,
+    report.expect(result.status == PlanStatus::cancelled || result.status == PlanStatus::solved ||
+                      result.status == PlanStatus::no_route,
                   kPlannerBudget, [&] {
                     return scene.name + ", stopped before it begins: the planner said " +
                            text(result);
@@ -184,7 +186,7 @@ void stopped_at_an_event(const PlannerBench& bench, Report& report) {
 
 Cases planner_budget_cases(const PlannerBench& bench) {
   const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return make_case(name, kPlannerStatus, [bench, body](Report& report) { body(bench, report); });
+    return planner_case(bench, name, body);
   };
   return {made("no_iterations_give_timed_out", no_iterations),
           made("iterations_are_kept", iterations_kept),

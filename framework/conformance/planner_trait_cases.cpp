@@ -67,7 +67,7 @@ void complete(const PlannerBench& bench, Report& report) {
       return scene.name + ": there is a route, the planner said " + text(result);
     });
     if (shortest(scene, kMost) == kInfinity) {
-      report.expect(result.status == Status::no_route, kComplete, [&] {
+      report.expect(result.status == PlanStatus::no_route, kComplete, [&] {
         return scene.name + ": expected no_route, the planner said " + text(result);
       });
     }
@@ -75,7 +75,7 @@ void complete(const PlannerBench& bench, Report& report) {
   for (const Flight flight : bench.flights()) {
     const Scene open = bench.budgeted(open_scene(bench.options.unit_m, flight));
     const PlanResult result = planner->plan(open.request);
-    report.expect(!claims || result.status == Status::solved || result.budget_hit, kComplete,
+    report.expect(!claims || result.status == PlanStatus::solved || result.budget_hit, kComplete,
                   [&] { return open.name + ": the planner said " + text(result); });
   }
 }
@@ -92,7 +92,7 @@ void optimal(const PlannerBench& bench, Report& report) {
   std::vector<std::string> differs(std::size(kinds));
   for (const Scene& scene : mazes(bench)) {
     const PlanResult result = planner->plan(scene.request);
-    const double found = result.status == Status::solved ? length(result.route) : kInfinity;
+    const double found = result.status == PlanStatus::solved ? length(result.route) : kInfinity;
     if (result.budget_hit) {
       continue;
     }
@@ -126,7 +126,7 @@ void any_angle(const PlannerBench& bench, Report& report) {
   for (const Scene& scene : mazes(bench)) {
     const PlanResult result = planner->plan(scene.request);
     const double best = shortest(scene, {26, true});
-    if (result.status != Status::solved || best == kInfinity) {
+    if (result.status != PlanStatus::solved || best == kInfinity) {
       continue;
     }
     report.expect(length(result.route) <= best * (1 + 1e-9), kAnyAngle, [&] {
@@ -161,7 +161,7 @@ void anytime(const PlannerBench& bench, Report& report) {
 
 Cases planner_trait_cases(const PlannerBench& bench) {
   const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return make_case(name, kPlannerStatus, [bench, body](Report& report) { body(bench, report); });
+    return planner_case(bench, name, body);
   };
   return {made("trait_complete", complete), made("trait_optimal", optimal),
           made("trait_any_angle", any_angle), made("trait_anytime", anytime)};

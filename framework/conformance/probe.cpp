@@ -52,6 +52,7 @@ Probe::Probe(const EnvironmentBench& bench, const std::string& use)
 void Probe::find_surface() {
   constexpr int kTries = 2000;
   constexpr std::size_t kEnough = 200;
+  const Ground* ground = layer_->ground();
   Vec3 last = random_.in(volume_);
   for (int i = 0; i < kTries && surface_.size() < kEnough; ++i) {
     const Vec3 next = random_.in(volume_);
@@ -68,8 +69,8 @@ void Probe::find_surface() {
       }
       surface_.push_back(in);
     }
-    if (const auto ground = layer_->ground(next.x(), next.y())) {
-      surface_.emplace_back(next.x(), next.y(), *ground);
+    if (const auto height = ground != nullptr ? ground->height(next.x(), next.y()) : std::nullopt) {
+      surface_.emplace_back(next.x(), next.y(), *height);
     }
     // Small obstacles are not hit by chance, but lead to themselves.
     layer_->near(next, size(), [&](const Nearby& nearby) {

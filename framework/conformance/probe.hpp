@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
 #include "report.hpp"
 
@@ -23,8 +24,7 @@ inline constexpr const char* kEnvironmentBlocked =
 inline constexpr const char* kEnvironmentSymmetric =
     "Environment law 4: blocked is symmetric in a and b, and monotone in r";
 inline constexpr const char* kEnvironmentGround =
-    "Environment law 5: ground, ground_gap and their kin tell one ground; beyond it nothing is "
-    "blocked";
+    "Environment law 5: height, gap and their kin tell one ground; beyond it nothing is blocked";
 inline constexpr const char* kEnvironmentRaster =
     "Environment law 6: rasterize never leaves a cell free that the grid's rule blocks";
 inline constexpr const char* kEnvironmentNear =

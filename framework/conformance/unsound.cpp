@@ -59,7 +59,7 @@ std::string point_fault(const Vec3& p, const Scene& scene) {
   if (request.level_m && std::abs(p.z() - *request.level_m) > kMetres) {
     return "leaves the level of flight at " + text(p);
   }
-  const double gap = scene.ridge != nullptr ? p.z() - scene.ridge->height(p.x()) : kInfinity;
+  const double gap = scene.ridge != nullptr ? p.z() - scene.ridge->height_at(p.x()) : kInfinity;
   if (gap < request.limits.min_ground_clearance.value_or(-kInfinity) - kMetres) {
     return "is " + text(gap) + " m above ground at " + text(p);
   }

@@ -12,7 +12,8 @@ namespace {
 /// Solid cells that are also the layer's native ones.
 class CellLayer final : public Environment {
  public:
-  CellLayer(const GridSpec& spec, const std::vector<Shape>& boxes) : spec_(spec), boxes_(boxes) {}
+  CellLayer(const GridSpec& spec, const std::vector<Shape>& boxes)
+      : spec_(spec), info_{{}, spec, {}, {}}, boxes_(boxes) {}
 
  private:
   Box do_bounds() const override { return spec_.box(); }
@@ -25,13 +26,14 @@ class CellLayer final : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override { boxes_.rasterize(grid); }
   double do_slack() const override { return 0; }
-  std::optional<GridSpec> do_native_grid() const override { return spec_; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return Vec3(spec_.origin +
                 spec_.cell.cwiseProduct(Vec3(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5)));
   }
 
   GridSpec spec_;
+  LayerInfo info_;  ///< of its cells
   kit::ObstacleSet boxes_;
 };
 

@@ -15,7 +15,7 @@ namespace altiplan::conformance {
 /// Solid balls in closed form: nothing allocates in a query.
 class Balls final : public Environment {
  public:
-  explicit Balls(std::vector<Sphere> balls) : balls_(std::move(balls)) {}
+  explicit Balls(std::vector<Sphere> balls);
 
  private:
   Box do_bounds() const override;
@@ -23,8 +23,9 @@ class Balls final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
   double do_slack() const override { return 0; }
-  std::vector<Threat> do_threats() const override;
+  const LayerInfo& do_info() const override { return info_; }
   std::vector<Sphere> balls_;
+  LayerInfo info_;
 };
 
 /// Balls of one size on the posts of a grid, as many as there are posts; each query looks at a few.
@@ -44,21 +45,21 @@ class BallField final : public Environment {
 };
 
 /// Ground that rises on both sides to a crest along x = crest_x, in closed form.
-class Ridge final : public Environment {
+class Ridge final : public Environment, public Ground {
  public:
   Ridge(double crest_x, double top, double slope) : x_(crest_x), top_(top), slope_(slope) {}
-  double height(double x) const { return top_ - slope_ * std::abs(x - x_); }
+  double height_at(double x) const { return top_ - slope_ * std::abs(x - x_); }
 
  private:
   Box do_bounds() const override;
   double do_clearance(const Vec3& p) const override;
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
   double do_slack() const override { return 0; }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double) const override { return height(x); }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override;
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override;
-  double do_ground_slope(const Box&) const override { return slope_; }
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double) const override { return height_at(x); }
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override;
+  double do_gap_max(const Vec3& a, const Vec3& b) const override;
+  double do_slope(const Box&) const override { return slope_; }
   double x_;
   double top_;
   double slope_;
@@ -69,7 +70,9 @@ class Watched final : public Environment {
  public:
   using Asked = std::function<void(const Vec3&)>;
   Watched(std::shared_ptr<const Environment> inner, Asked asked)
-      : inner_(std::move(inner)), asked_(std::move(asked)) {}
+      : inner_(std::move(inner)),
+        asked_(std::move(asked)),
+        info_{{}, inner_->info().native_grid, {}, {}} {}
 
  private:
   Box do_bounds() const override { return inner_->bounds(); }
@@ -78,9 +81,10 @@ class Watched final : public Environment {
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
   void do_rasterize(VoxelGrid& grid) const override;
   double do_slack() const override { return inner_->slack(); }
-  std::optional<GridSpec> do_native_grid() const override { return inner_->native_grid(); }
+  const LayerInfo& do_info() const override { return info_; }
   std::shared_ptr<const Environment> inner_;
   Asked asked_;
+  LayerInfo info_;  ///< of its cells alone
 };
 
 /// A problem, and what it is made of, so that it can be judged apart from the world's queries.
@@ -108,7 +112,7 @@ void enclose_goal(Scene& scene);
 /// A crest across the straight way, to be crossed at a height above ground.
 Scene ridge_scene(double unit);
 /// Cells as drawn: one text a level from the lowest, rows by '/' from the north, '#' solid, 'S' and
-/// 'G' start and goal. The cells are the layer's own (`native_grid`), with an edge of one unit.
+/// 'G' start and goal. The cells are the layer's own, with an edge of one unit.
 Scene cell_scene(double unit, std::string name, const std::vector<std::string>& levels,
                  Flight flight);
 /// Cells at random.

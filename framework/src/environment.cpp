@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/ground.hpp"
 #include "altiplan/what_blocks.hpp"
 #include "altiplan/world.hpp"
 
@@ -57,6 +58,7 @@ Vec3 Site::resolve(const Point& point) const {
 }
 
 Environment::~Environment() = default;
+Ground::~Ground() = default;
 WhatBlocks::~WhatBlocks() = default;
 
 // Layers are asked about places only: of what is none, nothing good is said.
@@ -79,16 +81,20 @@ void Environment::near(const Vec3& p, double reach, const NearSink& sink) const 
   }
 }
 
-std::optional<double> Environment::ground(double x, double y) const {
-  return std::isfinite(x) && std::isfinite(y) ? do_ground(x, y) : std::nullopt;
+std::optional<double> Ground::height(double x, double y) const {
+  return std::isfinite(x) && std::isfinite(y) ? do_height(x, y) : std::nullopt;
 }
 
-double Environment::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
-  return is_finite(a) && is_finite(b) ? do_ground_gap(a, b, enough) : -kInfinity;
+std::optional<double> Ground::distance(const Vec3& a, const Vec3& b) const {
+  return is_finite(a) && is_finite(b) ? do_distance(a, b) : std::nullopt;
 }
 
-double Environment::ground_gap_max(const Vec3& a, const Vec3& b) const {
-  return is_finite(a) && is_finite(b) ? do_ground_gap_max(a, b) : kInfinity;
+double Ground::gap(const Vec3& a, const Vec3& b, double enough) const {
+  return is_finite(a) && is_finite(b) ? do_gap(a, b, enough) : -kInfinity;
+}
+
+double Ground::gap_max(const Vec3& a, const Vec3& b) const {
+  return is_finite(a) && is_finite(b) ? do_gap_max(a, b) : kInfinity;
 }
 
 bool Environment::do_blocked(const Vec3& a, const Vec3& b, double r) const {
@@ -144,20 +150,20 @@ void Environment::do_rasterize(VoxelGrid& grid) const {
   }
 }
 
-bool Environment::do_has_ground() const { return false; }
-std::optional<double> Environment::do_ground(double, double) const { return std::nullopt; }
-double Environment::do_ground_gap(const Vec3&, const Vec3&, double) const { return -kInfinity; }
-double Environment::do_ground_gap_max(const Vec3&, const Vec3&) const { return kInfinity; }
-double Environment::do_ground_slope(const Box&) const { return kInfinity; }
-const HeightField* Environment::do_height_field() const { return nullptr; }
-std::vector<Threat> Environment::do_threats() const { return {}; }
 double Environment::do_slack() const { return 0.05; }
-std::optional<GridSpec> Environment::do_native_grid() const { return std::nullopt; }
+const Ground* Environment::do_ground() const { return nullptr; }
+const LayerInfo& Environment::do_info() const {
+  static const LayerInfo kNothing;
+  return kNothing;
+}
 std::optional<Vec3> Environment::do_cell_centre(const std::array<double, 3>&) const {
   return std::nullopt;
 }
-std::optional<Frame> Environment::do_frame() const { return std::nullopt; }
 std::optional<Drawing> Environment::do_drawing() const { return std::nullopt; }
-std::vector<std::string> Environment::do_notes() const { return {}; }
-bool Environment::do_ground_alone() const { return false; }
+
+double Ground::do_gap_max(const Vec3&, const Vec3&) const { return kInfinity; }
+std::optional<double> Ground::do_distance(const Vec3&, const Vec3&) const { return std::nullopt; }
+double Ground::do_slope(const Box&) const { return kInfinity; }
+bool Ground::do_is_all() const { return false; }
+const HeightField* Ground::do_height_field() const { return nullptr; }
 }  // namespace altiplan

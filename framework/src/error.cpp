@@ -2,6 +2,7 @@
 #include "altiplan/error.hpp"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
 
 namespace altiplan {
@@ -31,6 +32,18 @@ ConfigError::~ConfigError() = default;
 ParameterError::~ParameterError() = default;
 PluginError::~PluginError() = default;
 BudgetSpent::~BudgetSpent() = default;
+
+void blame(const std::string& who) {
+  try {
+    throw;
+  } catch (const std::bad_alloc& error) {
+    throw PluginError(who + "threw: " + error.what(), Reason::out_of_memory);
+  } catch (const std::exception& error) {
+    throw PluginError(who + "threw: " + error.what(), Reason::threw);
+  } catch (...) {
+    throw PluginError(who + "threw something that is not a std::exception", Reason::threw);
+  }
+}
 
 namespace {
 std::string joined(const std::vector<Problem>& problems) {

@@ -106,7 +106,46 @@ struct Extent {
 
 bool is_whole(double value) { return value == std::floor(value); }
 
-// Least of sign * (height of the leg above the ground); -infinity where ground is missing.
+// Least of sign * (height of a leg above the ground), piece by piece; -infinity where ground is
+// missing.
+struct GapSearch {
+  const HeightField& field;
+  const Extent& extent;
+  double sign;
+  double enough;
+  Walk walk;
+  double z0, dz;  ///< sign * height of the leg
+  double gap = kInfinity;
+
+  /// Of the part of the leg over one cell; false ends the search.
+  bool visit_cell(double t0, double t1) {
+    const double middle = (t0 + t1) / 2;
+    int i = extent.column(walk.u(middle));
+    int j = extent.row(walk.v(middle));
+    Patch p = patch(field, i, j);
+    if (!p.has_ground()) {  // along a line of posts either side will do
+      i -= walk.du == 0 && walk.u0 == i && i > extent.first[0];
+      j -= walk.dv == 0 && walk.v0 == j && j > extent.first[1];
+      p = patch(field, i, j);
+    }
+    if (!p.has_ground()) {
+      gap = -kInfinity;
+      return false;
+    }
+    p = p.scaled(sign);
+    const double z_from = z0 + t0 * dz;
+    const double z_to = z0 + t1 * dz;
+    // High above a cell nothing is least, rounding included.
+    const double top = p.max();
+    const double rounding = 1e-12 * (std::abs(z_from) + std::abs(z_to) + std::abs(top));
+    if (std::min(z_from, z_to) - top <= std::min(gap, enough) + rounding) {
+      gap = std::min(gap, piece_gap(p, walk.u(t0) - i, walk.v(t0) - j, z_from, walk.u(t1) - i,
+                                    walk.v(t1) - j, z_to));
+    }
+    return true;
+  }
+};
+
 // roof(block column, block row) is the highest ground of a block of cells, above which they are
 // skipped.
 template <class Roof>
@@ -127,52 +166,25 @@ double least_gap(const HeightField& field, double sign, const Vec3& a_in, const 
   }
   const double u0 = extent.u_within(a.x());
   const double v0 = extent.v_within(a.y());
-  const double u1 = extent.u_within(b.x());
-  const double v1 = extent.v_within(b.y());
-  const Walk walk{u0, v0, u1 - u0, v1 - v0};
-  const double z0 = sign * a.z();
-  const double dz = sign * (b.z() - a.z());
-
-  double gap = kInfinity;
-  const auto visit_cell = [&](double t0, double t1) {
-    const double middle = (t0 + t1) / 2;
-    const int i = extent.column(walk.u(middle));
-    const int j = extent.row(walk.v(middle));
-    const double z_from = z0 + t0 * dz;
-    const double z_to = z0 + t1 * dz;
-    Patch p = patch(field, i, j);
-    int use_i = i;
-    int use_j = j;
-    if (!p.has_ground()) {  // along a line of posts either side will do
-      use_i -= walk.du == 0 && walk.u0 == i && i > extent.first[0];
-      use_j -= walk.dv == 0 && walk.v0 == j && j > extent.first[1];
-      p = patch(field, use_i, use_j);
-    }
-    if (!p.has_ground()) {
-      gap = -kInfinity;
-      return false;
-    }
-    p = p.scaled(sign);
-    // High above a cell nothing is least, rounding included.
-    const double top = p.max();
-    const double rounding = 1e-12 * (std::abs(z_from) + std::abs(z_to) + std::abs(top));
-    if (std::min(z_from, z_to) - top <= std::min(gap, enough) + rounding) {
-      gap = std::min(gap, piece_gap(p, walk.u(t0) - use_i, walk.v(t0) - use_j, z_from,
-                                    walk.u(t1) - use_i, walk.v(t1) - use_j, z_to));
-    }
-    return true;
-  };
+  GapSearch search{field,
+                   extent,
+                   sign,
+                   enough,
+                   {u0, v0, extent.u_within(b.x()) - u0, extent.v_within(b.y()) - v0},
+                   sign * a.z(),
+                   sign * (b.z() - a.z())};
+  const Walk& walk = search.walk;
   walk.pieces(0, 1, block, [&](double t0, double t1) {
     const double middle = (t0 + t1) / 2;
     const int i = extent.column(walk.u(middle)) / block;
     const int j = extent.row(walk.v(middle)) / block;
-    const double lowest = z0 + (dz < 0 ? t1 : t0) * dz;
-    if (lowest - roof(i, j) < std::min(gap, enough)) {
-      walk.pieces(t0, t1, 1, visit_cell);
+    const double lowest = search.z0 + (search.dz < 0 ? t1 : t0) * search.dz;
+    if (lowest - roof(i, j) < std::min(search.gap, enough)) {
+      walk.pieces(t0, t1, 1, [&](double from, double to) { return search.visit_cell(from, to); });
     }
-    return gap > -kInfinity;
+    return search.gap > -kInfinity;
   });
-  return gap;
+  return search.gap;
 }
 }  // namespace
 

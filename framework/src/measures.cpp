@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "altiplan/ground.hpp"
 #include "altiplan/nearest_place.hpp"
 #include "deepest_place.hpp"
 
@@ -17,6 +18,11 @@ double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3&
   constexpr double kFar = 1e7;
   if (solid.blocked(a, b, 0)) {
     return std::min(0.0, deepest_place(solid, a, b).clearance);
+  }
+  if (const Ground* ground = solid.ground(); ground != nullptr && ground->is_all()) {
+    if (const auto distance = ground->distance(a, b)) {
+      return *distance;
+    }
   }
   double free = 0;
   double met = 1;

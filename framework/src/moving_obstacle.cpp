@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
-#include "altiplan/world.hpp"
+#include "altiplan/moving_obstacle.hpp"
 
 namespace altiplan {
 namespace {

@@ -28,7 +28,7 @@ double share_where(const Vec3& a, const Vec3& b, const IsMet& is_met) {
 
 /// The distance of the nearest place of the ground that smaller and smaller steps from `point`, one
 /// near it, lead to.
-double nearest_about(const Environment& environment, const Vec3& p, const Vec3& point) {
+double nearest_about(const Ground& ground, const Vec3& p, const Vec3& point) {
   constexpr double kFine = 1e-3;  // metres
   double best = (p - point).norm();
   Vec3 at = point;
@@ -37,7 +37,7 @@ double nearest_about(const Environment& environment, const Vec3& p, const Vec3& 
     for (int n = 0; n < 9; ++n) {
       const double x = from.x() + step * (n % 3 - 1);
       const double y = from.y() + step * (n / 3 - 1);
-      const Vec3 next(x, y, environment.ground(x, y).value_or(-kInfinity));
+      const Vec3 next(x, y, ground.height(x, y).value_or(-kInfinity));
       if (const double distance = (p - next).norm(); distance < best) {
         best = distance;
         at = next;
@@ -154,10 +154,9 @@ double place_clearance(const Environment& environment, const Vec3& p) {
       met = free;
       free = std::max(0.0, free - environment.slack() - kFine);
     }
-  } else if (environment.ground_alone()) {
-    environment.near(p, kInfinity, [&](const Nearby& nearby) {
-      met = nearest_about(environment, p, nearby.point);
-    });
+  } else if (const Ground* ground = environment.ground(); ground != nullptr && ground->is_all()) {
+    environment.near(p, kInfinity,
+                     [&](const Nearby& nearby) { met = nearest_about(*ground, p, nearby.point); });
     for (const double less : {kFine, met / 1000, met / 20}) {  // nearly always the first
       if (is_free(met - less)) {
         free = std::max(free, met - less);

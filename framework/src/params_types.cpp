@@ -270,18 +270,44 @@ std::string Fields::json_object(const std::vector<BoundField>& fields) {
   return "{" + text + "}";
 }
 
+namespace {
+constexpr std::pair<const char*, Point::Form> kPointForms[] = {{"at_m", Point::Form::metres},
+                                                               {"at_lonlat", Point::Form::lonlat},
+                                                               {"at_cell", Point::Form::cell}};
+}  // namespace
+
+void Fields::read_point(const Value& value, const char* name, Point& target) {
+  if (value.kind != Value::Kind::list || value.items.size() < 2 || value.items.size() > 3) {
+    problem(
+        value, key_of(name),
+        "expected two or three numbers, found " + value.what() +
+            (value.kind == Value::Kind::list ? " of " + std::to_string(value.items.size()) : ""));
+    return;
+  }
+  target.has_height = value.items.size() == 3;
+  for (std::size_t i = 0; i < value.items.size(); ++i) {
+    if (const auto number = read_number(value.items[i], key_of(name) + "." + std::to_string(i))) {
+      target.at[i] = *number;
+    }
+  }
+  if (target.form == Point::Form::lonlat &&
+      (std::abs(target.at[0]) > 180 || std::abs(target.at[1]) > 90)) {
+    problem(value, key_of(name),
+            std::string("expected longitude in [-180, 180], then latitude in [-90, 90]") +
+                (std::abs(target.at[1]) <= 180 && std::abs(target.at[0]) <= 90
+                     ? ": are these two swapped?"
+                     : ""));
+  }
+}
+
 FieldRef Fields::point(Point& target) {
-  static constexpr std::pair<const char*, Point::Form> kForms[] = {
-      {"at_m", Point::Form::metres},
-      {"at_lonlat", Point::Form::lonlat},
-      {"at_cell", Point::Form::cell}};
   const std::size_t index = open("", make_shape(FieldType::point, ""));
   known_.pop_back();
   for (const char* key : {"at_m", "at_lonlat", "at_cell", "above_ground_m"}) {
     known_.emplace_back(key);
   }
   const auto show = [&] {
-    for (const auto& [name, form] : kForms) {
+    for (const auto& [name, form] : kPointForms) {
       if (target.form == form) {
         bound_[index].value_json = point_json(name, target);
       }
@@ -291,7 +317,7 @@ FieldRef Fields::point(Point& target) {
     show();
     return {*this, index};
   }
-  for (const auto& [name, form] : kForms) {
+  for (const auto& [name, form] : kPointForms) {
     const Value* value = source_->find(name);
     if (value == nullptr) {
       continue;
@@ -302,28 +328,7 @@ FieldRef Fields::point(Point& target) {
     }
     bound_[index].where = value->where;
     target.form = form;
-    if (value->kind != Value::Kind::list || value->items.size() < 2 || value->items.size() > 3) {
-      problem(*value, key_of(name),
-              "expected two or three numbers, found " + value->what() +
-                  (value->kind == Value::Kind::list ? " of " + std::to_string(value->items.size())
-                                                    : ""));
-      continue;
-    }
-    target.has_height = value->items.size() == 3;
-    for (std::size_t i = 0; i < value->items.size(); ++i) {
-      const std::string key = key_of(name) + "." + std::to_string(i);
-      if (const auto number = read_number(value->items[i], key)) {
-        target.at[i] = *number;
-      }
-    }
-    if (form == Point::Form::lonlat &&
-        (std::abs(target.at[0]) > 180 || std::abs(target.at[1]) > 90)) {
-      problem(*value, key_of(name),
-              std::string("expected longitude in [-180, 180], then latitude in [-90, 90]") +
-                  (std::abs(target.at[1]) <= 180 && std::abs(target.at[0]) <= 90
-                       ? ": are these two swapped?"
-                       : ""));
-    }
+    read_point(*value, name, target);
   }
   if (const Value* value = source_->find("above_ground_m")) {
     target.above_ground_m = read_number(*value, key_of("above_ground_m"));

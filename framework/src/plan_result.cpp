@@ -3,27 +3,59 @@
 
 namespace altiplan {
 
-const char* name(Status status) {
+const char* name(PlanStatus status) {
   switch (status) {
-    case Status::solved:
+    case PlanStatus::solved:
       return "solved";
-    case Status::no_route:
+    case PlanStatus::no_route:
       return "no_route";
-    case Status::timed_out:
+    case PlanStatus::timed_out:
       return "timed_out";
-    case Status::cancelled:
+    case PlanStatus::cancelled:
       return "cancelled";
-    case Status::invalid_problem:
+    case PlanStatus::invalid_problem:
       return "invalid_problem";
-    case Status::rejected:
-      return "rejected";
-    case Status::failed:
-      return "failed";
-    case Status::collided:
-      return "collided";
-    case Status::not_reached:
-      return "not_reached";
   }
-  return "failed";
+  return "no_route";
+}
+
+const char* name(Reason reason) {
+  switch (reason) {
+    case Reason::none:
+      return "";
+    case Reason::start:
+      return "start";
+    case Reason::goal:
+      return "goal";
+    case Reason::deadline:
+      return "deadline";
+    case Reason::iterations:
+      return "iterations";
+    case Reason::memory:
+      return "memory";
+    case Reason::threw:
+      return "threw";
+    case Reason::out_of_memory:
+      return "out_of_memory";
+    case Reason::law_of_ends:
+      return "law_of_ends";
+    case Reason::law_of_results:
+      return "law_of_results";
+    case Reason::law:
+      return "law";
+    case Reason::process_changed:
+      return "process_changed";
+    case Reason::never_stopped:
+      return "never_stopped";
+    case Reason::process_ended:
+      return "process_ended";
+    case Reason::rule:
+      return "rule";
+    case Reason::stuck:
+      return "stuck";
+    case Reason::route_ended:
+      return "route_ended";
+  }
+  return "";
 }
 }  // namespace altiplan

@@ -30,32 +30,26 @@ std::vector<Violation> Constraint::do_violations(const Route&, const Request&) c
 
 namespace {
 
-PlanResult failed(std::string message) {
-  PlanResult result;
-  result.status = Status::failed;
-  result.message = std::move(message);
-  return result;
-}
-
-/// Runs a plugin's code: what it throws becomes the result, except the framework's own wrong-use
-/// errors, which are the user's to mend.
+/// Runs a plugin's code: what it throws becomes a PluginError, except the framework's own wrong-use
+/// errors, which are the user's to mend, and the end of a budget, which is an answer.
 PlanResult guarded(const std::function<PlanResult()>& call) {
   try {
     return call();
   } catch (const ParameterError&) {
     throw;
+  } catch (const PluginError&) {
+    throw;
   } catch (const BudgetSpent& spent) {
     PlanResult result;
-    result.status = spent.cancelled() ? Status::cancelled : Status::timed_out;
+    result.status = spent.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+    result.reason = spent.cancelled() ? Reason::none : Reason::deadline;
     result.budget_hit = true;
     result.message = (spent.cancelled() ? "cancelled: " : "the budget was used up: ") +
                      std::string(spent.what());
     result.counters = {{"expanded", 0}};
     return result;
-  } catch (const std::exception& error) {
-    return failed(std::string("threw: ") + error.what());
   } catch (...) {
-    return failed("threw something that is not a std::exception");
+    blame("");
   }
 }
 
@@ -68,51 +62,61 @@ bool same(const PlanResult& a, const PlanResult& b) {
                     });
 }
 
-/// Holds a returned route to the law on its ends; `start` and `goal` are those asked for.
-PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal) {
-  if (result.status != Status::solved) {
+/// Which part of its budget ended a plan, as far as that shows from outside.
+Reason spent_part(const PlanResult& result, const Budget& budget) {
+  for (const Counter& counter : result.counters) {
+    if (counter.name == "expanded" && std::uint64_t(counter.value) >= budget.max_iterations) {
+      return Reason::iterations;
+    }
+  }
+  return budget.deadline && Budget::Clock::now() >= *budget.deadline ? Reason::deadline
+                                                                     : Reason::none;
+}
+
+/// Holds an answer to the law on a route's ends; `start` and `goal` are those asked for.
+PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal,
+                       const Budget& budget) {
+  if (result.status == PlanStatus::timed_out && result.reason == Reason::none) {
+    result.reason = spent_part(result, budget);
+  }
+  const auto broken = [](Reason law, const std::string& how) {
+    return PluginError("the planner broke a law of its interface: " + how, law);
+  };
+  if (result.status == PlanStatus::no_route && result.message.empty()) {
+    throw broken(Reason::law, "returns no route and does not say why");
+  }
+  if (result.status != PlanStatus::solved) {
     return result;
   }
-  std::string broken;
   if (result.route.empty()) {
-    broken = "says solved but returns no route";
-  } else if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
-    broken = "returns a route with a coordinate that is not finite";
-  } else if (result.route.front() != start) {
-    broken = "returns a route that does not begin at the start";
-  } else if (!goal.reached_at(result.route.back())) {
-    broken = "returns a route that ends " +
-             std::to_string((result.route.back() - goal.position).norm()) +
-             " m from the goal, outside its tolerance";
+    throw broken(Reason::law, "says solved but returns no route");
   }
-  if (!broken.empty()) {
-    result.status = Status::failed;
-    result.message = "the planner broke a law of its interface: " + broken;
+  if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
+    throw broken(Reason::law, "returns a route with a coordinate that is not finite");
+  }
+  if (result.route.front() != start) {
+    throw broken(Reason::law_of_ends, "returns a route that does not begin at the start");
+  }
+  if (!goal.reached_at(result.route.back())) {
+    throw broken(Reason::law_of_ends,
+                 "returns a route that ends " +
+                     std::to_string((result.route.back() - goal.position).norm()) +
+                     " m from the goal, outside its tolerance");
   }
   return result;
 }
 
-/// What needs no planner: impossible end points, and a start that is the goal.
+/// What needs no planner: impossible ends, and a start that is the goal.
 std::optional<PlanResult> settled(const Request& request) {
-  for (const auto& [what, p] :
-       {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
-    const std::string problem = point_problem(p, request);
-    if (!problem.empty()) {
-      PlanResult result;
-      result.status = Status::invalid_problem;
-      result.message = std::string("the ") + what + " " + problem;
-      return result;
-    }
+  std::optional<PlanResult> result = impossible_ends(request);
+  if (!result && request.goal.reached_at(request.start.position)) {
+    result.emplace();
+    result->status = PlanStatus::solved;
+    result->message = "the start is at the goal";
+    result->route = {request.start.position};
+    result->counters = {{"expanded", 0}};
   }
-  if (request.goal.reached_at(request.start.position)) {
-    PlanResult result;
-    result.status = Status::solved;
-    result.message = "the start is at the goal";
-    result.route = {request.start.position};
-    result.counters = {{"expanded", 0}};
-    return result;
-  }
-  return std::nullopt;
+  return result;
 }
 
 /// Plans afresh at every update.
@@ -139,7 +143,7 @@ class FreshSession final : public Session {
   PlanResult result_;
 };
 
-/// A session whose planner was not asked, or whose update failed, still has a result to show.
+/// The session of a problem that cannot be planned, whose planner was not asked.
 class HeldSession final : public Session {
  public:
   explicit HeldSession(PlanResult result) : result_(std::move(result)) {}
@@ -154,25 +158,32 @@ class HeldSession final : public Session {
 };
 }  // namespace
 
-const PlanResult& Session::update(const State& state, const Goal& goal,
-                                  std::shared_ptr<const World> world,
-                                  std::span<const Change> changes, const Budget& budget) {
-  bool answered = false;
-  const PlanResult said = guarded([&] {
-    PlanResult result = do_update(state, goal, std::move(world), changes, budget);
-    answered = true;
-    return result;
-  });
+std::optional<PlanResult> impossible_ends(const Request& request) {
+  for (const auto& [end, p] : {std::pair(Reason::start, request.start.position),
+                               std::pair(Reason::goal, request.goal.position)}) {
+    if (const std::string problem = point_problem(p, request); !problem.empty()) {
+      PlanResult result;
+      result.status = PlanStatus::invalid_problem;
+      result.reason = end;
+      result.message = std::string("the ") + name(end) + " " + problem;
+      return result;
+    }
+  }
+  return std::nullopt;
+}
+
+PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
+                           std::span<const Change> changes, const Budget& budget) {
+  PlanResult said = held_to_law(
+      guarded([&] { return do_update(state, goal, std::move(world), changes, budget); }),
+      state.position, goal, budget);
   const PlanResult shown = guarded([&] { return do_result(); });
-  PlanResult held = held_to_law(said, state.position, goal);
-  if (answered && held.status != Status::failed && !same(said, shown)) {
-    held = failed("the session broke a law of its interface: result() is not what update returned");
+  if (!same(said, shown)) {
+    throw PluginError(
+        "the session broke a law of its interface: result() is not what update returned",
+        Reason::law_of_results);
   }
-  broken_.reset();
-  if (!answered || held.status == Status::failed) {
-    broken_ = std::move(held);
-  }
-  return result();
+  return said;
 }
 
 PlanResult Planner::plan(const Request& request) const {
@@ -180,25 +191,22 @@ PlanResult Planner::plan(const Request& request) const {
     return *std::move(result);
   }
   return held_to_law(guarded([&] { return do_plan(request); }), request.start.position,
-                     request.goal);
+                     request.goal, request.budget);
 }
 
 std::unique_ptr<Session> Planner::begin(const Request& request) const {
-  if (auto result = settled(request); result && result->status == Status::invalid_problem) {
+  if (auto result = settled(request); result && result->status == PlanStatus::invalid_problem) {
     return std::make_unique<HeldSession>(*std::move(result));
   }
   std::unique_ptr<Session> session;
-  PlanResult failure = guarded([&] {
+  guarded([&] {
     session = do_begin(request);
-    return session == nullptr ? failed("begin returned no session") : PlanResult{};
+    if (session == nullptr) {
+      throw PluginError("begin returned no session", Reason::law);
+    }
+    return held_to_law(session->result(), request.start.position, request.goal, request.budget);
   });
-  if (session == nullptr) {
-    return std::make_unique<HeldSession>(std::move(failure));
-  }
-  PlanResult first =
-      held_to_law(guarded([&] { return session->result(); }), request.start.position, request.goal);
-  return first.status == Status::failed ? std::make_unique<HeldSession>(std::move(first))
-                                        : std::move(session);
+  return session;
 }
 
 std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
@@ -208,7 +216,8 @@ std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
 std::unique_ptr<Pilot> LocalPlanner::begin(const Request& request) const {
   std::unique_ptr<Pilot> pilot = do_begin(request);
   if (pilot == nullptr) {
-    throw PluginError("the local planner broke a law of its interface: begin returned no pilot");
+    throw PluginError("the local planner broke a law of its interface: begin returned no pilot",
+                      Reason::law);
   }
   return pilot;
 }
@@ -218,8 +227,9 @@ Traits LocalPlanner::do_traits() const { return {}; }
 double Pilot::reach_m() const {
   const double reach = do_reach_m();
   if (!(reach >= 0 && std::isfinite(reach))) {
-    throw PluginError("the pilot broke a law of its interface: its reach is " +
-                      std::to_string(reach) + " m");
+    throw PluginError(
+        "the pilot broke a law of its interface: its reach is " + std::to_string(reach) + " m",
+        Reason::law);
   }
   return reach;
 }
@@ -231,7 +241,8 @@ PilotStep Pilot::step(const Observation& seen) {
     if (!is_finite(step.next.position) || !(dt > 0) || dt > seen.max_dt_s * (1 + 1e-9)) {
       throw PluginError(
           "the pilot broke a law of its interface: a step must end at a finite place "
-          "after more than 0 and at most max_dt seconds");
+          "after more than 0 and at most max_dt seconds",
+          Reason::law);
     }
   }
   return step;
@@ -242,19 +253,19 @@ Counters Pilot::do_counters() const { return {}; }
 PlanResult Smoother::smooth(const Route& route, const Request& request) const {
   if (route.size() <= 2) {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.message = "nothing to smooth";
     result.route = route;
     return result;
   }
   PlanResult result = guarded([&] { return do_smooth(route, request); });
-  if (result.status == Status::solved &&
+  if (result.status == PlanStatus::solved &&
       (result.route.empty() || result.route.front() != route.front() ||
        result.route.back() != route.back() ||
        !std::all_of(result.route.begin(), result.route.end(), is_finite))) {
-    result.status = Status::failed;
-    result.message =
-        "the smoother broke a law of its interface: first and last points must stay, all finite";
+    throw PluginError(
+        "the smoother broke a law of its interface: first and last points must stay, all finite",
+        Reason::law_of_ends);
   }
   return result;
 }

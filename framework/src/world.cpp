@@ -17,6 +17,14 @@ auto answer_of(const Layer& layer, const Ask& ask) {
   return blamed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
                 [&] { return ask(*layer.environment); });
 }
+
+/// The same of the ground that one of the layers brings.
+template <class Ask>
+auto answer_of(const std::vector<Layer>& layers,
+               const std::pair<std::size_t, const Ground*>& its_ground, const Ask& ask) {
+  return answer_of(layers[its_ground.first],
+                   [&](const Environment&) { return ask(*its_ground.second); });
+}
 }  // namespace
 
 /// Grids of this snapshot, and those of an earlier one with the layers that they show.
@@ -65,6 +73,16 @@ World World::next() const {
   return world;
 }
 
+void World::find_grounds() {
+  grounds_.clear();
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    if (const Ground* ground =
+            answer_of(layers_[n], [](const Environment& asked) { return asked.ground(); })) {
+      grounds_.emplace_back(n, ground);
+    }
+  }
+}
+
 World World::with_frame(Frame frame) const {
   World world(*this);
   world.frame_ = std::move(frame);
@@ -77,6 +95,7 @@ World World::with(Layer layer) const {
   }
   World world = next();
   world.layers_.push_back(std::move(layer));
+  world.find_grounds();
   return world;
 }
 
@@ -85,6 +104,7 @@ World World::with_replaced(Layer layer) const {
   for (Layer& old : world.layers_) {
     if (old.id == layer.id) {
       old = std::move(layer);
+      world.find_grounds();
       return world;
     }
   }
@@ -94,6 +114,7 @@ World World::with_replaced(Layer layer) const {
 World World::without(std::string_view id) const {
   World world = next();
   std::erase_if(world.layers_, [&](const Layer& layer) { return layer.id == id; });
+  world.find_grounds();
   return world;
 }
 
@@ -146,23 +167,18 @@ void World::near(const Vec3& p, double reach, double ground_reach,
                  const std::function<void(const Layer&, const Nearby&)>& sink) const {
   for (const Layer& layer : layers_) {
     answer_of(layer, [&](const Environment& asked) {
-      const double within = asked.has_ground() ? ground_reach : reach;
+      const double within = asked.ground() != nullptr ? ground_reach : reach;
       asked.near(p, within, [&](const Nearby& nearby) { sink(layer, nearby); });
     });
   }
 }
 
-bool World::has_ground() const {
-  return std::any_of(layers_.begin(), layers_.end(),
-                     [](const Layer& layer) { return layer.environment->has_ground(); });
-}
-
 std::optional<double> World::ground(double x, double y) const {
   std::optional<double> highest;
-  for (const Layer& layer : layers_) {
-    if (const auto ground =
-            answer_of(layer, [&](const Environment& asked) { return asked.ground(x, y); })) {
-      highest = highest ? std::max(*highest, *ground) : *ground;
+  for (const auto& ground : grounds_) {
+    if (const auto height =
+            answer_of(layers_, ground, [&](const Ground& asked) { return asked.height(x, y); })) {
+      highest = highest ? std::max(*highest, *height) : *height;
     }
   }
   return highest;
@@ -198,28 +214,26 @@ Vec3 on_leg(const Vec3& a, const Vec3& b, double t, const Box& box) {
 }  // namespace
 
 double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
-  const auto is_ground = [](const Layer& layer) { return layer.environment->has_ground(); };
-  const auto first = std::find_if(layers_.begin(), layers_.end(), is_ground);
-  if (first == layers_.end()) {
+  if (grounds_.empty()) {
     return kInfinity;
   }
-  if (std::none_of(first + 1, layers_.end(), is_ground)) {
-    return answer_of(*first,
-                     [&](const Environment& asked) { return asked.ground_gap(a, b, enough); });
+  if (grounds_.size() == 1) {
+    return answer_of(layers_, grounds_.front(),
+                     [&](const Ground& asked) { return asked.gap(a, b, enough); });
   }
   // Neighbouring tiles: each answers for its part of the leg, and together they must cover it.
   double least = kInfinity;
   std::vector<std::pair<double, double>> parts;
-  for (const Layer& layer : layers_) {
-    const Box box = layer.environment->bounds();
+  for (const auto& ground : grounds_) {
+    const Box box = layers_[ground.first].environment->bounds();
     const auto [t0, t1] = part_over(box, a, b);
-    if (!is_ground(layer) || t0 > t1) {
+    if (t0 > t1) {
       continue;
     }
     const Vec3 enter = on_leg(a, b, t0, box);
     const Vec3 leave = on_leg(a, b, t1, box);
-    least = std::min(least, answer_of(layer, [&](const Environment& asked) {
-                       return asked.ground_gap(enter, leave, enough);
+    least = std::min(least, answer_of(layers_, ground, [&](const Ground& asked) {
+                       return asked.gap(enter, leave, enough);
                      }));
     parts.emplace_back(t0, t1);
   }
@@ -242,18 +256,16 @@ bool World::ground_below(const Vec3& a, const Vec3& b) const {
 double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
   double most = -kInfinity;
   bool covered = false;
-  for (const Layer& layer : layers_) {
-    if (layer.environment->has_ground()) {
-      const Box box = layer.environment->bounds();
-      const auto [t0, t1] = part_over(box, a, b);
-      if (t0 <= t1) {
-        const Vec3 enter = on_leg(a, b, t0, box);
-        const Vec3 leave = on_leg(a, b, t1, box);
-        covered = true;
-        most = std::max(most, answer_of(layer, [&](const Environment& asked) {
-                          return asked.ground_gap_max(enter, leave);
-                        }));
-      }
+  for (const auto& ground : grounds_) {
+    const Box box = layers_[ground.first].environment->bounds();
+    const auto [t0, t1] = part_over(box, a, b);
+    if (t0 <= t1) {
+      const Vec3 enter = on_leg(a, b, t0, box);
+      const Vec3 leave = on_leg(a, b, t1, box);
+      covered = true;
+      most = std::max(most, answer_of(layers_, ground, [&](const Ground& asked) {
+                        return asked.gap_max(enter, leave);
+                      }));
     }
   }
   return covered ? most : kInfinity;
@@ -262,9 +274,8 @@ double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
 std::vector<Threat> World::threats() const {
   std::vector<Threat> all;
   for (const Layer& layer : layers_) {
-    for (Threat& threat : layer.environment->threats()) {
-      all.push_back(std::move(threat));
-    }
+    const std::vector<Threat>& its = layer.environment->info().threats;
+    all.insert(all.end(), its.begin(), its.end());
   }
   return all;
 }
@@ -279,7 +290,7 @@ double World::slack() const {
 
 std::optional<GridSpec> World::native_grid() const {
   for (const Layer& layer : layers_) {
-    if (auto spec = layer.environment->native_grid()) {
+    if (const auto& spec = layer.environment->info().native_grid) {
       return spec;
     }
   }

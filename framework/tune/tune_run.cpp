@@ -28,11 +28,9 @@ auto of_tuner(const TunePlan& plan, const Call& call) {
   try {
     return call();
   } catch (const PluginError& error) {
-    throw PluginError(who + error.what());
-  } catch (const std::exception& error) {
-    throw PluginError(who + "threw: " + error.what());
+    throw PluginError(who + error.what(), error.reason());
   } catch (...) {
-    throw PluginError(who + "threw something that is not a std::exception");
+    blame(who);
   }
 }
 
@@ -243,13 +241,10 @@ class TuningRun {
 
   ScoredRun scored(const study::Ended& ended) const {
     const study::RunOutcome outcome = study::outcome_of(ended, plan_.request.limits);
-    if (outcome.outcome != "solved") {
-      return {outcome.outcome, std::nullopt, outcome.message};
+    if (outcome.outcome != study::Outcome::solved) {
+      return {study::name(outcome.outcome), std::nullopt, outcome.message};
     }
-    std::map<std::string, double> values;
-    for (const auto& [name, value] : study::values_of(host::Json::parse(outcome.result))) {
-      values[name] = value;
-    }
+    std::map<std::string, double> values(outcome.values.begin(), outcome.values.end());
     values.insert({{"solved", 1},
                    {"wall_time_s", ended.wall_s},
                    {"cpu_time_s", ended.cpu_s},
@@ -266,7 +261,7 @@ class TuningRun {
     if (!std::isfinite(value)) {
       return {"no_value", std::nullopt, "the metric is not finite"};
     }
-    return {outcome.outcome, value, ""};
+    return {study::name(outcome.outcome), value, ""};
   }
 
   /// A metric that no run has would only make every evaluation a failure.

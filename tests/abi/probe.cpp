@@ -2,7 +2,13 @@
 // Names what crosses between the host and a plugin, for abidiff: of the interfaces, libaltiplan.so
 // itself has no function that shows how they are laid out. Built against the SDK of each version,
 // so that nothing later than the oldest of them may stand here.
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
 
 #define ALTIPLAN_PROBE(Type) \
   ALTIPLAN_API void probe_##Type(altiplan::Type*) {}

@@ -2,6 +2,7 @@
 // A good manifest, but loading it aborts.
 #include <cstdlib>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

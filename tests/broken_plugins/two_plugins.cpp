@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nothing is wrong with this one.
+#include "altiplan/constraint.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls a function that no library has; lazy binding would notice only in the call.
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 double missing_function_of_a_test();

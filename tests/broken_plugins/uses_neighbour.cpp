@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 extern "C" int neighbours_answer();

@@ -30,9 +30,7 @@ struct Spoils {
   std::function<void(VoxelGrid&)> rasterize;
   std::optional<Box> bounds;
   std::optional<double> slack;
-  std::vector<Threat> threats;
-  std::optional<GridSpec> native;
-  std::optional<Frame> frame;
+  LayerInfo info;
 };
 
 template <void (*kSpoil)(Spoils&)>
@@ -65,9 +63,7 @@ class Spoilt final : public Environment {
     spoils_.rasterize ? spoils_.rasterize(grid) : sound().rasterize(grid);
   }
   double do_slack() const override { return spoils_.slack.value_or(0); }
-  std::vector<Threat> do_threats() const override { return spoils_.threats; }
-  std::optional<GridSpec> do_native_grid() const override { return spoils_.native; }
-  std::optional<Frame> do_frame() const override { return spoils_.frame; }
+  const LayerInfo& do_info() const override { return spoils_.info; }
 
   Spoils spoils_;
 };
@@ -193,16 +189,16 @@ void lost_far_off(Spoils& s) {
 }
 
 void negative_slack(Spoils& s) { s.slack = -1; }
-void endless_threat(Spoils& s) { s.threats = {{{0, 0, 0}, kNan, "", ""}}; }
+void endless_threat(Spoils& s) { s.info.threats = {{{0, 0, 0}, kNan, "", ""}}; }
 void flat_cells(Spoils& s) {
-  s.native = GridSpec{};
-  s.native->cell = {1, 0, 1};
+  s.info.native_grid = GridSpec{};
+  s.info.native_grid->cell = {1, 0, 1};
 }
 class Bent final : public Projection {
   std::array<double, 2> to_local(double lon, double lat) const override { return {lon, lat}; }
   std::array<double, 2> to_lonlat(double x, double y) const override { return {x + 1e-5, y}; }
 };
-void bent_frame(Spoils& s) { s.frame = Frame::projected(std::make_shared<Bent>(), "bent"); }
+void bent_frame(Spoils& s) { s.info.frame = Frame::projected(std::make_shared<Bent>(), "bent"); }
 
 class Empty final : public Environment {
  public:

@@ -10,14 +10,14 @@ using namespace altiplan::bad;
 
 PlanResult begins_beside(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (request.goal.tolerance_m > 0 && result.status == Status::solved) {
+  if (request.goal.tolerance_m > 0 && result.status == PlanStatus::solved) {
     result.route.front().x() += 1e-3;
   }
   return result;
 }
 PlanResult ends_beside(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (request.start.position.y() > 1e6 && result.status == Status::solved) {
+  if (request.start.position.y() > 1e6 && result.status == PlanStatus::solved) {
     result.route.back().x() += 1e-3;
   }
   return result;
@@ -27,14 +27,14 @@ Route straight(const Request& request) { return {request.start.position, request
 
 PlanResult cuts_through(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (request.level_m && result.status == Status::solved) {
+  if (request.level_m && result.status == PlanStatus::solved) {
     result.route = straight(request);
   }
   return result;
 }
 PlanResult cuts_through_far_off(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (request.start.position.y() > 1e6 && result.status == Status::solved) {
+  if (request.start.position.y() > 1e6 && result.status == PlanStatus::solved) {
     result.route = straight(request);
   }
   return result;
@@ -95,22 +95,22 @@ PlanResult solves_without_a_route(const Sound& sound, const Request& request) {
 }
 PlanResult says_timed_out(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (request.goal.tolerance_m > 0 && result.status == Status::solved) {
-    result.status = Status::timed_out;
+  if (request.goal.tolerance_m > 0 && result.status == PlanStatus::solved) {
+    result.status = PlanStatus::timed_out;
   }
   return result;
 }
 PlanResult gives_no_reason(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (result.status == Status::no_route) {
+  if (result.status == PlanStatus::no_route) {
     result.message.clear();
   }
   return result;
 }
 PlanResult says_not_reached(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (result.status == Status::no_route) {
-    result.status = Status::not_reached;
+  if (result.status == PlanStatus::no_route) {
+    result.status = static_cast<PlanStatus>(7);
   }
   return result;
 }
@@ -118,7 +118,7 @@ PlanResult proves_too_much(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (result.route.size() > 9) {
     result = {};
-    result.status = Status::no_route;
+    result.status = PlanStatus::no_route;
     result.message = "there is none";
     result.proved = true;
   }
@@ -223,7 +223,7 @@ PlanResult gives_up_early(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (result.route.size() > 9) {
     result = {};
-    result.status = Status::no_route;
+    result.status = PlanStatus::no_route;
     result.message = "the route would be long";
   }
   return result;
@@ -231,8 +231,8 @@ PlanResult gives_up_early(const Sound& sound, const Request& request) {
 using GivesUpEarly = SpoiltPlanner<gives_up_early, complete>;
 PlanResult calls_it_a_matter_of_time(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
-  if (result.status == Status::no_route) {
-    result.status = Status::timed_out;
+  if (result.status == PlanStatus::no_route) {
+    result.status = PlanStatus::timed_out;
     result.budget_hit = request.budget.max_iterations < 50'000;
     result.proved = false;
   }
@@ -267,7 +267,7 @@ Traits anytime() {
 PlanResult longer_with_more(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   const std::uint64_t most = request.budget.max_iterations;
-  if (result.status == Status::solved && most < 50'000 &&
+  if (result.status == PlanStatus::solved && most < 50'000 &&
       most >= 2 * std::uint64_t(result.counters[0].value)) {
     const auto middle = result.route.begin() + 1;
     const Vec3 again = *middle;

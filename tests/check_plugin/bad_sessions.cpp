@@ -41,7 +41,7 @@ class Flawed final : public Session {
       }
       if (covered) {
         result_ = {};
-        result_.status = Status::invalid_problem;
+        result_.status = PlanStatus::invalid_problem;
         result_.message = "an end lies in an obstacle";
         result_.counters = {{"expanded", 0}};
         note();

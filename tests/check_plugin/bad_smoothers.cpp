@@ -9,7 +9,7 @@ using namespace altiplan::bad;
 
 PlanResult solved(Route route) {
   PlanResult result;
-  result.status = Status::solved;
+  result.status = PlanStatus::solved;
   result.route = std::move(route);
   return result;
 }

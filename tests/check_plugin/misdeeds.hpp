@@ -20,7 +20,13 @@
 #include <thread>
 #include <vector>
 
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
 
 /// What code may do to its process, whatever it is there for; each a function that a plugin broken
 /// on purpose calls in the midst of its work.

@@ -14,6 +14,7 @@ import textwrap
 SOURCE = pathlib.Path(sys.argv[1])
 PAGES = SOURCE / "docs/interfaces"
 TEMPLATES = SOURCE / "tools/altiplan/templates"
+BESIDE = {"environment": ["ground"]}  # headers of what a kind may bring, with laws of its own
 KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name != "shared")
 MARK = re.compile(r"^(<!-- (laws of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
 COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)
@@ -36,12 +37,15 @@ def laws(text):
 
 def law_list(kind):
     """The laws of the interface itself first."""
-    found = laws((SOURCE / f"framework/include/altiplan/{kind}.hpp").read_text())
-    assert found, f"no laws in the header of {kind}"
-    found.sort(key=lambda entry: entry[0].lower() != kind.replace("_", ""))
-    return "\n".join(f"Of `{name}`, in `altiplan/{kind}.hpp`:\n\n"
+    found = []
+    for header in [kind, *BESIDE.get(kind, [])]:
+        its = laws((SOURCE / f"framework/include/altiplan/{header}.hpp").read_text())
+        assert its, f"no laws in {header}.hpp"
+        found += [(header, name, listed) for name, listed in its]
+    found.sort(key=lambda entry: entry[1].lower() != kind.replace("_", ""))
+    return "\n".join(f"Of `{name}`, in `altiplan/{header}.hpp`:\n\n"
                      + "".join(f"{number}. {law}\n" for number, law in enumerate(listed, 1))
-                     for name, listed in found)
+                     for header, name, listed in found)
 
 
 def file_of(kind, name):

@@ -2,12 +2,19 @@
 // The pieces of code that pages of docs/interfaces show: what stands between `// name {` and
 // `// }` is written into the page by interfaces_test.py. Compiled, never run.
 #include <altiplan/check.hpp>
+#include <altiplan/constraint.hpp>
+#include <altiplan/environment.hpp>
+#include <altiplan/ground.hpp>
 #include <altiplan/kit/lattice/open_list.hpp>
 #include <altiplan/kit/sampling/leg_rules.hpp>
 #include <altiplan/kit/sampling/leg_tree.hpp>
 #include <altiplan/kit/sampling/point_grid.hpp>
 #include <altiplan/kit/scratch.hpp>
+#include <altiplan/local_planner.hpp>
+#include <altiplan/planner.hpp>
 #include <altiplan/plugin.hpp>
+#include <altiplan/smoother.hpp>
+#include <altiplan/tuner.hpp>
 
 namespace {
 using namespace altiplan;
@@ -26,6 +33,33 @@ struct Params {
     f("order", order).one_of({"near", "far"}).doc("which is tried first");
     f.check(!range_m || *range_m >= cell_m, "range_m must be at least cell_m");
   }
+};
+// }
+
+// ground {
+/// Rises by a tenth to the east, without end.
+class Slope final : public Environment, public Ground {
+ public:
+  Slope() { info_.notes = {"a slope of 10 %"}; }
+
+ private:
+  static double above(const Vec3& p) { return p.z() - 0.1 * p.x(); }
+
+  Box do_bounds() const override { return {}; }
+  double do_clearance(const Vec3& p) const override { return above(p) / std::hypot(1, 0.1); }
+  const LayerInfo& do_info() const override { return info_; }
+
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double) const override { return 0.1 * x; }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(above(a), above(b));  // of a straight leg over a plane: at one of its ends
+  }
+  double do_gap_max(const Vec3& a, const Vec3& b) const override {
+    return std::max(above(a), above(b));
+  }
+  double do_slope(const Box&) const override { return 0.1; }
+
+  LayerInfo info_;
 };
 // }
 
@@ -84,7 +118,7 @@ class JoiningSession final : public Session {
       joined.insert(joined.end(), last.begin() + std::ptrdiff_t(at), last.end());
       if (check(joined, request_).ok()) {
         result_ = PlanResult{};
-        result_.status = Status::solved;
+        result_.status = PlanStatus::solved;
         result_.route = joined;
         result_.counters = {{"expanded", tried}};
         return result_;

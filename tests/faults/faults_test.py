@@ -36,7 +36,8 @@ SYNONYMS = {"EACCES": ("have changed since the runs were planned",),
             "ENOSPC": ("is full",), "ENOMEM": ("out of memory", "no memory", "bad_alloc"),
             "ENOLCK": ("another program is writing",)}
 # SQLite does not say why it could not make a journal: it tries again to open one to read alone.
-OF_SQLITE = ("disk I/O error", "malformed", "its journal cannot be made")
+OF_SQLITE = ("disk I/O error", "malformed", "its journal cannot be made",
+             "or the system did not show it")
 WORDS = {"fork": ("process", "thread"), "map": ("memory", "bad_alloc"),
          "descriptor": ("pipe", "socket", "stdout", "memory", "process", "descriptor")}
 # What was once not survived: call, calls of the system that fail in turn, which of them (slice), how
@@ -51,7 +52,8 @@ MENDED = (("report", "rename", slice(-4, None), 1, "EACCES"), ("view", "map", AL
           ("check", "read", ALL, 1, "EIO"), ("check_route", "read", ALL, 0, "EIO"),
           ("view", "stat", slice(24), 1, "EIO"), ("view", "open", ALL, 1, "EMFILE"),
           ("tune", "read", LAST, 5, "EIO"), ("report", "open", LAST, 1, "EMFILE"),
-          ("merge", "lock", FIRST, 1, "EIO"), ("merge", "open", FIRST, 1, "EACCES"))
+          ("merge", "lock", FIRST, 1, "EIO"), ("merge", "open", FIRST, 1, "EACCES"),
+          ("view", "open", FIRST, 1, "EACCES"), ("merge", "stat", slice(23, 26), 5, "EIO"))
 
 
 class Wrong(Exception):

@@ -13,16 +13,26 @@ using kit::GroundPiece;
 /// A paraboloid that bends downward, by 0.02 a metre along both axes, and rises eastward.
 double ground(double x, double y) { return 0.5 * x - 0.01 * (x * x + y * y); }
 
-/// Whether the leg comes nearer than that to the ground, cut off at `top`, of a square of 120 m.
-bool is_within(const Vec3& a, const Vec3& b, double distance, double top) {
-  kit::GroundWithin within(a, b, distance);
+/// A search of the ground, cut off at `top`, of a square of 120 m.
+kit::GroundWithin searched(const Vec3& a, const Vec3& b, double distance, double top,
+                           kit::GroundWithin::Until until) {
+  kit::GroundWithin within(a, b, distance, until);
   within.search(-60, -60, 60, 60, [&](double x0, double y0, double x1, double y1) {
     const double x = (x0 + x1) / 2;
     const double y = (y0 + y1) / 2;
     const double r = std::hypot(x1 - x0, y1 - y0) / 2;
     return GroundPiece{x, y, ground(x, y), 0.5 - 0.02 * x, -0.02 * y, 0.01 * r * r, top};
   });
-  return within.found();
+  return within;
+}
+
+/// Whether the leg comes nearer than that to the ground.
+bool is_within(const Vec3& a, const Vec3& b, double distance, double top) {
+  return searched(a, b, distance, top, kit::GroundWithin::Until::found).found();
+}
+
+double nearest(const Vec3& a, const Vec3& b, double top) {
+  return searched(a, b, 200, top, kit::GroundWithin::Until::nearest).distance();
 }
 
 /// The least distance, by samples of the ground, finer and finer about the best.
@@ -59,6 +69,10 @@ TEST(GroundWithin, IsRightByATenthOfAMillimetre) {
     const double distance = sampled(a, b, top);
     EXPECT_TRUE(is_within(a, b, distance + 1e-4, top)) << n;
     EXPECT_FALSE(is_within(a, b, distance - 1e-4, top)) << n;
+    const double found = nearest(a, b, top);
+    EXPECT_NEAR(found, distance, 1e-4) << n;
+    EXPECT_TRUE(is_within(a, b, found + 1e-6, top)) << n;
+    EXPECT_FALSE(is_within(a, b, found - 1e-6, top)) << n;
   }
 }
 

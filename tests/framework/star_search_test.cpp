@@ -47,7 +47,7 @@ TEST(StarSearch, TheLengthGoesToTheShortest) {
       double before = kInfinity;
       for (const std::uint64_t iterations : {1000, 4000, 16000}) {
         const PlanResult result = search(request, settings(iterations, bounded, informed));
-        ASSERT_EQ(result.status, Status::solved);
+        ASSERT_EQ(result.status, PlanStatus::solved);
         EXPECT_TRUE(check(result.route, request).ok());
         EXPECT_LE(length(result.route), before);
         EXPECT_GE(length(result.route), kOverTheWall - 1e-6);
@@ -92,7 +92,7 @@ TEST(StarSearch, AWholeTreeKeepsItsTurnsThroughRewiring) {
     request.start.velocity = {3, 1, 0};
     request.trace = &kept;
     const PlanResult result = search(request, settings(6000, seed % 2 == 1, false));
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_GT(kept.rewired, 100);
     for (const auto& [number, node] : kept.nodes) {
       if (node.parent < 0) {
@@ -115,12 +115,12 @@ TEST(StarSearch, EndsAnywhereWithinTheToleranceAndWithinTheRouteLength) {
   Request request = over_a_wall();
   request.goal.tolerance_m = 8;
   const PlanResult near = search(request, settings(8000, true, true));
-  ASSERT_EQ(near.status, Status::solved);
+  ASSERT_EQ(near.status, PlanStatus::solved);
   EXPECT_LT(length(near.route), kOverTheWall - 3);
   EXPECT_TRUE(check(near.route, request).ok());
   request.limits.max_route_length = kOverTheWall - 10;
   const PlanResult none = search(request, settings(3000, true, true));
-  EXPECT_EQ(none.status, Status::no_route);
+  EXPECT_EQ(none.status, PlanStatus::no_route);
   EXPECT_FALSE(none.proved);
 }
 
@@ -128,13 +128,13 @@ TEST(StarSearch, SaysWhatWasInTheWay) {
   Request request = over_a_wall();
   request.volume.max.z() = 25;
   const PlanResult result = search(request, settings(2000, true, true));
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_NE(result.message.find("m of the goal; the last legs were refused by 'shapes'"),
             std::string::npos)
       << result.message;
   request.budget.max_memory_bytes = 100 * 160;
   const PlanResult small = search(request, settings(2000, true, true));
-  EXPECT_EQ(small.status, Status::timed_out);
+  EXPECT_EQ(small.status, PlanStatus::timed_out);
   EXPECT_TRUE(small.budget_hit);
 }
 }  // namespace

@@ -17,18 +17,18 @@ Layer shapes(std::string id, std::vector<Shape> list) {
 }
 
 /// Level ground over a rectangle: a tile of a larger terrain.
-class FlatTile final : public Environment {
+class FlatTile final : public Environment, public Ground {
  public:
   FlatTile(const Box& box, double height) : box_(box), height_(height) {}
 
  private:
   Box do_bounds() const override { return box_; }
   double do_clearance(const Vec3& p) const override { return p.z() - height_; }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double y) const override {
     return box_.contains({x, y, box_.min.z()}) ? std::optional(height_) : std::nullopt;
   }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
     return std::min(a.z(), b.z()) - height_;
   }
   Box box_;
@@ -86,10 +86,10 @@ TEST(World, PlannersAnswerWhereTheGridTakesTheirTime) {
     request.budget = used_up(false, stop);
     const auto planner = testing::make_planner(name, "{cell_m: [10, 10, 10]}");
     const PlanResult result = planner->plan(request);
-    EXPECT_EQ(result.status, Status::timed_out) << result.message;
+    EXPECT_EQ(result.status, PlanStatus::timed_out) << result.message;
     EXPECT_TRUE(result.budget_hit);
     const auto session = planner->begin(request);
-    EXPECT_EQ(session->result().status, Status::timed_out) << session->result().message;
+    EXPECT_EQ(session->result().status, PlanStatus::timed_out) << session->result().message;
   }
 }
 
@@ -98,7 +98,7 @@ TEST(World, ASessionGoesOnAfterAnUpdateWithoutTime) {
   Request request = testing::request_in(posts(), {500, 500, 50}, {9000, 9500, 50},
                                         {{0, 0, 0}, {10e3, 10e3, 100}});
   const auto session = planner->begin(request);
-  ASSERT_EQ(session->result().status, Status::solved) << session->result().message;
+  ASSERT_EQ(session->result().status, PlanStatus::solved) << session->result().message;
   const auto changed = std::make_shared<const World>(
       request.world->with(shapes("more", {Cylinder{5000, 7000, 2000}})));
   const Change change{Change::Kind::add, "more", changed->layers().back().environment->bounds()};
@@ -106,9 +106,9 @@ TEST(World, ASessionGoesOnAfterAnUpdateWithoutTime) {
   EXPECT_EQ(
       session->update(request.start, request.goal, changed, {&change, 1}, used_up(false, stop))
           .status,
-      Status::timed_out);
+      PlanStatus::timed_out);
   const PlanResult again = session->update(request.start, request.goal, changed, {}, Budget());
-  ASSERT_EQ(again.status, Status::solved) << again.message;
+  ASSERT_EQ(again.status, PlanStatus::solved) << again.message;
   request.world = changed;
   EXPECT_NEAR(length(again.route), length(planner->plan(request).route), 1e-6);
 }

@@ -110,7 +110,7 @@ class Bench:
         self.program.parent.mkdir()
         shutil.copy(build / "bin/altiplan", self.program)
         (folder / "lib").mkdir()
-        shutil.copy(build / "lib/libaltiplan.so.0", folder / "lib/libaltiplan.so.0")
+        shutil.copy(build / "lib/libaltiplan.so.1", folder / "lib/libaltiplan.so.1")
         self.libraries = {}
         self.undamaged = {}
         plugins = sorted((build / "lib/altiplan/plugins").glob("libaltiplan_*.so"))

@@ -22,18 +22,18 @@ using kit::MissionZone;
 using Format = kit::MissionFile::Format;
 
 /// Level ground at 120 m.
-class Plain final : public Environment {
+class Plain final : public Environment, public Ground {
   Box do_bounds() const override { return {}; }
   double do_clearance(const Vec3& p) const override { return p.z() - 120; }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double, double) const override { return 120; }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double, double) const override { return 120; }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
     return std::min(a.z(), b.z()) - 120;
   }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+  double do_gap_max(const Vec3& a, const Vec3& b) const override {
     return std::max(a.z(), b.z()) - 120;
   }
-  double do_ground_slope(const Box&) const override { return 0; }
+  double do_slope(const Box&) const override { return 0; }
 };
 
 /// A circle with a ceiling, a square with a hole, a keep-in square around all.

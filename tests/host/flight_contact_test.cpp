@@ -58,7 +58,7 @@ void expect_judged_alike(const FlightResult& flown, const FlightSetup& setup) {
 
 void expect_met_at_once(const FlightSetup& setup, const Vec3& place, double depth) {
   const FlightResult result = fly(setup);
-  EXPECT_EQ(result.status, Status::collided) << result.message;
+  EXPECT_EQ(result.status, RunStatus::collided) << result.message;
   EXPECT_EQ(result.collisions, 1);
   EXPECT_FALSE(result.reached);
   EXPECT_FALSE(result.check.ok());
@@ -131,7 +131,7 @@ TEST(FlightContact, TakeOffInsideSomething) {
       scene.hide(layer("unknown", Sphere{{2000, 15010, 500}, 40}));
     }
     const FlightResult result = fly(scene.setup);
-    EXPECT_EQ(result.status, Status::collided);
+    EXPECT_EQ(result.status, RunStatus::collided);
     EXPECT_EQ(result.collisions, 1);
     EXPECT_EQ(result.track.size(), 1u);
     EXPECT_NEAR(result.min_separation_m.value(), -30, kExact);
@@ -144,7 +144,7 @@ TEST(FlightContact, TheSeparationIsTheDepthOfTheTrack) {
   scene.hide(layer("wall", BoxShape{{{17003, 14000, 0}, {17103, 16000, 4000}}}));
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
-  ASSERT_EQ(result.status, Status::collided);
+  ASSERT_EQ(result.status, RunStatus::collided);
   EXPECT_NEAR(result.min_separation_m.value(), 17003 - result.track.back().second.x(), kExact);
   EXPECT_LT(result.min_separation_m.value(), -1);
   EXPECT_EQ(result.min_separation_m, result.measures.min_clearance_m);
@@ -157,7 +157,7 @@ TEST(FlightContact, TheDepthInAMoverIsThatOfTheRelativeMotion) {
   scene.hide_moving({8015, 15000, 512}, kAt + 0.5, {30, 400, 0}, 40);
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
-  ASSERT_EQ(result.status, Status::collided);
+  ASSERT_EQ(result.status, RunStatus::collided);
   EXPECT_NEAR(result.min_separation_m.value(), 12 - 40, kExact);
   expect_judged_alike(result, scene.setup);
 }
@@ -169,12 +169,12 @@ TEST(FlightContact, WhatComesDownOnTheGoalIsMetThere) {
   scene.setup.events = {adding(Sphere{scene.setup.request.goal.position, 40})};
   scene.setup.events[0].at_s = arrives - 0.1;
   const FlightResult met = fly(scene.setup);
-  EXPECT_EQ(met.status, Status::collided) << met.message;
+  EXPECT_EQ(met.status, RunStatus::collided) << met.message;
   EXPECT_FALSE(met.reached);
   EXPECT_NEAR(met.min_separation_m.value(), -40, kExact);
   expect_judged_alike(met, scene.setup);
   scene.setup.events[0].at_s = arrives + 0.1;
-  EXPECT_EQ(fly(scene.setup).status, Status::solved);
+  EXPECT_EQ(fly(scene.setup).status, RunStatus::solved);
 }
 
 TEST(FlightContact, APopUpIsMetAtTheNextPointOfTheTrack) {
@@ -191,7 +191,7 @@ TEST(FlightContact, APopUpIsMetAtTheNextPointOfTheTrack) {
   scene.setup.events = {adding(Sphere{{2000 + 30 * met_s, 15000, 500}, 40})};
   scene.setup.events[0].at_s = due_s;
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::collided) << result.message;
+  EXPECT_EQ(result.status, RunStatus::collided) << result.message;
   EXPECT_NEAR(result.track.back().first, met_s, kExact);
   EXPECT_NEAR(result.min_separation_m.value(), -40, kExact);
   expect_judged_alike(result, scene.setup);
@@ -220,14 +220,14 @@ TEST(FlightContact, AMoverMeetsAVehicleThatHovers) {
   scene.setup.max_time_s = 300;
   scene.setup.request.limits.min_leg = 1;
   const FlightResult alone = fly(scene.setup);
-  EXPECT_EQ(alone.status, Status::not_reached);
+  EXPECT_EQ(alone.status, RunStatus::not_reached);
   EXPECT_EQ(alone.collisions, 0);
   EXPECT_NEAR(alone.track.back().first, 300, 1);
   expect_judged_alike(alone, scene.setup);
   EXPECT_EQ(judge_track(alone.track, scene.setup).check.violations.size(), 1u) << "the goal alone";
   scene.hide_moving({2000, 15000, 512}, 100.5, {0, 400, 0}, 40);
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::collided) << result.message;
+  EXPECT_EQ(result.status, RunStatus::collided) << result.message;
   EXPECT_NEAR(result.min_separation_m.value(), -28, kExact);
   expect_judged_alike(result, scene.setup);
 }

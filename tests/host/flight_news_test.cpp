@@ -23,7 +23,7 @@ class Detour final : public Session {
                               std::span<const Change> news, const Budget&) override {
     asked_at = state.position;
     changes.assign(news.begin(), news.end());
-    result_.status = Status::solved;
+    result_.status = PlanStatus::solved;
     result_.route = {state.position};
     result_.route.insert(result_.route.end(), over_.begin(), over_.end());
     result_.route.push_back(goal.position);
@@ -96,7 +96,7 @@ TEST(FlightNews, ChangedCellsAreKnownWithinSensingOfTheirBox) {
   scene.setup.replanner = &detour;
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   ASSERT_EQ(result.replans.size(), 1u);
   ASSERT_EQ(detour.changes.size(), 1u);
   EXPECT_EQ(detour.changes[0].kind, Change::Kind::set_cells);
@@ -112,7 +112,7 @@ TEST(FlightNews, ThePilotFliesAroundChangedCells) {
   scene.setup.events = {closing()};
   expect_flown(fly(scene.setup), 2);
   scene.follow_alone();
-  EXPECT_EQ(fly(scene.setup).status, Status::collided);
+  EXPECT_EQ(fly(scene.setup).status, RunStatus::collided);
 }
 
 TEST(FlightNews, CellsChangedTwiceAreToldInOneBox) {
@@ -188,8 +188,8 @@ TEST(FlightNews, ReplannedRoutesAreSmoothed) {
   const auto prune = make_smoother("prune");
   scene.setup.smoothers = {prune.get()};
   const FlightResult smooth = fly(scene.setup);
-  EXPECT_EQ(raw.status, Status::solved) << raw.message;
-  EXPECT_EQ(smooth.status, Status::solved) << smooth.message;
+  EXPECT_EQ(raw.status, RunStatus::solved) << raw.message;
+  EXPECT_EQ(smooth.status, RunStatus::solved) << smooth.message;
   const auto passes = [](const FlightResult& result, const Vec3& p) {
     return std::any_of(result.track.begin(), result.track.end(),
                        [&](const auto& at) { return at.second == p; });
@@ -206,7 +206,7 @@ TEST(FlightNews, AFailingPilotKeepsTheTrack) {
   scene.setup.pilot_name = "failing";
   scene.setup.always = true;
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::failed);
+  EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_NE(result.message.find("its engine stopped"), std::string::npos) << result.message;
   ASSERT_EQ(result.track.size(), 5u);  // the start and four steps
   EXPECT_EQ(result.track.back().second, Vec3(2120, 15000, 500));
@@ -226,7 +226,7 @@ TEST(FlightNews, AnEventThatFailsKeepsTheTrack) {
   gone.at_s = 5;
   scene.setup.events = {gone};
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::failed);
+  EXPECT_EQ(result.status, RunStatus::failed);
   ASSERT_EQ(result.track.size(), 6u);
   EXPECT_NEAR(result.track.back().second.x(), 2000 + 5 * 30, 1e-6);
   ASSERT_TRUE(result.min_separation_m);

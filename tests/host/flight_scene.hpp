@@ -51,7 +51,7 @@ struct Scene {
 
 /// A sound flight with commands in turn.
 inline void expect_flown(const FlightResult& result, std::size_t least_handovers) {
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_TRUE(result.reached);
   EXPECT_TRUE(result.check.ok());
   EXPECT_EQ(result.collisions, 0);

@@ -42,7 +42,7 @@ TEST(Flight, FollowingAloneCollides) {
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::collided);
+  EXPECT_EQ(result.status, RunStatus::collided);
   EXPECT_EQ(result.collisions, 1);
   EXPECT_FALSE(result.reached);
   EXPECT_FALSE(result.check.ok());
@@ -55,7 +55,7 @@ TEST(Flight, StartingInsideTheUnknownIsACollision) {
   Scene scene;
   scene.hide(layer("unknown", post(2000, 15000, 800)));
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::collided);
+  EXPECT_EQ(result.status, RunStatus::collided);
   EXPECT_EQ(result.collisions, 1);
   EXPECT_EQ(result.track.size(), 1u);
 }
@@ -67,16 +67,16 @@ TEST(Flight, CollisionDoesNotDependOnTheTimeStep) {
     wall.hide(layer("wall", BoxShape{{{17000, 14000, 0}, {17000.01, 16000, 4000}}}));
     wall.follow_alone();
     wall.setup.step_s = step_s;
-    EXPECT_EQ(fly(wall.setup).status, Status::collided) << step_s;
+    EXPECT_EQ(fly(wall.setup).status, RunStatus::collided) << step_s;
     Scene mover;
     mover.hide_moving({17000, 15000, 500}, 500, {0, 200, 0}, 20);
     mover.follow_alone();
     mover.setup.step_s = step_s;
     const FlightResult met = fly(mover.setup);
-    EXPECT_EQ(met.status, Status::collided) << step_s;
+    EXPECT_EQ(met.status, RunStatus::collided) << step_s;
     EXPECT_EQ(met.check.violations.front().constraint, "collision");
     mover.hide_moving({17000, 15000, 500}, 503, {0, 200, 0}, 20);
-    EXPECT_EQ(fly(mover.setup).status, Status::solved) << step_s;
+    EXPECT_EQ(fly(mover.setup).status, RunStatus::solved) << step_s;
   }
 }
 
@@ -100,7 +100,7 @@ TEST(Flight, MovingObstacleIsEvaded) {
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 2);
   scene.follow_alone();
-  EXPECT_EQ(fly(scene.setup).status, Status::collided);
+  EXPECT_EQ(fly(scene.setup).status, RunStatus::collided);
 }
 
 TEST(Flight, RejectionSaysWhenAndWhere) {
@@ -109,7 +109,7 @@ TEST(Flight, RejectionSaysWhenAndWhere) {
   scene.setup.route = {
       {2000, 15000, 500}, {11000, 15000, 500}, {12000, 15000, 900}, {28000, 15000, 500}};
   const FlightResult steep = fly(scene.setup);
-  EXPECT_EQ(steep.status, Status::rejected);
+  EXPECT_EQ(steep.status, RunStatus::rejected);
   EXPECT_TRUE(steep.reached);
   EXPECT_EQ(steep.message.find("reached the goal, but at 300.0 s, near (11000, 15000, 500) m: "),
             0U)
@@ -154,7 +154,7 @@ TEST(Flight, EventsAddRemoveAndMove) {
   scene.setup.events = {into};
   expect_flown(fly(scene.setup), 2);
   scene.follow_alone();
-  EXPECT_EQ(fly(scene.setup).status, Status::collided);
+  EXPECT_EQ(fly(scene.setup).status, RunStatus::collided);
 }
 
 TEST(Flight, EventThatNamesNothingFails) {
@@ -165,7 +165,7 @@ TEST(Flight, EventThatNamesNothingFails) {
   gone.at_s = 5;
   scene.setup.events = {gone};
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::failed);
+  EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_NE(result.message.find("'nobody'"), std::string::npos);
 }
 
@@ -194,7 +194,7 @@ class Detour final : public Session {
                               std::span<const Change> news, const Budget&) override {
     asked_from = state;
     changes.assign(news.begin(), news.end());
-    result_.status = Status::solved;
+    result_.status = PlanStatus::solved;
     result_.route = {state.position, by_, goal.position};
     result_.counters = {{"expanded", 3}};
     return result_;
@@ -212,7 +212,7 @@ TEST(Flight, ReplansAroundWhatBlocksTheRest) {
   scene.setup.replan_step = "route";
   scene.setup.replan_latency_s = 7;
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   ASSERT_EQ(result.replans.size(), 1u);
   EXPECT_EQ(result.replans[0].step, "route");
   EXPECT_EQ(result.replans[0].at_s, detour.asked_from.time_s);
@@ -233,10 +233,10 @@ TEST(Flight, ReplanThatBreaksARuleIsNotFlownAndSaysSo) {
   scene.setup.replan_step = "route";
   scene.setup.route_request.limits.max_turn_horizontal = radians(30);
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::collided) << result.message;
+  EXPECT_EQ(result.status, RunStatus::collided) << result.message;
   ASSERT_FALSE(result.replans.empty());
   for (const Replan& replan : result.replans) {
-    EXPECT_EQ(replan.status, Status::rejected);
+    EXPECT_EQ(replan.status, RunStatus::rejected);
     EXPECT_NE(replan.message.find("the judge found"), std::string::npos) << replan.message;
     EXPECT_NE(replan.message.find("turn"), std::string::npos) << replan.message;
   }
@@ -271,7 +271,7 @@ TEST(Flight, EndsWhenItsTimeDoes) {
   Scene scene;
   scene.setup.max_time_s = 100;
   const FlightResult result = fly(scene.setup);
-  EXPECT_EQ(result.status, Status::not_reached);
+  EXPECT_EQ(result.status, RunStatus::not_reached);
   EXPECT_FALSE(result.reached);
   EXPECT_EQ(result.message.find("timed out after 100 s (max_time_s) at ("), 0U) << result.message;
 }

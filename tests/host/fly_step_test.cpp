@@ -19,7 +19,7 @@ class FlyStepTest : public testing::Files {
 
 TEST_F(FlyStepTest, FollowsTheRoute) {
   const RunResult result = fly("fly: route");
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.exit_code(), 0);
   EXPECT_TRUE(result.flight->reached);
   EXPECT_HAS(result.message, "the route of 'told' stands; the flight: reached the goal");
@@ -34,7 +34,7 @@ TEST_F(FlyStepTest, WhatIsNotKnownIsJudgedInFlight) {
       "environment:\n  - box: {min_m: [400, 400, 0], max_m: [410, 600, 1000]}\n    known: false\n");
   const RunResult result = fly("fly: route");
   EXPECT_TRUE(result.steps[0].stands) << "the planner could not know";
-  EXPECT_EQ(result.status, Status::collided);
+  EXPECT_EQ(result.status, RunStatus::collided);
   EXPECT_EQ(result.exit_code(), 1);
   EXPECT_EQ(result.flight->collisions, 1);
   EXPECT_HAS(result.message, "collided with 'box'");
@@ -44,13 +44,13 @@ TEST_F(FlyStepTest, PilotsThatMisbehave) {
   for (const char* does : {"throws", "throws_int", "nan", "no_pilot"}) {
     const RunResult result =
         fly("fly: told_pilot, command: always, with: {does: " + std::string(does) + "}");
-    EXPECT_EQ(result.status, Status::failed) << does;
+    EXPECT_EQ(result.status, RunStatus::failed) << does;
     EXPECT_EQ(result.exit_code(), 1) << "a route stands";
     EXPECT_FALSE(result.steps[1].stands);
     EXPECT_HAS(result.message, "the flight with 'told_pilot' failed: ");
   }
   const RunResult stuck = fly("fly: told_pilot, command: always, with: {does: stuck}");
-  EXPECT_EQ(stuck.status, Status::not_reached);
+  EXPECT_EQ(stuck.status, RunStatus::not_reached);
   EXPECT_HAS(stuck.message, "no way is open; the fly step has no replan: with replan: ID");
 }
 
@@ -59,10 +59,10 @@ TEST_F(FlyStepTest, AlternativesAreFlownUntilOneArrives) {
       fly("fly: told_pilot, id: first, command: always, with: {does: stuck}, "
           "else: [{fly: told_pilot, command: always, with: {does: throws}}, {fly: route}, {fly: "
           "told_pilot}]");
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   ASSERT_EQ(result.steps.size(), 4U);
-  EXPECT_EQ(result.steps[1].status, Status::not_reached);
-  EXPECT_EQ(result.steps[2].status, Status::failed);
+  EXPECT_EQ(result.steps[1].status, RunStatus::not_reached);
+  EXPECT_EQ(result.steps[2].status, RunStatus::failed);
   EXPECT_EQ(result.steps[3].plugin, "route");
   EXPECT_EQ(result.steps[3].instead_of, "first");
   EXPECT_TRUE(result.steps[3].stands);
@@ -71,7 +71,7 @@ TEST_F(FlyStepTest, AlternativesAreFlownUntilOneArrives) {
 TEST_F(FlyStepTest, ReplansWithTheSessionOfAStep) {
   scenario("events: [{at_s: 20, move_goal: {at_m: [900, 800, 500]}}]\n");
   const RunResult own = fly("fly: route, replan: keeping", "plan: keeping");
-  EXPECT_EQ(own.status, Status::solved) << own.message;
+  EXPECT_EQ(own.status, RunStatus::solved) << own.message;
   ASSERT_EQ(own.flight->replans.size(), 1U);
   EXPECT_EQ(own.flight->replans[0].step, "keeping");
   EXPECT_EQ(own.flight->replans[0].counters[1].value, 2) << "one session, called again";
@@ -80,15 +80,15 @@ TEST_F(FlyStepTest, ReplansWithTheSessionOfAStep) {
   // the flight's own: each gets a session.
   const RunResult spare =
       fly("fly: route, replan: spare", "plan: told, else: [{plan: keeping, id: spare}]");
-  EXPECT_EQ(spare.status, Status::solved) << spare.message;
+  EXPECT_EQ(spare.status, RunStatus::solved) << spare.message;
   EXPECT_EQ(spare.flight->replans.at(0).step, "spare");
   const RunResult late =
       fly("fly: told_pilot, command: always, with: {does: stuck}, "
           "else: [{fly: route, replan: told}]");
-  EXPECT_EQ(late.status, Status::solved) << late.message;
+  EXPECT_EQ(late.status, RunStatus::solved) << late.message;
   EXPECT_EQ(late.flight->replans.size(), 1U);
   const RunResult fresh = fly("fly: route, replan: {plan: keeping}");
-  EXPECT_EQ(fresh.status, Status::solved) << fresh.message;
+  EXPECT_EQ(fresh.status, RunStatus::solved) << fresh.message;
   EXPECT_EQ(fresh.flight->replans.at(0).step, "keeping");
 }
 
@@ -97,7 +97,7 @@ TEST_F(FlyStepTest, AReplanKeepsTheViaPointsAhead) {
       "via: [{at_m: [300, 700, 500]}, {at_m: [600, 300, 500]}]\n"
       "events: [{at_s: 30, move_goal: {at_m: [900, 800, 500]}}]\n");
   const RunResult result = fly("fly: route, replan: told");
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.flight->replans.size(), 1U);
   const auto passes = [&](const Vec3& p) {
     return std::count_if(result.flight->track.begin(), result.flight->track.end(),
@@ -110,21 +110,21 @@ TEST_F(FlyStepTest, AReplanKeepsTheViaPointsAhead) {
 TEST_F(FlyStepTest, TheEventsOfTheFileReachTheWorld) {
   const std::string box = "{box: {min_m: [400, 400, 0], max_m: [410, 600, 1000]}}";
   scenario("events: [{at_s: 5, add: " + box + ", id: wall}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::collided);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::collided);
   scenario("events: [{at_s: 5, add: " + box + ", id: wall}, {at_s: 10, remove: wall}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::solved);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::solved);
   scenario("events: [{when_near: {at_m: [300, 500, 500], within_m: 20}, add: " + box + "}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::collided);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::collided);
   scenario(
       "environment: [{box: {min_m: [400, 600, 0], max_m: [410, 700, 1000]}, id: gate}]\n"
       "events: [{at_s: 5, move: {layer: gate, by_m: [0, -150, 0]}}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::collided);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::collided);
   scenario("moving: [{sphere: {at_m: [500, 500, 500], radius_m: 9, velocity_mps: [0, 0, 0]}}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::collided);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::collided);
   scenario(
       "moving: [{sphere: {at_m: [500, 500, 500], radius_m: 9, velocity_mps: [0, 0, 0]}}]\n"
       "events: [{at_s: 5, remove: sphere_1}]\n");
-  EXPECT_EQ(fly("fly: route").status, Status::solved);
+  EXPECT_EQ(fly("fly: route").status, RunStatus::solved);
 }
 
 TEST_F(FlyStepTest, CellsAreSetWhenTheEventsComeWhateverTheirOrderInTheFile) {
@@ -133,7 +133,7 @@ TEST_F(FlyStepTest, CellsAreSetWhenTheEventsComeWhateverTheirOrderInTheFile) {
     scenario("environment: [{cells: {}}]\nevents: [" + events + "]\n",
              "start: {at_m: [100, 550, 550]}\ngoal: {at_m: [900, 550, 550]}\n");
     const RunResult result = fly("fly: route");
-    EXPECT_TRUE(result.status == Status::solved || result.status == Status::collided)
+    EXPECT_TRUE(result.status == RunStatus::solved || result.status == RunStatus::collided)
         << result.message;
     return result.status;
   };
@@ -141,11 +141,11 @@ TEST_F(FlyStepTest, CellsAreSetWhenTheEventsComeWhateverTheirOrderInTheFile) {
   const std::string clear =
       "{at_s: 10, set_cells: {layer: cells, blocked: false, cells: [[4, 5, 5], [6, 5, 5]]}}";
   const std::string beside = "{at_s: 8, set_cells: {layer: cells, cells: [[4, 1, 1]]}}";
-  EXPECT_EQ(flown(block), Status::collided);
-  EXPECT_EQ(flown(beside), Status::solved);
-  EXPECT_EQ(flown(block + ", " + beside + ", " + clear), Status::solved);
-  EXPECT_EQ(flown(clear + ", " + beside + ", " + block), Status::solved);
-  EXPECT_EQ(flown(block + ", " + beside), Status::collided);
+  EXPECT_EQ(flown(block), RunStatus::collided);
+  EXPECT_EQ(flown(beside), RunStatus::solved);
+  EXPECT_EQ(flown(block + ", " + beside + ", " + clear), RunStatus::solved);
+  EXPECT_EQ(flown(clear + ", " + beside + ", " + block), RunStatus::solved);
+  EXPECT_EQ(flown(block + ", " + beside), RunStatus::collided);
 }
 
 TEST_F(FlyStepTest, EventsThatCannotBeAreRefusedBeforeAnythingIsPlanned) {

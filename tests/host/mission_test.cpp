@@ -70,12 +70,12 @@ TEST_F(MissionTest, LevelFlightTakesTwoCoordinates) {
   EXPECT_EQ(level.via[0].position, Vec3(500, 600, 300));
   EXPECT_EQ(level.request.volume.min.z(), 300);
   EXPECT_EQ(level.request.volume.max.z(), 300);
-  EXPECT_EQ(run("steps: [{plan: told}]\n").status, Status::solved);
+  EXPECT_EQ(run("steps: [{plan: told}]\n").status, RunStatus::solved);
   const RunResult off = run("steps: [{plan: told, with: {does: past, past_m: [500, 600, 301]}}]\n");
-  EXPECT_EQ(off.status, Status::rejected);
+  EXPECT_EQ(off.status, RunStatus::rejected);
   scenario("level_flight_at_m: 300\n",
            "start: {at_m: [100, 500, 310]}\ngoal: {at_m: [900, 500]}\n");
-  EXPECT_EQ(run("steps: [{plan: told}]\n").status, Status::invalid_problem);
+  EXPECT_EQ(run("steps: [{plan: told}]\n").status, RunStatus::invalid_problem);
 }
 
 TEST_F(MissionTest, WhatIsNotKnownIsInTheTruthAlone) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Built twice, the second time with one more line: the test looks at what follows from it.
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -22,7 +23,7 @@ class Straight final : public altiplan::Planner {
  private:
   altiplan::PlanResult do_plan(const altiplan::Request& request) const override {
     altiplan::PlanResult result;
-    result.status = altiplan::Status::solved;
+    result.status = altiplan::PlanStatus::solved;
     result.route = {request.start.position, request.goal.position};
     result.counters = {{"extra", std::int64_t(params_.extra_m)}};
     return result;

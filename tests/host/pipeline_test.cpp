@@ -18,18 +18,18 @@ const std::string kWall = "environment: [{box: {min_m: [400, 300, 0], max_m: [50
 TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
   const struct {
     const char* does;
-    Status status;
+    RunStatus status;
     int exit_code;
     const char* message;
   } cases[] = {
-      {"straight", Status::solved, 0, "the route of 'told' stands"},
-      {"no_route", Status::no_route, 1, "told: walls all around"},
-      {"throws", Status::failed, 4, "told: threw: the attic is on fire"},
-      {"throws_int", Status::failed, 4, "threw something that is not a std::exception"},
-      {"nan", Status::failed, 4, "a coordinate that is not finite"},
-      {"wrong_end", Status::failed, 4, "ends 7.000000 m from the goal, outside its tolerance"},
-      {"no_points", Status::failed, 4, "says solved but returns no route"},
-      {"huge", Status::rejected, 1, "m outside the volume"},
+      {"straight", RunStatus::solved, 0, "the route of 'told' stands"},
+      {"no_route", RunStatus::no_route, 1, "told: walls all around"},
+      {"throws", RunStatus::failed, 4, "told: threw: the attic is on fire"},
+      {"throws_int", RunStatus::failed, 4, "threw something that is not a std::exception"},
+      {"nan", RunStatus::failed, 4, "a coordinate that is not finite"},
+      {"wrong_end", RunStatus::failed, 4, "ends 7.000000 m from the goal, outside its tolerance"},
+      {"no_points", RunStatus::failed, 4, "says solved but returns no route"},
+      {"huge", RunStatus::rejected, 1, "m outside the volume"},
   };
   for (const auto& [does, status, exit_code, message] : cases) {
     const RunResult result = run(told(does));
@@ -37,14 +37,14 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
     EXPECT_EQ(result.exit_code(), exit_code) << does;
     EXPECT_HAS(result.message, message);
     ASSERT_EQ(result.steps.size(), 1U);
-    EXPECT_EQ(result.steps[0].stands, status == Status::solved) << does;
+    EXPECT_EQ(result.steps[0].stands, status == RunStatus::solved) << does;
   }
 }
 
 TEST_F(PipelineTest, TheJudgeRejectsARouteThroughAWall) {
   scenario(kWall);
   const RunResult result = run(told("straight"));
-  EXPECT_EQ(result.status, Status::rejected);
+  EXPECT_EQ(result.status, RunStatus::rejected);
   EXPECT_EQ(result.exit_code(), 1);
   EXPECT_EQ(result.steps[0].route.size(), 2U) << "what the planner returned stays to be seen";
   EXPECT_HAS(result.message,
@@ -57,7 +57,7 @@ TEST_F(PipelineTest, ImpossibleEndsAreInvalidForEveryKindOfPlanner) {
   for (const char* step : {"plan: told", "plan: keeping", "plan: told_pilot",
                            "plan: keeping}, {fly: route, replan: keeping"}) {
     const RunResult result = run("steps: [{" + std::string(step) + "}]\n");
-    EXPECT_EQ(result.status, Status::invalid_problem) << step << result.message;
+    EXPECT_EQ(result.status, RunStatus::invalid_problem) << step << result.message;
     EXPECT_EQ(result.exit_code(), 1);
     EXPECT_HAS(result.message, "the start (450.00, 500.00, 500.00) cannot be flown");
   }
@@ -68,12 +68,12 @@ TEST_F(PipelineTest, ImpossibleEndsAreInvalidForEveryKindOfPlanner) {
 TEST_F(PipelineTest, ALayerThatContradictsItselfIsNamed) {
   scenario("environment: [{liar: {}, id: fable}]\n");
   const RunResult result = run(told("straight"));
-  EXPECT_EQ(result.status, Status::failed);
+  EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_EQ(result.exit_code(), 4);
   EXPECT_HAS(result.message, "the layer 'fable' (liar) contradicts itself");
   scenario("environment: [{liar: {does: throws}}]\n");
   const RunResult thrown = run(told("straight"));
-  EXPECT_EQ(thrown.status, Status::failed);
+  EXPECT_EQ(thrown.status, RunStatus::failed);
   EXPECT_EQ(thrown.exit_code(), 4);
   EXPECT_HAS(thrown.message, "the map is torn");
   scenario("environment: [{liar: {does: refuses}}]\n");
@@ -82,10 +82,10 @@ TEST_F(PipelineTest, ALayerThatContradictsItselfIsNamed) {
 
 TEST_F(PipelineTest, ConstraintsOfBothFilesHold) {
   const std::string past = "steps: [{plan: told, with: {does: past, past_m: [500, 700, 500]}}]\n";
-  EXPECT_EQ(run(past).status, Status::solved);
+  EXPECT_EQ(run(past).status, RunStatus::solved);
   scenario("constraints: [{not_north: {max_y_m: 650}}]\n");
   const RunResult legs = run(past);
-  EXPECT_EQ(legs.status, Status::rejected);
+  EXPECT_EQ(legs.status, RunStatus::rejected);
   EXPECT_HAS(legs.message, "2 violations; the first, at waypoint 0 (not_north)");
   const RunResult both =
       run("constraints: [{not_north: {does: violations, max_y_m: 600}}]\n" + past);
@@ -93,7 +93,7 @@ TEST_F(PipelineTest, ConstraintsOfBothFilesHold) {
   EXPECT_EQ(both.steps[0].check->violations[2].at, 1U);
   EXPECT_EQ(both.steps[0].check->violations[2].message, "too far north");
   scenario("constraints: [{not_north: {max_y_m: 650, holds_for: track}}]\n");
-  EXPECT_EQ(run(past).status, Status::solved) << "a rule of tracks alone";
+  EXPECT_EQ(run(past).status, RunStatus::solved) << "a rule of tracks alone";
   scenario("constraints: [{not_north: {does: throws}}]\n");
   const RunResult thrown = run(past);
   EXPECT_EQ(thrown.exit_code(), 4);
@@ -107,7 +107,7 @@ TEST_F(PipelineTest, AlternativesAreTriedInOrderUntilOneStands) {
           "      - {plan: told, with: {does: no_route}}\n"
           "      - {plan: told_pilot}\n"
           "      - {plan: told}\n");
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.exit_code(), 0) << "a step failed, but a route stands";
   ASSERT_EQ(result.steps.size(), 3U);
   EXPECT_EQ(result.steps[0].id, "told");
@@ -129,12 +129,12 @@ TEST_F(PipelineTest, ASmootherThatDoesNotStandLeavesTheRoute) {
   const RunResult cut = run("steps:\n" + plan +
                             "  - {smooth: told_smoother, with: {does: cuts}, id: cut}\n"
                             "  - {smooth: told_smoother, with: {does: moves_end}, id: shift}\n");
-  EXPECT_EQ(cut.status, Status::solved);
+  EXPECT_EQ(cut.status, RunStatus::solved);
   EXPECT_EQ(cut.standing, 0U);
-  EXPECT_EQ(cut.steps[1].status, Status::rejected);
+  EXPECT_EQ(cut.steps[1].status, RunStatus::rejected);
   EXPECT_EQ(cut.steps[1].route.size(), 2U);
   EXPECT_HAS(cut.steps[1].message, "; the route stays as it was");
-  EXPECT_EQ(cut.steps[2].status, Status::failed);
+  EXPECT_EQ(cut.steps[2].status, RunStatus::failed);
   EXPECT_HAS(cut.steps[2].message, "first and last points must stay");
   EXPECT_EQ(cut.exit_code(), 0);
 }
@@ -169,22 +169,22 @@ TEST_F(PipelineTest, APlanAfterAFailedOneStillRuns) {
   const RunResult result =
       run("steps: [{plan: told, with: {does: no_route}}, {smooth: told_smoother}, {plan: told, id: "
           "b}]\n");
-  EXPECT_EQ(result.status, Status::solved);
+  EXPECT_EQ(result.status, RunStatus::solved);
   ASSERT_EQ(result.steps.size(), 2U) << "nothing to smooth";
   EXPECT_EQ(result.steps[1].id, "b");
 }
 
 TEST_F(PipelineTest, BudgetsEndAsTimedOut) {
   const RunResult counted = run(told("uses_budget", ", within_iterations: 500"));
-  EXPECT_EQ(counted.status, Status::timed_out);
+  EXPECT_EQ(counted.status, RunStatus::timed_out);
   EXPECT_TRUE(counted.budget_hit);
   EXPECT_EQ(counted.exit_code(), 1);
   EXPECT_EQ(counted.steps[0].counters[0].value, 500);
   const RunResult timed = run(told("uses_budget", ", within_s: 0.05"));
-  EXPECT_EQ(timed.status, Status::timed_out) << "whether the clock or the watchdog ended it";
+  EXPECT_EQ(timed.status, RunStatus::timed_out) << "whether the clock or the watchdog ended it";
   EXPECT_TRUE(timed.budget_hit);
   const RunResult memory = run(told("allocates", ", within_mb: 20"));
-  EXPECT_EQ(memory.status, Status::timed_out);
+  EXPECT_EQ(memory.status, RunStatus::timed_out);
   EXPECT_HAS(memory.message, "it used more memory than its within_mb");
 }
 
@@ -194,7 +194,7 @@ TEST_F(PipelineTest, ABudgetOfIterationsIsThatOfTheWholeWay) {
   EXPECT_EQ(enough.steps[0].counters[0].value, 9);
   EXPECT_EQ(enough.steps[0].route.size(), 4U);
   const RunResult spent = run(told("uses_budget", ", within_iterations: 500"));
-  EXPECT_EQ(spent.status, Status::timed_out);
+  EXPECT_EQ(spent.status, RunStatus::timed_out);
   EXPECT_EQ(spent.steps[0].counters[0].value, 500);
   EXPECT_HAS(spent.message, "on the way to via point 0");
 }
@@ -204,7 +204,7 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   const RunResult result = run(
       "steps: [{plan: told}, {smooth: told_smoother, with: {does: cuts}}, {plan: told_pilot}]\n");
   const Route expected{{100, 500, 500}, {300, 700, 500}, {500, 200, 500}, {900, 500, 500}};
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.steps[0].route, expected);
   EXPECT_EQ(result.steps[1].route, expected);
   EXPECT_EQ(result.steps[1].message,
@@ -213,7 +213,7 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   EXPECT_TRUE(result.steps[2].stands) << result.steps[2].message;
   scenario("via: [{at_m: [300, 700, 500]}, {at_m: [500, 1200, 500]}]\n");
   const RunResult outside = run(told("straight"));
-  EXPECT_EQ(outside.status, Status::invalid_problem);
+  EXPECT_EQ(outside.status, RunStatus::invalid_problem);
   EXPECT_HAS(outside.message, "via point 1 (500.00, 1200.00, 500.00) cannot be flown: ");
 }
 
@@ -223,13 +223,13 @@ TEST_F(PipelineTest, RollsOutALocalPlanner) {
                "}]\n");
   };
   const RunResult straight = pilot("straight");
-  EXPECT_EQ(straight.status, Status::solved) << straight.message;
+  EXPECT_EQ(straight.status, RunStatus::solved) << straight.message;
   EXPECT_EQ(straight.steps[0].counters[0].value, 54) << "800 m at 15 m/s";
-  EXPECT_EQ(pilot("stuck").status, Status::no_route);
+  EXPECT_EQ(pilot("stuck").status, RunStatus::no_route);
   EXPECT_HAS(pilot("stuck").message, "the pilot is stuck: no way is open");
-  EXPECT_EQ(pilot("hovers", ", within_iterations: 70").status, Status::timed_out);
+  EXPECT_EQ(pilot("hovers", ", within_iterations: 70").status, RunStatus::timed_out);
   for (const char* does : {"lies", "throws", "throws_int", "nan", "no_pilot"}) {
-    EXPECT_EQ(pilot(does).status, Status::failed) << does;
+    EXPECT_EQ(pilot(does).status, RunStatus::failed) << does;
     EXPECT_EQ(pilot(does).exit_code(), 4) << does;
   }
   EXPECT_HAS(pilot("lies").message, "it says arrived 800.000000 m from the goal");
@@ -240,7 +240,7 @@ TEST_F(PipelineTest, InterruptedStopsHere) {
   stop.request_stop();
   RunOptions options;
   options.stop = stop.get_token();
-  EXPECT_EQ(run(told("uses_budget"), options).status, Status::cancelled);
+  EXPECT_EQ(run(told("uses_budget"), options).status, RunStatus::cancelled);
   std::stop_source later;
   options.stop = later.get_token();
   std::jthread user([&] {
@@ -249,9 +249,9 @@ TEST_F(PipelineTest, InterruptedStopsHere) {
   });
   const RunResult result =
       run("steps: [{plan: told, with: {does: uses_budget}, else: [{plan: told}]}]\n", options);
-  EXPECT_EQ(result.status, Status::cancelled);
+  EXPECT_EQ(result.status, RunStatus::cancelled);
   EXPECT_EQ(result.steps.size(), 1U) << "no alternative to what the user stopped";
-  EXPECT_EQ(result.steps[0].status, Status::cancelled);
+  EXPECT_EQ(result.steps[0].status, RunStatus::cancelled);
   EXPECT_FALSE(result.budget_hit);
   EXPECT_EQ(result.exit_code(), 1);
 }

@@ -101,9 +101,9 @@ TEST_F(RegistryTest, ReadsAManifestWithoutRunningAnything) {
 TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
   const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
   EXPECT_EQ(refusal([](Manifest& m) { m.api_major = 7; }),
-            "built for API 7.1, this altiplan offers 0.1");
-  EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 2; }),
-            "built for API 0.2, this altiplan offers 0.1");
+            "built for API 7.0, this altiplan offers 1.0");
+  EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 1; }),
+            "built for API 1.1, this altiplan offers 1.0");
   EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 0; }), "");
   EXPECT_EQ(refusal([](Manifest& m) { m.cxx11_abi ^= 1; }),
             "built with _GLIBCXX_USE_CXX11_ABI = 0, this altiplan with 1");

@@ -83,11 +83,12 @@ TEST_F(SceneWorld, TooManyPostsAreThinned) {
 }
 
 /// Four by three posts, one of them without a height.
-class Holed final : public Environment {
+class Holed final : public Environment, public Ground {
   Box do_bounds() const override { return {{0, 0, 0}, {30, 20, 9}}; }
   double do_clearance(const Vec3&) const override { return kInfinity; }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override { return field_.at(x, y); }
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double y) const override { return field_.at(x, y); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override { return field_.gap(a, b); }
   const HeightField* do_height_field() const override { return &field_; }
   static constexpr float kVoid = std::numeric_limits<float>::quiet_NaN();
   HeightField field_{{0, 0}, {10, 10}, 4, 3, {1, 2, 3, 4, 5, kVoid, 6, 7, 8, 9, 1, 2}};
@@ -226,22 +227,23 @@ events:
 }
 
 /// Solid below a slope; it does not say what it looks like.
-class Slope final : public Environment {
+class Slope final : public Environment, public Ground {
  public:
   explicit Slope(bool with_ground) : with_ground_(with_ground) {}
 
  private:
-  static double height(double x) { return 100 + 0.5 * x; }
+  static double height_at(double x) { return 100 + 0.5 * x; }
   Box do_bounds() const override { return {{0, 0, 0}, {100, 100, 1000}}; }
   // A ball around the place (50, 50, 400), and the slope.
   double do_clearance(const Vec3& p) const override {
-    return std::min((p - Vec3(50, 50, 400)).norm() - 30, (p.z() - height(p.x())) / std::sqrt(1.25));
+    return std::min((p - Vec3(50, 50, 400)).norm() - 30,
+                    (p.z() - height_at(p.x())) / std::sqrt(1.25));
   }
-  bool do_has_ground() const override { return with_ground_; }
-  std::optional<double> do_ground(double x, double) const override {
-    return with_ground_ ? std::optional(height(x)) : std::nullopt;
+  const Ground* do_ground() const override { return with_ground_ ? this : nullptr; }
+  std::optional<double> do_height(double x, double) const override { return height_at(x); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
   }
-  std::vector<std::string> do_notes() const override { return {}; }
   bool with_ground_;
 };
 

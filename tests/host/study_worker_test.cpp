@@ -41,7 +41,7 @@ class StudyWorker : public testing::Files {
 
 TEST_F(StudyWorker, GivesTheResultThatARunGives) {
   const RunOutcome told = run("{plan: told}");
-  EXPECT_EQ(told.outcome, "solved");
+  EXPECT_EQ(told.outcome, Outcome::solved);
   EXPECT_EQ(told.trace, "");
   const Config config = load_config(folder_ / "p.yaml", overrides_);
   Json here = result_json(config, host::run(config, {}));
@@ -62,7 +62,7 @@ TEST_F(StudyWorker, GivesTheResultThatARunGives) {
 
 TEST_F(StudyWorker, KeepsTheTrace) {
   const RunOutcome told = run("{plan: told}", true);
-  EXPECT_EQ(told.outcome, "solved");
+  EXPECT_EQ(told.outcome, Outcome::solved);
   EXPECT_HAS(told.trace, "told");
   EXPECT_TRUE(Json::parse(told.result)["trace"].is_null());
 }
@@ -72,45 +72,51 @@ TEST_F(StudyWorker, ACrashNamesThePluginAndKeepsWhatWasThereBefore) {
     GTEST_SKIP() << "a sanitizer answers the crash in its own way";
   }
   const RunOutcome told = run("{plan: told}, {plan: rogue, with: {does: segfaults}}");
-  EXPECT_EQ(told.outcome, "crashed");
+  EXPECT_EQ(told.outcome, Outcome::crashed);
   EXPECT_HAS(told.message, "the planner 'rogue' (steps.1) crashed (SIGSEGV)");
   EXPECT_EQ(Json::parse(told.result)["steps"][0]["status"], "solved");
 }
 
 TEST_F(StudyWorker, WhatItWroteLastIsTold) {
   const RunOutcome told = run("{plan: rogue, with: {does: terminates}}");
-  EXPECT_EQ(told.outcome, "crashed");
+  EXPECT_EQ(told.outcome, Outcome::crashed);
   EXPECT_HAS(told.message, "nobody catches this");
 }
 
 TEST_F(StudyWorker, FilesThatHaveBecomeWrongAreNoOutcome) {
   const RunOutcome told = run("{plan: no_such_plugin}");
-  EXPECT_EQ(told.outcome, kNotDone);
+  EXPECT_EQ(told.outcome, Outcome::not_done);
   EXPECT_HAS(told.message, "no_such_plugin");
 }
 
 TEST_F(StudyWorker, MoreThanItsTimeIsNotSolved) {
   budget_.time_s = 0.001;
-  EXPECT_EQ(run("{plan: outlaw, with: {does: takes_its_time}}").outcome, "timed_out");
+  EXPECT_EQ(run("{plan: outlaw, with: {does: takes_its_time}}").outcome, Outcome::timed_out);
   EXPECT_HAS(run("{plan: outlaw, with: {does: takes_its_time}}").message,
              "says solved, but took more than");
-  EXPECT_EQ(run("{plan: told}").outcome, "solved");
+  EXPECT_EQ(run("{plan: told}").outcome, Outcome::solved);
 }
 
 TEST_F(StudyWorker, DamagedPayloads) {
   Ended ended;
-  for (const std::string payload :
-       {"", "\n", "{}", "{}\n", "[1]\n", "{\"outcome\": \"solved\"}\n",
-        "{\"outcome\": \"solved\", \"message\": 7, \"result_bytes\": 0, \"trace_bytes\": 0}\n",
-        "{\"outcome\": \"solved\", \"message\": \"\", \"result_bytes\": 5, \"trace_bytes\": 0}\n{}",
-        "{\"outcome\": \"solved\", \"message\": \"\", \"result_bytes\": 3, \"trace_bytes\": "
-        "0}\n{]}",
-        "{\"outcome\": \"solved\", \"message\": \"\", \"result_bytes\": 3, \"trace_bytes\": 0}\n"
-        "\"\xff\"",
-        "{\"outcome\": \"solved\", \"message\": \"\", \"result_bytes\": 99999999999, "
-        "\"trace_bytes\": 0}\n{]}"}) {
+  for (const std::string payload : {"", "\n", "{}", "{}\n", "[1]\n", "{\"outcome\": \"solved\"}\n",
+                                    "{\"outcome\": \"fine\", \"message\": \"\", \"values\": [], "
+                                    "\"result_bytes\": 0, \"trace_bytes\": 0}\n",
+                                    "{\"outcome\": \"solved\", \"message\": 7, \"values\": [], "
+                                    "\"result_bytes\": 0, \"trace_bytes\": 0}\n",
+                                    "{\"outcome\": \"solved\", \"message\": \"\", \"values\": [], "
+                                    "\"result_bytes\": 5, \"trace_bytes\": 0}\n{}",
+                                    "{\"outcome\": \"solved\", \"message\": \"\", \"values\": [], "
+                                    "\"result_bytes\": 3, \"trace_bytes\": "
+                                    "0}\n{]}",
+                                    "{\"outcome\": \"solved\", \"message\": \"\", \"values\": [], "
+                                    "\"result_bytes\": 3, \"trace_bytes\": 0}\n"
+                                    "\"\xff\"",
+                                    "{\"outcome\": \"solved\", \"message\": \"\", \"values\": [], "
+                                    "\"result_bytes\": 99999999999, "
+                                    "\"trace_bytes\": 0}\n{]}"}) {
     ended.payload = payload;
-    EXPECT_EQ(outcome_of(ended, budget_).outcome, "bad_output") << payload;
+    EXPECT_EQ(outcome_of(ended, budget_).outcome, Outcome::bad_output) << payload;
   }
 }
 
@@ -121,7 +127,7 @@ TEST_F(StudyWorker, EveryEnding) {
   const auto told = [&](Ending how) {
     ended.how = how;
     const RunOutcome run = outcome_of(ended, budget_);
-    return run.outcome + ": " + run.message;
+    return name(run.outcome) + (": " + run.message);
   };
   EXPECT_EQ(told(Ending::wall_limit),
             "timed_out: the planner 'x' (steps.0) did not end within 600 s");

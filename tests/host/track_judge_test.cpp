@@ -60,7 +60,7 @@ TEST(TrackJudge, AgreesWithTheFlight) {
 
   all.truth = all.truth.with(layer("hidden", Cylinder{1500, 0, 50}, false));
   const FlightResult hit = fly(all);
-  ASSERT_EQ(hit.status, Status::collided);
+  ASSERT_EQ(hit.status, RunStatus::collided);
   const TrackVerdict verdict = judge_track(hit.track, all);
   EXPECT_EQ(verdict.collisions, 1);
   EXPECT_FALSE(verdict.reached);

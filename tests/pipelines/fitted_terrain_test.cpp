@@ -43,7 +43,7 @@ double planned_km(const Request& request, const std::string& parameters,
   const PlanResult result =
       testing::make_planner(planner, "{cell_m: [1000, 1000, 200], " + parameters + "}")
           ->plan(request);
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
   return length(result.route) / 1e3;
 }

@@ -37,7 +37,7 @@ void expect_no_route(int seed, int peaks) {
       flown(seed, peaks,
             {"steps.0.with.state=cell_and_heading", "steps.0.with.heuristic=octile",
              "steps.0.with.weight_g=0.5", "steps.0.with.weight_h=0.5"});
-  EXPECT_EQ(result.status, Status::no_route) << result.message;
+  EXPECT_EQ(result.status, host::RunStatus::no_route) << result.message;
 }
 
 /// Flies over the terrains; wherever there is a route the flight arrives and touches nothing.
@@ -52,7 +52,7 @@ Tally fly_over(const std::vector<int>& seeds, int peaks) {
       continue;
     }
     ++tally.flights;
-    EXPECT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_EQ(result.status, host::RunStatus::solved) << result.message;
     EXPECT_TRUE(result.flight->reached);
     EXPECT_EQ(result.flight->collisions, 0);
     EXPECT_TRUE(result.flight->check.ok());

@@ -292,7 +292,7 @@ double sampled_distance(const Environment& made, const Vec3& a, const Vec3& b, d
     double distance, x, y;
   };
   const auto place = [&](double x, double y) {
-    const Vec3 point(x, y, *made.ground(x, y));
+    const Vec3 point(x, y, *made.ground()->height(x, y));
     return Place{point_leg_distance(point, a, b), x, y};
   };
   const auto nearer = [](const Place& p, const Place& q) { return p.distance < q.distance; };
@@ -330,9 +330,9 @@ TEST(LawsOfEveryLayer, ClearanceFromGroundIsTheDistance) {
     for (int n = 0; n < 40; ++n) {
       Vec3 a(random.uniform(500, 3500), random.uniform(500, 2500), 0);
       Vec3 b = a + 100 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
-      a.z() = *kind.made->ground(a.x(), a.y()) + random.uniform(30, 60);
-      b = n % 4 == 0 ? a : Vec3(b.x(), b.y(), *kind.made->ground(b.x(), b.y()) + 30);
-      const double gap = kind.made->ground_gap(a, b);
+      a.z() = *kind.made->ground()->height(a.x(), a.y()) + random.uniform(30, 60);
+      b = n % 4 == 0 ? a : Vec3(b.x(), b.y(), *kind.made->ground()->height(b.x(), b.y()) + 30);
+      const double gap = kind.made->ground()->gap(a, b);
       if (gap < 5) {
         continue;
       }

@@ -99,11 +99,11 @@ void fly_one(std::uint64_t seed, bool alone, Tally& tally) {
   const host::FlightResult result = host::fly(world.setup);
   ++tally.flights;
   tally.met += !result.handovers.empty();
-  tally.arrived += result.status == Status::solved;
-  tally.rejected += result.status == Status::rejected;
-  tally.collided += result.status == Status::collided;
-  tally.not_reached += result.status == Status::not_reached;
-  if (result.status == Status::collided || result.status == Status::not_reached) {
+  tally.arrived += result.status == host::RunStatus::solved;
+  tally.rejected += result.status == host::RunStatus::rejected;
+  tally.collided += result.status == host::RunStatus::collided;
+  tally.not_reached += result.status == host::RunStatus::not_reached;
+  if (result.status == host::RunStatus::collided || result.status == host::RunStatus::not_reached) {
     judge_end(seed, world, result, tally, !alone);
   } else {
     EXPECT_TRUE(result.reached) << result.message;

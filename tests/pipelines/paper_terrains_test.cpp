@@ -34,8 +34,8 @@ void compare_states(int from, int to, int& solved, int& only_by_heading) {
       const PlanResult heading = plan(request, name, "state: cell_and_heading");
       const PlanResult either = plan(request, name, "state: auto");
       ASSERT_EQ(either.status, heading.status) << either.message;
-      if (heading.status != Status::solved) {
-        ASSERT_NE(parent.status, Status::solved);
+      if (heading.status != PlanStatus::solved) {
+        ASSERT_NE(parent.status, PlanStatus::solved);
         EXPECT_TRUE(heading.proved);
         continue;
       }
@@ -43,8 +43,8 @@ void compare_states(int from, int to, int& solved, int& only_by_heading) {
       EXPECT_TRUE(check(heading.route, request).ok());
       EXPECT_TRUE(check(either.route, request).ok());
       EXPECT_GE(length(either.route), length(heading.route) * (1 - 1e-12));
-      only_by_heading += parent.status != Status::solved;
-      if (parent.status == Status::solved) {
+      only_by_heading += parent.status != PlanStatus::solved;
+      if (parent.status == PlanStatus::solved) {
         EXPECT_GE(length(parent.route), length(heading.route) * (1 - 1e-12));
       }
     }
@@ -76,12 +76,12 @@ TEST(PaperTerrains, OneParentACellLosesAGoalInTheLeeOfARidge) {
   for (const std::string heuristic : {"heuristic: octile", "heuristic: manhattan"}) {
     SCOPED_TRACE(heuristic);
     const PlanResult heading = plan(request, "astar", heuristic + ", state: cell_and_heading");
-    ASSERT_EQ(heading.status, Status::solved) << heading.message;
+    ASSERT_EQ(heading.status, PlanStatus::solved) << heading.message;
     EXPECT_TRUE(check(heading.route, request).ok());
     EXPECT_EQ(plan(request, "astar", heuristic + ", state: auto").route, heading.route);
     for (const Request& same : {request, of_any_length}) {
       const PlanResult parent = plan(same, "astar", heuristic + ", state: parent");
-      EXPECT_EQ(parent.status, Status::no_route) << length(parent.route);
+      EXPECT_EQ(parent.status, PlanStatus::no_route) << length(parent.route);
       EXPECT_FALSE(parent.proved) << "there is a route";
       EXPECT_NE(parent.message.find("turn_angle"), std::string::npos) << parent.message;
     }
@@ -100,7 +100,7 @@ void compare_manhattan(int from, int to) {
     const PlanResult euclidean = plan(request, "astar", "heuristic: euclidean");
     ASSERT_EQ(weighted.status, euclidean.status) << seed;
     EXPECT_NEAR(length(weighted.route) / 1000, length(euclidean.route) / 1000, 1e-9) << seed;
-    solved += weighted.status == Status::solved;
+    solved += weighted.status == PlanStatus::solved;
   }
   EXPECT_GE(solved, (to - from) * 9 / 10);
   ::testing::Test::RecordProperty("solved", solved);

@@ -71,7 +71,7 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
   EXPECT_EQ(result["steps"][0]["status"], "solved");
 
   // Looked at again: heights of the ground below the route, every 5 m.
-  const auto ground = testing::make_environment("terrain", terrain);
+  const auto layer = testing::make_environment("terrain", terrain);
   Route route;
   for (const host::Json& p : result["route"]) {
     route.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
@@ -81,7 +81,7 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
     const int steps = 1 + int((b - a).norm() / 5);
     for (int i = 0; i <= steps; ++i) {
       const Vec3 p = a + (b - a) * (double(i) / steps);
-      least = std::min(least, p.z() - ground->ground(p.x(), p.y()).value());
+      least = std::min(least, p.z() - layer->ground()->height(p.x(), p.y()).value());
     }
     return least;
   };

@@ -44,7 +44,7 @@ std::int64_t nodes_added(const std::string& cut_off) {
     request.world = calm;
     request.start = start;
     const auto session = planner->begin(request);
-    EXPECT_EQ(session->result().status, Status::solved);
+    EXPECT_EQ(session->result().status, PlanStatus::solved);
     const std::int64_t nodes = counters(session->result())["nodes"];
     const testing::PopUp pop_up = testing::draw_pop_up(session->result().route, request, 2000, 600,
                                                        request.random.sub("pop-up"));
@@ -52,7 +52,7 @@ std::int64_t nodes_added(const std::string& cut_off) {
     request.start = pop_up.state;
     const PlanResult& result =
         session->update(pop_up.state, request.goal, pop_up.world, std::span(&pop_up.change, 1), {});
-    EXPECT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_TRUE(check(result.route, request).ok());
     std::map<std::string, std::int64_t> counted = counters(result);
     EXPECT_EQ(counted["nodes_kept"] + counted["nodes_pruned"], nodes);

@@ -48,7 +48,7 @@ class Tiles : public ::testing::Test {
         << 36.25 + (part.south - 0.5) * kStep << "\ncellsize " << kStep << "\n";
     for (int j = part.north - 1; j >= part.south; --j) {
       for (int i = part.west; i < part.east; ++i) {
-        out << model_->height_field()->post(i, j) << ' ';
+        out << model_->ground()->height_field()->post(i, j) << ' ';
       }
       out << '\n';
     }
@@ -64,7 +64,7 @@ class Tiles : public ::testing::Test {
       std::shared_ptr<const Environment> layer = make_environment(
           "terrain", "{crs: 'EPSG:4326', file: '" + write(part).string() + "'}", site);
       if (!world.frame().has_position()) {
-        world = world.with_frame(*layer->frame());
+        world = world.with_frame(*layer->info().frame);
       }
       world = world.with({"tile_" + std::to_string(world.layers().size()), "terrain", layer});
     }
@@ -86,7 +86,7 @@ class Tiles : public ::testing::Test {
   static Route planned(const Request& request, const std::string& more) {
     const PlanResult result =
         testing::make_planner("astar", "{cell_m: [600, 600, 60]" + more + "}")->plan(request);
-    EXPECT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
     for (const Violation& violation : check(result.route, request).violations) {
       ADD_FAILURE() << violation.constraint << ": " << violation.message;
     }
@@ -181,7 +181,7 @@ TEST_F(Tiles, NoRouteLeavesTheGround) {
   EXPECT_NE(point_problem(b, request).find("no ground"), std::string::npos);
   EXPECT_TRUE(leg_ok(std::nullopt, a, {edge, 9000, 1200}, request)) << "up to the edge";
   EXPECT_NE(testing::make_planner("astar", "{cell_m: [600, 600, 60]}")->plan(request).status,
-            Status::solved);
+            PlanStatus::solved);
   // A way around the west of a wall is found, none over the unknown in the east.
   request.goal.position = {edge - 1000, 20000, 1200};
   request.start.position = {edge - 1000, 9000, 1200};

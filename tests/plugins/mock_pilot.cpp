@@ -3,6 +3,7 @@
 // free.
 #include <algorithm>
 
+#include "altiplan/local_planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/check.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -25,7 +26,7 @@ class Kept final : public Session {
     Route route;
     for (const double aside : {0.0, 0.2, -0.2, 0.5, -0.5, 1.0, -1.0}) {
       if (watch.spent(std::uint64_t(expanded))) {
-        finish(watch.cancelled() ? Status::cancelled : Status::timed_out, {}, expanded);
+        finish(watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out, {}, expanded);
         result_.budget_hit = !watch.cancelled();
         return;
       }
@@ -34,17 +35,18 @@ class Kept final : public Session {
       const Vec3 past = (a + b) / 2 + aside * across;
       route = aside == 0 ? Route{a, b} : Route{a, past, b};
       if (sound(route, request_)) {
-        finish(Status::solved, std::move(route), expanded);
+        finish(PlanStatus::solved, std::move(route), expanded);
         return;
       }
     }
-    finish(Status::no_route, {}, expanded);
+    finish(PlanStatus::no_route, {}, expanded);
   }
 
-  void finish(Status status, Route route, std::int64_t expanded) {
+  void finish(PlanStatus status, Route route, std::int64_t expanded) {
     result_ = {};
     result_.status = status;
-    result_.message = status == Status::solved ? "one corner at most" : "no way with one corner";
+    result_.message =
+        status == PlanStatus::solved ? "one corner at most" : "no way with one corner";
     result_.route = std::move(route);
     result_.counters = {{"expanded", expanded}, {"calls", ++calls_}, {"changes", changes_}};
   }
@@ -73,7 +75,7 @@ class Kept final : public Session {
     request_.budget = budget;
     Route kept = rest(state.position);
     if (!kept.empty() && point_problem(goal.position, request_).empty() && sound(kept, request_)) {
-      finish(Status::solved, std::move(kept), 0);
+      finish(PlanStatus::solved, std::move(kept), 0);
     } else {
       plan();
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "altiplan/plugin.hpp"
+#include "altiplan/tuner.hpp"
 
 namespace {
 using namespace altiplan;

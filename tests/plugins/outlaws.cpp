@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -192,7 +193,7 @@ class Outlaw final : public Planner {
   PlanResult do_plan(const Request& request) const override {
     faults().at(params_.does)(params_);
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = {request.start.position, request.goal.position};
     return result;
   }

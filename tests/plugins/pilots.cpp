@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <thread>
 
+#include "altiplan/local_planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
 
 namespace {
 using namespace altiplan;
@@ -90,7 +92,7 @@ class ToldSmoother final : public Smoother {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = route;
     if (params_.does == "past") {
       result.route = {route.front(), params_.past_m, route.back()};

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "altiplan/error.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -32,7 +33,7 @@ class Told final : public Planner {
  private:
   PlanResult route(const Request& request, std::vector<Vec3> between) const {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = std::move(between);
     result.route.insert(result.route.begin(), request.start.position);
     result.route.push_back(request.goal.position);
@@ -56,7 +57,7 @@ class Told final : public Planner {
         pause();
       }
     }
-    result.status = watch.cancelled() ? Status::cancelled : Status::timed_out;
+    result.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     result.message = "the search was cut short";
     result.budget_hit = !watch.cancelled();
     result.counters = {{"expanded", expanded}};
@@ -96,7 +97,7 @@ class Told final : public Planner {
         pause();
       }
       PlanResult result;
-      result.status = Status::cancelled;
+      result.status = PlanStatus::cancelled;
       return result;
     }
     if (does == "throws") {
@@ -113,7 +114,7 @@ class Told final : public Planner {
     }
     if (does == "no_route") {
       PlanResult result;
-      result.status = Status::no_route;
+      result.status = PlanStatus::no_route;
       result.message = "walls all around";
       return result;
     }

@@ -13,7 +13,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/smoother.hpp"
 
 namespace {
 using namespace altiplan;
@@ -100,7 +105,7 @@ bool misbehave(const std::string& does) {
 
 PlanResult straight(const State& start, const Goal& goal) {
   PlanResult result;
-  result.status = Status::solved;
+  result.status = PlanStatus::solved;
   result.route = {start.position, goal.position};
   return result;
 }
@@ -197,7 +202,7 @@ class RogueSmoother final : public Smoother {
   PlanResult do_smooth(const Route& route, const Request&) const override {
     misbehave(does_);
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = route;
     if (does_ == "moves_start") {
       result.route.front().x() += 1;
@@ -265,11 +270,11 @@ class RogueLayer final : public Environment {
   }
 
  private:
-  std::vector<std::string> do_notes() const override {
+  const LayerInfo& do_info() const override {
     if (does_ == "notes_throw") {
       throw std::runtime_error("the map is torn");
     }
-    return {};
+    return info_;
   }
   Box do_bounds() const override {
     if (does_ == "bounds_throw_int") {
@@ -304,6 +309,7 @@ class RogueLayer final : public Environment {
     return does_ == "slack_negative" ? -1 : does_ == "slack_nan" ? kNan : 0.05;
   }
   std::string does_;
+  LayerInfo info_;
 };
 
 class RogueRule final : public Constraint {

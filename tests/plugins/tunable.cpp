@@ -6,7 +6,9 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/tuner.hpp"
 
 namespace {
 using namespace altiplan;
@@ -53,7 +55,7 @@ class Tunable final : public Planner {
     PlanResult result;
     result.counters = {{"expanded", params_.whole}};
     if (params_.x >= params_.fails_from) {
-      result.status = Status::no_route;
+      result.status = PlanStatus::no_route;
       result.message = "x is too great";
       return result;
     }
@@ -64,7 +66,7 @@ class Tunable final : public Planner {
       off += std::abs(number - 0.5);
     }
     const Vec3 middle = (start + request.goal.position) / 2;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = {start, Vec3(middle + Vec3(0, 0, 100 * off)), request.goal.position};
     return result;
   }

@@ -2,6 +2,8 @@
 // Layers that lie or throw, one with cells of its own, a ball, and constraints of every sort.
 #include <stdexcept>
 
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {
@@ -40,17 +42,19 @@ class Cells final : public Environment {
     spec_.cell = {100, 100, 100};
     spec_.counts = {10, 10, 10};
     spec_.rule = GridSpec::Rule::native;
+    info_.native_grid = spec_;
   }
 
  private:
   Box do_bounds() const override { return spec_.box(); }
   double do_clearance(const Vec3&) const override { return 1e9; }
   void do_rasterize(VoxelGrid&) const override {}
-  std::optional<GridSpec> do_native_grid() const override { return spec_; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return spec_.centre({int(cell[0]), int(cell[1]), int(cell[2])});
   }
   GridSpec spec_;
+  LayerInfo info_;
 };
 
 /// A ball that can only say how far away it is.

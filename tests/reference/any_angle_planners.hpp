@@ -37,7 +37,7 @@ inline void expect_never_longer_than_the_grid(const std::string& planner, int ma
     const PlanResult shortest = grid->plan(drawn.request);
     const PlanResult result = any_angle->plan(drawn.request);
     ASSERT_EQ(result.status, shortest.status) << map << result.message;
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       expect_sound(result, drawn.request);
       EXPECT_LE(length(result.route), length(shortest.route) * (1 + 1e-9)) << map;
@@ -87,7 +87,7 @@ inline void expect_limits_kept(const std::string& planner) {
     }
     for (const Planner* one : {complete.get(), consistent.get(), printed.get()}) {
       const PlanResult result = one->plan(request);
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++solved;
         expect_sound(result, request);
         EXPECT_EQ(result.route.back(), request.goal.position);
@@ -112,7 +112,7 @@ inline void expect_a_limit_on_length_kept(const std::string& planner) {
     for (const double less : {0.0, 1e-5, 3e-5, 1e-4, 3e-4}) {
       request.limits.max_route_length = whole - less;
       const PlanResult result = any_angle->plan(request);
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++solved;
         expect_sound(result, request);
       }
@@ -131,10 +131,10 @@ inline void expect_no_proof_by_the_printed_rule(const std::string& planner) {
                  {5, 55, 25}, {195, 55, 25}, {{0, 0, 0}, {200, 100, 100}});
   request.limits.min_ground_clearance = 15;
   const PlanResult sound = make_planner(planner, "{cell_m: [10, 10, 10]}")->plan(request);
-  ASSERT_EQ(sound.status, Status::solved) << sound.message;
+  ASSERT_EQ(sound.status, PlanStatus::solved) << sound.message;
   const PlanResult printed =
       make_planner(planner, "{cell_m: [10, 10, 10], angle_rule: printed}")->plan(request);
-  EXPECT_EQ(printed.status, Status::no_route);
+  EXPECT_EQ(printed.status, PlanStatus::no_route);
   EXPECT_NE(printed.message.find("ground"), std::string::npos) << printed.message;
   EXPECT_FALSE(printed.proved);
 }
@@ -146,7 +146,7 @@ inline void expect_the_ends_joined_wherever_they_are(const std::string& planner)
   for (int world = 0; world < 30; ++world) {
     const Request request = among_some_balls(random, 30);
     const PlanResult result = cells->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       expect_sound(result, request);
       EXPECT_EQ(result.route.front(), request.start.position);
@@ -161,7 +161,7 @@ inline void expect_the_ends_joined_wherever_they_are(const std::string& planner)
   drawn.request.start.position += Vec3(3, -2, 1);
   drawn.request.goal.position += Vec3(-4, 1, 2);
   const PlanResult beside = make_planner(planner)->plan(drawn.request);
-  ASSERT_EQ(beside.status, Status::solved) << beside.message;
+  ASSERT_EQ(beside.status, PlanStatus::solved) << beside.message;
   expect_sound(beside, drawn.request);
   EXPECT_LT(length(beside.route), 100);
 }
@@ -172,34 +172,34 @@ inline void expect_budget_and_refusals_told(const std::string& planner) {
   drawn.request.level_m = 0.5;
   drawn.request.budget.max_iterations = 3;
   const PlanResult cut = plan(drawn.request);
-  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_EQ(cut.status, PlanStatus::timed_out);
   EXPECT_TRUE(cut.budget_hit);
   EXPECT_EQ(cut.counters.front().value, 3);
   std::stop_source stop;
   stop.request_stop();
   drawn.request.budget = {};
   drawn.request.budget.stop = stop.get_token();
-  EXPECT_EQ(plan(drawn.request).status, Status::cancelled);
+  EXPECT_EQ(plan(drawn.request).status, PlanStatus::cancelled);
 
   Drawn sealed = draw({"S.....\n......\n...###\n...#G#\n...###"});
   sealed.request.level_m = 0.5;
   const PlanResult shut = plan(sealed.request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_TRUE(shut.proved);
   EXPECT_NE(shut.message.find("blocked cells"), std::string::npos) << shut.message;
   sealed.request.goal.tolerance_m = 2.1;
   const PlanResult near = plan(sealed.request);
-  ASSERT_EQ(near.status, Status::solved) << near.message;
+  ASSERT_EQ(near.status, PlanStatus::solved) << near.message;
   EXPECT_LE((near.route.back() - sealed.request.goal.position).norm(), 2.1 + 1e-9);
   sealed.request.goal = {sealed.request.start.position, 0};
   EXPECT_EQ(plan(sealed.request).route.size(), 1u);
 
   drawn.request.budget = {};
   drawn.request.limits.max_route_length = 11.0;
-  EXPECT_EQ(plan(drawn.request).status, Status::solved);
+  EXPECT_EQ(plan(drawn.request).status, PlanStatus::solved);
   drawn.request.limits.max_route_length = 10.0;
   const PlanResult long_way = plan(drawn.request);
-  EXPECT_EQ(long_way.status, Status::no_route) << length(long_way.route);
+  EXPECT_EQ(long_way.status, PlanStatus::no_route) << length(long_way.route);
   EXPECT_NE(long_way.message.find("route_length"), std::string::npos) << long_way.message;
 }
 
@@ -224,13 +224,13 @@ inline void expect_long_ways_found(const std::string& planner) {
   Drawn drawn = draw({text});
   drawn.request.level_m = 0.5;
   const PlanResult result = make_planner(planner)->plan(drawn.request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   constexpr int kCells = (kEdge + 1) / 2 * kEdge + kEdge / 2;
   EXPECT_NEAR(length(result.route), kCells - 1, 1e-6);
   CountedTrace trace;
   drawn.request.trace = &trace;
   drawn.request.budget.max_iterations = std::uint64_t(result.counters.front().value) - 1;
-  EXPECT_EQ(make_planner(planner)->plan(drawn.request).status, Status::timed_out);
+  EXPECT_EQ(make_planner(planner)->plan(drawn.request).status, PlanStatus::timed_out);
   EXPECT_LE(trace.events, result.counters.front().value);
 }
 

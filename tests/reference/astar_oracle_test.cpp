@@ -72,15 +72,15 @@ void hold(const PlanResult& result, const LatticeOracle& oracle, const std::vect
   const bool limited = request.limits.max_route_length < kInfinity;
   if (expected == kInfinity) {
     ++tally.unreachable;
-    ASSERT_EQ(result.status, Status::no_route) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::no_route) << result.message;
     EXPECT_TRUE(result.proved || bound > 1 || setting.heuristic == "manhattan") << result.message;
     return;
   }
-  if (result.status == Status::no_route && limited && bound > 1) {
+  if (result.status == PlanStatus::no_route && limited && bound > 1) {
     EXPECT_FALSE(result.proved);  // a longer way than the shortest met the limit on length
     return;
   }
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   ++tally.solved;
   const CheckResult judged = check(result.route, request);
   EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
@@ -118,9 +118,9 @@ void compare(const Problem& problem, std::uint64_t seed, Tally& tally) {
       const std::string yaml = setting.yaml(problem.lattice);
       SCOPED_TRACE("seed " + std::to_string(seed) + " " + planner + " " + yaml);
       const PlanResult result = testing::make_planner(planner, yaml)->plan(request);
-      ASSERT_EQ(result.status == Status::invalid_problem, !start_free || !goal_free)
+      ASSERT_EQ(result.status == PlanStatus::invalid_problem, !start_free || !goal_free)
           << result.message;
-      if (result.status == Status::invalid_problem) {
+      if (result.status == PlanStatus::invalid_problem) {
         ++tally.invalid;
         return;
       }
@@ -235,8 +235,8 @@ struct TurnTally {
 void hold_turns(const PlanResult& result, const Setting& setting, double to_goal, double expected,
                 const Request& request, TurnTally& tally) {
   const bool by_heading = setting.state == "cell_and_heading";
-  if (result.status != Status::solved) {
-    ASSERT_EQ(result.status, Status::no_route);
+  if (result.status != PlanStatus::solved) {
+    ASSERT_EQ(result.status, PlanStatus::no_route);
     EXPECT_TRUE(setting.state == "parent" || expected == kInfinity) << result.message;
     EXPECT_FALSE(result.proved && expected < kInfinity) << result.message;
     EXPECT_TRUE(result.proved || setting.state == "parent") << result.message;
@@ -317,7 +317,7 @@ void compare_turns(std::uint64_t seed, TurnTally& tally) {
       const std::string yaml = setting.yaml(problem->lattice);
       SCOPED_TRACE("seed " + std::to_string(seed) + " " + planner + " " + yaml);
       const PlanResult result = testing::make_planner(planner, yaml)->plan(request);
-      if (result.status == Status::invalid_problem) {
+      if (result.status == PlanStatus::invalid_problem) {
         return;
       }
       hold_turns(result, setting, best[oracle.goal], expected, request, tally);

@@ -69,7 +69,7 @@ inline void expect_anytime(const std::string& planner, const std::string& settin
   for (std::uint64_t steps = 500; steps <= 16'000; steps *= 2) {
     request.budget.max_iterations = steps;
     const PlanResult result = plan_of(planner, settings, request);
-    const double metres = result.status == Status::solved ? length(result.route) : kInfinity;
+    const double metres = result.status == PlanStatus::solved ? length(result.route) : kInfinity;
     EXPECT_LE(metres, shortest);
     shortest = metres;
   }
@@ -84,8 +84,8 @@ inline void expect_step_budgets_kept(const std::string& planner, const std::stri
     const PlanResult result = plan_of(planner, settings, request);
     EXPECT_EQ(counter(result, "expanded"), std::min(steps, all));
     EXPECT_EQ(result.budget_hit, steps <= all);
-    EXPECT_TRUE(result.status == Status::solved ? check(result.route, request).ok()
-                                                : result.status == Status::timed_out);
+    EXPECT_TRUE(result.status == PlanStatus::solved ? check(result.route, request).ok()
+                                                    : result.status == PlanStatus::timed_out);
   }
 }
 
@@ -162,7 +162,7 @@ inline void expect_limits_hold(const std::string& planner, const std::string& se
     request.limits.max_leg = seed % 2 == 0 ? kInfinity : 150;
     request.limits.max_route_length = seed < 2 ? kInfinity : 1.2 * open;
     const PlanResult result = plan_of(planner, settings, request);
-    solved += result.status == Status::solved ? 1 : 0;
+    solved += result.status == PlanStatus::solved ? 1 : 0;
     const CheckResult judged = check(result.route, request);
     EXPECT_TRUE(result.route.empty() || judged.ok()) << judged.violations.front().message;
   }
@@ -173,7 +173,7 @@ inline void expect_ends_joined(const std::string& planner, const std::string& se
   Request request = flat_world();
   request.goal.position += Vec3(3.1, -2.2, 0);
   const PlanResult off = plan_of(planner, settings, request);
-  ASSERT_EQ(off.status, Status::solved) << off.message;
+  ASSERT_EQ(off.status, PlanStatus::solved) << off.message;
   EXPECT_TRUE(check(off.route, request).ok());
   EXPECT_EQ(off.route.back(), request.goal.position);
   // In one cell the straight leg is all there is to it.
@@ -181,11 +181,11 @@ inline void expect_ends_joined(const std::string& planner, const std::string& se
   const PlanResult near = plan_of(planner, settings, request);
   EXPECT_EQ(near.route, (Route{request.start.position, request.goal.position}));
   request.limits.max_route_length = 1;
-  EXPECT_EQ(plan_of(planner, settings, request).status, Status::no_route);
+  EXPECT_EQ(plan_of(planner, settings, request).status, PlanStatus::no_route);
   request.limits.max_route_length = kInfinity;
   // A goal among closed cells.
   request.goal.position = {200, 200, 50};
-  EXPECT_NE(plan_of(planner, settings, request).status, Status::solved);
+  EXPECT_NE(plan_of(planner, settings, request).status, PlanStatus::solved);
 }
 
 /// With pheromone that all but vanishes, or never does, ants still choose: none is stuck for want
@@ -199,7 +199,7 @@ inline void expect_roulettes_sound(const std::string& planner, const std::string
         "alpha: 0, beta: 3, evaporation: 0.5", "alpha: 6, beta: 3, deposit_q: 1.0e+9",
         "alpha: 20, beta: 3, deposit_q: 1.0e-9, initial_pheromone: 1.0e+9"}) {
     const PlanResult result = plan_of(planner, settings + ", " + powers, request);
-    EXPECT_EQ(result.status, Status::solved) << powers;
+    EXPECT_EQ(result.status, PlanStatus::solved) << powers;
     EXPECT_GT(counter(result, "alive"), 0) << powers << ": " << result.message;
     EXPECT_GE(length(result.route), 350 - 1e-9);
   }

@@ -73,7 +73,7 @@ bool same(PlainColony& plain, const std::string& planner, const std::string& set
       << drawn.text << settings << "\n"
       << result.message;
   EXPECT_EQ(result.route, route) << drawn.text << settings << "\n" << result.message;
-  return result.status == Status::solved;
+  return result.status == PlanStatus::solved;
 }
 
 struct Powers {

@@ -57,14 +57,14 @@ PlanResult plan(const Levels& picture, const Asked& asked, GridSpec& spec) {
   }
   spec = *drawn.world->native_grid();
   PlanResult result = testing::make_planner("astar", asked.with)->plan(request);
-  EXPECT_TRUE(result.status != Status::solved || check(result.route, request).ok());
+  EXPECT_TRUE(result.status != PlanStatus::solved || check(result.route, request).ok());
   return result;
 }
 
 void expect_way(const Levels& picture, const Asked& asked = {}) {
   GridSpec spec;
   const PlanResult result = plan(picture, asked, spec);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   const Levels drawn = drawing_of(picture, result.route, spec);
   for (std::size_t k = 0; k < picture.size(); ++k) {
     EXPECT_EQ(drawn[k], picture[k]) << "level " << k << " is\n" << drawn[k];
@@ -74,7 +74,7 @@ void expect_way(const Levels& picture, const Asked& asked = {}) {
 void expect_no_way(const Levels& picture, const Asked& asked = {}) {
   GridSpec spec;
   const PlanResult result = plan(picture, asked, spec);
-  EXPECT_EQ(result.status, Status::no_route) << result.message;
+  EXPECT_EQ(result.status, PlanStatus::no_route) << result.message;
   EXPECT_TRUE(result.proved) << result.message;
 }
 
@@ -120,7 +120,7 @@ TEST(DrawnWorlds, AVehicleAsWideAsTheCorridorTouchesBothWalls) {
                        ".#.#."})},
                 {"{moves: cells}", 0.2});  // whole cells near a wall are closed
   GridSpec spec;
-  EXPECT_EQ(plan(corridor, {"{}", 0.51}, spec).status, Status::invalid_problem);
+  EXPECT_EQ(plan(corridor, {"{}", 0.51}, spec).status, PlanStatus::invalid_problem);
 }
 
 TEST(DrawnWorlds, OutOfADeadEnd) {

@@ -107,7 +107,7 @@ class BlameSearch {
   }
 
  private:
-  bool collided() const { return result_.status == Status::collided; }
+  bool collided() const { return result_.status == host::RunStatus::collided; }
   bool pilot_commands(double time_s) const {
     bool commands = false;
     for (const host::Handover& handover : result_.handovers) {

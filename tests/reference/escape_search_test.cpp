@@ -272,7 +272,7 @@ struct Flight {
   explicit Flight(double sensing_m) {
     setup.request = problem(true);
     setup.request.vehicle.sensing_m = sensing_m;
-    result.status = Status::collided;
+    result.status = host::RunStatus::collided;
   }
   void add(std::string id, const Vec3& at, const Vec3& velocity, double radius) {
     auto moving = setup.truth.moving();
@@ -355,7 +355,7 @@ TEST(Blame, IsNobodysWhereNotEvenTheAllKnowingArrives) {
 
 TEST(Blame, TellsWhoGivesUpWithAWayOut) {
   Flight flight(1000);
-  flight.result.status = Status::not_reached;
+  flight.result.status = host::RunStatus::not_reached;
   flight.add("slow", {1000, 0, 1000}, {-1, 0, 0}, 100);
   const Blame blame = flight.collide_east(20, "none");
   EXPECT_EQ(blame.verdict, Blame::Verdict::given_up);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "altiplan/environment.hpp"
+#include "altiplan/ground.hpp"
 #include "reference/lattice_oracle.hpp"
 #include "support/support.hpp"
 
@@ -11,7 +12,7 @@
 namespace altiplan::reference {
 
 /// Slanting ground as a layer.
-class GroundPlane final : public Environment {
+class GroundPlane final : public Environment, public Ground {
  public:
   explicit GroundPlane(const Plane& plane) : plane_(plane) {}
 
@@ -21,17 +22,17 @@ class GroundPlane final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return std::min(do_clearance(a), do_clearance(b)) < r - kLengthTolerance;
   }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double y) const override {
     return -plane_.above({x, y, 0});
   }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
     return std::min(plane_.above(a), plane_.above(b));
   }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+  double do_gap_max(const Vec3& a, const Vec3& b) const override {
     return std::max(plane_.above(a), plane_.above(b));
   }
-  double do_ground_slope(const Box&) const override {
+  double do_slope(const Box&) const override {
     return std::hypot(plane_.slope[0], plane_.slope[1]);
   }
   double do_slack() const override { return 0; }

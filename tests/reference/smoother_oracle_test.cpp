@@ -27,7 +27,7 @@ Planned planned_route(std::uint64_t seed) {
   std::snprintf(yaml, sizeof yaml, "{cell_m: [%.17g, %.17g, %.17g], neighbours: %d}", c.x(), c.y(),
                 c.z(), seed % 3 == 0 ? 6 : 26);
   const PlanResult result = testing::make_planner("astar", yaml)->plan(request);
-  if (result.status == Status::solved) {
+  if (result.status == PlanStatus::solved) {
     planned.route = result.route;
   }
   return planned;
@@ -71,7 +71,7 @@ void hold_prune(std::uint64_t from, std::uint64_t to) {
     }
     SCOPED_TRACE(seed);
     const PlanResult result = prune->smooth(route, problem->request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_TRUE(check(result.route, problem->request).ok());
     std::size_t at = 0;
     for (const Vec3& p : result.route) {
@@ -103,7 +103,7 @@ void hold_laws(const std::string& name, bool never_longer, std::uint64_t from, s
     }
     SCOPED_TRACE(name + " " + std::to_string(seed));
     const PlanResult result = smoother->smooth(route, problem->request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     const auto judged = check(result.route, problem->request);
     EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
     EXPECT_EQ(result.route.front(), route.front());
@@ -119,7 +119,7 @@ void hold_laws(const std::string& name, bool never_longer, std::uint64_t from, s
         continue;  // a limit met to the last bit, and lost by rounding
       }
       const PlanResult elsewhere = smoother->smooth(there, other.request);
-      ASSERT_EQ(elsewhere.status, Status::solved) << elsewhere.message;
+      ASSERT_EQ(elsewhere.status, PlanStatus::solved) << elsewhere.message;
       EXPECT_TRUE(check(elsewhere.route, other.request).ok());
       if (never_longer) {
         EXPECT_EQ(elsewhere.route.size(), result.route.size());

@@ -24,7 +24,7 @@ inline Request around_a_wall() {
 inline void expect_the_nearer_gap(const std::string& planner) {
   const Request request = around_a_wall();
   const PlanResult result = make_planner(planner, "{max_iterations: 8000}")->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_TRUE(check(result.route, request).ok());
   EXPECT_LT(length(result.route), 108);
   EXPECT_FALSE(result.budget_hit);
@@ -34,7 +34,7 @@ inline void expect_the_whole_budget_used(const std::string& planner) {
   Request request = around_a_wall();
   request.budget.max_iterations = 3000;
   const PlanResult result = make_planner(planner)->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_TRUE(result.budget_hit);
   EXPECT_EQ(result.counters.front().value, 3000);
 }

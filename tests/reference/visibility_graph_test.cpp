@@ -67,7 +67,7 @@ TEST(VisibilityGraph, IsTheLimitOfFineLattices) {
                                           {{-20, -20, -1}, {120, 120, 1}});
     request.level_m = 0;
     const auto planned = testing::make_planner("astar", "{cell_m: [0.5, 0.5, 1]}")->plan(request);
-    ASSERT_EQ(planned.status, Status::solved) << seed;
+    ASSERT_EQ(planned.status, PlanStatus::solved) << seed;
     const double lattice = length(planned.route);
     EXPECT_GE(lattice, exact * (1 - 1e-9)) << seed;
     // Eight directions are at most 8.24 % longer; the rest is for the cells beside the corners.

@@ -113,7 +113,7 @@ TEST(VisibleCells, AreTheSameBothWaysAndNoLongerThanSteps) {
     const SmallCity city = small_city(seed);
     const PlanResult result = astar->plan(city.request());
     const std::optional<double> there = shortest_visible(city.grid, city.start, city.goal);
-    ASSERT_EQ(there.has_value(), result.status == Status::solved) << seed;
+    ASSERT_EQ(there.has_value(), result.status == PlanStatus::solved) << seed;
     if (!there) {
       continue;
     }

@@ -58,10 +58,10 @@ TEST(ZoneMaps, PlannersComeNear) {
                                           {{0, 0, 0}, {1000, 660, 0}});
     request.level_m = 0;
     const PlanResult steps = astar->plan(request);
-    ASSERT_EQ(steps.status, Status::solved) << seed << ": " << steps.message;
+    ASSERT_EQ(steps.status, PlanStatus::solved) << seed << ": " << steps.message;
     EXPECT_GE(length(steps.route), shortest - 1e-6) << seed;
     const PlanResult straight = theta_star->plan(request);
-    ASSERT_EQ(straight.status, Status::solved) << seed << ": " << straight.message;
+    ASSERT_EQ(straight.status, PlanStatus::solved) << seed << ": " << straight.message;
     EXPECT_GE(length(straight.route), shortest - 1e-6) << seed;
     EXPECT_LE(length(straight.route), 1.01 * shortest) << seed;
   }

@@ -28,7 +28,10 @@ Value parameters(std::string_view yaml) { return host::parse_yaml(yaml, "test");
 class DrawnCells final : public Environment {
  public:
   DrawnCells(const GridSpec& spec, std::vector<Cell> blocked)
-      : spec_(spec), blocked_(std::move(blocked)), boxes_(boxes_of(spec, blocked_)) {}
+      : spec_(spec),
+        info_{{}, spec, {}, {}},
+        blocked_(std::move(blocked)),
+        boxes_(boxes_of(spec, blocked_)) {}
 
  private:
   static std::vector<Shape> boxes_of(const GridSpec& spec, const std::vector<Cell>& cells) {
@@ -60,13 +63,14 @@ class DrawnCells final : public Environment {
     }
   }
   double do_slack() const override { return 0; }
-  std::optional<GridSpec> do_native_grid() const override { return spec_; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return Vec3(spec_.origin +
                 spec_.cell.cwiseProduct(Vec3(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5)));
   }
 
   GridSpec spec_;
+  LayerInfo info_;
   std::vector<Cell> blocked_;
   kit::ObstacleSet boxes_;
 };

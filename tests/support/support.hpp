@@ -7,7 +7,13 @@
 #include <string_view>
 
 #include "altiplan/check.hpp"
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
 
 namespace altiplan::testing {
 

@@ -58,7 +58,7 @@ void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_s
                  handover.to.c_str(), handover.why.c_str());
   }
   for (const host::Replan& replan : flight.replans) {
-    if (replan.status != Status::solved) {
+    if (replan.status != host::RunStatus::solved) {
       std::fprintf(to, "  %7s s  replan by %s: %s%s%s\n", fixed(replan.at_s, 0).c_str(),
                    replan.step.c_str(), name(replan.status), replan.message.empty() ? "" : ": ",
                    replan.message.c_str());

@@ -119,7 +119,7 @@ void run_scenario(const Planner& planner, Request& request, const GridScenario& 
   double time_us = 0;
   const PlanResult result = timed_plan(planner, request, arguments.repeat, time_us);
   const double expanded = counter(result, "expanded");
-  const bool solved = result.status == Status::solved;
+  const bool solved = result.status == PlanStatus::solved;
   if (arguments.each) {
     std::printf("%zu %d %.9g %.0f %.3f\n", tally.times_us.size(), int(solved),
                 solved ? length(result.route) : 0.0, expanded, time_us);

@@ -68,7 +68,7 @@ double counter(const PlanResult& result, std::string_view name) {
 }
 
 double judged_length(const PlanResult& result, const Request& request, const std::string& who) {
-  if (result.status != Status::solved) {
+  if (result.status != PlanStatus::solved) {
     return kInfinity;
   }
   if (!check(result.route, request).ok()) {
@@ -78,7 +78,7 @@ double judged_length(const PlanResult& result, const Request& request, const std
 }
 
 double solved_length(const PlanResult& result, const Request& request, const std::string& who) {
-  if (result.status != Status::solved) {
+  if (result.status != PlanStatus::solved) {
     throw WrongAnswer(who + ": a query without a route: " + result.message);
   }
   return judged_length(result, request, who);

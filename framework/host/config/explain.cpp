@@ -49,72 +49,83 @@ void add_moving(std::vector<Explained>& all, const MovingEntry& moving, const Va
   const std::string inner = path + "." + moving.shape;
   add_fields(all, describe_moving(moving.shape)(&moving.parameters, inner), inner);
 }
+
+/// The fields of a file that are not lists of entries.
+template <class File>
+void add_file(std::vector<Explained>& all, const Value& tree, const std::string& path) {
+  File file;
+  for (const BoundField& field : bind(file, &tree).fields) {
+    if (field.spec.type != FieldType::list) {
+      add_fields(all, {{field}, {}}, path);
+    }
+  }
+}
+
+void add_plugin(std::vector<Explained>& all, const Config& config, std::string_view kind,
+                const std::string& name, const Value& parameters, const std::string& path) {
+  add_fields(all, plugin(*config.registry, kind, name).describe(&parameters, path), path);
+}
+
+void add_scenario(std::vector<Explained>& all, const Config& config) {
+  const ScenarioFile& scenario = config.scenario;
+  const auto tree = [&](const char* list, std::size_t i) -> const Value& {
+    return config.scenario_tree.find(list)->items[i];
+  };
+  add_file<ScenarioFile>(all, config.scenario_tree, "scenario");
+  for (std::size_t i = 0; i < scenario.environment.size(); ++i) {
+    const LayerEntry& layer = scenario.environment[i];
+    const std::string path = item("scenario.environment", i);
+    add_entry(all, layer, tree("environment", i), path);
+    add_plugin(all, config, "environment", layer.plugin, layer.parameters,
+               path + "." + layer.plugin);
+  }
+  for (std::size_t i = 0; i < scenario.via.size(); ++i) {
+    add_entry(all, scenario.via[i], tree("via", i), item("scenario.via", i));
+  }
+  for (std::size_t i = 0; i < scenario.moving.size(); ++i) {
+    add_moving(all, scenario.moving[i], tree("moving", i), item("scenario.moving", i));
+  }
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    add_entry(all, scenario.events[i], tree("events", i), item("scenario.events", i));
+  }
+}
+
+void add_step(std::vector<Explained>& all, const Config& config, const StepEntry& step,
+              const Value& tree) {
+  StepEntry copy;
+  for (const BoundField& field : bind(copy, &tree, step.path).fields) {
+    if (field.spec.name == "id") {
+      all.push_back({step.path + ".id", "\"" + step.id + "\"", shown_location(field.where), ""});
+    } else if (field.spec.name != "with" && field.spec.name != "else" &&
+               (field.where || field.value_json != "null")) {
+      add_fields(all, {{field}, {}}, step.path);
+    }
+  }
+  if (step.plugin != kFollowRoute) {
+    add_plugin(all, config, kind_of_step(*config.registry, step), step.plugin, step.with,
+               step.path + ".with");
+  }
+}
 }  // namespace
 
 std::vector<Explained> explain(const Config& config) {
   std::vector<Explained> all;
-  Registry& registry = *config.registry;
-  const auto add_plugin = [&](std::string_view kind, const std::string& name,
-                              const Value& parameters, const std::string& path) {
-    add_fields(all, plugin(registry, kind, name).describe(&parameters, path), path);
-  };
-  ScenarioFile scenario;
-  for (const BoundField& field : bind(scenario, &config.scenario_tree).fields) {
-    if (field.spec.type != FieldType::list) {
-      add_fields(all, {{field}, {}}, "scenario");
-    }
-  }
-  for (std::size_t i = 0; i < config.scenario.environment.size(); ++i) {
-    const LayerEntry& layer = config.scenario.environment[i];
-    const std::string path = item("scenario.environment", i);
-    add_entry(all, layer, config.scenario_tree.find("environment")->items[i], path);
-    add_plugin("environment", layer.plugin, layer.parameters, path + "." + layer.plugin);
-  }
-  for (std::size_t i = 0; i < config.scenario.via.size(); ++i) {
-    add_entry(all, config.scenario.via[i], config.scenario_tree.find("via")->items[i],
-              item("scenario.via", i));
-  }
-  for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
-    add_moving(all, config.scenario.moving[i], config.scenario_tree.find("moving")->items[i],
-               item("scenario.moving", i));
-  }
-  for (std::size_t i = 0; i < config.scenario.events.size(); ++i) {
-    add_entry(all, config.scenario.events[i], config.scenario_tree.find("events")->items[i],
-              item("scenario.events", i));
-  }
+  add_scenario(all, config);
   for (const auto& [entries, path] :
        {std::pair(&config.scenario.constraints, "scenario.constraints"),
         std::pair(&config.pipeline.constraints, "constraints")}) {
     for (std::size_t i = 0; i < entries->size(); ++i) {
       const ConstraintEntry& entry = (*entries)[i];
-      add_plugin("constraint", entry.plugin, entry.parameters, item(path, i) + "." + entry.plugin);
+      add_plugin(all, config, "constraint", entry.plugin, entry.parameters,
+                 item(path, i) + "." + entry.plugin);
     }
   }
-  PipelineFile pipeline;
-  for (const BoundField& field : bind(pipeline, &config.pipeline_tree).fields) {
-    if (field.spec.type != FieldType::list) {
-      add_fields(all, {{field}, {}}, "");
-    }
-  }
-  const auto add_step = [&](const StepEntry& step, const Value& tree) {
-    StepEntry copy;
-    for (const BoundField& field : bind(copy, &tree, step.path).fields) {
-      if (field.spec.name == "id") {
-        all.push_back({step.path + ".id", "\"" + step.id + "\"", shown_location(field.where), ""});
-      } else if (field.spec.name != "with" && field.spec.name != "else" &&
-                 (field.where || field.value_json != "null")) {
-        add_fields(all, {{field}, {}}, step.path);
-      }
-    }
-    if (step.plugin != kFollowRoute) {
-      add_plugin(kind_of_step(registry, step), step.plugin, step.with, step.path + ".with");
-    }
-  };
+  add_file<PipelineFile>(all, config.pipeline_tree, "");
   for (std::size_t i = 0; i < config.steps.size(); ++i) {
     const StepEntry& step = config.steps[i];
-    add_step(step, config.pipeline.steps[i]);
+    add_step(all, config, step, config.pipeline.steps[i]);
     for (std::size_t k = 0; k < step.otherwise.size(); ++k) {
-      add_step(step.otherwise[k], step.alternatives[k]);
+      add_step(all, config, step.otherwise[k], step.alternatives[k]);
     }
   }
   return all;

@@ -113,7 +113,7 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
   const Vec3 down = landing(mission, route, place);
   for (const Layer& layer : mission.truth.layers()) {
     const auto blocked = [&](const Vec3& foot, const Vec3& top) {
-      return !layer.environment->has_ground() &&
+      return layer.environment->ground() == nullptr &&
              layer.environment->blocked(foot, top, mission.request.vehicle.radius_m);
     };
     if (options.takeoff && blocked(home, route.front())) {
@@ -275,6 +275,40 @@ std::string ExportOptions::problem() const {
   return "";
 }
 
+namespace {
+
+/// Writes the route with as few decimals as keep it sound when read back: the text and what to say
+/// of it.
+Exported written_soundly(const Mission& mission, const ExportSource& source, const Placing& place,
+                         const ExportOptions& options, MissionText text) {
+  Exported result;
+  std::string problem;
+  for (const Decimals& decimals : kDecimals) {
+    text.decimals = decimals;
+    const std::string written =
+        options.format ? mission_text(text)
+                       : csv_text(source, place, mission.truth.frame().has_position(), decimals);
+    const ForeignRoute read = read_foreign_route(file_name(options.format), written, mission.truth,
+                                                 mission.request.start.position);
+    const std::string now = problem_of(mission, source, read.route);
+    if (now.empty()) {
+      result.messages.push_back(std::to_string(source.route.size()) + " points" +
+                                (options.land ? " and a landing" : "") + ", " + place.in_words() +
+                                "; read back and judged: sound with " +
+                                std::to_string(decimals.degrees) + " decimals of a degree and " +
+                                std::to_string(decimals.metres) + " of a metre" +
+                                (problem.empty() ? "" : " (fewer break: " + problem + ")"));
+      result.text = written;
+      return result;
+    }
+    problem = now;
+  }
+  result.messages.push_back("not written: rounded as the format has it, the route is not sound: " +
+                            problem);
+  return result;
+}
+}  // namespace
+
 Exported export_route(const Mission& mission, const ExportSource& wanted,
                       const ExportOptions& options) {
   expect_possible(mission, options, wanted.route.front());
@@ -306,36 +340,15 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     text.mission = mission_of(mission, source, place, options);
     add_zones(mission, source.route, text.mission, notes);
   }
-  std::string problem;
-  for (const Decimals& decimals : kDecimals) {
-    text.decimals = decimals;
-    const std::string written =
-        options.format ? mission_text(text)
-                       : csv_text(source, place, mission.truth.frame().has_position(), decimals);
-    const ForeignRoute read = read_foreign_route(file_name(options.format), written, mission.truth,
-                                                 mission.request.start.position);
-    const std::string now = problem_of(mission, source, read.route);
-    if (!now.empty()) {
-      problem = now;
-      continue;
-    }
-    result.messages.push_back(std::to_string(source.route.size()) + " points" +
-                              (options.land ? " and a landing" : "") + ", " + place.in_words() +
-                              "; read back and judged: sound with " +
-                              std::to_string(decimals.degrees) + " decimals of a degree and " +
-                              std::to_string(decimals.metres) + " of a metre" +
-                              (problem.empty() ? "" : " (fewer break: " + problem + ")"));
+  result = written_soundly(mission, source, place, options, std::move(text));
+  if (result.text) {
     result.messages.insert(result.messages.end(), notes.begin(), notes.end());
     if (options.altitude == AltitudeFrame::ground) {
       result.messages.emplace_back(
           "warning: judged with straight legs; a vehicle that follows the ground between the "
           "points flies others");
     }
-    result.text = written;
-    return result;
   }
-  result.messages.push_back("not written: rounded as the format has it, the route is not sound: " +
-                            problem);
   return result;
 }
 }  // namespace altiplan::host

@@ -4,17 +4,20 @@
 #include <memory>
 #include <utility>
 
+#include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 
 namespace altiplan::host {
 namespace {
 
 /// The layer with some of its cells changed, drawn as a grid of its own.
-class EditedCells final : public kit::CellLayer {
+class EditedCells final : public kit::CellLayer, public Ground {
  public:
   EditedCells(std::shared_ptr<const Environment> original, const GridSpec& spec,
               const std::vector<Vec3>& cells, bool blocked)
-      : CellLayer(edited(*original, spec, cells, blocked)), original_(std::move(original)) {}
+      : CellLayer(edited(*original, spec, cells, blocked)),
+        original_(std::move(original)),
+        ground_(original_->ground()) {}
 
  private:
   static VoxelGrid edited(const Environment& original, GridSpec spec,
@@ -32,26 +35,25 @@ class EditedCells final : public kit::CellLayer {
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return original_->cell_centre(cell);
   }
-  // A ground has no cells: it stays as it was.
-  bool do_has_ground() const override { return original_->has_ground(); }
-  std::optional<double> do_ground(double x, double y) const override {
-    return original_->ground(x, y);
+  // A ground has no cells: it stays as it was, but is not all that the layer blocks.
+  const Ground* do_ground() const override { return ground_ != nullptr ? this : nullptr; }
+  std::optional<double> do_height(double x, double y) const override {
+    return ground_->height(x, y);
   }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    return original_->ground_gap(a, b, enough);
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    return ground_->gap(a, b, enough);
   }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
-    return original_->ground_gap_max(a, b);
-  }
-  double do_ground_slope(const Box& box) const override { return original_->ground_slope(box); }
+  double do_gap_max(const Vec3& a, const Vec3& b) const override { return ground_->gap_max(a, b); }
+  double do_slope(const Box& box) const override { return ground_->slope(box); }
 
   std::shared_ptr<const Environment> original_;
+  const Ground* ground_;  ///< of the original, or null
 };
 
 /// The cells' box; throws ConfigError where the layer has no such cells.
 Box box_of_cells(const Layer& layer, const SetCellsEntry& entry, const Location& where,
                  const std::string& key) {
-  const auto spec = layer.environment->native_grid();
+  const auto& spec = layer.environment->info().native_grid;
   if (!spec) {
     throw ConfigError(where, key, "the layer '" + layer.id + "' has no cells of its own");
   }
@@ -70,7 +72,7 @@ Box box_of_cells(const Layer& layer, const SetCellsEntry& entry, const Location&
 
 /// The layer as it is when the event comes, with the cells changed.
 Layer with_cells(const Layer& layer, const std::vector<Vec3>& cells, bool blocked) {
-  const auto spec = layer.environment->native_grid();
+  const auto& spec = layer.environment->info().native_grid;
   if (!spec) {
     throw Error("event set_cells: the layer '" + layer.id + "' has no cells of its own any more");
   }

@@ -41,11 +41,12 @@ FlightResult Flight::run() {
     } catch (const ParameterError&) {
       throw;
     } catch (const std::exception& error) {
-      end_flight(Status::failed,
+      end_flight(RunStatus::failed, reason_of(error),
                  "the flight with '" + setup_.pilot_name + "' failed: " + error.what());
     } catch (...) {
-      end_flight(Status::failed, "the flight with '" + setup_.pilot_name +
-                                     "' failed: it threw something that is not a std::exception");
+      end_flight(RunStatus::failed, Reason::threw,
+                 "the flight with '" + setup_.pilot_name +
+                     "' failed: it threw something that is not a std::exception");
     }
   }
   return std::move(result_);
@@ -65,13 +66,13 @@ void Flight::fly_to_the_end() {
   while (!ended_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMostSteps) {
-      end_flight(Status::not_reached, (late ? time_out()
-                                            : "the most steps of a flight were used up (step_s is "
-                                              "short for this flight)") +
-                                          " at " + place(state_.position) + ", " + away() +
-                                          " from the goal");
+      end_flight(RunStatus::not_reached, late ? Reason::deadline : Reason::iterations,
+                 (late ? time_out()
+                       : "the most steps of a flight were used up (step_s is "
+                         "short for this flight)") +
+                     " at " + place(state_.position) + ", " + away() + " from the goal");
     } else if (setup_.request.budget.stop.stop_requested()) {
-      end_flight(Status::cancelled, "stopped at " + place(state_.position));
+      end_flight(RunStatus::cancelled, Reason::none, "stopped at " + place(state_.position));
     } else {
       sense();
       replan_when_due();
@@ -105,21 +106,22 @@ std::string Flight::away() const {
   return text;
 }
 
-void Flight::end_flight(Status status, std::string message) {
+void Flight::end_flight(RunStatus status, Reason reason, std::string message) {
   ended_ = true;
   result_.status = status;
+  result_.reason = reason;
   result_.message = std::move(message);
-  if (status == Status::not_reached && pilot_commands_ && setup_.replanner == nullptr) {
+  if (status == RunStatus::not_reached && pilot_commands_ && setup_.replanner == nullptr) {
     result_.message +=
         "; the fly step has no replan: with replan: ID (of a plan step) a new route "
         "from there is sought";
   }
-  if (status != Status::solved && !result_.replans.empty() &&
-      (result_.replans.back().status == Status::failed ||
-       result_.replans.back().status == Status::rejected)) {
+  if (status != RunStatus::solved && !result_.replans.empty() &&
+      (result_.replans.back().status == RunStatus::failed ||
+       result_.replans.back().status == RunStatus::rejected)) {
     const Replan& last = result_.replans.back();
     result_.message += "; the last replan, by '" + last.step + "', " +
-                       (last.status == Status::failed ? "failed: " : "was not flown: ") +
+                       (last.status == RunStatus::failed ? "failed: " : "was not flown: ") +
                        last.message;
   }
 }

@@ -12,6 +12,7 @@
 #include "altiplan/measures.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/smoother.hpp"
+#include "host/base/run_status.hpp"
 
 namespace altiplan::host {
 
@@ -72,13 +73,15 @@ struct Replan {
   double at_s = 0;
   std::string step;
   double time_s = 0;  ///< wall time
-  Status status = Status::failed;
+  RunStatus status = RunStatus::failed;
+  Reason reason = Reason::none;
   std::string message;
   Counters counters;
 };
 
 struct FlightResult {
-  Status status = Status::failed;  ///< solved, collided, not_reached, rejected or failed
+  RunStatus status = RunStatus::failed;  ///< solved, collided, not_reached, rejected or failed
+  Reason reason = Reason::none;
   std::string message;
   std::vector<std::pair<double, Vec3>> track;  ///< seconds, place; the first is the start
   std::vector<Handover> handovers;

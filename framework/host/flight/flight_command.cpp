@@ -38,7 +38,8 @@ void Flight::fly_route() {
     const double to_next = way.norm();
     if (to_next <= kLeastWay && progress_ + kLeastWay >= path_.length()) {
       if (!request_.goal.reached_at(state_.position)) {
-        end_flight(Status::not_reached, "the route ended " + away() + " from the goal");
+        end_flight(RunStatus::not_reached, Reason::route_ended,
+                   "the route ended " + away() + " from the goal");
       }
       return;
     }
@@ -86,7 +87,7 @@ void Flight::fly_pilot() {
   const double dt = step.next.time_s - state_.time_s;
   const double run = (step.next.position - state_.position).norm();
   if (run > top_speed(request_.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-    throw PluginError("broke a law of its interface: a step faster than the vehicle");
+    throw PluginError("broke a law of its interface: a step faster than the vehicle", Reason::law);
   }
   fly_leg(step.next);
 }
@@ -94,9 +95,9 @@ void Flight::fly_pilot() {
 void Flight::stuck(const std::string& why) {
   ask_replan();
   if (++stuck_ > kMostStuck) {
-    end_flight(Status::not_reached, "the pilot '" + setup_.pilot_name + "' is stuck at " +
-                                        place(state_.position) + ", " + away() +
-                                        " from the goal: " + why);
+    end_flight(RunStatus::not_reached, Reason::stuck,
+               "the pilot '" + setup_.pilot_name + "' is stuck at " + place(state_.position) +
+                   ", " + away() + " from the goal: " + why);
   }
 }
 

@@ -27,7 +27,7 @@ void Flight::fly_leg(const State& next) {
 }
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
-  separation_ = world_.separation_below(separation_, a, t0, b, t1);
+  world_.flown(a, t0, b, t1);
   const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
   if (met == nullptr || ended_) {  // what happens where a flight has ended changes no verdict
     return;
@@ -35,7 +35,7 @@ void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) 
   ++result_.collisions;
   result_.check.violations.push_back(
       {"collision", result_.track.size() - 1, 0, 0, "the vehicle touches '" + *met + "'"});
-  end_flight(Status::collided, "collided with '" + *met + "' near " + place(b));
+  end_flight(RunStatus::collided, Reason::none, "collided with '" + *met + "' near " + place(b));
 }
 
 void Flight::finish() {
@@ -47,8 +47,8 @@ void Flight::finish() {
   result_.measures = measure(track, truth_request_);
   result_.measures.min_radius_m = track_radius(track, request_.vehicle).radius_m;
   result_.measures.duration_s = state_.time_s - setup_.request.start.time_s;
-  if (std::isfinite(separation_)) {
-    result_.min_separation_m = separation_;
+  if (const double separation = world_.separation().distance; std::isfinite(separation)) {
+    result_.min_separation_m = separation;
   }
   if (pilot_ != nullptr) {
     result_.counters = pilot_->counters();
@@ -57,7 +57,8 @@ void Flight::finish() {
   judge_whole(track);
   if (!ended_) {
     const CheckResult& check = result_.check;
-    result_.status = check.ok() ? Status::solved : Status::rejected;
+    result_.status = check.ok() ? RunStatus::solved : RunStatus::rejected;
+    result_.reason = check.ok() ? Reason::none : Reason::rule;
     result_.message = check.ok() ? "reached the goal" : "reached the goal, but " + blame();
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "altiplan/error.hpp"
+
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
@@ -29,36 +31,55 @@ void Flight::replan_when_due() {
         Budget::Clock::now() + std::chrono::duration_cast<Budget::Clock::duration>(
                                    std::chrono::duration<double>(*setup_.replan_within_s));
   }
-  const PlanResult plan = replan(request);
-  if (plan.status != Status::solved) {
+  const Route route = replan(request);
+  if (route.empty()) {
     return;
   }
-  const CheckResult found = check(plan.route, request);
+  const CheckResult found = check(route, request);
   if (found.ok()) {
-    take_route(plan.route, request);
+    take_route(route, request);
   } else {
     Replan& refused = result_.replans.back();
-    refused.status = Status::rejected;
+    refused.status = RunStatus::rejected;
+    refused.reason = Reason::rule;
     refused.message = verdict_sentence(found, found.violations.front());
   }
 }
 
-PlanResult Flight::replan(const Request& request) {
+Route Flight::replan(const Request& request) {
   const auto began = std::chrono::steady_clock::now();
-  PlanResult plan = setup_.replanner->update(state_, request.goal, request.world, replan_changes_,
-                                             request.budget);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  Replan told;
+  told.at_s = state_.time_s;
+  told.step = setup_.replan_step;
+  Route route;
+  try {
+    PlanResult plan = setup_.replanner->update(state_, request.goal, request.world, replan_changes_,
+                                               request.budget);
+    told.status = run_status(plan.status);
+    told.reason = plan.reason;
+    told.message = std::move(plan.message);
+    told.counters = std::move(plan.counters);
+    if (plan.status == PlanStatus::solved) {
+      route = std::move(plan.route);
+    }
+  } catch (const PluginError& error) {  // the flight goes on without a new route
+    told.reason = error.reason();
+    told.message = error.what();
+  }
+  told.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   replan_changes_.clear();
-  result_.replans.push_back(
-      {state_.time_s, setup_.replan_step, took.count(), plan.status, plan.message, plan.counters});
-  return plan;
+  result_.replans.push_back(std::move(told));
+  return route;
 }
 
 void Flight::take_route(Route route, const Request& request) {
   for (const Smoother* smoother : setup_.smoothers) {
-    const PlanResult smooth = smoother->smooth(route, request);
-    if (smooth.status == Status::solved && check(smooth.route, request).ok()) {
-      route = smooth.route;
+    try {
+      const PlanResult smooth = smoother->smooth(route, request);
+      if (smooth.status == PlanStatus::solved && check(smooth.route, request).ok()) {
+        route = smooth.route;
+      }
+    } catch (const PluginError&) {  // the route stays as it was
     }
   }
   path_ = FlightPath(route);

@@ -23,7 +23,7 @@ class Flight {
   /// "timed out after 300 s (max_time_s)"
   std::string time_out() const;
   std::string away() const;
-  void end_flight(Status status, std::string message);
+  void end_flight(RunStatus status, Reason reason, std::string message);
   void hand_over(bool to_pilot, std::string why);
 
   // Events, sensing, and what the route ahead meets: flight_sensing.cpp.
@@ -54,12 +54,13 @@ class Flight {
   void ask_replan();
   /// The new route begins where the vehicle is when it comes.
   void replan_when_due();
-  PlanResult replan(const Request& request);
+  /// The route that the session finds; empty where it finds none.
+  Route replan(const Request& request);
   void take_route(Route route, const Request& request);
 
   // What was flown, judged in the true world: flight_judging.cpp.
   void fly_leg(const State& next);
-  /// Takes the separation from the true world there; the first contact ends the flight.
+  /// The leg counts for the separation; the first contact ends the flight.
   void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);
   void finish();
   /// The first rule that was broken, with time and place.
@@ -82,7 +83,6 @@ class Flight {
   bool ended_ = false;
   bool end_moved_ = false;  ///< the last leg was never judged
   double progress_ = 0;     ///< metres along the path
-  double separation_ = kInfinity;
   int steps_ = 0;
   int stuck_ = 0;
   std::optional<double> replan_due_;

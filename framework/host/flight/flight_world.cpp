@@ -4,16 +4,22 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 
 namespace altiplan::host {
 namespace {
 
 /// A layer carried elsewhere: asks the layer as it stood, at the place carried back.
-class Carried final : public Environment {
+class Carried final : public Environment, public Ground {
  public:
   Carried(std::shared_ptr<const Environment> original, const Vec3& by)
-      : original_(std::move(original)), by_(by) {}
+      : original_(std::move(original)), ground_(original_->ground()), by_(by) {
+    info_.threats = original_->info().threats;
+    for (Threat& threat : info_.threats) {
+      threat.centre += by_;
+    }
+  }
 
  private:
   Box do_bounds() const override {
@@ -31,31 +37,28 @@ class Carried final : public Environment {
       sink(carried);
     });
   }
-  bool do_has_ground() const override { return original_->has_ground(); }
-  std::optional<double> do_ground(double x, double y) const override {
-    const auto ground = original_->ground(x - by_.x(), y - by_.y());
-    return ground ? std::optional(*ground + by_.z()) : std::nullopt;
-  }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    return original_->ground_gap(a - by_, b - by_, enough);
-  }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
-    return original_->ground_gap_max(a - by_, b - by_);
-  }
-  double do_ground_slope(const Box& box) const override {
-    return original_->ground_slope({box.min - by_, box.max - by_});
-  }
-  std::vector<Threat> do_threats() const override {
-    std::vector<Threat> threats = original_->threats();
-    for (Threat& threat : threats) {
-      threat.centre += by_;
-    }
-    return threats;
-  }
   double do_slack() const override { return original_->slack(); }
+  const LayerInfo& do_info() const override { return info_; }
+
+  const Ground* do_ground() const override { return ground_ != nullptr ? this : nullptr; }
+  std::optional<double> do_height(double x, double y) const override {
+    const auto height = ground_->height(x - by_.x(), y - by_.y());
+    return height ? std::optional(*height + by_.z()) : std::nullopt;
+  }
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    return ground_->gap(a - by_, b - by_, enough);
+  }
+  double do_gap_max(const Vec3& a, const Vec3& b) const override {
+    return ground_->gap_max(a - by_, b - by_);
+  }
+  double do_slope(const Box& box) const override {
+    return ground_->slope({box.min - by_, box.max - by_});
+  }
 
   std::shared_ptr<const Environment> original_;
+  const Ground* ground_;  ///< of the original, or null
   Vec3 by_;
+  LayerInfo info_;  ///< of its threats alone
 };
 
 /// A sphere that covers the shape as far as it matters at the height of p: tall solids are taken
@@ -105,6 +108,7 @@ FlightWorld::FlightWorld(const FlightSetup& setup)
       sensing_m_(setup.request.vehicle.sensing_m) {}
 
 void FlightWorld::apply(const FlightEvent& event) {
+  measure_flown();
   using Kind = FlightEvent::Kind;
   std::vector<MovingObstacle> moving = truth_.moving();
   if (event.kind == Kind::add && event.moving) {
@@ -267,15 +271,46 @@ const std::string* FlightWorld::contact(const Vec3& a, double t0, const Vec3& b,
 
 double FlightWorld::separation_below(double least, const Vec3& a, double t0, const Vec3& b,
                                      double t1) const {
-  const double run = (b - a).norm();
   for (const Layer& layer : truth_.layers()) {
-    if (layer.environment->clearance(a) - run < least) {
-      least = std::min(least, leg_clearance(*layer.environment, a, b, least));
+    if (const auto nearest = nearest_leg(*layer.environment, {a, b}, least)) {
+      least = nearest->distance;
     }
   }
   for (const MovingObstacle& obstacle : truth_.moving()) {
     least = std::min(least, signed_separation(obstacle, a, t0, b, t1));
   }
   return least;
+}
+
+void FlightWorld::flown(const Vec3& a, double t0, const Vec3& b, double t1) {
+  if (flown_.empty()) {
+    flown_.push_back(a);
+  }
+  flown_.push_back(b);
+  for (const MovingObstacle& obstacle : truth_.moving()) {
+    const double its = signed_separation(obstacle, a, t0, b, t1);
+    if (its < separation_.distance) {
+      separation_ = {legs_, its};
+    }
+  }
+  ++legs_;
+}
+
+void FlightWorld::measure_flown() {
+  if (flown_.empty()) {
+    return;
+  }
+  const std::size_t first = legs_ - (flown_.size() - 1);
+  for (const Layer& layer : truth_.layers()) {
+    if (const auto nearest = nearest_leg(*layer.environment, flown_, separation_.distance)) {
+      separation_ = {first + nearest->leg, nearest->distance};
+    }
+  }
+  flown_.clear();
+}
+
+NearestLeg FlightWorld::separation() {
+  measure_flown();
+  return separation_;
 }
 }  // namespace altiplan::host

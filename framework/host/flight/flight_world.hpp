@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/nearest_place.hpp"
 #include "host/flight/flight.hpp"
 
 namespace altiplan::host {
@@ -39,8 +40,15 @@ class FlightWorld {
   /// Least distance between the leg and anything in the true world, if it is below `least`:
   /// signed as leg_clearance is, and so minus the depth inside of something.
   double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const;
+  /// A leg that was flown, from where the one before ended.
+  void flown(const Vec3& a, double t0, const Vec3& b, double t1);
+  /// Of all that was flown, in the true world as it was then; infinite where nothing was near.
+  NearestLeg separation();
 
  private:
+  /// Measures the legs flown in the layers as they are: all at once, since most need no exact
+  /// figure.
+  void measure_flown();
   void move(const FlightEvent& event);
   // `old`: the layer as it was known, or null.
   bool sees_difference(const Layer& layer, const Layer* old, const Vec3& p) const;
@@ -57,5 +65,8 @@ class FlightWorld {
   std::set<std::string> told_;               ///< ids whose last change need not be sensed
   std::map<std::string, Change> set_cells_;  ///< by layer: where its cells differ, until known
   std::vector<SensedObstacle> sensed_;
+  NearestLeg separation_{0, kInfinity};
+  std::size_t legs_ = 0;
+  Route flown_;  ///< the last of them, in the layers as they are, not yet measured against these
 };
 }  // namespace altiplan::host

@@ -118,7 +118,7 @@ std::vector<NamedConstraint> constraints_of(const Config& config, const Calling&
             {entry.plugin,
              plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
       } catch (const PluginError& error) {
-        throw PluginError(who + " " + error.what());
+        throw PluginError(who + " " + error.what(), error.reason());
       }
       if (all.back().constraint == nullptr) {
         throw PluginError(who + " made no object");
@@ -171,8 +171,7 @@ void expect_sound(const Layer& layer) {
              [&] {
                const Environment& asked = *layer.environment;
                // What throws at all does it here, and not to those who ask later.
-               (void)(asked.has_ground(), asked.native_grid(), asked.frame(), asked.threats(),
-                      asked.notes());
+               (void)(asked.ground(), asked.info());
                return std::pair(asked.slack(), asked.bounds());
              });
   if (!(slack >= 0 && std::isfinite(slack))) {
@@ -201,7 +200,8 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
   } catch (const ConfigError&) {
     throw;
   } catch (const PluginError& error) {
-    throw PluginError("the environment '" + plugin_name + "' (" + key + ") " + error.what());
+    throw PluginError("the environment '" + plugin_name + "' (" + key + ") " + error.what(),
+                      error.reason());
   } catch (const ParameterError& error) {
     throw ConfigError(place_of(parameters, error.key()), key + "." + error.key(), error.what());
   } catch (const Error& error) {
@@ -226,13 +226,13 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
     Layer layer =
         build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site, key);
-    for (const std::string& note : layer.environment->notes()) {
+    const LayerInfo& info = layer.environment->info();
+    for (const std::string& note : info.notes) {
       mission.notes.push_back(entry.id + ": " + note);
     }
-    const auto frame = layer.environment->frame();
     truth = truth.with(std::move(layer));
-    if (frame && !truth.frame().has_position()) {
-      truth = truth.with_frame(*frame);
+    if (info.frame && !truth.frame().has_position()) {
+      truth = truth.with_frame(*info.frame);
     }
   }
 }
@@ -281,22 +281,13 @@ World known_part(const World& truth) {
   }
   return known.with_moving(std::move(moving));
 }
-}  // namespace
 
-Mission build_mission(const Config& config, int threads, const Calling& told) {
-  const Calling calling = told ? told : [](const std::string&) {};
-  const auto began = std::chrono::steady_clock::now();
+/// What the layers are built from, but for what they bring themselves.
+Site site_of(const Config& config) {
   const ScenarioFile& file = config.scenario;
-  const Value& tree = config.scenario_tree;
-  Mission mission;
-  mission.notes = config.notes;
-  Site& site = mission.site;
+  Site site;
   site.vehicle = vehicle_of(file.vehicle);
   site.frame_crs = file.frame.crs;
-  if (file.frame.origin_lonlat) {
-    const auto [lon, lat] = *file.frame.origin_lonlat;
-    mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
-  }
   site.random = RandomStream(std::uint64_t(config.seed));
   if (file.start_time) {
     site.start_time_s = kit::parse_iso_time(*file.start_time).value();  // checked on reading
@@ -308,10 +299,46 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   if (file.volume.max_m) {
     site.volume.max = *file.volume.max_m;
   }
+  return site;
+}
+
+/// Start, goal and the points between, in the frame that is now known.
+void place_points(const Config& config, Mission& mission) {
+  const ScenarioFile& file = config.scenario;
+  const Value& tree = config.scenario_tree;
+  Site& site = mission.site;
+  Request& request = mission.request;
+  const auto placed = [&](const Point& point, const Location& where, const std::string& key) {
+    return resolve_point(point, site, file.level_flight_at_m, where, key);
+  };
+  request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
+  request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m};
+  site.start = request.start.position;
+  site.goal = request.goal.position;
+  for (std::size_t i = 0; i < file.via.size(); ++i) {
+    mission.via.push_back(
+        {placed(file.via[i].point, tree.find("via")->items[i].where, "via." + std::to_string(i)),
+         file.via[i].tolerance_m});
+  }
+}
+}  // namespace
+
+Mission build_mission(const Config& config, int threads, const Calling& told) {
+  const Calling calling = told ? told : [](const std::string&) {};
+  const auto began = std::chrono::steady_clock::now();
+  const ScenarioFile& file = config.scenario;
+  Mission mission;
+  mission.notes = config.notes;
+  mission.site = site_of(config);
+  Site& site = mission.site;
+  if (file.frame.origin_lonlat) {
+    const auto [lon, lat] = *file.frame.origin_lonlat;
+    mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
+  }
   build_layers(config, mission, calling);
   World& truth = mission.truth;
   if (!file.frame.crs.empty() && !truth.has_ground()) {
-    throw ConfigError(place_of(tree, "frame"), "frame.crs",
+    throw ConfigError(place_of(config.scenario_tree, "frame"), "frame.crs",
                       "only an elevation model (terrain) can be brought into a coordinate system, "
                       "and the world has none: give origin_lonlat, a place near the flight");
   }
@@ -329,18 +356,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   request.level_m = level;
   request.threads = threads;
   request.random = site.random;
-  request.start.position =
-      resolve_point(file.start.point, site, level, place_of(tree, "start"), "start");
-  request.goal = {resolve_point(file.goal.point, site, level, place_of(tree, "goal"), "goal"),
-                  file.goal.tolerance_m};
-  site.start = request.start.position;
-  site.goal = request.goal.position;
-  for (std::size_t i = 0; i < file.via.size(); ++i) {
-    const std::string key = "via." + std::to_string(i);
-    mission.via.push_back(
-        {resolve_point(file.via[i].point, site, level, tree.find("via")->items[i].where, key),
-         file.via[i].tolerance_m});
-  }
+  place_points(config, mission);
   mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
   const std::vector<NamedConstraint> constraints = constraints_of(config, calling);

@@ -38,7 +38,7 @@ std::string sanitizer_text(unsigned bits) {
 
 /// What keeps a plugin with this manifest out of this host, both sides named; "" where nothing.
 std::string mismatch(const Manifest& plugin) {
-  const Manifest host = make_manifest("", "", "");
+  const Manifest host = make_manifest<Planner>("", "", "");
   const auto version = [](const Manifest& m) {
     return std::to_string(m.api_major) + "." + std::to_string(m.api_minor);
   };
@@ -60,7 +60,7 @@ std::string mismatch(const Manifest& plugin) {
            sanitizer_text(host.sanitizers);
   }
   for (std::size_t i = 0; i < Manifest::kLayouts; ++i) {
-    if (plugin.layouts[i] != host.layouts[i]) {
+    if (plugin.layouts[i] != 0 && plugin.layouts[i] != host.layouts[i]) {
       return std::string("its ") + kLayoutNames[i] + " has " + layout_text(plugin.layouts[i]) +
              ", this altiplan's " + layout_text(host.layouts[i]) +
              ": built with other headers or ABI flags";

@@ -13,6 +13,10 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
+Json reason_json(Reason reason) {
+  return reason == Reason::none ? Json(nullptr) : Json(name(reason));
+}
+
 Json counters_json(const Counters& counters) {
   Json json = Json::object();
   for (const Counter& counter : counters) {
@@ -38,6 +42,7 @@ Json step_json(const StepResult& step) {
   json["instead_of"] = step.instead_of ? Json(*step.instead_of) : Json(nullptr);
   json["stands"] = step.stands;
   json["status"] = name(step.status);
+  json["reason"] = reason_json(step.reason);
   json["message"] = step.message;
   json["proved"] = step.proved;
   json["budget_hit"] = step.budget_hit;
@@ -80,6 +85,7 @@ Json run_metrics(const RunResult& result) {
 Json flight_json(const FlightResult& flight) {
   Json json;
   json["status"] = name(flight.status);
+  json["reason"] = reason_json(flight.reason);
   json["message"] = flight.message;
   json["metrics"] = to_json(flight.measures);
   json["check"] = to_json(flight.check);
@@ -97,6 +103,7 @@ Json flight_json(const FlightResult& flight) {
     json["replans"].push_back({{"at_s", replan.at_s},
                                {"step", replan.step},
                                {"status", name(replan.status)},
+                               {"reason", reason_json(replan.reason)},
                                {"message", replan.message},
                                {"time_s", replan.time_s},
                                {"counters", counters_json(replan.counters)}});
@@ -230,6 +237,7 @@ Json result_json(const Config& config, const RunResult& result) {
   json["overrides"] = overrides_json(config);
   json["seed"] = config.seed;
   json["status"] = name(result.status);
+  json["reason"] = reason_json(result.reason);
   json["message"] = result.message;
   json["budget_hit"] = result.budget_hit;
   json["setup_time_s"] = result.setup_time_s;

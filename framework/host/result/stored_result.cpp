@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/kit/formats/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 
 namespace altiplan::host {
@@ -108,7 +109,14 @@ StoredResult stored_result(const std::string& file, Json content, const Override
     stored.pipeline = json.at("pipeline").get<std::string>();
     for (const Json& used : json.at("files")) {
       const std::string path = used.at("path").get<std::string>();
-      if (sha256(path) != used.at("sha256")) {
+      std::string sum = sha256(path);
+      if (sum.empty() && is_there(path)) {  // what cannot be read is not another file
+        if (const std::string why = first_unreadable({path}); !why.empty()) {
+          throw Error(why);
+        }
+        sum = sha256(path);
+      }
+      if (sum != used.at("sha256")) {
         stored.changed.push_back(path);
       }
     }

@@ -2,8 +2,10 @@
 #include "host/run/along_via.hpp"
 
 #include <algorithm>
-#include <string_view>
+#include <string>
 
+#include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
@@ -68,23 +70,31 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
   goals.push_back(request.goal);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     request.goal = goals[i];
-    PlanResult part = plan_part(request);
+    const std::string to = i + 1 == goals.size() ? "the goal" : "via point " + std::to_string(i);
+    const auto on_the_way = [&](const std::string& message) {
+      return goals.size() > 1 ? "on the way to " + to + ": " + message : message;
+    };
+    PlanResult part;
+    try {
+      part = plan_part(request);
+    } catch (const PluginError& error) {
+      throw PluginError(on_the_way(error.what()), error.reason());
+    }
     add_counters(whole.counters, part.counters);
     whole.budget_hit = whole.budget_hit || part.budget_hit;
     whole.proved = part.proved;
     whole.status = part.status;
+    whole.reason = part.reason;
     whole.message = part.message;
-    if (part.status != Status::solved && goals.size() > 1) {
-      const std::string to = i + 1 == goals.size() ? "the goal" : "via point " + std::to_string(i);
-      // To the planner every end is "the goal"; a via point that cannot be flown is named as one.
-      const std::string_view goal = "the goal ";
-      const bool its_end = part.status == Status::invalid_problem && part.message.starts_with(goal);
-      whole.message = its_end ? to + " " + part.message.substr(goal.size())
-                              : "on the way to " + to + ": " + part.message;
+    if (part.status != PlanStatus::solved) {
+      // To the planner every end is the goal; a via point that cannot be flown is named as one.
+      whole.message = goals.size() > 1 && part.reason == Reason::goal
+                          ? to + " " + point_problem(request.goal.position, request)
+                          : on_the_way(part.message);
     }
     const std::ptrdiff_t shared = whole.route.empty() || part.route.empty() ? 0 : 1;
     whole.route.insert(whole.route.end(), part.route.begin() + shared, part.route.end());
-    if (part.status != Status::solved) {
+    if (part.status != PlanStatus::solved) {
       break;
     }
     request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
@@ -101,7 +111,7 @@ FreshVia::FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part)
 
 void FreshVia::take(PlanResult result) {
   result_ = std::move(result);
-  if (result_.status == Status::solved) {
+  if (result_.status == PlanStatus::solved) {
     flown_ = result_.route;
   }
 }

@@ -109,8 +109,10 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
   } else {
     smooth(entry, step);
   }
-  if (step.status == Status::cancelled && !interrupted()) {  // the watchdog's stop, not the user's
-    step.status = Status::timed_out;
+  if (step.status == RunStatus::cancelled &&
+      !interrupted()) {  // the watchdog's stop, not the user's
+    step.status = RunStatus::timed_out;
+    step.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     step.budget_hit = true;
     if (!watchdog_.out_of_memory()) {
       step.message = "its time was used up (" + step.message + ")";
@@ -144,10 +146,12 @@ void Run::name_caller(std::string who) {
     return;
   }
   RunResult ended = result_;
-  ended.status = Status::failed;
+  ended.status = RunStatus::failed;
+  ended.reason = Reason::process_ended;
   ended.message = caller_ + " " + ProcessGuard::LastWords::kCause;
   if (!ended.steps.empty()) {
-    ended.steps.back().status = Status::failed;
+    ended.steps.back().status = RunStatus::failed;
+    ended.steps.back().reason = Reason::process_ended;
     ended.steps.back().message = ended.message;
     ended.message = ended.steps.back().id + ": " + ended.message;
   }
@@ -213,36 +217,46 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
                   const std::function<PlanResult(const Request&)>& work) {
   const Request request = request_for(entry, result_.steps.size());
   const auto began = Clock::now();
-  PlanResult result;
+  step.status = RunStatus::failed;
   try {
-    result = work(request);
+    take_answer(step, work(request));
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);
   } catch (const MachineFault&) {
     throw;  // which is no failure of the step
+  } catch (const PluginError& error) {
+    step.reason = error.reason();
+    step.message = error.what();
   } catch (const std::exception& error) {
-    result = PlanResult{};
-    result.message = std::string("threw: ") + error.what();
+    step.reason = reason_of(error);
+    step.message = std::string("threw: ") + error.what();
   } catch (...) {
-    result = PlanResult{};
-    result.message = "threw something that is not a std::exception";
+    step.reason = Reason::threw;
+    step.message = "threw something that is not a std::exception";
   }
   step.time_s = seconds_since(began);
   if (const std::string changed = leave(); !changed.empty()) {
-    result.status = Status::failed;
-    result.message = changed;
+    step.status = RunStatus::failed;
+    step.reason = Reason::process_changed;
+    step.message = changed;
   }
-  if (watchdog_.out_of_memory() && result.status != Status::solved) {
-    result.message = "stopped: it used more memory than its within_mb";
+  if (watchdog_.out_of_memory() && step.status != RunStatus::solved) {
+    step.reason = Reason::memory;
+    step.message = "stopped: it used more memory than its within_mb";
   }
-  step.status = result.status;
-  step.message = result.message.empty() && result.status != Status::solved
-                     ? "the plugin gave no reason"
-                     : std::move(result.message);
-  step.counters = std::move(result.counters);
-  step.budget_hit = result.budget_hit;
-  step.proved = result.proved;
-  step.route = std::move(result.route);
+  if (step.message.empty() && step.status != RunStatus::solved) {
+    step.message = "the plugin gave no reason";
+  }
+}
+
+void Run::take_answer(StepResult& step, PlanResult answer) {
+  step.status = run_status(answer.status);
+  step.reason = answer.reason;
+  step.message = std::move(answer.message);
+  step.counters = std::move(answer.counters);
+  step.budget_hit = answer.budget_hit;
+  step.proved = answer.proved;
+  step.route = std::move(answer.route);
 }
 
 std::size_t Run::input_of(const StepEntry& entry) const {
@@ -254,7 +268,7 @@ void Run::conclude() {
   result_.budget_hit = std::any_of(result_.steps.begin(), result_.steps.end(),
                                    [](const StepResult& s) { return s.budget_hit; });
   if (interrupted()) {
-    result_.status = Status::cancelled;
+    result_.status = RunStatus::cancelled;
     result_.message = "interrupted";
     if (result_.standing) {
       result_.message += "; the route of '" + result_.steps[*result_.standing].id + "' stands";
@@ -264,11 +278,13 @@ void Run::conclude() {
   if (!result_.standing) {
     const StepResult& last = result_.steps.back();
     result_.status = last.status;
+    result_.reason = last.reason;
     result_.message = last.id + ": " + last.message;
     return;
   }
   const std::string standing = result_.steps[*result_.standing].id;
-  result_.status = result_.flight ? result_.flight->status : Status::solved;
+  result_.status = result_.flight ? result_.flight->status : RunStatus::solved;
+  result_.reason = result_.flight ? result_.flight->reason : Reason::none;
   result_.message = "the route of '" + standing + "' stands" +
                     (result_.flight ? "; the flight: " + result_.flight->message : "");
 }
@@ -277,12 +293,14 @@ void Run::give_up(const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (!result_.steps.empty()) {
     StepResult& step = result_.steps.back();
-    step.status = interrupted() ? Status::cancelled : Status::failed;
+    step.status = interrupted() ? RunStatus::cancelled : RunStatus::failed;
+    step.reason = Reason::never_stopped;
     step.message = caller_ + " " + why;
   }
   result_.message =
       (result_.steps.empty() ? "" : result_.steps.back().id + ": ") + caller_ + " " + why;
-  result_.status = Status::failed;
+  result_.status = RunStatus::failed;
+  result_.reason = Reason::never_stopped;
   if (interrupted()) {
     conclude();
   }
@@ -295,13 +313,13 @@ void Run::give_up(const std::string& why) {
 }
 
 int RunResult::exit_code() const {
-  if (status == Status::solved) {
+  if (status == RunStatus::solved) {
     return 0;
   }
   const bool failed = std::any_of(steps.begin(), steps.end(), [](const StepResult& step) {
-    return step.status == Status::failed;
+    return step.status == RunStatus::failed;
   });
-  return !standing && (failed || status == Status::failed) ? 4 : 1;
+  return !standing && (failed || status == RunStatus::failed) ? 4 : 1;
 }
 
 RunResult run(const Config& config, const RunOptions& options) { return Run(config, options)(); }

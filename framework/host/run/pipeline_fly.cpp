@@ -1,13 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "altiplan/error.hpp"
 #include "host/flight/flight.hpp"
 #include "host/run/pipeline_run.hpp"
 
 namespace altiplan::host {
+namespace {
+
+/// In place of a session that could not begin: each replan says why.
+class BrokenSession final : public Session {
+ public:
+  explicit BrokenSession(PluginError error) : error_(std::move(error)) {}
+
+ private:
+  const PlanResult& do_result() const override { throw error_; }
+  const PlanResult& do_update(const State&, const Goal&, std::shared_ptr<const World>,
+                              std::span<const Change>, const Budget&) override {
+    throw error_;
+  }
+
+  PluginError error_;
+};
+}  // namespace
 
 void Run::fly_step(const StepEntry& step) {
   fly_once(step, std::nullopt);
   for (const StepEntry& other : step.otherwise) {
-    if (result_.flight->status == Status::solved || interrupted()) {
+    if (result_.flight->status == RunStatus::solved || interrupted()) {
       return;
     }
     fly_once(other, step.id);
@@ -67,19 +85,22 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
     throw at_its_key(entry, error);
   }
   if (const std::string changed = leave(); !changed.empty()) {
-    flight.status = Status::failed;
+    flight.status = RunStatus::failed;
+    flight.reason = Reason::process_changed;
     flight.message = named(entry) + " " + changed;
   }
   step.time_s = seconds_since(began) - step.setup_time_s;
-  if (flight.status == Status::cancelled && !interrupted()) {
+  if (flight.status == RunStatus::cancelled && !interrupted()) {
     step.budget_hit = true;
-    flight.status = Status::not_reached;
+    flight.status = RunStatus::not_reached;
+    flight.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     flight.message = (watchdog_.out_of_memory() ? "the step's memory was used up: "
                                                 : "the step's computing time ended: ") +
                      flight.message;
   }
-  step.stands = flight.status == Status::solved;
+  step.stands = flight.status == RunStatus::solved;
   step.status = flight.status;
+  step.reason = flight.reason;
   step.message = flight.message;
   step.counters = flight.counters;
   const std::lock_guard lock(mutex_);
@@ -114,6 +135,8 @@ void Run::find_replanner(const StepEntry& entry, const StepEntry& planner, const
       session = begin_session(*made, setup.route_request);
     } catch (const ParameterError& error) {
       throw at_its_key(planner, error);
+    } catch (const PluginError& error) {
+      session = std::make_unique<BrokenSession>(error);
     }
   }
   setup.replanner = session.get();

@@ -59,6 +59,7 @@ class Run {
   /// Runs a plugin's work under the watchdog, timed; what it throws ends up in the step.
   void guarded(const StepEntry& entry, StepResult& step,
                const std::function<PlanResult(const Request&)>& work);
+  static void take_answer(StepResult& step, PlanResult answer);
 
   /// A planner, or a local planner that is rolled out, kept for the sessions that use it.
   struct PlanPlugin {
@@ -102,7 +103,7 @@ class Run {
     } catch (const ConfigError&) {
       throw;
     } catch (const PluginError& error) {
-      throw PluginError(who + " " + error.what());
+      throw PluginError(who + " " + error.what(), error.reason());
     } catch (const ParameterError& error) {
       throw at_its_key(entry, error);
     } catch (const Error& error) {

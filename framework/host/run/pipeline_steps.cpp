@@ -80,7 +80,7 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
     from = cuts[piece++];
     return result;
   });
-  if (!fixed.empty() && whole.status == Status::solved) {
+  if (!fixed.empty() && whole.status == PlanStatus::solved) {
     whole.message = std::move(told);
   }
   return whole;
@@ -99,7 +99,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
   }
   enter("judging the route of '" + step.id + "' by layers and constraints (" + asked + ")");
   try {
-    if (step.status == Status::solved) {  // first: the judge knows whom to blame
+    if (step.status == RunStatus::solved) {  // first: the judge knows whom to blame
       step.check = judge(step.route, request, mission_.via);
     }
     step.measures = measure(step.route, request);
@@ -107,15 +107,18 @@ void Run::judge_step(StepResult& step, const Request& request) {
       take_verdict(step);
     }
   } catch (const std::exception& error) {
-    step.status = Status::failed;
+    step.status = RunStatus::failed;
+    step.reason = reason_of(error);
     step.message = std::string("judging the route, a layer or constraint threw: ") + error.what();
   } catch (...) {
-    step.status = Status::failed;
+    step.status = RunStatus::failed;
+    step.reason = Reason::threw;
     step.message = "judging the route, a layer or constraint threw";
   }
   if (const std::string changed = leave(); !changed.empty()) {
     step.stands = false;
-    step.status = Status::failed;
+    step.status = RunStatus::failed;
+    step.reason = Reason::process_changed;
     step.message = "judging the route, a layer or constraint " + changed;
   }
 }
@@ -127,7 +130,8 @@ void Run::take_verdict(StepResult& step) {
     return;
   }
   const Violation* worst = blamed_layer(*step.check);
-  step.status = worst != nullptr ? Status::failed : Status::rejected;
+  step.status = worst != nullptr ? RunStatus::failed : RunStatus::rejected;
+  step.reason = worst != nullptr ? Reason::law : Reason::rule;
   if (worst == nullptr) {
     worst = &found.front();
   }

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/planner.hpp"
 #include "host/flight/track_judge.hpp"
 
 namespace altiplan::host {
@@ -14,22 +14,33 @@ namespace {
 /// A pilot that neither arrives nor gives up is stopped here, budget or none.
 constexpr std::uint64_t kMostSteps = 1'000'000;
 constexpr double kStepSeconds = 1;
+
+/// What Pilot::step does not see: a step is no faster than the vehicle, and `arrived` is at the
+/// goal.
+void expect_lawful(const PilotStep& step, const Observation& seen, const Request& request) {
+  const double run = (step.next.position - seen.state.position).norm();
+  const double dt = step.next.time_s - seen.state.time_s;
+  if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
+    throw PluginError("the pilot broke a law of its interface: a step faster than the vehicle",
+                      Reason::law);
+  }
+  if (step.outcome == PilotStep::Outcome::arrived && !request.goal.reached_at(step.next.position)) {
+    throw PluginError("the pilot broke a law of its interface: it says arrived " +
+                          std::to_string((step.next.position - request.goal.position).norm()) +
+                          " m from the goal",
+                      Reason::law);
+  }
+}
 }  // namespace
 
 PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
-  PlanResult result;
-  for (const auto& [what, p] :
-       {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
-    const std::string problem = point_problem(p, request);
-    if (!problem.empty()) {
-      result.status = Status::invalid_problem;
-      result.message = std::string("the ") + what + " " + problem;
-      return result;
-    }
+  if (auto impossible = impossible_ends(request)) {
+    return *std::move(impossible);
   }
   const std::unique_ptr<Pilot> pilot = planner.begin(request);
   BudgetWatch watch(request.budget);
   const Vec3 rest[] = {request.goal.position};
+  PlanResult result;
   Observation seen;
   seen.state = request.start;
   seen.local_target = request.goal.position;
@@ -39,49 +50,43 @@ PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
   seen.max_dt_s = kStepSeconds;
   result.route = {request.start.position};
   std::uint64_t steps = 0;
-  result.status = Status::timed_out;
+  result.status = PlanStatus::timed_out;
   result.message = "the budget ended before the pilot arrived";
   while (true) {
     if (request.goal.reached_at(seen.state.position)) {
-      result.status = Status::solved;
+      result.status = PlanStatus::solved;
       result.message = "arrived after " + std::to_string(steps) + " steps";
       break;
     }
     if (watch.spent(steps)) {
       result.budget_hit = true;
+      result.reason =
+          steps >= request.budget.max_iterations ? Reason::iterations : Reason::deadline;
       if (watch.cancelled()) {
-        result.status = Status::cancelled;
+        result.reason = Reason::none;
+        result.status = PlanStatus::cancelled;
         result.message = "stopped before the pilot arrived";
       }
       break;
     }
     if (steps == kMostSteps) {
-      result.status = Status::no_route;
+      result.status = PlanStatus::no_route;
       result.message = "the pilot did not arrive in " + std::to_string(steps) + " steps";
       break;
     }
     const PilotStep step = pilot->step(seen);
     ++steps;
     if (step.outcome == PilotStep::Outcome::stuck) {
-      result.status = Status::no_route;
+      result.status = PlanStatus::no_route;
+      result.reason = Reason::stuck;
       result.message = "the pilot is stuck: " + std::string(step.why);
       break;
     }
-    const double run = (step.next.position - seen.state.position).norm();
-    const double dt = step.next.time_s - seen.state.time_s;
-    if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-      throw PluginError("the pilot broke a law of its interface: a step faster than the vehicle");
-    }
+    expect_lawful(step, seen, request);
     if (step.next.position != seen.state.position) {
       result.route.push_back(step.next.position);
     }
     seen.state = step.next;
-    if (step.outcome == PilotStep::Outcome::arrived &&
-        !request.goal.reached_at(step.next.position)) {
-      throw PluginError("the pilot broke a law of its interface: it says arrived " +
-                        std::to_string((step.next.position - request.goal.position).norm()) +
-                        " m from the goal");
-    }
   }
   result.counters = pilot->counters();
   result.counters.insert(result.counters.begin(), {"expanded", std::int64_t(steps)});

@@ -18,7 +18,8 @@ struct StepResult {
   std::string plugin;
   std::optional<std::string> instead_of;
   bool stands = false;
-  Status status = Status::failed;
+  RunStatus status = RunStatus::failed;
+  Reason reason = Reason::none;
   std::string message;
   double time_s = 0;
   double setup_time_s = 0;
@@ -32,7 +33,8 @@ struct StepResult {
 
 /// What a run gave; grows while it runs.
 struct RunResult {
-  Status status = Status::failed;
+  RunStatus status = RunStatus::failed;
+  Reason reason = Reason::none;
   std::string message;
   bool budget_hit = false;
   std::vector<StepResult> steps;

@@ -42,7 +42,7 @@ Json corners_json(const Frame& frame, const Box& box) {
 Json attribution_json(const World& truth, const std::vector<FlightEvent>& events) {
   std::set<std::string> lines;
   const auto read = [&](const Layer& layer) {
-    for (const std::string& note : layer.environment->notes()) {
+    for (const std::string& note : layer.environment->info().notes) {
       if (note.starts_with(kAttribution)) {
         lines.insert(note.substr(kAttribution.size()));
       }

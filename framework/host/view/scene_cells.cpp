@@ -11,15 +11,15 @@ namespace {
 constexpr double kMostCells = 1'000'000;
 
 /// What is kept of the layer's cells: not those within its ground, which is drawn as such.
-VoxelGrid without_ground(const Environment& layer, const VoxelGrid& cells) {
+VoxelGrid without_ground(const Ground& ground, const VoxelGrid& cells) {
   const GridSpec& spec = cells.spec();
   VoxelGrid kept(spec);
   for (int j = 0; j < spec.counts[1]; ++j) {
     for (int i = 0; i < spec.counts[0]; ++i) {
       const Vec3 at = spec.centre({i, j, 0});
-      const double ground = layer.ground(at.x(), at.y()).value_or(-kInfinity);
+      const double height = ground.height(at.x(), at.y()).value_or(-kInfinity);
       for (int k = 0; k < spec.counts[2]; ++k) {
-        kept.set({i, j, k}, cells.blocked(i, j, k) && spec.cell_box({i, j, k}).min.z() > ground);
+        kept.set({i, j, k}, cells.blocked(i, j, k) && spec.cell_box({i, j, k}).min.z() > height);
       }
     }
   }
@@ -49,8 +49,8 @@ Drawing drawing_by_cells(const Layer& layer, const Box& box, SceneNotes& notes) 
   std::snprintf(text, sizeof text, ": drawn as cells of %.3g x %.3g x %.3g m", spec.cell.x(),
                 spec.cell.y(), spec.cell.z());
   notes.add(layer.id + text);
-  if (environment.has_ground()) {
-    grid = without_ground(environment, grid);
+  if (const Ground* ground = environment.ground()) {
+    grid = without_ground(*ground, grid);
   }
   return kit::drawing_of(kit::boxes_of(grid));
 }

@@ -114,6 +114,8 @@ class TruthAlong {
   double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const {
     return world_.separation_below(least, a, t0, b, t1);
   }
+  void flown(const Vec3& a, double t0, const Vec3& b, double t1) { world_.flown(a, t0, b, t1); }
+  NearestLeg separation() { return world_.separation(); }
   const World& truth() const { return world_.truth(); }
 
  private:
@@ -145,17 +147,11 @@ std::pair<double, Vec3> at(const Track& track, const TrackPlace& place) {
 TrackPlace nearest_place(const Track& track, TruthAlong truth) {
   constexpr double kFine = 1e-4;  // metres
   TruthAlong there = truth;
-  double least = kInfinity;
-  std::size_t leg = 0;
   for (std::size_t i = 0; i + 1 < track.size(); ++i) {
     truth.go_to(i);
-    const double its = truth.separation_below(least, track[i].second, track[i].first,
-                                              track[i + 1].second, track[i + 1].first);
-    if (its < least) {
-      least = its;
-      leg = i;
-    }
+    truth.flown(track[i].second, track[i].first, track[i + 1].second, track[i + 1].first);
   }
+  const auto [leg, least] = truth.separation();
   if (least == kInfinity) {
     return {0, 0};
   }

@@ -112,10 +112,10 @@ Json ground_json(const World& world, const Box& box, SceneNotes& notes) {
   Box area = Box::empty();
   double spacing = std::max(box.max.x() - box.min.x(), box.max.y() - box.min.y()) / kSamples;
   for (const Layer& layer : world.layers()) {
-    if (layer.environment->has_ground()) {
+    if (const Ground* ground = layer.environment->ground()) {
       grounds.push_back(&layer);
       area = area.united(layer.environment->bounds());
-      if (const HeightField* field = layer.environment->height_field()) {
+      if (const HeightField* field = ground->height_field()) {
         spacing = std::min({spacing, field->spacing()[0], field->spacing()[1]});
       }
     }
@@ -123,7 +123,7 @@ Json ground_json(const World& world, const Box& box, SceneNotes& notes) {
   if (grounds.empty()) {
     return nullptr;
   }
-  const HeightField* field = grounds.front()->environment->height_field();
+  const HeightField* field = grounds.front()->environment->ground()->height_field();
   if (grounds.size() == 1 && field != nullptr) {
     return of_field(*field, grounds.front()->id, box, notes);
   }

@@ -14,7 +14,7 @@
 
 namespace altiplan {
 
-class HeightField;
+class Ground;
 class World;
 
 /// A disc that a plane planner avoids.
@@ -33,6 +33,15 @@ struct Nearby {
   int id = 0;            ///< of the obstacle within its layer
 };
 using NearSink = std::function<void(const Nearby&)>;
+
+/// What a layer says of itself.
+struct LayerInfo {
+  std::optional<Frame> frame;           ///< that its files fix, for a world that has none yet
+  std::optional<GridSpec> native_grid;  ///< its cells, where it has cells of its own
+  std::vector<Threat> threats;          ///< what planners of the plane see of it
+  /// What a user should know of what was read ("403 x 344 posts, 236 to 1076 m"), a line each.
+  std::vector<std::string> notes;
+};
 
 /// What an environment is built from besides its parameters.
 struct ALTIPLAN_API Site {
@@ -53,8 +62,7 @@ struct ALTIPLAN_API Site {
 };
 
 /// A layer of the world: terrain, buildings, zones, radars. Immutable; a solid, closed set.
-/// A place that is not finite is blocked, has a clearance of -infinity and no ground; the layer is
-/// not asked.
+/// A place that is not finite is blocked and has a clearance of -infinity; the layer is not asked.
 ///
 /// Laws, held by every environment and tested by the conformance suite:
 ///  1. Pure: built from (parameters, Site) alone; const functions may run on many threads.
@@ -62,9 +70,8 @@ struct ALTIPLAN_API Site {
 ///  3. blocked(a, b, r) is true whenever the least distance between the leg and the layer is below
 ///     r - 1e-6 m; it may be true up to slack() metres above r; touching is free.
 ///  4. blocked is symmetric in a and b, and monotone in r.
-///  5. ground(x, y) is the height of the ground that this layer brings, if any; ground_gap is the
-///     least height of a leg above it, exact within 1e-6 m. Beyond its ground a layer blocks
-///     nothing: a leg with no ground below part of it is the judge's to refuse.
+///  5. Its ground, if it has one, holds the laws of Ground. Beyond it the layer blocks nothing: a
+///     leg with no ground below part of it is the judge's to refuse.
 ///  6. rasterize never leaves a cell free that the grid's rule blocks.
 class ALTIPLAN_API Environment {
  public:
@@ -77,37 +84,16 @@ class ALTIPLAN_API Environment {
   /// Calls the sink once for each obstacle whose distance from p is at most `reach`.
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
-  std::optional<double> ground(double x, double y) const;
-  /// Whether the layer brings a ground at all.
-  bool has_ground() const { return do_has_ground(); }
-  /// Least height of the leg above this layer's ground; -infinity where it has none below part of
-  /// the leg; any value of at least `enough` once the leg is known to be that high.
-  double ground_gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
-  /// Greatest height of the leg above this layer's ground; +infinity where it has none below part
-  /// of the leg.
-  double ground_gap_max(const Vec3& a, const Vec3& b) const;
-  /// Steepest slope (rise over run) of this layer's ground within the horizontal box, an upper
-  /// bound; infinite where it is not known or the ground has holes there.
-  double ground_slope(const Box& box) const { return do_ground_slope(box); }
-  /// Whether its ground is all that the layer blocks: a leg whose ground_gap is at least
-  /// r sqrt(1 + s²), s the steepest slope within r of it (0 for r <= 0), is then not blocked.
-  bool ground_alone() const { return do_ground_alone(); }
-  /// This layer's ground as posts, where it is one (an elevation model): concrete data for inner
-  /// loops; null otherwise. Lives as long as the layer.
-  const HeightField* height_field() const { return do_height_field(); }
-  std::vector<Threat> threats() const { return do_threats(); }
   double slack() const { return do_slack(); }
-  std::optional<GridSpec> native_grid() const { return do_native_grid(); }
+  /// The ground that the layer brings, or null; as the layer's info, the same for its whole life.
+  const Ground* ground() const { return do_ground(); }
+  const LayerInfo& info() const { return do_info(); }
   /// Centre of a cell as the layer's file counts it.
   std::optional<Vec3> cell_centre(const std::array<double, 3>& cell) const {
     return do_cell_centre(cell);
   }
-  /// The frame that this layer's files fix, where the world has none yet.
-  std::optional<Frame> frame() const { return do_frame(); }
   /// What to show of the layer beside its ground; none: whoever shows it asks for its cells.
   std::optional<Drawing> drawing() const { return do_drawing(); }
-  /// What a user should know of what was read ("403 x 344 posts, 236 to 1076 m"), a line each.
-  std::vector<std::string> notes() const { return do_notes(); }
 
  private:
   virtual Box do_bounds() const = 0;
@@ -118,22 +104,13 @@ class ALTIPLAN_API Environment {
   virtual void do_near(const Vec3& p, double reach, const NearSink& sink) const;
   /// Default: by clearance at cell centres, blocking every cell in doubt.
   virtual void do_rasterize(VoxelGrid& grid) const;
-  virtual bool do_has_ground() const;
-  virtual std::optional<double> do_ground(double x, double y) const;
-  /// To be given by a layer with ground.
-  virtual double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const;
-  virtual double do_ground_gap_max(const Vec3& a, const Vec3& b) const;
-  virtual double do_ground_slope(const Box& box) const;
-  virtual const HeightField* do_height_field() const;
-  virtual std::vector<Threat> do_threats() const;
   /// Default 0.05 m.
   virtual double do_slack() const;
-  virtual std::optional<GridSpec> do_native_grid() const;
+  /// Default: null. A layer with a ground is one itself, as a second base, or has one.
+  virtual const Ground* do_ground() const;
+  /// Default: nothing to say. A layer that says something keeps it.
+  virtual const LayerInfo& do_info() const;
   virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;
-  virtual std::optional<Frame> do_frame() const;
   virtual std::optional<Drawing> do_drawing() const;
-  virtual std::vector<std::string> do_notes() const;
-  /// Default: false, which claims nothing.
-  virtual bool do_ground_alone() const;
 };
 }  // namespace altiplan

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "altiplan/api.hpp"
+#include "altiplan/reason.hpp"
 
 namespace altiplan {
 
@@ -67,9 +68,18 @@ class ALTIPLAN_API ParameterError : public Error {
 /// A plugin threw, broke a law of its interface, or could not be loaded; the text names it.
 class ALTIPLAN_API PluginError : public Error {
  public:
-  using Error::Error;
+  explicit PluginError(const std::string& message, Reason reason = Reason::none)
+      : Error(message), reason_(reason) {}
   ~PluginError() override;
+  Reason reason() const { return reason_; }
+
+ private:
+  Reason reason_;
 };
+
+/// Within a `catch`: throws what was caught as a PluginError, "WHOthrew: …"; `who` ends with a
+/// space or is empty.
+[[noreturn]] ALTIPLAN_API void blame(const std::string& who);
 
 /// The time of a budget ended, or its stop was requested, while the framework worked for a planner:
 /// whoever called the planner answers with `timed_out` or `cancelled`.

@@ -161,6 +161,7 @@ class ALTIPLAN_API Fields {
   void add_choice(const char* word);
   void problem(const Value& at, std::string key, std::string message);
   std::optional<double> read_number(const Value& value, const std::string& key);
+  void read_point(const Value& value, const char* name, Point& target);
 
   // What a type looks like, how it is read, and how it is written.
   static FieldSpec shape(const bool& t);

@@ -5,24 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/reason.hpp"
 #include "altiplan/route.hpp"
 
 namespace altiplan {
 
-enum class Status {
+/// What a planner or a smoother answers.
+enum class PlanStatus {
   solved,           ///< a route is returned
   no_route,         ///< there is none (`proved`), or the search ran dry without finding one
   timed_out,        ///< no route within the budget
   cancelled,        ///< the stop token fired before there was a route
   invalid_problem,  ///< start or goal break a rule: the message says which and by how much
-  rejected,         ///< the judge did not agree
-  failed,           ///< threw, broke a law of its interface, or never stopped
-  collided,         ///< of a flight
-  not_reached,      ///< of a flight
 };
 
 /// The word of a status in results ("no_route").
-ALTIPLAN_API const char* name(Status status);
+ALTIPLAN_API const char* name(PlanStatus status);
 
 struct Counter {
   std::string name;
@@ -32,8 +30,9 @@ using Counters = std::vector<Counter>;
 
 /// What a plan or a smoothing gave.
 struct PlanResult {
-  Status status = Status::failed;
-  std::string message;  ///< a sentence: the place and the rule nearest to blame
+  PlanStatus status = PlanStatus::no_route;
+  Reason reason = Reason::none;  ///< for programs; set by the framework where it can be told
+  std::string message;           ///< a sentence: the place and the rule nearest to blame
   Route route;  ///< first point = start; last within the goal's tolerance; empty unless solved
                 ///< (local planners may leave the part that they flew)
   Counters counters;  ///< "expanded" among them

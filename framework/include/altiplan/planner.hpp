@@ -12,30 +12,34 @@ namespace altiplan {
 
 /// A plan that goes on while the vehicle flies: knows its last result and takes changes.
 /// Laws: 1. update continues from the given state; the first point of its route is that position.
-/// 2. After an update, result() is what update returned.
+/// 2. After an update, result() is what update returned. What breaks a law, or throws, is a
+/// PluginError, after which the session may be asked again.
 class ALTIPLAN_API Session {
  public:
   virtual ~Session();
-  const PlanResult& result() const { return broken_ ? *broken_ : do_result(); }
+  const PlanResult& result() const { return do_result(); }
   /// The world is the known world after `changes` (since the last call).
-  const PlanResult& update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
-                           std::span<const Change> changes, const Budget& budget);
+  PlanResult update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
+                    std::span<const Change> changes, const Budget& budget);
 
  private:
   virtual const PlanResult& do_result() const = 0;
   virtual const PlanResult& do_update(const State& state, const Goal& goal,
                                       std::shared_ptr<const World> world,
                                       std::span<const Change> changes, const Budget& budget) = 0;
-
-  std::optional<PlanResult> broken_;  ///< in place of an update that broke a law, or threw
 };
+
+/// Where start or goal break a rule: the answer `invalid_problem`, its reason which of them. The
+/// public functions ask before a planner is asked; a session asks at its updates.
+ALTIPLAN_API std::optional<PlanResult> impossible_ends(const Request& request);
 
 /// Plans a whole route. Constructed from its parameters; const and shareable.
 ///
 /// Laws, checked by the public functions where they can be, else by the conformance suite:
 ///  1. The route starts at request.start.position exactly and ends within the goal's tolerance.
 ///  2. Every leg satisfies leg_ok of check.hpp.
-///  3. `solved` if and only if a route is returned; no route is a status, never an exception.
+///  3. `solved` if and only if a route is returned; no route is a status, never an exception. What
+///     breaks a law, or throws, is a PluginError.
 ///  4. The budget is kept, the stop token honoured within 1,024 iterations.
 ///  5. Two calls with equal requests give equal results, on any threads, in any order.
 class ALTIPLAN_API Planner {

@@ -6,23 +6,39 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 
-#include "altiplan/constraint.hpp"
-#include "altiplan/local_planner.hpp"
+#include "altiplan/geometry.hpp"
 #include "altiplan/params.hpp"
-#include "altiplan/planner.hpp"
-#include "altiplan/smoother.hpp"
-#include "altiplan/tuner.hpp"
 
 namespace altiplan {
+
+// Declared alone: a plugin includes the interface that it implements, and no other.
+class Environment;
+class Constraint;
+class Planner;
+class LocalPlanner;
+class Smoother;
+class Tuner;
+struct Site;
+struct Nearby;
+struct LayerInfo;
+class VoxelGrid;
+class World;
+struct Limits;
+struct Request;
+struct PlanResult;
+struct Observation;
+struct PilotStep;
+struct Vehicle;
 
 /// What a library says of itself, read from its file before any of its code runs: plain data in the
 /// ELF section `altiplan_manifest`, one record a plugin. The host compares it with its own and
 /// refuses with both sides printed; compiler and optimisation are information.
 struct Manifest {
   static constexpr char kMagic[16] = "altiplan plugin";
-  static constexpr std::size_t kLayouts = 20;
+  static constexpr std::size_t kLayouts = 21;
 
   char magic[16];
   std::uint32_t struct_size;
@@ -32,7 +48,7 @@ struct Manifest {
   std::uint8_t glibcxx_debug;
   std::uint8_t sanitizers;  ///< 1 address, 2 thread, 4 memory
   std::uint8_t optimised;
-  std::uint32_t layouts[kLayouts];  ///< size × 64 + alignment of the structs in kLayoutNames
+  std::uint32_t layouts[kLayouts];  ///< layout_of the structs in kLayoutNames
   char compiler[64];
   char kind[24];
   char name[64];
@@ -41,14 +57,20 @@ struct Manifest {
 };
 
 inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
-    "Vec3",    "Box",        "std::string", "std::vector", "std::function",
-    "Value",   "FieldSpec",  "BoundField",  "Point",       "Frame",
-    "Site",    "Nearby",     "VoxelGrid",   "World",       "Limits",
-    "Request", "PlanResult", "Observation", "PilotStep",   "Vehicle"};
+    "Vec3",      "Box",        "std::string", "std::vector", "std::function", "Value",
+    "FieldSpec", "BoundField", "Point",       "Frame",       "Site",          "Nearby",
+    "VoxelGrid", "World",      "Limits",      "Request",     "PlanResult",    "Observation",
+    "PilotStep", "Vehicle",    "LayerInfo"};
 
-template <class T>
-constexpr std::uint32_t layout_of() {
-  return std::uint32_t(sizeof(T) * 64 + alignof(T));
+/// Size × 64 + alignment; 0 of a struct that the plugin of this interface has not included, and so
+/// cannot rely on. Static, since two files of a plugin may differ in that.
+template <class Interface, class T>
+static consteval std::uint32_t layout_of() {
+  if constexpr (requires { sizeof(T); }) {
+    return std::uint32_t(sizeof(T) * 64 + alignof(T));
+  } else {
+    return 0;
+  }
 }
 
 /// FNV-1a of all that stands before the checksum.
@@ -62,7 +84,8 @@ constexpr std::uint32_t checksum_of(const Manifest& m) {
 }
 
 /// The manifest of a plugin compiled here and now.
-constexpr Manifest make_manifest(const char* kind, const char* name, const char* sentence) {
+template <class Interface>
+static consteval Manifest make_manifest(const char* kind, const char* name, const char* sentence) {
   Manifest m{};
   const auto copy = [](char* to, std::size_t room, const char* from) {
     for (std::size_t i = 0; i + 1 < room && from[i] != '\0'; ++i) {
@@ -99,29 +122,12 @@ constexpr Manifest make_manifest(const char* kind, const char* name, const char*
 #ifdef __OPTIMIZE__
   m.optimised = 1;
 #endif
-  const std::uint32_t layouts[Manifest::kLayouts] = {layout_of<Vec3>(),
-                                                     layout_of<Box>(),
-                                                     layout_of<std::string>(),
-                                                     layout_of<std::vector<int>>(),
-                                                     layout_of<std::function<void()>>(),
-                                                     layout_of<Value>(),
-                                                     layout_of<FieldSpec>(),
-                                                     layout_of<BoundField>(),
-                                                     layout_of<Point>(),
-                                                     layout_of<Frame>(),
-                                                     layout_of<Site>(),
-                                                     layout_of<Nearby>(),
-                                                     layout_of<VoxelGrid>(),
-                                                     layout_of<World>(),
-                                                     layout_of<Limits>(),
-                                                     layout_of<Request>(),
-                                                     layout_of<PlanResult>(),
-                                                     layout_of<Observation>(),
-                                                     layout_of<PilotStep>(),
-                                                     layout_of<Vehicle>()};
-  for (std::size_t i = 0; i < Manifest::kLayouts; ++i) {
-    m.layouts[i] = layouts[i];
-  }
+  std::size_t count = 0;
+  const auto add = [&]<class... T>() { ((m.layouts[count++] = layout_of<Interface, T>()), ...); };
+  add.template
+  operator()<Vec3, Box, std::string, std::vector<int>, std::function<void()>, Value, FieldSpec,
+             BoundField, Point, Frame, Site, Nearby, VoxelGrid, World, Limits, Request, PlanResult,
+             Observation, PilotStep, Vehicle, LayerInfo>();
   copy(m.compiler, sizeof m.compiler, __VERSION__);
   copy(m.kind, sizeof m.kind, kind);
   copy(m.name, sizeof m.name, name);
@@ -167,10 +173,8 @@ std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
     return std::make_unique<Class>(params, site...);
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {
-    throw PluginError(std::string("threw: ") + error.what());
   } catch (...) {
-    throw PluginError("threw something that is not a std::exception");
+    blame("");
   }
 }
 
@@ -209,6 +213,9 @@ struct Kind<Tuner> {
 
 template <class Interface, class Class, class Params>
 constexpr PluginEntry make_entry(const char* name, const char* sentence) {
+  static_assert(
+      requires { sizeof(Interface); },
+      "include the header of the interface too, such as altiplan/planner.hpp");
   PluginEntry entry{};
   entry.kind = Kind<Interface>::kName;
   entry.name = name;

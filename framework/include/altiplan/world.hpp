@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "altiplan/distance_field.hpp"
 #include "altiplan/environment.hpp"
-#include "altiplan/shape.hpp"
+#include "altiplan/ground.hpp"
+#include "altiplan/moving_obstacle.hpp"
 
 namespace altiplan {
 
@@ -20,17 +22,6 @@ struct Layer {
   std::string plugin;
   std::shared_ptr<const Environment> environment;
   bool known = true;
-};
-
-/// A solid in straight motion: the shape as it is at `since_s`, moving with `velocity`.
-struct MovingObstacle {
-  std::string id;
-  Shape shape;
-  Vec3 velocity{0, 0, 0};
-  double since_s = 0;
-  bool known = true;
-
-  Shape at(double time_s) const { return moved(shape, velocity * (time_s - since_s)); }
 };
 
 /// A difference between two snapshots of a world.
@@ -84,7 +75,7 @@ class ALTIPLAN_API World {
   /// the wider it is.
   void near(const Vec3& p, double reach, double ground_reach,
             const std::function<void(const Layer&, const Nearby&)>& sink) const;
-  bool has_ground() const;
+  bool has_ground() const { return !grounds_.empty(); }
   /// Highest ground of the layers that have one there.
   std::optional<double> ground(double x, double y) const;
   /// Least height of the leg above the ground of any layer; infinite in a world without ground,
@@ -112,18 +103,13 @@ class ALTIPLAN_API World {
  private:
   struct Cache;
   World next() const;
+  void find_grounds();
   std::vector<Layer> layers_;
+  /// Of the layers that have one, in their order: the layer's index, and its ground.
+  std::vector<std::pair<std::size_t, const Ground*>> grounds_;
   std::vector<MovingObstacle> moving_;
   Frame frame_;
   std::uint64_t revision_ = 0;
   std::shared_ptr<Cache> cache_;
 };
-
-/// Whether a sphere of radius r that flies a–b between the times t0 and t1 comes nearer than r to
-/// the moving obstacle: exact, by its relative motion.
-ALTIPLAN_API bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,
-                       double t1, double r);
-/// Least distance between that flight and the obstacle's surface; 0 where they meet.
-ALTIPLAN_API double separation(const MovingObstacle& obstacle, const Vec3& a, double t0,
-                               const Vec3& b, double t1);
 }  // namespace altiplan

@@ -52,7 +52,7 @@ std::vector<std::string> joined(std::vector<std::string> names,
 }
 }  // namespace
 
-std::vector<std::pair<std::string, double>> values_of(const host::Json& result) {
+RunValues values_of(const host::Json& result) {
   Values values;
   values.add_each("", result.at("metrics"));
   values.add("setup_time_s", result.at("setup_time_s"));

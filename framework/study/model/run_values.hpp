@@ -9,10 +9,13 @@
 
 namespace altiplan::study {
 
+/// Numbers by the names that claims and tables use, sorted by name.
+using RunValues = std::vector<std::pair<std::string, double>>;
+
 /// The numbers of a result.json, by the names that claims and tables use: "length_m",
 /// "flight.collisions", "steps.ID.counters.expanded". Sorted by name; what is null is left out.
 /// Throws nlohmann's exceptions where it is no result.
-std::vector<std::pair<std::string, double>> values_of(const host::Json& result);
+RunValues values_of(const host::Json& result);
 
 /// What is wrong with a name that no run can have a value of: a sentence, with the nearest that
 /// could be. "" where a run may have it.

@@ -101,8 +101,15 @@ int try_lock(const fs::path& folder) {
   }
   struct stat locked {};
   struct stat there {};
-  if (::fstat(lock, &locked) != 0 || ::stat(file.c_str(), &there) != 0 ||
-      locked.st_ino != there.st_ino || locked.st_dev != there.st_dev) {
+  if (::fstat(lock, &locked) != 0 || (::stat(file.c_str(), &there) != 0 && errno != ENOENT)) {
+    const int error = errno;
+    ::close(lock);
+    if (is_new) {
+      remove_lock(folder);
+    }
+    refuse(folder, "its lock cannot be looked at", error);
+  }
+  if (locked.st_ino != there.st_ino || locked.st_dev != there.st_dev) {
     ::close(lock);
     return -1;
   }

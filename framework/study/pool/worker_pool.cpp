@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/pool/worker_pool.hpp"
 
-#include <poll.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +18,7 @@
 #include "study/pool/cgroup.hpp"
 #include "study/pool/pool_worker.hpp"
 #include "study/pool/retries.hpp"
+#include "study/pool/signals.hpp"
 #include "study/pool/warden.hpp"
 
 namespace altiplan::study {
@@ -29,51 +27,6 @@ namespace {
 constexpr double kWatchEveryS = 0.02;
 
 double now_s() { return double(steady_ns()) * 1e-9; }
-
-/// Signals become readable, instead of interrupting, while it lives.
-class Signals {
- public:
-  Signals() {
-    sigset_t caught;
-    sigemptyset(&caught);
-    for (const int signal : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) {
-      sigaddset(&caught, signal);
-    }
-    ::sigprocmask(SIG_BLOCK, &caught, &before_);
-    struct sigaction standard {};
-    standard.sa_handler = SIG_DFL;  // ignored, children would not wait to be reaped
-    ::sigaction(SIGCHLD, &standard, &child_before_);
-    file_ = ::signalfd(-1, &caught, SFD_CLOEXEC | SFD_NONBLOCK);
-    ::prctl(PR_GET_CHILD_SUBREAPER, &reaper_before_);
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  }
-  ~Signals() {
-    ::close(file_);
-    ::prctl(PR_SET_CHILD_SUBREAPER, reaper_before_);
-    ::sigaction(SIGCHLD, &child_before_, nullptr);
-    ::sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
-  Signals(const Signals&) = delete;
-  Signals& operator=(const Signals&) = delete;
-
-  /// Waits for a child to end, or for the time; whether somebody wants the pool to end.
-  bool wait(double seconds) const {
-    pollfd ready{file_, POLLIN, 0};
-    ::poll(&ready, 1, std::max(0, int(seconds * 1000 + 0.999)));
-    bool stop = false;
-    signalfd_siginfo info{};
-    while (::read(file_, &info, sizeof info) == sizeof info) {
-      stop = stop || info.ssi_signo != SIGCHLD;
-    }
-    return stop;
-  }
-
- private:
-  sigset_t before_{};
-  struct sigaction child_before_ {};
-  int file_ = -1;
-  int reaper_before_ = 0;
-};
 
 /// How often the kernel has killed for lack of memory, the system's or a group's, since the system
 /// started.

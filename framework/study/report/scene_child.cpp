@@ -12,6 +12,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/base/machine_fault.hpp"
+#include "host/base/run_status.hpp"
 #include "study/report/scenes.hpp"
 
 namespace altiplan::study::report {
@@ -25,8 +26,7 @@ constexpr std::size_t kMostBytes = 64'000'000;
 
 /// Memory too, whoever has asked for it.
 bool is_of_machine(const std::exception& error) {
-  return host::names_machine_fault(error.what()) ||
-         std::string_view(error.what()).find("std::bad_alloc") != std::string_view::npos;
+  return host::names_machine_fault(error.what()) || host::reason_of(error) == Reason::out_of_memory;
 }
 
 void write_all(int to, std::string_view text) {

@@ -43,7 +43,7 @@ class Study {
     row.pipeline = plan_.pipelines[run.pipeline].name;
     row.repetition = run.repetition;
     row.seed = run.seed;
-    row.outcome = outcome.outcome;
+    row.outcome = name(outcome.outcome);
     row.message = outcome.message;
     row.wall_time_s = ended.wall_s;
     row.cpu_time_s = ended.cpu_s;
@@ -52,13 +52,12 @@ class Study {
     row.session = session;
     row.result = outcome.result;
     row.trace = outcome.trace;
-    if (!row.result.empty()) {
-      row.values = values_of(host::Json::parse(row.result));
-    }
-    for (const auto& value : {std::pair<std::string, double>{"solved", row.outcome == "solved"},
-                              {"wall_time_s", ended.wall_s},
-                              {"cpu_time_s", ended.cpu_s},
-                              {"peak_memory_mb", ended.peak_memory_mb}}) {
+    row.values = outcome.values;
+    for (const auto& value :
+         {std::pair<std::string, double>{"solved", outcome.outcome == Outcome::solved},
+          {"wall_time_s", ended.wall_s},
+          {"cpu_time_s", ended.cpu_s},
+          {"peak_memory_mb", ended.peak_memory_mb}}) {
       row.values.insert(std::lower_bound(row.values.begin(), row.values.end(), value), value);
     }
     return row;

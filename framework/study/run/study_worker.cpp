@@ -32,15 +32,22 @@ constexpr std::size_t kResultAtMost = std::size_t(256) << 20;
 
 /// A payload is a line of JSON with the lengths of the texts that follow.
 std::string payload_of(const RunOutcome& run) {
-  const host::Json head = {{"outcome", run.outcome},
+  const host::Json head = {{"outcome", name(run.outcome)},
                            {"message", run.message},
+                           {"values", run.values},
                            {"result_bytes", run.result.size()},
                            {"trace_bytes", run.trace.size()}};
   return head.dump(-1, ' ', false, host::Json::error_handler_t::replace) + "\n" + run.result +
          run.trace;
 }
 
-RunOutcome bad_output(const std::string& why) { return {"bad_output", why, "", ""}; }
+RunOutcome without_result(Outcome outcome, std::string why) {
+  return {outcome, std::move(why), "", "", {}};
+}
+
+RunOutcome bad_output(std::string why) {
+  return without_result(Outcome::bad_output, std::move(why));
+}
 
 struct PayloadHead {
   RunOutcome run;  ///< without result and trace
@@ -55,8 +62,14 @@ std::optional<PayloadHead> head_of(const std::string& payload) {
   const host::Json json = host::Json::parse(payload.substr(0, end), nullptr, false);
   PayloadHead head;
   try {
-    head.run.outcome = json.at("outcome");
+    const std::optional<Outcome> outcome =
+        outcome_named(json.at("outcome").get_ref<const std::string&>());
+    if (!outcome) {
+      return std::nullopt;
+    }
+    head.run.outcome = *outcome;
     head.run.message = json.at("message");
+    head.run.values = json.at("values");
     head.result_bytes = json.at("result_bytes");
     head.trace_bytes = json.at("trace_bytes");
   } catch (const host::Json::exception&) {
@@ -111,23 +124,22 @@ host::ProcessGuard::LastWords last_words(const Job& job, const host::Config& con
 /// A step that took more than the study gave it, beyond what stopping takes.
 const host::StepResult* overtime(const host::RunResult& result, const StudyBudget& budget) {
   const auto late = std::find_if(result.steps.begin(), result.steps.end(), [&](const auto& step) {
-    return budget.time_s && step.verb == host::Verb::plan && step.status == Status::solved &&
-           step.time_s > 1.1 * *budget.time_s + 0.1;
+    return budget.time_s && step.verb == host::Verb::plan &&
+           step.status == host::RunStatus::solved && step.time_s > 1.1 * *budget.time_s + 0.1;
   });
   return late == result.steps.end() ? nullptr : &*late;
 }
 
 bool out_of_memory(const host::RunResult& result) {
-  return result.status == Status::failed &&
-         result.message.find("std::bad_alloc") != std::string::npos;
+  return result.status == host::RunStatus::failed && result.reason == Reason::out_of_memory;
 }
 
 RunOutcome outcome_of_result(const host::RunResult& result, const StudyBudget& budget) {
-  RunOutcome run{name(result.status), result.message, "", ""};
+  RunOutcome run = without_result(outcome_of(result.status), result.message);
   if (out_of_memory(result)) {
-    run.outcome = "out_of_memory";
+    run.outcome = Outcome::out_of_memory;
   } else if (const host::StepResult* late = overtime(result, budget)) {
-    run.outcome = name(Status::timed_out);
+    run.outcome = Outcome::timed_out;
     run.message = late->id + ": '" + late->plugin +
                   "' says solved, but took more than the time budget of the study";
   }
@@ -167,7 +179,9 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
     std::error_code error;
     std::filesystem::remove(job.scratch, error);
   }
-  outcome.result = host::file_text(host::result_json(config, result));
+  const host::Json json = host::result_json(config, result);
+  outcome.values = values_of(json);
+  outcome.result = host::file_text(json);
   return outcome;
 }
 
@@ -178,8 +192,8 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     job.note("reading the files of the run");
     const host::Config config = planned.load();
     files = config.files;
-    const RunOutcome changed{kChanged, "its files have changed since the runs were planned", "",
-                             ""};
+    const RunOutcome changed =
+        without_result(Outcome::changed, "its files have changed since the runs were planned");
     if (!planned.is_current(config)) {
       return changed;
     }
@@ -187,35 +201,36 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     return planned.is_current(config) ? run : changed;  // what plugins read may have changed since
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    return {kNotDone,
-            "the system refuses a run " +
-                std::string(no_thread ? "a thread: " : "what it needs: ") + error.what(),
-            "", ""};
+    return without_result(Outcome::not_done,
+                          "the system refuses a run " +
+                              std::string(no_thread ? "a thread: " : "what it needs: ") +
+                              error.what());
   } catch (const host::MachineFault& fault) {
-    return {kNotDone, fault.what(), "", ""};
+    return without_result(Outcome::not_done, fault.what());
   } catch (const PluginError& error) {
-    return {"refused", error.what(), "", ""};
+    return without_result(Outcome::refused, error.what());
   } catch (const ConfigError& error) {
     std::string all;
     for (const Problem& problem : error.problems()) {
       all += (all.empty() ? "" : "; ") + problem.text();
     }
     if (planned.is_on_trial && !host::names_machine_fault(all)) {
-      return {kBadParameters, all, "", ""};
+      return without_result(Outcome::bad_parameters, all);
     }
     // All was read and checked when the study began, or cannot be read now.
-    return {kNotDone, all + " (unlike when the runs were planned)", "", ""};
+    return without_result(Outcome::not_done, all + " (unlike when the runs were planned)");
   } catch (const std::bad_alloc&) {
-    return {"out_of_memory", "no memory was left", "", ""};
+    return without_result(Outcome::out_of_memory, "no memory was left");
   } catch (const std::exception& error) {
-    return {"failed", error.what(), "", ""};
+    return without_result(Outcome::failed, error.what());
   }
 }
 
 /// A failure that nothing but the plugin explains, unless the machine had failed.
-bool is_unexplained(const std::string& outcome) {
-  return outcome == "failed" || outcome == "crashed" || outcome == "out_of_memory" ||
-         outcome == "bad_output" || outcome == "refused" || outcome == kBadParameters;
+bool is_unexplained(Outcome outcome) {
+  return outcome == Outcome::failed || outcome == Outcome::crashed ||
+         outcome == Outcome::out_of_memory || outcome == Outcome::bad_output ||
+         outcome == Outcome::refused || outcome == Outcome::bad_parameters;
 }
 
 /// "SIGSEGV"
@@ -264,12 +279,13 @@ std::string cause_of(const Ended& ended, std::string& said) {
 
 RunOutcome crashed(const Ended& ended) {
   std::string said = ended.said;
-  RunOutcome run{"crashed", ended.note + " " + cause_of(ended, said), "", ""};
+  RunOutcome run = without_result(Outcome::crashed, ended.note + " " + cause_of(ended, said));
   const host::Json result = host::Json::parse(ended.last_words, nullptr, false);
   if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
-    run.outcome = ended.exit_code == kStuck ? "failed" : "crashed";
+    run.outcome = ended.exit_code == kStuck ? Outcome::failed : Outcome::crashed;
     run.message = result["message"].get<std::string>();
     run.result = ended.last_words;
+    run.values = values_of(result);
   }
   run.message = with_said(run.message, said);
   return run;
@@ -294,11 +310,12 @@ std::string study_run(const Job& job, const PlannedConfig& planned, const StudyB
                       bool trace) {
   std::vector<std::filesystem::path> files;
   RunOutcome run = run_guarded(job, planned, budget, trace, files);
-  if (is_unexplained(run.outcome) || run.outcome == kNotDone || run.outcome == kChanged) {
+  if (is_unexplained(run.outcome) || run.outcome == Outcome::not_done ||
+      run.outcome == Outcome::changed) {
     job.retire();
     ::close_range(3, ~0U, 0);  // whatever a plugin has left open
     if (const std::string why = host::first_unreadable(files); !why.empty()) {
-      run = {kNotDone, why, "", ""};
+      run = without_result(Outcome::not_done, why);
     }
   }
   return payload_of(run);
@@ -308,20 +325,20 @@ namespace {
 
 RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
   const JobLimits limits = job_limits(budget);
-  const auto stopped = [&](const char* outcome, const std::string& why) {
-    return RunOutcome{outcome, ended.note + " " + why, "", ""};
+  const auto stopped = [&](Outcome outcome, const std::string& why) {
+    return without_result(outcome, ended.note + " " + why);
   };
   switch (ended.how) {
     case Ending::done: {
       RunOutcome run = outcome_of_payload(ended.payload);
       if (ended.left_behind > 0) {
-        run.outcome = "failed";
+        run.outcome = Outcome::failed;
         run.message = "a plugin left processes behind, which were ended; " + run.message;
       }
       return run;
     }
     case Ending::threw:
-      return {"failed", ended.payload, "", ""};
+      return without_result(Outcome::failed, ended.payload);
     case Ending::exited:
     case Ending::killed:
       return crashed(ended);
@@ -331,16 +348,18 @@ RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
       return bad_output(ended.note + " wrote a file, or gave a result, of more than " +
                         number(limits.file_mb) + " MB");
     case Ending::wall_limit:
-      return stopped("timed_out", "did not end within " + number(limits.wall_s) + " s");
+      return stopped(Outcome::timed_out, "did not end within " + number(limits.wall_s) + " s");
     case Ending::cpu_limit:
-      return stopped("timed_out", "used more than " + number(*limits.cpu_s) + " s of CPU time");
+      return stopped(Outcome::timed_out,
+                     "used more than " + number(*limits.cpu_s) + " s of CPU time");
     case Ending::memory_limit:
-      return stopped("out_of_memory",
+      return stopped(Outcome::out_of_memory,
                      "used more than " + number(*limits.memory_mb) + " MB of memory");
     case Ending::out_of_memory:
-      return stopped("out_of_memory", "was killed by the kernel for lack of memory");
+      return stopped(Outcome::out_of_memory, "was killed by the kernel for lack of memory");
     case Ending::process_limit:
-      return stopped("failed", "had more than " + std::to_string(limits.processes) + " processes");
+      return stopped(Outcome::failed,
+                     "had more than " + std::to_string(limits.processes) + " processes");
   }
   return {};
 }
@@ -360,14 +379,14 @@ Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std:
   const std::optional<PayloadHead> head =
       ended.how == Ending::done ? head_of(ended.payload) : std::nullopt;
   const RunOutcome run = head ? head->run : outcome_of(ended, budget);
-  if (run.outcome == kNotDone) {
+  if (run.outcome == Outcome::not_done) {
     return {Appraisal::fault, in_utf8(run.message)};
   }
-  if (run.outcome == kChanged) {
+  if (run.outcome == Outcome::changed) {
     return {Appraisal::hopeless, name + ": " + run.message};
   }
   if (is_unexplained(run.outcome) && ended.left_behind == 0) {
-    return {Appraisal::doubtful, run.outcome + ": " + run.message};
+    return {Appraisal::doubtful, study::name(run.outcome) + (": " + run.message)};
   }
   return {};
 }

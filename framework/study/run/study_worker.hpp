@@ -5,6 +5,8 @@
 #include <string>
 
 #include "host/config/config.hpp"
+#include "study/model/outcome.hpp"
+#include "study/model/run_values.hpp"
 #include "study/model/study_file.hpp"
 #include "study/pool/worker_pool.hpp"
 
@@ -12,30 +14,22 @@ namespace altiplan::study {
 
 /// What became of a run of a study.
 struct RunOutcome {
-  std::string outcome;  ///< a status of a run, or crashed, out_of_memory, bad_output, refused
+  Outcome outcome = Outcome::failed;
   std::string message;
   std::string result;  ///< result.json, "" where there is none
   std::string trace;   ///< likewise
+  RunValues values;    ///< of the result
 };
 
 JobLimits job_limits(const StudyBudget& budget);
-
-/// In place of an outcome where the machine did not let the run be done as planned, which says
-/// nothing about its pipeline: a file cannot be read, the system gives no thread. Not to be stored.
-inline constexpr const char* kNotDone = "not done";
-/// Likewise: its files are others than those that were planned with.
-inline constexpr const char* kChanged = "changed";
 
 /// The configuration of a run, and whether it is still what was planned.
 struct PlannedConfig {
   std::function<host::Config()> load;
   std::function<bool(const host::Config&)> is_current = [](const host::Config&) { return true; };
-  /// The configuration is on trial: what is wrong with it is the run's outcome, kBadParameters, and
-  /// says nothing of changed files.
+  /// What is wrong with it is the run's outcome, bad_parameters, and says nothing of changed files.
   bool is_on_trial = false;
 };
-
-inline constexpr const char* kBadParameters = "bad_parameters";
 
 /// The work of one run, in a worker: gets the configuration, runs it, and returns the payload that
 /// outcome_of reads.

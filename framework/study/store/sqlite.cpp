@@ -44,7 +44,9 @@ std::string meaning(const std::filesystem::path& file, int code, int error, cons
            "the file together with its -journal";
   }
   if (code == SQLITE_READONLY_DBMOVED) {
-    return "it was removed or renamed while this program wrote to it";
+    // SQLite takes a file that the system does not show for one that is gone, and keeps no reason.
+    return "it was removed or renamed while this program wrote to it, or the system did not show "
+           "it";
   }
   switch (code & 0xff) {
     case SQLITE_FULL:

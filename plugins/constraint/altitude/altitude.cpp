@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/request.hpp"
 
 namespace {
 using namespace altiplan;

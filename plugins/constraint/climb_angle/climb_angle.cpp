@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -11,12 +11,12 @@ namespace altiplan::testing {
 namespace {
 
 /// Ground at sea level everywhere, and nothing else.
-class Plain final : public Environment {
+class Plain final : public Environment, public Ground {
   Box do_bounds() const override { return {{-500, -500, -kInfinity}, {1500, 500, 0}}; }
   double do_clearance(const Vec3& p) const override { return p.z(); }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double, double) const override { return 0; }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double, double) const override { return 0; }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
     return std::min(a.z(), b.z());
   }
 };

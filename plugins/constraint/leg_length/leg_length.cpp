@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/request.hpp"
 
 namespace {
 using namespace altiplan;

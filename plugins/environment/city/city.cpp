@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 #include "buildings.hpp"
@@ -79,7 +80,7 @@ class City final : public Environment {
       draw(params, site);
     }
     if (!params.attribution.empty()) {
-      notes_.push_back("attribution: " + params.attribution);
+      info_.notes.push_back("attribution: " + params.attribution);
     }
   }
 
@@ -105,10 +106,11 @@ class City final : public Environment {
     draw.start = site.start;
     draw.goal = site.goal;
     auto cells = std::make_unique<kit::CellLayer>(draw_city(draw));
-    notes_.push_back(std::to_string(cells->cells().blocked_count()) + " of " +
-                     std::to_string(cells->cells().spec().cell_count()) + " cells blocked");
+    info_.native_grid = cells->cells().spec();
+    info_.notes.push_back(std::to_string(cells->cells().blocked_count()) + " of " +
+                          std::to_string(cells->cells().spec().cell_count()) + " cells blocked");
     if (!site.start || !site.goal) {
-      notes_.push_back("start and goal are kept free only where they are given as at_m");
+      info_.notes.push_back("start and goal are kept free only where they are given as at_m");
     }
     layer_ = std::move(cells);
     drawing_ = layer_->drawing().value();
@@ -127,8 +129,8 @@ class City final : public Environment {
           {std::move(building.shape), Drawn::Role::obstacle, std::move(building.name)});
     }
     layer_ = std::make_unique<kit::ShapeLayer>(std::move(shapes));
-    notes_ = std::move(buildings.notes);
-    frame_ = std::move(buildings.frame);
+    info_.notes = std::move(buildings.notes);
+    info_.frame = std::move(buildings.frame);
   }
 
   Box do_bounds() const override { return layer_->bounds(); }
@@ -141,18 +143,15 @@ class City final : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override { layer_->rasterize(grid); }
   double do_slack() const override { return layer_->slack(); }
-  std::optional<GridSpec> do_native_grid() const override { return layer_->native_grid(); }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return layer_->cell_centre(cell);
   }
-  std::optional<Frame> do_frame() const override { return frame_; }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
-  std::vector<std::string> do_notes() const override { return notes_; }
 
   std::unique_ptr<Environment> layer_;
-  std::optional<Frame> frame_;
+  LayerInfo info_;
   Drawing drawing_;
-  std::vector<std::string> notes_;
 };
 }  // namespace
 }  // namespace altiplan::city

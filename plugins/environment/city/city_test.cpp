@@ -36,7 +36,7 @@ std::string refusal(const std::string& yaml) {
 }
 
 VoxelGrid cells_of(const Environment& layer) {
-  VoxelGrid grid(layer.native_grid().value());
+  VoxelGrid grid(layer.info().native_grid.value());
   layer.rasterize(grid);
   return grid;
 }
@@ -182,7 +182,7 @@ TEST(City, CollidersAreNorthEastUp) {
   const auto layer = city("{file: " + file.string() + "}");
   EXPECT_EQ(layer->bounds().min, Vec3(-48, 95, 0));
   EXPECT_EQ(layer->bounds().max, Vec3(-32, 105, 40));
-  const auto lonlat = layer->frame()->to_lonlat(0, 0);
+  const auto lonlat = layer->info().frame->to_lonlat(0, 0);
   EXPECT_DOUBLE_EQ(lonlat[0], -122.39745);
   EXPECT_DOUBLE_EQ(lonlat[1], 37.79248);
 }
@@ -204,7 +204,7 @@ TEST(City, CityJsonIsNeverSmallerThanItsModel) {
 TEST(City, RealFilesAreReadWhole) {
   ALTIPLAN_DATA_OR_SKIP(folder, "city");
   const auto notes = [&](const std::string& name, const std::string& more) {
-    return city("{file: " + (folder / name).string() + more + "}")->notes();
+    return city("{file: " + (folder / name).string() + more + "}")->info().notes;
   };
   EXPECT_EQ(notes("ny_buildings.geojson", "").front(),
             "15 buildings, 0 features without an area skipped");

@@ -4,6 +4,7 @@
 // characters, the first row northernmost.
 #include <charconv>
 
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
@@ -86,12 +87,8 @@ std::string quoted(char c) {
                                     : std::string("0x") + kHex[byte >> 4] + kHex[byte & 15];
 }
 
-VoxelGrid read(const Params& params) {
-  const std::string& file = params.file.text;
-  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
-    throw ParameterError("file", file + ": " + why);
-  }
-  Lines lines(file);
+/// Height and width of the map, which stand before it.
+std::pair<int, int> read_size(Lines& lines) {
   if (const std::string type = lines.next("'type octile'"); type != "type octile") {
     lines.refuse("expected 'type octile', found " + excerpt(type));
   }
@@ -109,6 +106,40 @@ VoxelGrid read(const Params& params) {
   if (height == 0 || width == 0) {
     lines.refuse("expected 'height' and 'width' before 'map'");
   }
+  return {height, width};
+}
+
+/// Blocks what the line of the map says of row j.
+void read_row(const std::string& line, int j, const Lines& lines, VoxelGrid& cells) {
+  const int width = cells.spec().counts[0];
+  if (line.size() != std::size_t(width)) {
+    lines.refuse("expected a row of " + std::to_string(width) + " cells, found " +
+                 std::to_string(line.size()));
+  }
+  int first_blocked = 0;  // of the cells since the last free one
+  for (int column = 0; column < width; ++column) {
+    const char c = line[std::size_t(column)];
+    if (c == '.' || c == 'G') {
+      if (column > first_blocked) {
+        cells.block_run(first_blocked, column - 1, j, 0);
+      }
+      first_blocked = column + 1;
+    } else if (c != '@' && c != 'O' && c != 'T') {
+      lines.refuse("cell " + std::to_string(column + 1) +
+                   ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " + quoted(c) +
+                   " (swamp and water have costs of their own, which no " + "planner here knows)");
+    }
+  }
+  cells.block_run(first_blocked, width - 1, j, 0);
+}
+
+VoxelGrid read(const Params& params) {
+  const std::string& file = params.file.text;
+  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+    throw ParameterError("file", file + ": " + why);
+  }
+  Lines lines(file);
+  const auto [height, width] = read_size(lines);
   if (std::int64_t(height) * width > params.max_cells) {
     throw ParameterError("max_cells", params.file.text + ": declares " + std::to_string(width) +
                                           " x " + std::to_string(height) +
@@ -121,26 +152,7 @@ VoxelGrid read(const Params& params) {
   VoxelGrid cells(spec);
   for (int row = 0; row < height; ++row) {
     const std::string line = lines.next("row " + std::to_string(row + 1) + " of the map");
-    if (line.size() != std::size_t(width)) {
-      lines.refuse("expected a row of " + std::to_string(width) + " cells, found " +
-                   std::to_string(line.size()));
-    }
-    int first_blocked = 0;  // of the cells since the last free one
-    for (int column = 0; column < width; ++column) {
-      const char c = line[std::size_t(column)];
-      if (c == '.' || c == 'G') {
-        if (column > first_blocked) {
-          cells.block_run(first_blocked, column - 1, height - 1 - row, 0);
-        }
-        first_blocked = column + 1;
-      } else if (c != '@' && c != 'O' && c != 'T') {
-        lines.refuse("cell " + std::to_string(column + 1) +
-                     ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " + quoted(c) +
-                     " (swamp and water have costs of their own, which no " +
-                     "planner here knows)");
-      }
-    }
-    cells.block_run(first_blocked, width - 1, height - 1 - row, 0);
+    read_row(line, height - 1 - row, lines, cells);
   }
   if (!lines.at_end()) {
     lines.refuse("there is more in the file than the " + std::to_string(height) +

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "altiplan/environment.hpp"
+#include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/ground.hpp"
 #include "altiplan/kit/layers/ground_within.hpp"
 #include "altiplan/plugin.hpp"
@@ -96,85 +98,107 @@ hills::Surface make(const Params& params, const Site& site) {
   return hills::Surface(params.base_m, params.cap_m, std::move(peaks));
 }
 
-class Hills final : public Environment {
+class Hills final : public Environment, public Ground {
  public:
-  Hills(const Params& params, const Site& site)
-      : ground_(make(params, site)),
-        count_(params.peaks.empty() ? std::size_t(params.count.value_or(16))
-                                    : params.peaks.size()) {}
+  Hills(const Params& params, const Site& site) : surface_(make(params, site)) {
+    const std::size_t count =
+        params.peaks.empty() ? std::size_t(params.count.value_or(16)) : params.peaks.size();
+    info_.notes = {std::to_string(count) + " peaks, steepest slope " +
+                   std::to_string(degrees(std::atan(surface_.max_slope()))) + " degrees"};
+  }
 
  private:
   // The ground goes on for ever; a scenario says how much of it is flown over (volume).
   Box do_bounds() const override {
-    return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, ground_.top()}};
+    return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, surface_.top()}};
   }
-  bool do_has_ground() const override { return true; }
-  bool do_ground_alone() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override {
-    return ground_.height(x, y);
+  const Ground* do_ground() const override { return this; }
+  bool do_is_all() const override { return true; }
+  std::optional<double> do_height(double x, double y) const override {
+    return surface_.height(x, y);
   }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    return ground_.gap(a, b, enough);
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
+    return surface_.gap(a, b, enough);
   }
-  double do_ground_slope(const Box& box) const override {
+  double do_slope(const Box& box) const override {
     const Vec3 half = (box.max - box.min) / 2;
     if (box.is_empty() || !(half.head<2>().norm() < kInfinity)) {
-      return ground_.max_slope();
+      return surface_.max_slope();
     }
     const Vec3 middle = box.min + half;
-    return ground_.max_slope(middle.x(), middle.y(), half.head<2>().norm());
+    return surface_.max_slope(middle.x(), middle.y(), half.head<2>().norm());
   }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
-    return ground_.gap_max(a, b);
-  }
+  double do_gap_max(const Vec3& a, const Vec3& b) const override { return surface_.gap_max(a, b); }
 
   double do_clearance(const Vec3& p) const override {
-    const double above = p.z() - ground_.height(p.x(), p.y());
-    return std::max(above / std::hypot(1, ground_.max_slope()), p.z() - ground_.top());
+    const double above = p.z() - surface_.height(p.x(), p.y());
+    return std::max(above / std::hypot(1, surface_.max_slope()), p.z() - surface_.top());
+  }
+
+  /// The steepest slope within that of a leg.
+  double slope_near(const Vec3& a, const Vec3& b, double within) const {
+    const Vec3 middle = (a + b) / 2;
+    const double half = std::hypot(b.x() - a.x(), b.y() - a.y()) / 2;
+    return surface_.max_slope(middle.x(), middle.y(), half + within);
+  }
+
+  kit::GroundWithin searched(const Vec3& a, const Vec3& b, double distance,
+                             kit::GroundWithin::Until until) const {
+    const Box box = leg_box(a, b).grown(distance);
+    kit::GroundWithin ground(a, b, distance, until);
+    ground.search(box.min.x(), box.min.y(), box.max.x(), box.max.y(),
+                  [this](double x0, double y0, double x1, double y1) {
+                    return surface_.piece(x0, y0, x1, y1);
+                  });
+    return ground;
   }
 
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    constexpr double kShortest = 1;  // metres
-    if (std::min(a.z(), b.z()) - ground_.top() >= r - kLengthTolerance) {
+    if (std::min(a.z(), b.z()) - surface_.top() >= r - kLengthTolerance) {
       return false;
     }
     const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
-      return ground_.gap(from, to, enough, r - kLengthTolerance);
+      return surface_.gap(from, to, enough, r - kLengthTolerance);
     };
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
-      const Vec3 middle = (from + to) / 2;
-      const double half = std::hypot(to.x() - from.x(), to.y() - from.y()) / 2;
-      return ground_.max_slope(middle.x(), middle.y(), half + within);
+      return slope_near(from, to, within);
     };
     const auto meets = [&](const Vec3& from, const Vec3& to, double keep) {
-      const Box box = leg_box(from, to).grown(keep);
-      kit::GroundWithin ground(from, to, keep);
-      ground.search(box.min.x(), box.min.y(), box.max.x(), box.max.y(),
-                    [this](double x0, double y0, double x1, double y1) {
-                      return ground_.piece(x0, y0, x1, y1);
-                    });
-      return ground.found();
+      return searched(from, to, keep, kit::GroundWithin::Until::found).found();
     };
-    const double enough = kit::height_for(r - kLengthTolerance, ground_.max_slope());
-    return kit::too_near_ground(a, b, r, {ground_.top(), enough}, kShortest, gap, slope, meets);
+    const double enough = kit::height_for(r - kLengthTolerance, surface_.max_slope());
+    return kit::too_near_ground(a, b, r, {surface_.top(), enough}, kShortest, gap, slope, meets);
+  }
+
+  std::optional<double> do_distance(const Vec3& a, const Vec3& b) const override {
+    const auto gap = [&](const Vec3& from, const Vec3& to) {
+      return surface_.gap(from, to, kInfinity);
+    };
+    const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
+      return slope_near(from, to, within);
+    };
+    const auto nearest = [&](const Vec3& from, const Vec3& to, double least) {
+      return searched(from, to, least, kit::GroundWithin::Until::nearest).distance();
+    };
+    return kit::ground_distance(a, b, kInfinity, surface_.top(), kShortest, gap, slope, nearest);
   }
 
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
-    if (p.z() - ground_.top() > reach) {
+    if (p.z() - surface_.top() > reach) {
       return;
     }
-    const double gap = p.z() - ground_.height(p.x(), p.y());
+    const double gap = p.z() - surface_.height(p.x(), p.y());
     if (gap <= kLengthTolerance) {
       // The way out is up; the depth is a lower bound, as clearance has it.
       sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
     }
-    if (gap > kit::height_for(reach, ground_.max_slope(p.x(), p.y(), reach))) {
+    if (gap > kit::height_for(reach, surface_.max_slope(p.x(), p.y(), reach))) {
       return;  // no slope within reach rises so far
     }
-    const auto ground = [&](double x, double y) { return ground_.height(x, y); };
+    const auto ground = [&](double x, double y) { return surface_.height(x, y); };
     const auto highest = [&](double x0, double y0, double x1, double y1) {
-      return ground_.height_bound(x0, y0, x1, y1);
+      return surface_.height_bound(x0, y0, x1, y1);
     };
     const kit::NearestGround nearest(p, Box{}, ground, highest);
     if (nearest.distance() <= reach) {
@@ -187,8 +211,8 @@ class Hills final : public Environment {
     const Vec3 first = spec.centre({0, 0, 0});
     const auto half = kit::half_footprint(spec);
     const auto top =
-        ground_.highest({first.x(), spec.cell.x(), half[0], spec.counts[0]},
-                        {first.y(), spec.cell.y(), half[1], spec.counts[1]}, spec.cell.z() / 50);
+        surface_.highest({first.x(), spec.cell.x(), half[0], spec.counts[0]},
+                         {first.y(), spec.cell.y(), half[1], spec.counts[1]}, spec.cell.z() / 50);
     kit::block_below(grid, [&](int i, int j) {
       return top[std::size_t(j) * std::size_t(spec.counts[0]) + std::size_t(i)];
     });
@@ -198,13 +222,12 @@ class Hills final : public Environment {
   double do_slack() const override { return 1e-5; }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
-  std::vector<std::string> do_notes() const override {
-    return {std::to_string(count_) + " peaks, steepest slope " +
-            std::to_string(degrees(std::atan(ground_.max_slope()))) + " degrees"};
-  }
+  const LayerInfo& do_info() const override { return info_; }
 
-  hills::Surface ground_;
-  std::size_t count_;
+  static constexpr double kShortest = 1;  // metres of a leg, below which it is searched whole
+
+  hills::Surface surface_;
+  LayerInfo info_;
 };
 }  // namespace
 

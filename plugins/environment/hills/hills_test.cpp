@@ -83,12 +83,12 @@ TEST(Hills, FittedTerrainOfThePage) {
   RandomStream random(1);
   for (int n = 0; n < 1000; ++n) {
     const Vec3 p = random.in(kOver);
-    EXPECT_NEAR(*hills->ground(p.x(), p.y()), height(rows, p.x(), p.y()), 1e-9);
+    EXPECT_NEAR(*hills->ground()->height(p.x(), p.y()), height(rows, p.x(), p.y()), 1e-9);
   }
-  EXPECT_DOUBLE_EQ(*hills->ground(56000, 54000), 4000) << "a plateau";
-  EXPECT_LT(*hills->ground(25000, 70000), 2000) << "below the start";
-  EXPECT_LT(*hills->ground(55000, 10000), 2800) << "below the goal";
-  EXPECT_NEAR(*hills->ground(-400000, 0), 500, 1e-9);
+  EXPECT_DOUBLE_EQ(*hills->ground()->height(56000, 54000), 4000) << "a plateau";
+  EXPECT_LT(*hills->ground()->height(25000, 70000), 2000) << "below the start";
+  EXPECT_LT(*hills->ground()->height(55000, 10000), 2800) << "below the goal";
+  EXPECT_NEAR(*hills->ground()->height(-400000, 0), 500, 1e-9);
 }
 
 // A second writing of the generator, by the page.
@@ -132,7 +132,7 @@ TEST(Hills, DrawsThePublishedTerrains) {
     redrawn += rows[0].x != anywhere[0].x;
     for (int x = 0; x <= 100000; x += 7000) {
       for (int y = 0; y <= 100000; y += 9000) {
-        ASSERT_NEAR(*hills->ground(x, y), height(rows, x, y), 1e-6) << seed;
+        ASSERT_NEAR(*hills->ground()->height(x, y), height(rows, x, y), 1e-6) << seed;
       }
     }
   }
@@ -150,8 +150,8 @@ TEST(Hills, TakesTheRunsSeedWithoutOneOfItsOwn) {
   const Made b = make_environment("hills", "{count: 5}", two);
   double difference = 0;
   for (int x = 0; x < 100000; x += 5000) {
-    EXPECT_EQ(*a->ground(x, x), *again->ground(x, x));
-    difference += std::abs(*a->ground(x, x) - *b->ground(x, x));
+    EXPECT_EQ(*a->ground()->height(x, x), *again->ground()->height(x, x));
+    difference += std::abs(*a->ground()->height(x, x) - *b->ground()->height(x, x));
   }
   EXPECT_GT(difference, 100);
 }
@@ -181,18 +181,18 @@ TEST(Hills, GapIsExact) {
       const Vec3 a = random.in(kOver);
       const Vec3 b =
           n % 3 ? Vec3(random.in(kOver)) : Vec3(a + random.uniform() * Vec3(800, -500, 90));
-      const double gap = hills->ground_gap(a, b);
+      const double gap = hills->ground()->gap(a, b);
       EXPECT_NEAR(gap, sampled_gap(rows, a, b), 1e-6);
-      EXPECT_EQ(gap, hills->ground_gap(a, b, gap + 1)) << "enough is not reached";
-      EXPECT_GE(hills->ground_gap(a, b, gap - 1), gap - 1);
-      EXPECT_NEAR(hills->ground_gap_max(a, b), sampled_gap(rows, a, b, -1), 1e-6);
+      EXPECT_EQ(gap, hills->ground()->gap(a, b, gap + 1)) << "enough is not reached";
+      EXPECT_GE(hills->ground()->gap(a, b, gap - 1), gap - 1);
+      EXPECT_NEAR(hills->ground()->gap_max(a, b), sampled_gap(rows, a, b, -1), 1e-6);
       const double share = random.uniform();
       const Vec3 on = a + share * (b - a);
       capped += height(rows, on.x(), on.y()) == 4000;
     }
     EXPECT_GT(capped, 2);
-    EXPECT_NEAR(hills->ground_gap({100, 200, 900}, {100, 200, 700}), 700 - height(rows, 100, 200),
-                1e-9);
+    EXPECT_NEAR(hills->ground()->gap({100, 200, 900}, {100, 200, 700}),
+                700 - height(rows, 100, 200), 1e-9);
   }
 }
 
@@ -203,7 +203,7 @@ TEST(Hills, SpikeBetweenSamplesIsSeen) {
   const Vec3 up(0, 0, 0.02);
   const Vec3 a(0, 5000, 549.99);
   const Vec3 b(90000, 5000, 549.99);
-  EXPECT_NEAR(hills->ground_gap(a, b), -0.01, 1e-6);
+  EXPECT_NEAR(hills->ground()->gap(a, b), -0.01, 1e-6);
   EXPECT_TRUE(hills->blocked(a, b, 0));
   EXPECT_FALSE(hills->blocked(a + up, b + up, 0));
   // Touching the plateau is free, exactly.
@@ -222,7 +222,7 @@ TEST(Hills, MirroredSceneGivesMirroredAnswers) {
   for (int n = 0; n < 300; ++n) {
     const Vec3 a = random.in(kOver);
     const Vec3 b = random.in(kOver);
-    EXPECT_NEAR(hills->ground_gap(a, b), mirror->ground_gap(mirrored(a), mirrored(b)), 1e-6);
+    EXPECT_NEAR(hills->ground()->gap(a, b), mirror->ground()->gap(mirrored(a), mirrored(b)), 1e-6);
     EXPECT_NEAR(hills->clearance(a), mirror->clearance(mirrored(a)), 60);  // slopes: within 1 %
     EXPECT_EQ(hills->blocked(a, b, 0), mirror->blocked(mirrored(a), mirrored(b), 0));
   }

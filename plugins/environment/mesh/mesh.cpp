@@ -128,11 +128,13 @@ class Mesh final : public Environment {
   Mesh(const Params& params, const Site& site) : Mesh(read(params, site)) {}
 
  private:
-  explicit Mesh(Solid solid) : surface_(std::move(solid.triangles)), note_(std::move(solid.note)) {}
+  explicit Mesh(Solid solid) : surface_(std::move(solid.triangles)) {
+    info_.notes = {std::move(solid.note)};
+  }
 
   Box do_bounds() const override { return surface_.bounds(); }
   double do_slack() const override { return 0; }
-  std::vector<std::string> do_notes() const override { return {note_}; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return Drawing{{}, surface_.triangles()}; }
 
   double do_clearance(const Vec3& p) const override {
@@ -197,7 +199,7 @@ class Mesh final : public Environment {
   }
 
   Surface surface_;
-  std::string note_;
+  LayerInfo info_;
 };
 }  // namespace
 }  // namespace altiplan::mesh

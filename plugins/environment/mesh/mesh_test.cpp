@@ -135,8 +135,8 @@ TEST_F(Mesh, PartsAreOneSolidAndAnInnerOneInsideOutIsACavity) {
   EXPECT_FALSE(layer->blocked({1.25, 1.2, 2}, {1.25, 2.8, 2}, 0.2));
   EXPECT_EQ(layer->clearance({-1, 2, 2}), 1);
   EXPECT_EQ(layer->clearance({9, 1, 1}), 1);
-  EXPECT_NE(layer->notes()[0].find("84 triangles in 7 closed parts"), std::string::npos)
-      << layer->notes()[0];
+  EXPECT_NE(layer->info().notes[0].find("84 triangles in 7 closed parts"), std::string::npos)
+      << layer->info().notes[0];
   EXPECT_EQ(layer->drawing()->triangles.size(), 84U);
 }
 
@@ -170,8 +170,8 @@ TEST_F(Mesh, TheFormatsOfAssimpHoldTheSame) {
     Assimp::Exporter exporter;
     ASSERT_EQ(exporter.Export(scene, format, (folder_ / file).string()), AI_SUCCESS) << format;
     const auto same = mesh_of(folder_ / file);
-    EXPECT_NE(same->notes()[0].find("32 triangles in 2 closed parts, 0"), std::string::npos)
-        << format << ": " << same->notes()[0];
+    EXPECT_NE(same->info().notes[0].find("32 triangles in 2 closed parts, 0"), std::string::npos)
+        << format << ": " << same->info().notes[0];
     RandomStream random(2);
     for (int n = 0; n < 300; ++n) {
       const Vec3 p = random.in({{-2, -2, -2}, {11, 7, 5}});
@@ -207,7 +207,7 @@ TEST_F(Mesh, CornersAreWeldedAndSliversLeftOut) {
   }
   apart.faces.push_back({0, 1, 0});
   const auto layer = layer_of(apart);
-  EXPECT_EQ(layer->notes()[0], "12 triangles in 1 closed part, 1 without area left out");
+  EXPECT_EQ(layer->info().notes[0], "12 triangles in 1 closed part, 1 without area left out");
   EXPECT_NEAR(layer->clearance({2, 0.5, 0.5}), 1, 1e-4);
   EXPECT_NE(mesh_refusal(folder_ / "model.obj", ", weld_m: 0").find("is not closed"),
             std::string::npos);

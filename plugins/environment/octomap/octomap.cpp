@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/what_blocks.hpp"
@@ -120,9 +121,7 @@ class OctoMap final : public kit::CellLayer, public WhatBlocks {
 
  private:
   explicit OctoMap(Read map)
-      : CellLayer(std::move(map.cells)),
-        occupied_(std::move(map.occupied)),
-        notes_(std::move(map.notes)) {}
+      : CellLayer(std::move(map.cells), std::move(map.notes)), occupied_(std::move(map.occupied)) {}
 
   static Read checked(const Params& params) {
     try {
@@ -134,7 +133,6 @@ class OctoMap final : public kit::CellLayer, public WhatBlocks {
     }
   }
 
-  std::vector<std::string> do_notes() const override { return notes_; }
   std::optional<Drawing> do_drawing() const override {
     Drawing drawing = kit::drawing_of(kit::boxes_of(occupied_));
     VoxelGrid unknown = cells();
@@ -157,7 +155,6 @@ class OctoMap final : public kit::CellLayer, public WhatBlocks {
   static constexpr double kNearer = 1e-5;  ///< m: what is no nearer than that is as near
 
   VoxelGrid occupied_;
-  std::vector<std::string> notes_;
   mutable std::once_flag asked_;  ///< for a message, seldom
   mutable std::optional<kit::CellLayer> measured_;
 };

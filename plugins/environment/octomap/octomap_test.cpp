@@ -55,7 +55,7 @@ void fill(Tree& tree, std::uint64_t seed) {
 /// Every voxel of the layer's box is as the tree has it.
 template <class Tree>
 void expect_equal(const Environment& layer, const Tree& tree, bool unknown_blocked) {
-  VoxelGrid grid(layer.native_grid().value());
+  VoxelGrid grid(layer.info().native_grid.value());
   layer.rasterize(grid);
   const Cell& counts = grid.spec().counts;
   std::size_t differ = 0;
@@ -133,7 +133,7 @@ TEST(OctoMap, RealMapsHaveTheirVoxels) {
   ALTIPLAN_DATA_OR_SKIP(folder, "voxel3d");
   EXPECT_NE(refusal(folder / "laberynth.bt").find("with unknown: free"), std::string::npos);
   const auto known = [&](const char* file) {
-    const std::string note = load(folder / file, ", unknown: free")->notes().front();
+    const std::string note = load(folder / file, ", unknown: free")->info().notes.front();
     return note.substr(0, note.find("), ", note.find("free")) + 1);
   };
   EXPECT_EQ(known("geb079.bt"), "143729 occupied leaves (185673 voxels), 284415 free (950759)");
@@ -300,7 +300,7 @@ TEST(OctoMap, DamageIsAnErrorOrAMap) {
       const auto path = folder.write("damaged", damaged);
       try {
         const auto layer = load(path, ", max_cells: 1000000");
-        EXPECT_LE(layer->native_grid()->cell_count(), 1000000U);
+        EXPECT_LE(layer->info().native_grid->cell_count(), 1000000U);
       } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
       }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
 #include "radar_equation.hpp"
 
@@ -48,35 +49,37 @@ class Radar final : public Environment {
     if (params.masking) {
       find_ground(*site.before);
     }
+    info_.threats = {{at_, range_, "radar", ""}};
+    info_.notes = {note()};
   }
 
  private:
   void find_ground(const World& before) {
     for (const Layer& layer : before.layers()) {
-      if (layer.environment->has_ground()) {
-        if (ground_) {
+      if (const Ground* ground = layer.environment->ground()) {
+        if (ground_ != nullptr) {
           throw ParameterError("masking", "needs one layer with ground before the radar, found '" +
-                                              ground_id_ + "' and '" + layer.id + "'");
+                                              ground_layer_.id + "' and '" + layer.id + "'");
         }
-        ground_ = layer.environment;
-        ground_id_ = layer.id;
+        ground_ = ground;
+        ground_layer_ = layer;
       }
     }
-    if (!ground_) {
+    if (ground_ == nullptr) {
       throw ParameterError("masking", "needs a layer with ground (terrain) before the radar");
     }
-    area_ = ground_->bounds();
+    area_ = ground_layer_.environment->bounds();
     area_.min.z() = -kInfinity;
     area_.max.z() = kInfinity;
-    const auto height = ground_->ground(at_.x(), at_.y());
+    const auto height = ground_->height(at_.x(), at_.y());
     if (!height || at_.z() < *height) {
       throw Error(height ? "the antenna stands below the ground"
                          : "masking: there is no ground below the antenna");
     }
-    const double slope = ground_->ground_slope(ball_.bounds().intersected(area_));
+    const double slope = ground_->slope(ball_.bounds().intersected(area_));
     steepness_ = std::hypot(1, slope);
     if (!std::isfinite(slope)) {
-      ground_.reset();  // nothing can be said about what is hidden
+      ground_ = nullptr;  // nothing can be said about what is hidden
     }
   }
 
@@ -87,7 +90,7 @@ class Radar final : public Environment {
     if (to_edge <= 0) {
       return to_edge;
     }
-    const double hidden = -ground_->ground_gap(at_, p) / steepness_;
+    const double hidden = -ground_->gap(at_, p) / steepness_;
     return std::min(to_edge, std::max(hidden, -to_edge));
   }
 
@@ -95,7 +98,7 @@ class Radar final : public Environment {
 
   double do_clearance(const Vec3& p) const override {
     const double to_ball = ball_.clearance(p);
-    return ground_ ? std::max(to_ball, to_covered(p)) : to_ball;
+    return ground_ != nullptr ? std::max(to_ball, to_covered(p)) : to_ball;
   }
 
   // Masked: looks at places along the leg no further apart than the slack; a place speaks for half
@@ -104,7 +107,7 @@ class Radar final : public Environment {
     if (!ball_.blocked(a, b, r)) {
       return false;
     }
-    if (!ground_) {
+    if (ground_ == nullptr) {
       return true;
     }
     // A flagged place must not depend on how it was found, else the answer would not be monotone
@@ -144,7 +147,7 @@ class Radar final : public Environment {
   }
 
   void do_rasterize(VoxelGrid& grid) const override {
-    if (!ground_) {
+    if (ground_ == nullptr) {
       ball_.rasterize(grid);
       return;
     }
@@ -176,18 +179,19 @@ class Radar final : public Environment {
     }
   }
 
-  double do_slack() const override { return ground_ ? kMaskedSlack : 0; }
-  std::vector<Threat> do_threats() const override { return {{at_, range_, "radar", ""}}; }
+  double do_slack() const override { return ground_ != nullptr ? kMaskedSlack : 0; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override {
     return kit::drawing_of(ball_.shapes(), Drawn::Role::threat);
   }
-  std::vector<std::string> do_notes() const override {
+  std::string note() const {
     std::string note = "range " + std::to_string(std::lround(range_)) + " m";
-    if (!ground_id_.empty()) {
-      note += ground_ ? ", masked by '" + ground_id_ + "'"
-                      : ", not masked: '" + ground_id_ + "' has holes or an unknown slope in range";
+    if (ground_ != nullptr) {
+      note += ", masked by '" + ground_layer_.id + "'";
+    } else if (ground_layer_.environment) {
+      note += ", not masked: '" + ground_layer_.id + "' has holes or an unknown slope in range";
     }
-    return {note};
+    return note;
   }
 
   static constexpr double kMaskedSlack = 1;  // metres
@@ -195,10 +199,11 @@ class Radar final : public Environment {
   Vec3 at_;
   double range_;
   kit::ObstacleSet ball_;
-  std::shared_ptr<const Environment> ground_;  ///< none: no masking
-  std::string ground_id_;
+  const Ground* ground_ = nullptr;  ///< null: no masking
+  Layer ground_layer_;
   Box area_;  ///< of the ground, unbounded in z
   double steepness_ = 1;
+  LayerInfo info_;
 };
 }  // namespace
 }  // namespace altiplan::radar

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "altiplan/plugin.hpp"
+#include "altiplan/environment.hpp"
 
 namespace altiplan::radar {
 

@@ -11,7 +11,7 @@ namespace altiplan::testing {
 namespace {
 
 /// Rolling ground with a wall-like ridge along y = 1000, of 20 m posts over 4 km.
-class Hills final : public Environment {
+class Hills final : public Environment, public Ground {
  public:
   Hills() : field_({-2000, -2000}, {20, 20}, 201, 201, heights()) {}
   const HeightField& field() const { return field_; }
@@ -31,12 +31,12 @@ class Hills final : public Environment {
   }
   Box do_bounds() const override { return {{-2000, -2000, -kInfinity}, {2000, 2000, 200}}; }
   double do_clearance(const Vec3&) const override { return kInfinity; }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override { return field_.at(x, y); }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double y) const override { return field_.at(x, y); }
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
     return field_.gap(a, b, enough);
   }
-  double do_ground_slope(const Box& box) const override {
+  double do_slope(const Box& box) const override {
     return field_.max_slope(box.min.x(), box.min.y(), box.max.x(), box.max.y());
   }
 
@@ -69,10 +69,10 @@ TEST(Radar, IsABallAroundItsAntenna) {
   EXPECT_FALSE(radar->blocked({-900, 702, z}, {900, 702, z}, 2));
   EXPECT_TRUE(radar->blocked({-900, 702, z}, {900, 702, z}, 2.1));
   EXPECT_EQ(radar->slack(), 0);
-  ASSERT_EQ(radar->threats().size(), 1U);
-  EXPECT_EQ(radar->threats()[0].kind, "radar");
-  EXPECT_EQ(radar->threats()[0].radius, 500);
-  EXPECT_NEAR(radar->threats()[0].centre.z(), z, 1e-9);
+  ASSERT_EQ(radar->info().threats.size(), 1U);
+  EXPECT_EQ(radar->info().threats[0].kind, "radar");
+  EXPECT_EQ(radar->info().threats[0].radius, 500);
+  EXPECT_NEAR(radar->info().threats[0].centre.z(), z, 1e-9);
 }
 
 // By hand: P_t G_t G_r λ² σ = 5e4 · 1e7 · 1e-2 · 0.1 = 5e8; (4π)³ = 1984.40;
@@ -86,8 +86,8 @@ TEST(Radar, FollowsTheRadarEquation) {
   const auto range = [&](const std::string& gains) {
     return make_environment("radar", "{at_m: [0, 0, 50], equation: {" + rest + gains + "}}",
                             place.site)
-        ->threats()
-        .at(0)
+        ->info()
+        .threats.at(0)
         .radius;
   };
   EXPECT_NEAR(range("transmit_gain_db: 35, detection_factor_db: 13"), 25102.4, 0.1);

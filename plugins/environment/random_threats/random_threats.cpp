@@ -6,6 +6,7 @@
 #include <array>
 #include <random>
 
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 
@@ -67,17 +68,18 @@ class RandomThreats final : public kit::ShapeLayer {
 
  private:
   explicit RandomThreats(const std::vector<Cylinder>& cylinders)
-      : ShapeLayer({cylinders.begin(), cylinders.end()}) {
-    for (const Cylinder& cylinder : cylinders) {
-      threats_.push_back({{cylinder.x, cylinder.y, 0},
-                          cylinder.radius,
-                          "threat",
-                          std::to_string(threats_.size() + 1)});
-    }
-  }
-  std::vector<Threat> do_threats() const override { return threats_; }
+      : ShapeLayer({cylinders.begin(), cylinders.end()}, {{}, {}, threats_of(cylinders), {}}) {}
 
-  std::vector<Threat> threats_;
+  static std::vector<Threat> threats_of(const std::vector<Cylinder>& cylinders) {
+    std::vector<Threat> threats;
+    for (const Cylinder& cylinder : cylinders) {
+      threats.push_back({{cylinder.x, cylinder.y, 0},
+                         cylinder.radius,
+                         "threat",
+                         std::to_string(threats.size() + 1)});
+    }
+    return threats;
+  }
 };
 }  // namespace
 

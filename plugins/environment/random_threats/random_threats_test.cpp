@@ -17,7 +17,8 @@ TEST(RandomThreats, AreThoseOfTheGenerator) {
       const auto threats =
           make_environment("random_threats",
                            "{kind: " + kind + ", seed: " + std::to_string(seed) + "}")
-              ->threats();
+              ->info()
+              .threats;
       ASSERT_EQ(threats.size(), 80U);
       std::mt19937_64 next(std::uint64_t{0} + std::uint64_t(seed));
       const auto u = [&] { return std::ldexp(double(next() >> 11), -53); };
@@ -35,13 +36,14 @@ TEST(RandomThreats, AreThoseOfTheGenerator) {
 
 TEST(RandomThreats, FirstOfSeedOne) {
   // Held down to the figure: a changed generator would make other maps under the same numbers.
-  const Threat first = make_environment("random_threats", "{kind: B, seed: 1}")->threats().front();
+  const Threat first =
+      make_environment("random_threats", "{kind: B, seed: 1}")->info().threats.front();
   EXPECT_NEAR(first.centre.x(), 90000 * 0.13387664401253274, 1e-6);
 }
 
 TEST(RandomThreats, BlockAtEveryHeight) {
   const auto layer = make_environment("random_threats", "{kind: C, seed: 3, count: 10}");
-  for (const Threat& threat : layer->threats()) {
+  for (const Threat& threat : layer->info().threats) {
     for (const double z : {-1e4, 0.0, 1e4}) {
       const Vec3 at(threat.centre.x(), threat.centre.y(), z);
       EXPECT_LE(layer->clearance(at), -threat.radius + 1e-6);

@@ -3,6 +3,7 @@
 // Random maps for planners in the plane: bars, blocks and circles that keep apart, after the map of
 // paper 004 (Li Rongsheng et al., "Path planning for flight vehicles based on improved ACO",
 // figures 6 to 8), which is one picture.
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 

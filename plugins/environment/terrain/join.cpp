@@ -23,8 +23,9 @@ double ground_about(const altiplan::World& world, double x, double y, double wit
     const altiplan::Box box = layer.environment->bounds();
     const altiplan::Vec3 at(x, y, 0);
     const altiplan::Vec3 in = at.cwiseMax(box.min).cwiseMin(box.max);
-    if (layer.environment->has_ground() && (in - at).head<2>().norm() <= within) {
-      if (const auto height = layer.environment->ground(in.x(), in.y())) {
+    const altiplan::Ground* ground = layer.environment->ground();
+    if (ground != nullptr && (in - at).head<2>().norm() <= within) {
+      if (const auto height = ground->height(in.x(), in.y())) {
         highest = std::fmax(highest, *height);
       }
     }
@@ -40,7 +41,7 @@ bool ends_before(const altiplan::World& world, int axis, double side, double out
                        const altiplan::Box box = layer.environment->bounds();
                        const double end = outer < side ? box.max[axis] : box.min[axis];
                        const double slack = kSameShare * std::abs(outer - side);
-                       return layer.environment->has_ground() && end != side &&
+                       return layer.environment->ground() != nullptr && end != side &&
                               (outer < side ? end < side && end >= outer - slack
                                             : end > side && end <= outer + slack);
                      });

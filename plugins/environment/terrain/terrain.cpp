@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "altiplan/environment.hpp"
+#include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/ground.hpp"
 #include "altiplan/plugin.hpp"
 #include "ground_search.hpp"
@@ -25,13 +27,13 @@ std::string text(const char* format, auto... values) {
   return line;
 }
 
-class Terrain final : public Environment {
+class Terrain final : public Environment, public Ground {
  public:
   Terrain(const terrain::Params& params, const Site& site)
-      : voids_rule_(params.voids),
-        model_(params, site),
-        vehicle_radius_(site.vehicle.radius_m),
-        bounds_(model_.bounds()) {}
+      : model_(params, site), vehicle_radius_(site.vehicle.radius_m), bounds_(model_.bounds()) {
+    info_.frame = model_.layout().frame;
+    info_.notes = notes(params.voids);
+  }
 
  private:
   /// The nearest place over the posts, at the same height.
@@ -47,22 +49,22 @@ class Terrain final : public Environment {
   }
 
   Box do_bounds() const override { return bounds_; }
-  bool do_has_ground() const override { return true; }
-  bool do_ground_alone() const override { return true; }
-  std::optional<double> do_ground(double x, double y) const override {
+  const Ground* do_ground() const override { return this; }
+  bool do_is_all() const override { return true; }
+  std::optional<double> do_height(double x, double y) const override {
     return model_.over(Vec3(x, y, 0)).at(x, y);
   }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double enough) const override {
+  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
     return model_.over(leg_box(a, b)).gap(a, b, enough);
   }
-  double do_ground_gap_max(const Vec3& a, const Vec3& b) const override {
+  double do_gap_max(const Vec3& a, const Vec3& b) const override {
     return model_.over(leg_box(a, b)).gap_max(a, b);
   }
   const HeightField* do_height_field() const override { return &model_.field(); }
-  double do_ground_slope(const Box& box) const override {
+  double do_slope(const Box& box) const override {
     return model_.field().void_posts() > 0 ? kInfinity : slope_within(model_.over(box), box);
   }
-  std::optional<Frame> do_frame() const override { return model_.layout().frame; }
+  const LayerInfo& do_info() const override { return info_; }
 
   double do_clearance(const Vec3& p) const override {
     const Vec3 q = over_posts(p);
@@ -232,15 +234,16 @@ class Terrain final : public Environment {
   }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
-  std::vector<std::string> do_notes() const override {
+
+  std::vector<std::string> notes(terrain::Voids voids_rule) const {
     const HeightField& field = model_.field();
     const terrain::Layout& layout = model_.layout();
     std::vector<std::string> notes;
     std::string voids = "no voids";
     if (model_.voids() > 0) {
       voids = std::to_string(model_.voids()) + " voids " +
-              (voids_rule_ == terrain::Voids::fill_m ? "filled with fill_m"
-                                                     : "filled from their neighbours");
+              (voids_rule == terrain::Voids::fill_m ? "filled with fill_m"
+                                                    : "filled from their neighbours");
     }
     const bool is_part = field.columns() < layout.columns || field.rows() < layout.rows;
     notes.push_back(
@@ -266,10 +269,10 @@ class Terrain final : public Environment {
 
   static constexpr double kInDoubt = 1e-4;  ///< metres of a leg that are not halved any more
 
-  terrain::Voids voids_rule_;
   terrain::Model model_;
   double vehicle_radius_;
   Box bounds_;
+  LayerInfo info_;
 };
 }  // namespace
 

@@ -14,7 +14,7 @@ TEST_F(MadeFiles, SpikeBetweenSamplesIsSeen) {
   // Over the spike's post (200, 100); all 40 posts of the leg's line lie beside it.
   const Vec3 a(0, 100, 10.009);
   const Vec3 b(400, 100, 10.009);
-  EXPECT_NEAR(layer->ground_gap(a, b), -0.001, 1e-5);
+  EXPECT_NEAR(layer->ground()->gap(a, b), -0.001, 1e-5);
   EXPECT_TRUE(layer->blocked(a, b, 0));
   const Vec3 up(0, 0, 0.0011);
   EXPECT_FALSE(layer->blocked(a + up, b + up, 0));
@@ -105,10 +105,10 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
   EXPECT_SAYS(refusal(file), "2 of 20 posts");
   EXPECT_SAYS(refusal(file), "voids: neighbours");
   const Made filled = make_environment("terrain", file_yaml(file, "voids: fill_m, fill_m: 99"));
-  EXPECT_DOUBLE_EQ(*filled->ground(100, 200), 99);
+  EXPECT_DOUBLE_EQ(*filled->ground()->height(100, 200), 99);
   const Made mean = make_environment("terrain", file_yaml(file, "voids: neighbours"));
-  EXPECT_NEAR(*mean->ground(100, 200), (10 * 5 + 20 * 2) / 7.0, 1e-5);
-  EXPECT_SAYS(mean->notes()[0], "2 voids filled from their neighbours");
+  EXPECT_NEAR(*mean->ground()->height(100, 200), (10 * 5 + 20 * 2) / 7.0, 1e-5);
+  EXPECT_SAYS(mean->info().notes[0], "2 voids filled from their neighbours");
   EXPECT_SAYS(testing::parameter_problems("environment", "terrain", file_yaml(file, "fill_m: 1")),
               "it needs voids: fill_m");
   EXPECT_SAYS(

@@ -88,11 +88,11 @@ void expect_same_answers(const Environment& part, const Environment& whole, cons
     }
     const Vec3 b = n % 7 == 0 ? a : leg_end(random, box, a);
     const double r = reach * random.uniform(0, 1) * random.uniform(0, 1);
-    ASSERT_EQ(part.ground(a.x(), a.y()), whole.ground(a.x(), a.y())) << n;
-    ASSERT_EQ(part.ground_gap(a, b), whole.ground_gap(a, b)) << n;
-    ASSERT_EQ(part.ground_gap_max(a, b), whole.ground_gap_max(a, b)) << n;
+    ASSERT_EQ(part.ground()->height(a.x(), a.y()), whole.ground()->height(a.x(), a.y())) << n;
+    ASSERT_EQ(part.ground()->gap(a, b), whole.ground()->gap(a, b)) << n;
+    ASSERT_EQ(part.ground()->gap_max(a, b), whole.ground()->gap_max(a, b)) << n;
     const Box around = leg_box(a, b).grown(r);
-    ASSERT_EQ(part.ground_slope(around), whole.ground_slope(around)) << n;
+    ASSERT_EQ(part.ground()->slope(around), whole.ground()->slope(around)) << n;
     ASSERT_EQ(part.blocked(a, b, r), whole.blocked(a, b, r)) << n;
     blocked += part.blocked(a, b, r) ? 1 : 0;
     std::vector<Nearby> near[2];
@@ -111,17 +111,18 @@ TEST_F(PartOfAModel, AnswersAsTheWholeWithinTheVolume) {
   const Made whole = whole_of(model("sound"));
   EXPECT_NE(refusal(half_damaged("damaged")), "");
   const Made part = part_of(folder_ / "damaged.img");
-  EXPECT_SAYS(part->notes()[0], "2600 x 2100 posts");
-  EXPECT_SAYS(part->notes()[0], "of them read, about the volume");
-  EXPECT_EQ(whole->notes()[0].find("of them"), std::string::npos);
-  EXPECT_LT(part->height_field()->columns() * part->height_field()->rows(), 500'000);
+  EXPECT_SAYS(part->info().notes[0], "2600 x 2100 posts");
+  EXPECT_SAYS(part->info().notes[0], "of them read, about the volume");
+  EXPECT_EQ(whole->info().notes[0].find("of them"), std::string::npos);
+  EXPECT_LT(part->ground()->height_field()->columns() * part->ground()->height_field()->rows(),
+            500'000);
   EXPECT_EQ(part->bounds().min, whole->bounds().min);
   EXPECT_EQ(part->bounds().max, whole->bounds().max);
   expect_same_answers(*part, *whole, kVolume, 60, 2000);
   expect_same_answers(*part, *whole, kVolume, 800, 300);
   // That was the part alone: beyond it the damage shows.
   try {
-    part->ground(30, 20000);
+    part->ground()->height(30, 20000);
     FAIL() << "the whole was not read";
   } catch (const Error& error) {
     EXPECT_SAYS(std::string(error.what()), "30000 at column 3, row 1");
@@ -197,7 +198,7 @@ TEST_F(PartOfAModel, GridsAreTheSame) {
 TEST_F(PartOfAModel, VoidsAreThoseOfThePartOrAskForTheWhole) {
   const auto elsewhere = model("elsewhere", [](auto& heights) { heights[at(9, 9)] = kVoid; });
   EXPECT_SAYS(refusal(elsewhere), "1 of 5460000 posts");
-  EXPECT_SAYS(part_of(elsewhere)->notes()[0], "no voids");
+  EXPECT_SAYS(part_of(elsewhere)->info().notes[0], "no voids");
   const auto within = model("within", [](auto& heights) {
     for (int j = 700; j < 1500; ++j) {  // out of the part: what fills it comes from both sides
       heights[at(1000, j)] = heights[at(1001, j)] = heights[at(1002, j)] = kVoid;
@@ -210,11 +211,11 @@ TEST_F(PartOfAModel, VoidsAreThoseOfThePartOrAskForTheWhole) {
     EXPECT_SAYS(std::string(error.what()), "2400 of 5460000 posts");
   }
   const Made filled = part_of(within, "voids: neighbours");
-  EXPECT_SAYS(filled->notes()[0], "2400 voids filled from their neighbours");
+  EXPECT_SAYS(filled->info().notes[0], "2400 voids filled from their neighbours");
   expect_same_answers(*filled, *whole_of(within, "voids: neighbours"), kVolume, 60, 300);
   const Made flat = part_of(within, "voids: fill_m, fill_m: 7");
-  EXPECT_SAYS(flat->notes()[0], "of them read");
-  EXPECT_EQ(flat->ground(10010, 9000), 7.0);
+  EXPECT_SAYS(flat->info().notes[0], "of them read");
+  EXPECT_EQ(flat->ground()->height(10010, 9000), 7.0);
   expect_same_answers(*flat, *whole_of(within, "voids: fill_m, fill_m: 7"), kVolume, 60, 300);
 }
 
@@ -223,9 +224,9 @@ TEST_F(PartOfAModel, MaxPostsCountsWhatIsRead) {
   EXPECT_SAYS(refusal(file, "max_posts: 1000000"),
               "declares 2600 x 2100 posts, more than max_posts (1000000)");
   const Made part = part_of(file, "max_posts: 1000000");
-  EXPECT_TRUE(part->ground(10000, 9000));
+  EXPECT_TRUE(part->ground()->height(10000, 9000));
   try {
-    part->ground(30, 30);
+    part->ground()->height(30, 30);
     FAIL() << "more posts than allowed";
   } catch (const Error& error) {
     EXPECT_SAYS(std::string(error.what()), "beyond the part about the volume");
@@ -252,7 +253,7 @@ TEST_F(PartOfAModel, TilesAndStripsOfATiffAreTheSame) {
     const Made all = whole_of(file);
     for (int j = 0; j < kRows; ++j) {
       for (int i = 0; i < kColumns; ++i) {
-        ASSERT_EQ(all->height_field()->post(i, j), height(i, j)) << i << ' ' << j;
+        ASSERT_EQ(all->ground()->height_field()->post(i, j), height(i, j)) << i << ' ' << j;
       }
     }
   }

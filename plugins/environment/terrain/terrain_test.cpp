@@ -23,8 +23,8 @@ void expect_samples(const Environment& layer, int columns, int rows,
   for (const Sample& s : samples) {
     const double x = box.max.x() * s.column / (columns - 1);
     const double y = box.max.y() * (rows - 1 - s.row) / (rows - 1);
-    ASSERT_TRUE(layer.ground(x, y).has_value()) << s.column << ", " << s.row;
-    EXPECT_NEAR(*layer.ground(x, y), s.height, 1e-6) << s.column << ", " << s.row;
+    ASSERT_TRUE(layer.ground()->height(x, y).has_value()) << s.column << ", " << s.row;
+    EXPECT_NEAR(*layer.ground()->height(x, y), s.height, 1e-6) << s.column << ", " << s.row;
   }
 }
 
@@ -50,8 +50,8 @@ TEST_P(RealDems, LoadsOrIsRefusedAndHeightsAreExact) {
   }
   const Made layer = make_environment("terrain", file_yaml(file, dem.parameters));
   expect_samples(*layer, dem.columns, dem.rows, dem.samples);
-  ASSERT_FALSE(layer->notes().empty());
-  const std::string note = layer->notes()[0];
+  ASSERT_FALSE(layer->info().notes.empty());
+  const std::string note = layer->info().notes[0];
   EXPECT_SAYS(note, std::to_string(dem.columns) + " x " + std::to_string(dem.rows) + " posts");
   EXPECT_SAYS(note, std::to_string(int(dem.lowest)) + " to " + std::to_string(int(dem.highest)));
 }
@@ -120,9 +120,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Terrain, PlacesPostsByLonLat) {
   ALTIPLAN_DATA_OR_SKIP(hgt, "dem/N44W072.hgt");
   const Made geographic = make_environment("terrain", file_yaml(hgt));
-  const Frame frame = *geographic->frame();
+  const Frame frame = *geographic->info().frame;
   const auto summit = frame.to_local(-71 - 364.0 / 1200, 44 + 325.0 / 1200);  // col 836, row 875
-  EXPECT_NEAR(*geographic->ground(summit[0], summit[1]), 1908, 1e-3);
+  EXPECT_NEAR(*geographic->ground()->height(summit[0], summit[1]), 1908, 1e-3);
   const auto corner = frame.to_lonlat(0, 0);
   EXPECT_NEAR(corner[0], -72, 1e-9);
   EXPECT_NEAR(corner[1], 44, 1e-9);
@@ -130,45 +130,45 @@ TEST(Terrain, PlacesPostsByLonLat) {
   ALTIPLAN_DATA_OR_SKIP(utm, "dem/elev_vinschgau.tif");
   const Made projected = make_environment("terrain", file_yaml(utm, "voids: neighbours"));
   // Ortler, 10.5448 E 46.5090 N, stands where UTM 32 has it: 618375, 5151625 in the file.
-  const auto lonlat = projected->frame()->to_lonlat(0, 0);
-  const auto back = projected->frame()->to_local(lonlat[0], lonlat[1]);
+  const auto lonlat = projected->info().frame->to_lonlat(0, 0);
+  const auto back = projected->info().frame->to_local(lonlat[0], lonlat[1]);
   EXPECT_NEAR(back[0], 0, 1e-6);
   EXPECT_NEAR(back[1], 0, 1e-6);
-  const auto ortler = projected->frame()->to_local(10.5448, 46.5090);
-  EXPECT_GT(*projected->ground(ortler[0], ortler[1]), 3500);
+  const auto ortler = projected->info().frame->to_local(10.5448, 46.5090);
+  EXPECT_GT(*projected->ground()->height(ortler[0], ortler[1]), 3500);
 }
 
 TEST(Terrain, ComesIntoTheFrameOfTheWorld) {
   ALTIPLAN_DATA_OR_SKIP(file, "dem/jacksboro_fault.tif");
   const Made own = make_environment("terrain", file_yaml(file));
   Site site;
-  site.frame = *own->frame();
+  site.frame = *own->info().frame;
   const Made again = make_environment("terrain", file_yaml(file), site);
   EXPECT_NEAR((again->bounds().max - own->bounds().max).head<2>().norm(), 0, 1e-4);
-  EXPECT_NEAR(*again->ground(15000, 15000), *own->ground(15000, 15000), 1e-3);
+  EXPECT_NEAR(*again->ground()->height(15000, 15000), *own->ground()->height(15000, 15000), 1e-3);
 
   // Warped to UTM 16 N: the same ground at the same longitude and latitude.
   Site utm;
   utm.frame_crs = "EPSG:32616";
   const Made warped = make_environment("terrain", file_yaml(file), utm);
   EXPECT_NEAR(warped->bounds().min.head<2>().norm(), 0, 1e-5);
-  EXPECT_LT(warped->frame()->scale_error(warped->bounds()), 0.005);
+  EXPECT_LT(warped->info().frame->scale_error(warped->bounds()), 0.005);
   RandomStream random(1);
   int compared = 0;
   double worst = 0;
   for (int n = 0; n < 2000; ++n) {
     const double x = random.uniform(0, own->bounds().max.x());
     const double y = random.uniform(0, own->bounds().max.y());
-    const auto lonlat = own->frame()->to_lonlat(x, y);
-    const auto there = warped->frame()->to_local(lonlat[0], lonlat[1]);
-    if (const auto height = warped->ground(there[0], there[1])) {
+    const auto lonlat = own->info().frame->to_lonlat(x, y);
+    const auto there = warped->info().frame->to_local(lonlat[0], lonlat[1]);
+    if (const auto height = warped->ground()->height(there[0], there[1])) {
       ++compared;
-      worst = std::max(worst, std::abs(*height - *own->ground(x, y)));
+      worst = std::max(worst, std::abs(*height - *own->ground()->height(x, y)));
     }
   }
   EXPECT_GT(compared, 1800);
   EXPECT_LT(worst, 40);  // bilinear twice, posts 70 to 90 m apart on slopes of up to 45 degrees
-  EXPECT_SAYS(warped->notes()[1], "resampled");
+  EXPECT_SAYS(warped->info().notes[1], "resampled");
   EXPECT_SAYS(refusal(file, "",
                       [] {
                         Site s;
@@ -181,7 +181,7 @@ TEST(Terrain, ComesIntoTheFrameOfTheWorld) {
 TEST(Terrain, ProjectsFromSeveralThreads) {
   ALTIPLAN_DATA_OR_SKIP(utm, "dem/elev_vinschgau.tif");
   const Made layer = make_environment("terrain", file_yaml(utm, "voids: neighbours"));
-  const Frame frame = *layer->frame();
+  const Frame frame = *layer->info().frame;
   constexpr int kPoints = 500;
   const auto lonlat_of = [&](int n) { return frame.to_lonlat(20.0 * n, 9000 - 15.0 * n); };
   std::vector<std::array<double, 2>> expected;
@@ -221,14 +221,14 @@ TEST(Terrain, LawsHoldOnRealGround) {
     const double clearance = layer->clearance(p);
     const Vec3 q = p + 100 * Vec3(random.normal(), random.normal(), random.normal());
     EXPECT_LE(std::abs(layer->clearance(q) - clearance), (q - p).norm() * (1 + 1e-9) + 1e-9);
-    const auto ground = layer->ground(p.x(), p.y());
+    const auto ground = layer->ground()->height(p.x(), p.y());
     EXPECT_EQ(clearance<0, ground&& * ground> p.z());
     double least = kInfinity;
     layer->near(p, 5000, [&](const Nearby& nearby) {
       least = std::min(least, nearby.distance);
       EXPECT_NEAR(nearby.normal.norm(), 1, 1e-9);
       if (clearance > 0) {
-        const double height = *layer->ground(nearby.point.x(), nearby.point.y());
+        const double height = *layer->ground()->height(nearby.point.x(), nearby.point.y());
         if (ground) {
           EXPECT_NEAR(nearby.point.z(), height, 1e-6);
         } else {
@@ -251,7 +251,7 @@ TEST(Terrain, LawsHoldOnRealGround) {
       lowest = std::min(lowest, layer->clearance(on));
       const Vec3 near_it =
           on + random.uniform(0, r) * Vec3(random.normal(), random.normal(), -1).normalized();
-      const auto height = layer->ground(near_it.x(), near_it.y());
+      const auto height = layer->ground()->height(near_it.x(), near_it.y());
       if (height && *height > near_it.z()) {
         EXPECT_TRUE(blocked || (near_it - on).norm() > r - 1e-5) << n;
       }
@@ -278,9 +278,9 @@ TEST(Terrain, RasterLeavesNoGroundFree) {
       const Vec3 p = random.in(spec.box());
       const bool is_blocked = grid.blocked(spec.cell_of(p));
       free += !is_blocked;
-      const auto ground = layer->ground(p.x(), p.y());
+      const auto ground = layer->ground()->height(p.x(), p.y());
       EXPECT_TRUE(is_blocked || !ground ||
-                  (*ground < p.z() + 1e-6 && layer->ground_gap(p, p) >= inflation - 1e-6));
+                  (*ground < p.z() + 1e-6 && layer->ground()->gap(p, p) >= inflation - 1e-6));
     }
     EXPECT_GT(free, 5000u);
   }
@@ -292,7 +292,8 @@ TEST(Terrain, RasterLeavesNoGroundFree) {
   for (int j = 0; j < spec.counts[1]; ++j) {
     for (int k = 0; k < spec.counts[2]; ++k) {
       const Vec3 c = spec.centre({80, j, k});
-      EXPECT_EQ(grid.blocked(80, j, k), c.z() <= layer->ground(c.x(), c.y()).value_or(-kInfinity));
+      EXPECT_EQ(grid.blocked(80, j, k),
+                c.z() <= layer->ground()->height(c.x(), c.y()).value_or(-kInfinity));
     }
   }
 }

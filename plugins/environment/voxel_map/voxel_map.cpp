@@ -3,6 +3,7 @@
 // Space", SoCS 2018 (.3dmap): the counts, then one blocked voxel a line.
 #include <charconv>
 
+#include "altiplan/environment.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"

@@ -44,7 +44,7 @@ class ZoneFile : public ::testing::Test {
 };
 
 bool says(const Environment& layer, const std::string& part) {
-  const auto notes = layer.notes();
+  const auto notes = layer.info().notes;
   return std::any_of(notes.begin(), notes.end(),
                      [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
@@ -234,8 +234,8 @@ TEST_F(ZoneFile, AFileFixesTheFrameOfAWorldWithoutOne) {
   Site nowhere;
   nowhere.before = &kNothing;
   const auto layer = zones("p.kml", kKml, "", nowhere);
-  ASSERT_TRUE(layer->frame().has_value());
-  const auto corner = layer->frame()->to_local(25, 60);
+  ASSERT_TRUE(layer->info().frame.has_value());
+  const auto corner = layer->info().frame->to_local(25, 60);
   EXPECT_NEAR(std::hypot(corner[0], corner[1]), 0, 1e-6);
 }
 

@@ -276,10 +276,8 @@ class Zones final : public Environment {
   explicit Zones(Reader reader)
       : keep_out_(std::move(reader.shapes[int(Kind::keep_out)])),
         keep_in_(std::move(reader.shapes[int(Kind::keep_in)])),
-        frame_(reader.frame),
         drawing_(std::move(reader.drawing)),
-        notes_(std::move(reader.notes)),
-        threats_(std::move(reader.threats)) {}
+        info_{std::move(reader.frame), {}, std::move(reader.threats), std::move(reader.notes)} {}
 
   Box do_bounds() const override { return keep_in_.empty() ? keep_out_.bounds() : Box{}; }
   double do_clearance(const Vec3& p) const override {
@@ -306,17 +304,13 @@ class Zones final : public Environment {
     }
   }
   double do_slack() const override { return 0; }
-  std::vector<Threat> do_threats() const override { return threats_; }
-  std::optional<Frame> do_frame() const override { return frame_; }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
-  std::vector<std::string> do_notes() const override { return notes_; }
 
   kit::ObstacleSet keep_out_;
   KeepIn keep_in_;
-  std::optional<Frame> frame_;
   Drawing drawing_;
-  std::vector<std::string> notes_;
-  std::vector<Threat> threats_;
+  LayerInfo info_;
 };
 }  // namespace
 }  // namespace altiplan::zones

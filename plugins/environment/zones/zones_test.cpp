@@ -63,9 +63,9 @@ TEST(Zones, KeepOutCylinderHasFloorCeilingAndThreat) {
   EXPECT_NEAR(layer->clearance({180, 200, 130}), 50, 1e-9);
   EXPECT_TRUE(layer->blocked({0, 200, 50}, {300, 200, 50}, 1));
   EXPECT_FALSE(layer->blocked({0, 200, 92}, {300, 200, 92}, 2));
-  ASSERT_EQ(layer->threats().size(), 1U);
-  EXPECT_EQ(layer->threats()[0].id, "tower");
-  EXPECT_EQ(layer->threats()[0].kind, "zone");
+  ASSERT_EQ(layer->info().threats.size(), 1U);
+  EXPECT_EQ(layer->info().threats[0].id, "tower");
+  EXPECT_EQ(layer->info().threats[0].kind, "zone");
   EXPECT_EQ(layer->slack(), 0);
 }
 
@@ -166,17 +166,17 @@ TEST(Zones, GeoJsonBringsAFrameHeightsAndHoles) {
               " [[25.04, 60.04], [25.06, 60.04], [25.06, 60.06], [25.04, 60.06], [25.04, 60.04]]]",
               R"({"low": 100, "high": "450.5"})"));
   const auto layer = zones("{file: " + file + ", floor_property: low, ceiling_property: high}");
-  ASSERT_TRUE(layer->frame().has_value());
-  const auto corner = layer->frame()->to_local(25, 60);
+  ASSERT_TRUE(layer->info().frame.has_value());
+  const auto corner = layer->info().frame->to_local(25, 60);
   EXPECT_NEAR(std::hypot(corner[0], corner[1]), 0, 1e-6);
-  const auto middle = layer->frame()->to_local(25.05, 60.05);
+  const auto middle = layer->info().frame->to_local(25.05, 60.05);
   EXPECT_GT(layer->clearance({middle[0], middle[1], 200}), 500);
-  const auto solid = layer->frame()->to_local(25.02, 60.02);
+  const auto solid = layer->info().frame->to_local(25.02, 60.02);
   EXPECT_NEAR(layer->clearance({solid[0], solid[1], 440}), -10.5, 1e-6);
   EXPECT_NEAR(layer->clearance({solid[0], solid[1], 90}), 10, 1e-6);
   Site placed = site_of();
   placed.frame = Frame::geographic(24, 59, 60);
-  EXPECT_FALSE(zones("{file: " + file + "}", placed)->frame().has_value());
+  EXPECT_FALSE(zones("{file: " + file + "}", placed)->info().frame.has_value());
 }
 
 TEST(Zones, RefusesBadFilesWithThePlace) {
@@ -229,19 +229,20 @@ TEST(Zones, ReadsFinnishZones) {
   ALTIPLAN_DATA_OR_SKIP(folder, "city");
   const auto restricted =
       zones("{file: " + (folder / "finland_rajoitukset.geojson").string() + "}");
-  EXPECT_EQ(restricted->notes().front(), "51 polygons read, 0 features without an area skipped");
-  const auto loviisa = restricted->frame()->to_local(26.35, 60.37);
+  EXPECT_EQ(restricted->info().notes.front(),
+            "51 polygons read, 0 features without an area skipped");
+  const auto loviisa = restricted->info().frame->to_local(26.35, 60.37);
   EXPECT_LT(restricted->clearance({loviisa[0], loviisa[1], 300}), 0);
-  EXPECT_TRUE(
-      says(zones("{file: " + (folder / "finland_valvottu.geojson").string() + "}")->notes().front(),
-           "28 polygons"));
+  EXPECT_TRUE(says(
+      zones("{file: " + (folder / "finland_valvottu.geojson").string() + "}")->info().notes.front(),
+      "28 polygons"));
   EXPECT_TRUE(says(zones("{file: " + (folder / "finland_lennatyspaikat.geojson").string() + "}")
-                       ->notes()
-                       .front(),
+                       ->info()
+                       .notes.front(),
                    "84 features without an area skipped"));
   const std::string timed = "{file: " + (folder / "finland_sup.geojson").string() +
                             ", from_property: timeBegin, until_property: timeEnd}";
-  EXPECT_EQ(zones(timed, site_at(kNoon))->notes().back(),
+  EXPECT_EQ(zones(timed, site_at(kNoon))->info().notes.back(),
             "1 keep-out and 0 keep-in zones, 2 not active");
   EXPECT_TRUE(says(refusal(timed), "start_time"));
 }

@@ -15,6 +15,7 @@
 //   yields to safety (counted), and a step that it shrinks keeps a quarter of its length.
 // Symbols: k_a, k_r gains, d distance to an edge, d_0 influence, b1 bearing to the obstacle,
 //   b2 bearing to the target, alpha_2 turn limit, L1 and L2 steps.
+#include "altiplan/local_planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "field_pilot.hpp"
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kNaturalTurn = 30;
 
 /// Ground z = 100 + x / 10 west of a ridge, closed form: a tilted plane.
-class Slope final : public Environment {
+class Slope final : public Environment, public Ground {
   static constexpr double kRise = 0.1;
   static double ground_at(double x) { return 100 + kRise * x; }
   Box do_bounds() const override { return {}; }
@@ -28,9 +28,9 @@ class Slope final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return std::min(do_clearance(a), do_clearance(b)) < r - kLengthTolerance;
   }
-  bool do_has_ground() const override { return true; }
-  std::optional<double> do_ground(double x, double) const override { return ground_at(x); }
-  double do_ground_gap(const Vec3& a, const Vec3& b, double) const override {
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double) const override { return ground_at(x); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
     return std::min(a.z() - ground_at(a.x()), b.z() - ground_at(b.x()));
   }
 };

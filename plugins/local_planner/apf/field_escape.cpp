@@ -9,7 +9,7 @@
 namespace apf {
 
 Escape::Escape(const Request& request) : request_(request), seen_(std::size_t(1) << kTableBits) {
-  known_.reserve(Outlook::kMost);
+  known_.reserve(Outlook::kMostMovers);
   const int up = request.level_m ? 0 : kCells;
   for (int x = kCells; x >= -kCells; --x) {
     for (int y = kCells; y >= -kCells; --y) {
@@ -130,13 +130,13 @@ std::optional<Instant> Escape::straight_along(Aim aim, const Vec3& velocity) con
   const Vec3& from = tried_[std::size_t(size_tried_ - 1)].at;
   const double after = seconds();
   if (aim == Aim::safe) {
-    const auto lasts = outlook_->escape_s(from, after, velocity, kRoom, step_s_);
+    const auto lasts = outlook_->seconds_to_safety(from, after, velocity, kRoom, step_s_);
     return lasts ? std::optional(Instant{here_.time_s + after + *lasts, from + velocity * *lasts})
                  : std::nullopt;
   }
   const double left = horizon_s_ - after;
   const Vec3 end = from + velocity * left;
-  return outlook_->contact(from, after, velocity, kRoom, left) > left &&
+  return outlook_->seconds_to_contact(from, after, velocity, kRoom, left) > left &&
                  outlook_->is_open(from, end)
              ? std::optional(Instant{here_.time_s + horizon_s_, end})
              : std::nullopt;
@@ -154,7 +154,7 @@ bool Escape::go_on() {
     const Vec3 way = side * (by[0] * ahead_ + by[1] * aside_ + Vec3(0, 0, by[2]));
     const Place next{place.at + way,
                      {place.cell[0] + by[0], place.cell[1] + by[1], place.cell[2] + by[2]}};
-    if (outlook_->contact(place.at, after, way / step_s_, kRoom, step_s_) > step_s_ &&
+    if (outlook_->seconds_to_contact(place.at, after, way / step_s_, kRoom, step_s_) > step_s_ &&
         is_new(next.cell) && leg_ok(std::nullopt, place.at, next.at, request_)) {
       tried_[std::size_t(size_tried_++)] = next;
       return true;
@@ -205,7 +205,7 @@ std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here,
     const double lasts = corner->time_s - from.time_s;
     const Vec3 velocity = (corner->at - from.at) / lasts;
     if (velocity.norm() > speed_ * (1 + 1e-6) ||
-        outlook.contact(from.at, from.time_s - here.time_s, velocity, 0) < lasts ||
+        outlook.seconds_to_contact(from.at, from.time_s - here.time_s, velocity, 0) < lasts ||
         !outlook.is_open(from.at, corner->at)) {
       return std::nullopt;
     }
@@ -214,9 +214,9 @@ std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here,
   if (leg == end) {
     return std::nullopt;
   }
-  ends_safe_ =
-      ends_safe_ &&
-      outlook.escape_s(from.at, from.time_s - here.time_s, Vec3(0, 0, 0), 0, 0).has_value();
+  ends_safe_ = ends_safe_ &&
+               outlook.seconds_to_safety(from.at, from.time_s - here.time_s, Vec3(0, 0, 0), 0, 0)
+                   .has_value();
   const double lasts = leg->time_s - here.time_s;
   const double share = std::min(1.0, most_s / lasts);
   return Instant{here.time_s + lasts * share, here.at + (leg->at - here.at) * share};

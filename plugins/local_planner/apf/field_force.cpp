@@ -41,7 +41,7 @@ void FieldPilot::sum_up(const Observation& seen) {
 }
 
 void FieldPilot::add(const Layer& layer, const Nearby& nearby) {
-  if (layer.environment->has_ground()) {
+  if (layer.environment->ground() != nullptr) {
     // Stretched, so that the gains that hold at d_0 hold here too.
     const double room = nearby.distance - std::max(room_of_ground(), required_);
     repel(nearby.normal, room * (p_.influence_m / ground_influence_));

@@ -140,7 +140,8 @@ std::optional<FieldPilot::Leg> FieldPilot::longest_free(const Observation& seen)
   constexpr Stage kObstacles{false, false, false, 0, false};
   for (int i = 1; has_prospect(i); ++i) {
     Prospect& prospect = prospects_[i];
-    const double free = outlook_.contact(here_, 0, (prospect.to - here_) / step_ * speed_, 0);
+    const double free =
+        outlook_.seconds_to_contact(here_, 0, (prospect.to - here_) / step_ * speed_, 0);
     if (free > longest && is_allowed(seen, prospect, kObstacles)) {
       longest = free;
       best = &prospect;
@@ -154,7 +155,8 @@ bool FieldPilot::keeps(const Observation& seen, Prospect& prospect, const Stage&
   if (prospect.turn < 0) {
     const double length = way.norm();
     prospect.turn = turn_to(way);
-    prospect.contact = outlook_.contact(here_, 0, way / length * speed_, outlook_.margin());
+    prospect.contact =
+        outlook_.seconds_to_contact(here_, 0, way / length * speed_, outlook_.margin());
     prospect.lasts = length / speed_;
   }
   if (stage.turn && p_.turn_limit && prospect.turn > max_turn() + kAngleTolerance) {
@@ -214,8 +216,8 @@ bool FieldPilot::has_escape(Prospect& prospect) const {
     for (int k = 0; k <= Fan::kHalf && prospect.escape == Answer::no; ++k) {
       for (const int side : {first * k, -first * k}) {
         const Vec3 velocity = fan_.turned(onward, side);
-        if (const auto lasts = outlook_.escape_s(prospect.to, prospect.lasts, velocity,
-                                                 outlook_.margin(), p_.reaction_s)) {
+        if (const auto lasts = outlook_.seconds_to_safety(prospect.to, prospect.lasts, velocity,
+                                                          outlook_.margin(), p_.reaction_s)) {
           prospect.escape = Answer::yes;
           prospect.safe = {prospect.lasts + *lasts, prospect.to + velocity * *lasts};
           break;

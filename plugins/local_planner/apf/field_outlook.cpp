@@ -8,12 +8,12 @@
 
 namespace apf {
 
-void Outlook::see(const Observation& seen, double speed) {
+void Outlook::see_movers(const Observation& seen, double speed) {
   speed_ = speed;
   if (seen.state.time_s > time_s_) {
     before_s_ = time_s_;
     count_before_ = count_;
-    std::copy_n(movers_.begin(), count_, before_.begin());
+    std::copy_n(movers_.begin(), count_, movers_before_.begin());
   }
   time_s_ = seen.state.time_s;
   const auto gap = [&](const Mover& mover) {
@@ -30,7 +30,7 @@ void Outlook::see(const Observation& seen, double speed) {
                       id,
                       pace,
                       pace > 0 ? Vec3(velocity / pace) : velocity};
-    if (count_ < kMost) {
+    if (count_ < kMostMovers) {
       movers_[count_++] = mover;
     } else if (const auto farthest = std::max_element(
                    movers_.begin(), movers_.end(),
@@ -41,7 +41,7 @@ void Outlook::see(const Observation& seen, double speed) {
   }
 }
 
-void Outlook::look_around(const World& world, const Vec3& here) {
+void Outlook::see_world(const World& world, const Vec3& here) {
   world_ = &world;
   here_ = here;
   clearance_ = world.clearance(here);
@@ -64,7 +64,7 @@ bool Outlook::is_blocked(const Vec3& a, const Vec3& b, double room) const {
         layers_.begin(), layers_.begin() + std::ptrdiff_t(layers_size_), [&](const Near& near) {
           const Environment& environment = *near.layer->environment;
           return !(near.free_m >= reach) &&
-                 environment.blocked(a, b, environment.has_ground() ? required_ : room);
+                 environment.blocked(a, b, environment.ground() != nullptr ? required_ : room);
         });
   } catch (...) {
     return world_->blocked(a, b, room);  // which says of what layer it is
@@ -75,19 +75,19 @@ Vec3 Outlook::velocity_of(const SensedObstacle& moving, std::size_t id) const {
   if (moving.velocity) {
     return *moving.velocity;
   }
-  const auto end = before_.begin() + std::ptrdiff_t(count_before_);
+  const auto end = movers_before_.begin() + std::ptrdiff_t(count_before_);
   const auto was =
-      std::find_if(before_.begin(), end, [&](const Mover& mover) { return mover.id == id; });
+      std::find_if(movers_before_.begin(), end, [&](const Mover& mover) { return mover.id == id; });
   const double passed = time_s_ - before_s_;
   return was == end || !(passed > 0) ? Vec3(0, 0, 0)
                                      : Vec3((moving.position - was->position) / passed);
 }
 
-double Outlook::contact(const Vec3& from, double after, const Vec3& velocity, double room,
-                        double enough) const {
+double Outlook::seconds_to_contact(const Vec3& from, double after_s, const Vec3& velocity,
+                                   double room, double enough) const {
   double first = kInfinity;
   for (const Mover& mover : movers()) {
-    const Vec3 r = from - mover.position - mover.velocity * after;
+    const Vec3 r = from - mover.position - mover.velocity * after_s;
     const Vec3 w = velocity - mover.velocity;
     const double closing = -r.dot(w);
     if (closing <= 0) {
@@ -115,15 +115,16 @@ bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
          !is_blocked(a, b, room) && (!least || world_->ground_gap(a, b, *least) >= *least);
 }
 
-std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Vec3& velocity,
-                                        double room, double least_s) const {
-  const double meets = contact(from, after, velocity, room, least_s);
-  std::array<Span, kMost> spans;
+std::optional<double> Outlook::seconds_to_safety(const Vec3& from, double after_s,
+                                                 const Vec3& velocity, double room,
+                                                 double least_s) const {
+  const double meets = seconds_to_contact(from, after_s, velocity, room, least_s);
+  std::array<Span, kMostMovers> spans;
   std::size_t known = 0;
   double until = least_s;
   for (std::size_t i = 0; i < count_ && until < meets;) {
     if (i == known) {
-      spans[known++] = in_the_way(movers_[i], from, after, velocity, room);
+      spans[known++] = seconds_in_the_way(movers_[i], from, after_s, velocity, room);
     }
     const Span& span = spans[i];
     const bool inside = span.begins <= until && until < span.ends;
@@ -134,14 +135,14 @@ std::optional<double> Outlook::escape_s(const Vec3& from, double after, const Ve
                                                                  : std::nullopt;
 }
 
-Outlook::Span Outlook::in_the_way(const Mover& mover, const Vec3& from, double after,
-                                  const Vec3& velocity, double room) const {
+Outlook::Span Outlook::seconds_in_the_way(const Mover& mover, const Vec3& from, double after_s,
+                                          const Vec3& velocity, double room) const {
   const double pace = mover.pace;
   if (pace == 0) {
     return kNever;
   }
   const Vec3& onward = mover.onward;
-  const Vec3 r = from - mover.position - mover.velocity * after;
+  const Vec3 r = from - mover.position - mover.velocity * after_s;
   const double ahead = r.dot(onward);
   const double gains = velocity.dot(onward) - pace;
   if (ahead <= 0 && gains <= 0) {

@@ -24,15 +24,15 @@ struct Mover {
 /// What is seen in one step, and what it means for a straight flight.
 class Outlook {
  public:
-  static constexpr std::size_t kMost = 256;  ///< movers; the nearest of more
+  static constexpr std::size_t kMostMovers = 256;  ///< the nearest of more
 
   /// `margin`: metres kept off what moves, beyond the clearance required.
   Outlook(const Request& request, double required, double margin, double reaction_s)
       : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
 
   /// First what stands still, then, at the speed that follows of it, what moves.
-  void look_around(const World& world, const Vec3& here);
-  void see(const Observation& seen, double speed);
+  void see_world(const World& world, const Vec3& here);
+  void see_movers(const Observation& seen, double speed);
 
   std::span<const Mover> movers() const { return {movers_.data(), count_}; }
   /// Of what stands still.
@@ -42,24 +42,24 @@ class Outlook {
   double margin() const { return margin_; }
   double reaction_s() const { return reaction_s_; }
 
-  /// Seconds until a flight begun `after` seconds from now comes within `room` of a mover that it
-  /// does not part from; infinite where it never does. Any time of at most `enough` will do once
-  /// one is known.
-  double contact(const Vec3& from, double after, const Vec3& velocity, double room,
-                 double enough = 0) const;
-  /// As the world has it, but within what is required alone of ground: what the flight keeps off
-  /// that is the ground clearance, and a way along a valley or below a ceiling may be narrower than
-  /// any room. A layer too far from here is not asked.
+  /// Seconds that a straight flight, begun `after_s` seconds from now, takes until it comes within
+  /// `room` of a mover that it does not part from; infinite where it never does. Any time of at
+  /// most `enough` will do once one is known.
+  double seconds_to_contact(const Vec3& from, double after_s, const Vec3& velocity, double room,
+                            double enough = 0) const;
+  /// Whether something that stands still is nearer to the leg than `room`; ground, nearer than what
+  /// is required: the ground clearance keeps the flight off that, and a way along a valley or below
+  /// a ceiling may be narrower than any room. A layer too far from here is not asked.
   bool is_blocked(const Vec3& a, const Vec3& b, double room) const;
   /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
   /// the ground.
   bool is_open(const Vec3& a, const Vec3& b, double room) const;
   bool is_open(const Vec3& a, const Vec3& b) const { return is_open(a, b, required_); }
-  /// Seconds, no fewer than `least_s`, that such a flight takes to a place where no mover comes any
-  /// more, as long as all fly on as they do; none where it leads to none, or meets something
-  /// before.
-  std::optional<double> escape_s(const Vec3& from, double after, const Vec3& velocity, double room,
-                                 double least_s) const;
+  /// Seconds, no fewer than `least_s`, that such a flight takes to a safe place: where no mover
+  /// comes any more, as long as all fly on as they do. None where it leads to none, or meets
+  /// something before.
+  std::optional<double> seconds_to_safety(const Vec3& from, double after_s, const Vec3& velocity,
+                                          double room, double least_s) const;
 
  private:
   /// Where it is not observed: from where it was seen last.
@@ -69,9 +69,9 @@ class Outlook {
     double ends;
   };
   static constexpr Span kNever{kInfinity, kInfinity};
-  /// When, in seconds of the flight, it is where the mover will come later.
-  Span in_the_way(const Mover& mover, const Vec3& from, double after, const Vec3& velocity,
-                  double room) const;
+  /// From when to when, in seconds of the flight, it is where the mover will come later.
+  Span seconds_in_the_way(const Mover& mover, const Vec3& from, double after_s,
+                          const Vec3& velocity, double room) const;
 
   const Request& request_;
   double required_;
@@ -94,7 +94,7 @@ class Outlook {
   double before_s_ = 0;
   std::size_t count_ = 0;
   std::size_t count_before_ = 0;
-  std::array<Mover, kMost> movers_{};
-  std::array<Mover, kMost> before_{};
+  std::array<Mover, kMostMovers> movers_{};
+  std::array<Mover, kMostMovers> movers_before_{};
 };
 }  // namespace apf

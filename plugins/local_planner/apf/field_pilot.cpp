@@ -86,14 +86,14 @@ void FieldPilot::observe(const Observation& seen) {
     before_ = here_ - seen.state.velocity;
   }
   moving_ = seen.moving;
-  outlook_.look_around(*seen.world, here_);
+  outlook_.see_world(*seen.world, here_);
   double clearance = outlook_.clearance();
   room_ = std::clamp(clearance - required_ - kLengthTolerance, 0.0, outlook_.margin());
   for (const SensedObstacle& moving : seen.moving) {
     clearance = std::min(clearance, (here_ - moving.position).norm() - moving.radius);
   }
   speed_ = request_.vehicle.speed_at(clearance);
-  outlook_.see(seen, speed_);
+  outlook_.see_movers(seen, speed_);
   const double wanted = p_.two_steps && clearance > speed_ * p_.reaction_s ? step_far_ : step_near_;
   step_ = std::min({wanted, seen.max_dt_s * speed_, request_.limits.max_leg});
   to_goal_ = seen.goal.position - here_;

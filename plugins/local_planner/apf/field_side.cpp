@@ -117,8 +117,8 @@ bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) co
   const double length = way.norm();
   const double end = from.z() + way.z();
   return length == 0 || (lowest_ - kLengthTolerance <= end && end <= highest_ + kLengthTolerance &&
-                         outlook_.contact(from, after, way / length * speed_, outlook_.margin()) >
-                             length / speed_ &&
+                         outlook_.seconds_to_contact(from, after, way / length * speed_,
+                                                     outlook_.margin()) > length / speed_ &&
                          outlook_.is_open(from, from + way, required_ + room_));
 }
 

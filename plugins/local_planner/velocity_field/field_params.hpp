@@ -64,6 +64,21 @@ struct Params {
             "min_speed_mps^2 / (g tan(max_bank_deg))");
     f("min_speed_mps", min_speed_mps).unit("m/s").range(1e-3, 1e6).doc("V_min of level flight");
     f("max_bank_deg", max_bank_deg).unit("deg").range(0.1, 89).doc("gamma_max, greatest bank");
+    describe_flight(f);
+    f.check(edge_ratio < surface_ratio, "edge_ratio must be less than surface_ratio");
+    f.check(variant == Variant::paper || toward == Toward::goal,
+            "toward: route is of variant: paper; robust finds its own way to the goal");
+    f.check(variant == Variant::paper || terrain == Terrain::ignore,
+            "terrain: sections is of variant: paper; robust flies level and sees no ground");
+    const bool by_bank = min_speed_mps && max_bank_deg;
+    f.check(by_bank != min_turn_radius_m.value.has_value() &&
+                min_speed_mps.has_value() == max_bank_deg.has_value(),
+            "give min_turn_radius_m, or min_turn_radius_m: auto with min_speed_mps and "
+            "max_bank_deg");
+  }
+
+  /// What draws, what is seen of the ground, and when a flight ends.
+  void describe_flight(Fields& f) {
     f("release_m", release_m)
         .unit("m")
         .range(1e-3, 1e9)
@@ -89,16 +104,6 @@ struct Params {
         .range(0.1, 1e6)
         .doc("terrain: cells that ground is looked at by; auto: the volume's longer side / 512");
     f("max_steps", max_steps).range(1, 1'000'000).doc("steps after which the pilot gives up");
-    f.check(edge_ratio < surface_ratio, "edge_ratio must be less than surface_ratio");
-    f.check(variant == Variant::paper || toward == Toward::goal,
-            "toward: route is of variant: paper; robust finds its own way to the goal");
-    f.check(variant == Variant::paper || terrain == Terrain::ignore,
-            "terrain: sections is of variant: paper; robust flies level and sees no ground");
-    const bool by_bank = min_speed_mps && max_bank_deg;
-    f.check(by_bank != min_turn_radius_m.value.has_value() &&
-                min_speed_mps.has_value() == max_bank_deg.has_value(),
-            "give min_turn_radius_m, or min_turn_radius_m: auto with min_speed_mps and "
-            "max_bank_deg");
   }
 
   Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }

@@ -209,13 +209,13 @@ TEST(PaperPilot, TowardTheRoute) {
 /// A third party's layer, whose threat is what it is told to be.
 class Odd final : public Environment {
  public:
-  explicit Odd(const Threat& threat) : threat_(threat) {}
+  explicit Odd(const Threat& threat) { info_.threats = {threat}; }
 
  private:
   Box do_bounds() const override { return Box::empty(); }
   double do_clearance(const Vec3&) const override { return kInfinity; }
-  std::vector<Threat> do_threats() const override { return {threat_}; }
-  Threat threat_;
+  const LayerInfo& do_info() const override { return info_; }
+  LayerInfo info_;
 };
 
 TEST(PaperPilot, NamesAThreatThatIsNoDisc) {

@@ -69,7 +69,7 @@ TerrainFlight::TerrainFlight(const Params& params, const Request& request)
 void TerrainFlight::look_at_ground(const World& world) {
   grounds_.clear();
   for (const Layer& layer : world.layers()) {
-    if (layer.environment->has_ground()) {
+    if (layer.environment->ground() != nullptr) {
       grounds_.push_back(layer.environment);
     }
   }
@@ -92,12 +92,12 @@ void TerrainFlight::set_level() {
 
 void TerrainFlight::update(const Observation& seen) {
   const auto next_ground = [&, n = std::size_t(0)](const Layer& layer) mutable {
-    return !layer.environment->has_ground() ||
+    return layer.environment->ground() == nullptr ||
            (n < grounds_.size() && grounds_[n++] == layer.environment);
   };
   const auto& layers = seen.world->layers();
   const auto count = std::count_if(layers.begin(), layers.end(), [](const Layer& layer) {
-    return layer.environment->has_ground();
+    return layer.environment->ground() != nullptr;
   });
   const bool same = std::size_t(count) == grounds_.size() &&
                     std::all_of(layers.begin(), layers.end(), next_ground);

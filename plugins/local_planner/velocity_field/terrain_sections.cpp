@@ -53,15 +53,16 @@ double TerrainSections::top(const World& world, const GroundRules& rules, const 
   const Box box{Vec3(p.x(), p.y(), 0) - half, Vec3(p.x(), p.y(), 0) + half};
   double highest = -kInfinity;
   for (const Layer& layer : world.layers()) {
-    if (!layer.environment->has_ground()) {
+    const Ground* ground = layer.environment->ground();
+    if (ground == nullptr) {
       continue;
     }
-    const std::optional<double> ground = layer.environment->ground(p.x(), p.y());
-    const double slope = layer.environment->ground_slope(box);
-    if (!ground || !(slope < kInfinity)) {
+    const std::optional<double> height = ground->height(p.x(), p.y());
+    const double slope = ground->slope(box);
+    if (!height || !(slope < kInfinity)) {
       return kInfinity;
     }
-    highest = std::max(highest, *ground + slope * cell_ * std::sqrt(0.5) +
+    highest = std::max(highest, *height + slope * cell_ * std::sqrt(0.5) +
                                     std::max(rules.above, rules.radius * std::hypot(1, slope)));
   }
   return highest;

@@ -17,6 +17,7 @@
 //   paper, and only on request: ground (terrain_flight.hpp).
 // Symbols: omega pull, alpha and beta push at the ring's and the threat's edge, epsilon guidance,
 //   Delta R ring, T target, L1 from it to a threat's centre, L2 from there to the virtual target.
+#include "altiplan/local_planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "paper_pilot.hpp"
 #include "robust_pilot.hpp"

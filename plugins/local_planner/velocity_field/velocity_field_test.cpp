@@ -145,7 +145,7 @@ TEST(PaperTable, FewPointsStay) {
   const Route raw = flight(request).route;
   const PlanResult reduced =
       altiplan::testing::make_smoother("waypoint_reduction")->smooth(raw, request);
-  EXPECT_EQ(reduced.status, Status::solved);
+  EXPECT_EQ(reduced.status, PlanStatus::solved);
   EXPECT_EQ(reduced.route.size(), 4U);
   EXPECT_GE(length(reduced.route), 103.3e3);
   EXPECT_LE(length(reduced.route), 103.5e3);

@@ -15,6 +15,7 @@
 // Symbols: tau the pheromone of a leg, eta its heuristic, alpha and beta their powers, L_k the
 //   length of ant k's route, rho the evaporation.
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "leg_colony.hpp"
 

@@ -16,7 +16,7 @@ const std::string kCells = "cell_m: [10, 10, 10], ants: 30, iterations: 20";
 TEST(AntColony, FindsAWayAroundABlock) {
   const Request request = flat_world();
   const PlanResult result = make_planner("ant_colony", "{" + kCells + "}")->plan(request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
   EXPECT_EQ(counter(result, "iterations"), 20);
   EXPECT_LE(counter(result, "alive"), 30);
@@ -63,20 +63,20 @@ TEST(AntColony, TheHeuristicAsPrintedLeadsNowhereOnLargeMaps) {
         make_planner("ant_colony", "{cell_m: [10, 10, 10], ants: 20, iterations: 3, heuristic: " +
                                        heuristic + "}")
             ->plan(request);
-    EXPECT_EQ(result.status, Status::no_route) << heuristic;
+    EXPECT_EQ(result.status, PlanStatus::no_route) << heuristic;
     EXPECT_EQ(counter(result, "alive"), 0);
     EXPECT_GT(counter(result, "stuck"), 0);
   }
   EXPECT_EQ(make_planner("ant_colony", "{cell_m: [10, 10, 10], ants: 20, iterations: 3}")
                 ->plan(request)
                 .status,
-            Status::solved);
+            PlanStatus::solved);
 }
 
 TEST(AntColony, AnAntOverTheLengthLimitDies) {
   const PlanResult result =
       make_planner("ant_colony", "{" + kCells + ", max_length_m: 300}")->plan(flat_world());
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_EQ(counter(result, "too_long") + counter(result, "stuck"), 30);
   EXPECT_GT(counter(result, "too_long"), 0);
   EXPECT_NE(result.message.find("300 m"), std::string::npos) << result.message;
@@ -87,7 +87,7 @@ TEST(AntColony, RefusesASpaceOfLevels) {
   request.level_m.reset();
   request.volume.max.z() += 100;
   const PlanResult result = make_planner("ant_colony", "{" + kCells + "}")->plan(request);
-  EXPECT_EQ(result.status, Status::invalid_problem);
+  EXPECT_EQ(result.status, PlanStatus::invalid_problem);
   EXPECT_NE(result.message.find("level"), std::string::npos) << result.message;
 }
 }  // namespace

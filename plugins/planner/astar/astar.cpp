@@ -19,6 +19,7 @@
 
 #include "altiplan/kit/lattice/heading_search.hpp"
 #include "altiplan/kit/lattice/search_params.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
 #include "cell_search.hpp"
@@ -52,28 +53,52 @@ class AStar final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    return kit::plan_by(params_.settings(request), request,
-                        [&](const SearchSettings& settings, const Request& rest, double best_cost) {
-                          return search(settings, rest, best_cost);
+    const SearchSettings settings = params_.settings(request);
+    if (!settings.anytime) {
+      return search(settings, request, kInfinity).result;
+    }
+    return kit::improve(settings, request,
+                        [&](const SearchSettings& inflated, const Request& rest, double best_cost) {
+                          return search(inflated, rest, best_cost);
                         });
   }
 
-  Found search(const SearchSettings& settings, const Request& request, double best_cost) const {
+  enum class By { cells, one_parent, heading };
+
+  /// The search that is the quickest of those that the problem allows.
+  static By quickest(const SearchSettings& settings, const Request& request) {
     if (settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request) &&
         settings.cost.length_alone() && settings.cost.length == 1) {
-      if (auto found = by_cells(request, settings)) {
-        return *std::move(found);
-      }
+      return By::cells;
     }
-    return kit::search_by_state(
-        settings, request, best_cost, sizeof(kit::HeadingCell) + 1,
-        [&](const Request& rest) {
-          return on_lattice<astar::Search, astar::Node>(rest, settings, best_cost, memory_);
-        },
-        [&](const Request& rest) {
-          return on_lattice<kit::HeadingSearch, kit::HeadingCell>(rest, settings, best_cost,
-                                                                  heading_memory_);
-        });
+    return kit::begins_by_heading(settings, request) ? By::heading : By::one_parent;
+  }
+
+  /// One search for a route that costs less than `best_cost`.
+  Found search(const SearchSettings& settings, const Request& request, double best_cost) const {
+    switch (quickest(settings, request)) {
+      case By::cells:
+        if (auto found = by_cells(request, settings)) {
+          return *std::move(found);
+        }
+        [[fallthrough]];
+      case By::one_parent: {
+        Found found = on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
+        if (!kit::heading_may_help(settings, best_cost, sizeof(kit::HeadingCell) + 1, found)) {
+          return found;
+        }
+        const Request rest = kit::after(request, found.result.counters);
+        return kit::after_one_parent(by_heading(rest, settings, best_cost), found);
+      }
+      case By::heading:
+        break;
+    }
+    return by_heading(request, settings, best_cost);
+  }
+
+  Found by_heading(const Request& request, const SearchSettings& settings, double best_cost) const {
+    return on_lattice<kit::HeadingSearch, kit::HeadingCell>(request, settings, best_cost,
+                                                            heading_memory_);
   }
 
   template <class Search, class Node, class Memory>
@@ -111,7 +136,7 @@ class AStar final : public Planner {
       if (auto result = astar::CellSearch(request, settings, lattice, costs, *memory).run()) {
         const double cost = length(result->route);
         const bool at_goal =
-            result->status == Status::solved && result->route.back() == request.goal.position;
+            result->status == PlanStatus::solved && result->route.back() == request.goal.position;
         return Found{*std::move(result), cost, at_goal};
       }
       longest_m = 4 * costs.longest_m();

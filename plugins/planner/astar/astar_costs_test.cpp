@@ -105,7 +105,8 @@ TEST(AStarCosts, SummedCostsEqualDijkstra) {
         length(testing::make_planner("astar", "{cell_m: [10, 10, 10]}")->plan(request).route);
     for (const char* name : kPlanners) {
       const PlanResult result = testing::make_planner(name, yaml)->plan(request);
-      ASSERT_EQ(result.status == Status::solved, expected < kInfinity) << name << result.message;
+      ASSERT_EQ(result.status == PlanStatus::solved, expected < kInfinity)
+          << name << result.message;
       if (expected < kInfinity) {
         ++solved;
         // The sum of the oracle is not exact: near a centre the trapezoids are coarse.
@@ -139,7 +140,7 @@ TEST(AStarCosts, ValuesAtAPlaceOrderTheSearchAndChooseNoWay) {
   const PlanResult plain = plan("weight_threat: 0");
   const PlanResult summed = plan("weight_threat: 1, length_unit_m: 10");
   const PlanResult values = plan("weight_threat: 1, length_unit_m: 10, accumulate: none");
-  ASSERT_EQ(plain.status, Status::solved);
+  ASSERT_EQ(plain.status, PlanStatus::solved);
   EXPECT_LT(east(summed), 0);
   // As printed the way there does not matter, so the route is as short as without threats; that it
   // leads west is because cells there come first.
@@ -161,7 +162,7 @@ TEST(AStarCosts, EvaluationByHand) {
       "astar",
       "{cell_m: [1000, 1000, 1000], weight_g: 0.6, weight_h: 0.4, weight_length: 0.5, "
       "weight_altitude: 0.3, accumulate: none}");
-  ASSERT_EQ(planner->plan(request).status, Status::solved);
+  ASSERT_EQ(planner->plan(request).status, PlanStatus::solved);
   ASSERT_EQ(trace.events.size(), 3u);
   // 0.6 (0.5 L + 0.3 · 2 km) + 0.4 · 0.5 · (2 km - L)
   EXPECT_NEAR(trace.events[0].value, 1000 * (0.6 * 0.6 + 0.4), 1e-9);
@@ -193,7 +194,7 @@ TEST(AStarAnytime, MoreIterationsNeverGiveALongerRouteAndAllOfThemTheShortest) {
         request.budget.max_iterations = std::uint64_t(most);
         const PlanResult result = planner->plan(request);
         EXPECT_LE(expanded(result), most);
-        const double now = result.status == Status::solved ? length(result.route) : kInfinity;
+        const double now = result.status == PlanStatus::solved ? length(result.route) : kInfinity;
         EXPECT_LE(now, before + 1e-9) << name << ", " << most << " iterations";
         improved += now < before - 1e-6 && before < kInfinity;
         before = now;

@@ -62,11 +62,11 @@ TEST(AStar, EqualsDijkstraOnRandomCells) {
                                         ", heuristic: " + heuristic + "}");
           const PlanResult result = planner->plan(drawn.request);
           if (expected == kInfinity) {
-            EXPECT_EQ(result.status, Status::no_route) << result.message;
+            EXPECT_EQ(result.status, PlanStatus::no_route) << result.message;
             EXPECT_TRUE(result.proved);
           } else {
             ++solved;
-            ASSERT_EQ(result.status, Status::solved) << result.message;
+            ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
             EXPECT_NEAR(length(result.route), expected, 1e-9 * expected);
             EXPECT_TRUE(check(result.route, drawn.request).ok());
           }
@@ -102,7 +102,7 @@ TEST(AStar, ByCellsEqualsDijkstraWhereStepsAreRuledOut) {
                  climb_angle(spec.centre(b) - spec.centre(a)) <= drawn.request.limits.max_climb;
         });
     const PlanResult result = make_planner("astar")->plan(drawn.request);
-    ASSERT_EQ(result.status == Status::solved, expected < kInfinity) << result.message;
+    ASSERT_EQ(result.status == PlanStatus::solved, expected < kInfinity) << result.message;
     if (expected < kInfinity) {
       ++solved;
       EXPECT_NEAR(length(result.route), expected, 1e-6 * expected);
@@ -125,10 +125,10 @@ TEST(AStar, ExactMovesEqualDijkstraUnderTheJudge) {
         [&](const Cell& a, const Cell& b) { return leg_ok(std::nullopt, at(a), at(b), request); });
     const auto planner = make_planner("astar", "{cell_m: [10, 10, 5]}");
     const PlanResult result = planner->plan(request);
-    if (result.status == Status::invalid_problem) {
+    if (result.status == PlanStatus::invalid_problem) {
       continue;
     }
-    ASSERT_EQ(result.status == Status::solved, expected < kInfinity) << result.message;
+    ASSERT_EQ(result.status == PlanStatus::solved, expected < kInfinity) << result.message;
     if (expected < kInfinity) {
       ++solved;
       EXPECT_NEAR(length(result.route), expected, 1e-9 * expected);
@@ -139,7 +139,7 @@ TEST(AStar, ExactMovesEqualDijkstraUnderTheJudge) {
     // Whole cells only: never shorter, and still sound.
     const PlanResult blocky =
         make_planner("astar", "{cell_m: [10, 10, 5], moves: cells}")->plan(request);
-    if (blocky.status == Status::solved) {
+    if (blocky.status == PlanStatus::solved) {
       EXPECT_GE(length(blocky.route), length(result.route) - 1e-9);
       EXPECT_TRUE(check(blocky.route, request).ok());
     }
@@ -157,7 +157,7 @@ TEST(AStar, EmptyMapOfThePaper) {
         make_planner("astar",
                      std::string("{cell_m: [1000, 1000, 200], heuristic: ") + heuristic + "}")
             ->plan(request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_NEAR(length(result.route), 72482.7, 1) << heuristic;
     EXPECT_TRUE(check(result.route, request).ok());
   }
@@ -195,7 +195,7 @@ TEST(AStar, LengthIsInvariantUnderSwapMirrorAndTranslation) {
       EXPECT_NEAR(length(other.route), length(plain.route), 1e-9 * length(plain.route));
     }
     const PlanResult fuller = planner->plan(among(more));
-    if (fuller.status == Status::solved) {
+    if (fuller.status == PlanStatus::solved) {
       EXPECT_GE(length(fuller.route), length(plain.route) - 1e-9);
     }
   }
@@ -222,7 +222,7 @@ TEST(AStar, WaysFarLongerThanTheMapIsWide) {
   Drawn drawn = draw({serpentine(edge)});
   drawn.request.level_m = 0.5;
   const PlanResult result = make_planner("astar", "{corner: free_box}")->plan(drawn.request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_NEAR(length(result.route), corridor - 1, 1e-6);
   EXPECT_EQ(counter(result, "expanded"), corridor);
 }
@@ -240,7 +240,7 @@ TEST(AStar, IntegerCostsAreWithinTheirError) {
     const PlanResult best = make_planner("astar", exact)->plan(drawn.request);
     const PlanResult near = make_planner("astar", integer)->plan(drawn.request);
     ASSERT_EQ(near.status, best.status);
-    if (best.status == Status::solved) {
+    if (best.status == PlanStatus::solved) {
       EXPECT_TRUE(check(near.route, drawn.request).ok());
       const double error = length(near.route) / length(best.route) - 1;
       EXPECT_LE(error, world % 2 == 0 ? 1.2e-4 : 1e-3);

@@ -42,7 +42,7 @@ class Search : kit::GoalSearch {
 
   kit::Found run() {
     begin();
-    Status status = Status::no_route;
+    PlanStatus status = PlanStatus::no_route;
     while (!open_.empty()) {
       const auto [f, g, index] = open_.pop();
       if (index == kGoal) {
@@ -60,7 +60,7 @@ class Search : kit::GoalSearch {
       expand(index, node);
     }
     if (fallback_ != kNone) {
-      return with(route_to(fallback_, false), fallback_g_, false, status != Status::no_route);
+      return with(route_to(fallback_, false), fallback_g_, false, status != PlanStatus::no_route);
     }
     progress_.memory_full = memory_full();
     // Beyond this a cell may have been closed by a parent, or at a length, that was not the best.

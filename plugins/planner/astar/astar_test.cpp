@@ -32,7 +32,7 @@ TEST(AStar, KeepsTurnAndClimbLimits) {
     request.start.velocity = {10, 2, 0};
     request.goal.position = {93, 82, 33};  // no centre of a cell
     const PlanResult result = make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       const CheckResult judged = check(result.route, request);
       EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
@@ -48,12 +48,12 @@ TEST(AStar, BudgetCancellationSealedGoalAndCorridor) {
       draw({"#########\n#S..#...#\n###.#.#.#\n#...#.#.#\n#.###.#.#\n#.....#G#\n#########"});
   corridor.request.level_m = 0.5;
   const PlanResult through = planner->plan(corridor.request);
-  ASSERT_EQ(through.status, Status::solved) << through.message;
+  ASSERT_EQ(through.status, PlanStatus::solved) << through.message;
   EXPECT_TRUE(check(through.route, corridor.request).ok());
 
   corridor.request.budget.max_iterations = 0;
   const PlanResult none = planner->plan(corridor.request);
-  EXPECT_EQ(none.status, Status::timed_out);
+  EXPECT_EQ(none.status, PlanStatus::timed_out);
   EXPECT_TRUE(none.budget_hit);
   corridor.request.budget.max_iterations = 5;
   EXPECT_EQ(counter(planner->plan(corridor.request), "expanded"), 5);
@@ -62,12 +62,12 @@ TEST(AStar, BudgetCancellationSealedGoalAndCorridor) {
   stop.request_stop();
   corridor.request.budget = {};
   corridor.request.budget.stop = stop.get_token();
-  EXPECT_EQ(planner->plan(corridor.request).status, Status::cancelled);
+  EXPECT_EQ(planner->plan(corridor.request).status, PlanStatus::cancelled);
 
   Drawn sealed = draw({"S....\n.....\n..###\n..#G#\n..###"});
   sealed.request.level_m = 0.5;
   const PlanResult shut = planner->plan(sealed.request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_TRUE(shut.proved);
   EXPECT_NE(shut.message.find("blocked cells"), std::string::npos) << shut.message;
 
@@ -84,7 +84,7 @@ TEST(AStar, TraceByCellsIsATreeOfSteps) {
   Drawn drawn = draw(random_levels(random, 15, 15, 8, 0.3), 10);
   drawn.request.trace = &trace;
   const PlanResult result = make_planner("astar")->plan(drawn.request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   ASSERT_EQ(std::int64_t(trace.events.size()), counter(result, "expanded"));
   std::map<std::int64_t, Vec3> expanded;
   for (const TraceEvent& event : trace.events) {
@@ -101,7 +101,7 @@ TEST(AStar, EndsWithinTheToleranceOfAGoalThatCannotBeReached) {
   drawn.request.level_m = 0.5;
   drawn.request.goal.tolerance_m = 2.1;
   const PlanResult result = make_planner("astar")->plan(drawn.request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_EQ(result.route.back(), Vec3(6.5, 1.5, 0.5));
   EXPECT_TRUE(check(result.route, drawn.request).ok());
 }
@@ -110,7 +110,7 @@ TEST(AStar, RefusalsNameTheRule) {
   Request request = among(std::make_shared<Balls>());
   request.limits.max_climb = radians(1);
   const PlanResult result = make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request);
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_TRUE(result.proved);
   EXPECT_NE(result.message.find("climb_angle rules out 18 of 26"), std::string::npos)
       << result.message;
@@ -121,9 +121,10 @@ TEST(AStar, RouteLengthCutsTheSearch) {
   const double direct = (request.goal.position - request.start.position).norm();
   request.limits.max_route_length = direct * 1.001;
   const PlanResult result = make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request);
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   request.limits.max_route_length = direct * 1.1;
-  EXPECT_EQ(make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request).status, Status::solved);
+  EXPECT_EQ(make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request).status,
+            PlanStatus::solved);
 }
 
 TEST(AStar, MemoryIsCheckedBeforeItIsTaken) {
@@ -143,7 +144,7 @@ TEST(AStar, CellsBeyondTheMemoryOfABudgetAreAResult) {
   drawn.request.budget.max_memory_bytes = 20;
   for (const char* moves : {"{moves: cells}", "{moves: exact}"}) {
     const PlanResult result = make_planner("astar", moves)->plan(drawn.request);
-    EXPECT_EQ(result.status, Status::timed_out);
+    EXPECT_EQ(result.status, PlanStatus::timed_out);
     EXPECT_TRUE(result.budget_hit);
     EXPECT_NE(result.message.find("the budget is 0 MiB"), std::string::npos) << result.message;
   }

@@ -53,7 +53,7 @@ class CellSearch {
         consistent_(settings.consistent()),
         level_(lattice.spec().counts[2] == 1),
         level_successors_(kit::LevelSuccessors::of(settings.corner)),
-        steps_(rules_.steps() & (level_ ? kLevelSteps : ~kit::DirectionMask{0})),
+        steps_(rules_.steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0})),
         prune_(consistent_ && settings.neighbours == kit::Neighbourhood::all &&
                rules_.steps() == lattice.steps()),
         is_sum_(settings.weight_g == settings.weight_h),
@@ -71,9 +71,6 @@ class CellSearch {
   std::optional<PlanResult> run() { return level_ ? search<true>() : search<false>(); }
 
  private:
-  static constexpr kit::DirectionMask kLevelSteps = 0x3FE00;
-  /// Directions along one axis, two, three.
-  static constexpr kit::DirectionMask kAlongAxes[] = {0x0415410, 0x2AA8AAA, 0x5140145};
   struct Move {
     std::uint32_t stride;  ///< difference of index, modulo 2^32
     std::uint32_t cost;
@@ -168,7 +165,7 @@ class CellSearch {
   std::optional<PlanResult> search() {
     begin();
     PlanResult result;
-    result.status = Status::no_route;
+    result.status = PlanStatus::no_route;
     while (!open_.empty()) {
       const kit::BucketQueue::Entry entry = open_.pop();
       if (entry.node == goal_node_) {
@@ -183,7 +180,7 @@ class CellSearch {
       }
       if (watch_.spent(progress_.expanded) || memory_full()) {
         result.budget_hit = true;
-        result.status = watch_.cancelled() ? Status::cancelled : Status::timed_out;
+        result.status = watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
         break;
       }
       closed_.at(closed_at / 64) |= closed_mask;
@@ -201,7 +198,8 @@ class CellSearch {
       const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
       // Of equals the last one is taken first: the step along most axes, as kit::kNatural has it.
       for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
-        for (kit::DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
+        for (kit::DirectionMask rest = open & kit::kAlongAxes[axes - 1]; rest != 0;
+             rest &= rest - 1) {
           const int d = std::countr_zero(rest);
           const Move& move = moves_[std::size_t(d)];
           const std::uint32_t next = entry.node + move.stride;
@@ -307,7 +305,7 @@ class CellSearch {
     for_each_closed([&](const Cell& c) { rules_.candidates(c, kit::kHere); });  // counts refusals
     progress_.memory_full = memory_full();
     result.message = kit::explanation(result.status, progress_, request_, lattice_, rules_);
-    result.proved = result.status == Status::no_route;
+    result.proved = result.status == PlanStatus::no_route;
     result.counters = kit::counters(progress_, lattice_, rules_);
     return result;
   }

@@ -15,6 +15,7 @@
 #include <memory>
 
 #include "altiplan/kit/lattice/search_params.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "two_sided_search.hpp"
 
@@ -32,27 +33,39 @@ class BidirectionalAStar final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    return kit::plan_by(params_.settings(request), request,
-                        [&](const SearchSettings& settings, const Request& rest, double best_cost) {
-                          return search(settings, rest, best_cost);
+    const SearchSettings settings = params_.settings(request);
+    if (!settings.anytime) {
+      return search(settings, request, kInfinity).result;
+    }
+    return kit::improve(settings, request,
+                        [&](const SearchSettings& inflated, const Request& rest, double best_cost) {
+                          return search(inflated, rest, best_cost);
                         });
   }
 
+  /// One search for a route that costs less than `best_cost`.
   Found search(const SearchSettings& settings, const Request& request, double best_cost) const {
-    const auto run = [&](const Request& rest, bool by_heading) -> Found {
-      const kit::Lattice lattice(rest, settings.cell_m, settings.neighbours,
-                                 {params_.max_bytes(), sizeof(Node) + 1});
-      if (auto refused = kit::beyond_budget(lattice, sizeof(Node) + 1, rest.budget)) {
-        return {*std::move(refused)};
-      }
-      const auto memory = memory_.take();
-      return bidirectional::TwoSidedSearch(rest, settings, lattice, best_cost, by_heading, *memory)
-          .run();
-    };
-    return kit::search_by_state(
-        settings, request, best_cost, sizeof(Node) + 1,
-        [&](const Request& rest) { return run(rest, false); },
-        [&](const Request& rest) { return run(rest, true); });
+    if (kit::begins_by_heading(settings, request)) {
+      return run(settings, request, best_cost, true);
+    }
+    Found found = run(settings, request, best_cost, false);
+    if (!kit::heading_may_help(settings, best_cost, sizeof(Node) + 1, found)) {
+      return found;
+    }
+    const Request rest = kit::after(request, found.result.counters);
+    return kit::after_one_parent(run(settings, rest, best_cost, true), found);
+  }
+
+  Found run(const SearchSettings& settings, const Request& request, double best_cost,
+            bool by_heading) const {
+    const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
+                               {params_.max_bytes(), sizeof(Node) + 1});
+    if (auto refused = kit::beyond_budget(lattice, sizeof(Node) + 1, request.budget)) {
+      return {*std::move(refused)};
+    }
+    const auto memory = memory_.take();
+    return bidirectional::TwoSidedSearch(request, settings, lattice, best_cost, by_heading, *memory)
+        .run();
   }
 
   Traits do_traits() const override { return params_.traits(); }

@@ -42,7 +42,7 @@ TEST(BidirectionalAStar, RoutesAreAsLongAsFromOneEnd) {
       const PlanResult result = make_planner("bidirectional_astar", yaml)->plan(request);
       ASSERT_EQ(result.status, one_way.status) << result.message;
       EXPECT_EQ(result.proved, one_way.proved);
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++solved;
         EXPECT_NEAR(length(result.route), length(one_way.route), 1e-9 * length(result.route));
         EXPECT_TRUE(check(result.route, request).ok());
@@ -65,7 +65,7 @@ TEST(BidirectionalAStar, TurnsAreKeptAtBothEndsAndWhereTheSidesMeet) {
     for (const char* state : {"cell_and_heading", "parent", "auto"}) {
       const std::string yaml = std::string("{cell_m: [10, 10, 5], state: ") + state + "}";
       const PlanResult result = make_planner("bidirectional_astar", yaml)->plan(request);
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++solved;
         const CheckResult judged = check(result.route, request);
         EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
@@ -99,7 +99,7 @@ TEST(BidirectionalAStar, ConstraintsThatLookAtTwoLegsAreKept) {
     const PlanResult result = make_planner("bidirectional_astar", yaml)->plan(request);
     const PlanResult one_way = make_planner("astar", yaml)->plan(request);
     ASSERT_EQ(result.status, one_way.status) << result.message;
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       EXPECT_TRUE(check(result.route, request).ok());
       EXPECT_TRUE(check(one_way.route, request).ok());
@@ -114,7 +114,7 @@ TEST(BidirectionalAStar, ReasonBudgetAndSealedGoal) {
   testing::Drawn sealed = testing::draw({"S....\n.....\n..###\n..#G#\n..###"});
   sealed.request.level_m = 0.5;
   const PlanResult shut = planner->plan(sealed.request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_TRUE(shut.proved);
   EXPECT_NE(shut.message.find("blocked cells"), std::string::npos) << shut.message;
 
@@ -122,7 +122,7 @@ TEST(BidirectionalAStar, ReasonBudgetAndSealedGoal) {
   Request request = among_balls(random, 10);
   request.budget.max_iterations = 3;
   const PlanResult cut = make_planner("bidirectional_astar", kCells)->plan(request);
-  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_EQ(cut.status, PlanStatus::timed_out);
   EXPECT_TRUE(cut.budget_hit);
   EXPECT_EQ(cut.counters.front().value, 3);
 
@@ -144,7 +144,7 @@ TEST(BidirectionalAStar, TraceHoldsATreeForEachSide) {
     request.trace = &trace;
     trace.events.clear();
     const PlanResult result = make_planner("bidirectional_astar", kCells)->plan(request);
-    if (result.status == Status::invalid_problem) {
+    if (result.status == PlanStatus::invalid_problem) {
       continue;
     }
     ASSERT_EQ(std::int64_t(trace.events.size()), result.counters.front().value);

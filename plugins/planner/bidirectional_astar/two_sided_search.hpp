@@ -4,46 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdint>
 #include <vector>
 
 #include "altiplan/kit/lattice/lattice_search.hpp"
-#include "altiplan/kit/lattice/open_list.hpp"
-#include "altiplan/kit/scratch.hpp"
+#include "nodes.hpp"
 
 namespace altiplan::bidirectional {
-
-/// A node of one side: a cell, and the step that leads to it (forward) or away from it (backward)
-/// on the path to that side's end.
-struct Arrival {
-  double g;       ///< cost of the way to that end
-  double length;  ///< of that way
-  std::uint32_t cell;
-  std::uint32_t from;    ///< the arrival before, toward that end
-  std::uint32_t beside;  ///< another arrival of this side at the cell
-  std::uint8_t along;    ///< that step; kHere: linked to the end
-};
-
-/// What one side knows of a cell.
-struct Reached {
-  double g;              ///< of its cheapest arrival
-  kit::StepMask taken;   ///< steps on from the cell that need no further arrival
-  std::uint32_t newest;  ///< of its arrivals
-  std::uint8_t along;    ///< of the cheapest
-  bool is_open;          ///< steps that no arrival may take are among `taken`
-};
-
-struct Node {
-  std::array<Reached, 2> by;
-  kit::MoveRules::KnownClearance clearance;
-  std::uint16_t stamp;
-};
-
-struct Memory {
-  kit::NodeStore<Node> nodes;
-  std::array<kit::OpenList, 2> open;
-  std::array<std::vector<Arrival>, 2> arrivals;
-};
 
 /// A* from both ends at once, by W. Pijls, H. Post: Yet Another Bidirectional Algorithm for Finding
 /// the Shortest Path (NBA*), Erasmus University Rotterdam, EI 2009-10.
@@ -69,7 +35,7 @@ class TwoSidedSearch : kit::LatticeSearch {
 
   kit::Found run() {
     begin();
-    Status status = Status::no_route;
+    PlanStatus status = PlanStatus::no_route;
     while (const std::optional<Side> side = next_side()) {
       const kit::OpenList::Entry entry = open_[*side].pop();
       if (is_settled(*side, entry.node) || leads_nowhere(*side, entry.node)) {
@@ -81,7 +47,7 @@ class TwoSidedSearch : kit::LatticeSearch {
       }
       expand(*side, entry.node);
     }
-    const bool cut_short = status != Status::no_route;
+    const bool cut_short = status != PlanStatus::no_route;
     if (meeting_[forward] != kNone) {
       return with(route(meeting_[forward], meeting_[backward]), best_cost_, true, cut_short);
     }

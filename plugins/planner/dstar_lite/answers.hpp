@@ -23,12 +23,12 @@ inline std::string first_broken(const Route& route, const Request& request) {
 }
 
 /// Says why there is no route: how far the search came, and what stopped it.
-inline std::string explanation(Status status, const kit::Progress& progress, const Problem& problem,
-                               const kit::MoveRules& rules) {
-  std::string text = status == Status::no_route    ? "no route"
-                     : status == Status::cancelled ? "cancelled"
-                     : progress.memory_full        ? "the memory allowed was used up"
-                                                   : "the budget was used up";
+inline std::string explanation(PlanStatus status, const kit::Progress& progress,
+                               const Problem& problem, const kit::MoveRules& rules) {
+  std::string text = status == PlanStatus::no_route    ? "no route"
+                     : status == PlanStatus::cancelled ? "cancelled"
+                     : progress.memory_full            ? "the memory allowed was used up"
+                                                       : "the budget was used up";
   text += ": " + std::to_string(progress.expanded) + " vertices expanded on " +
           std::to_string(problem.lattice.size()) + " cells";
   if (progress.expanded > 0) {

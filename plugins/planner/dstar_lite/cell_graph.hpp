@@ -112,7 +112,7 @@ class CellGraph {
                     const Visit& visit) {
     const kit::DirectionMask free = legs_.into(u, c) & ~without;
     // Of equals the last one is taken first: the step along most axes.
-    for (const kit::DirectionMask along : {0x0415410U, 0x2AA8AAAU, 0x5140145U}) {
+    for (const kit::DirectionMask along : kit::kAlongAxes) {
       for (kit::DirectionMask open = free & along; open != 0; open &= open - 1) {
         const Move& move = moves_[std::size_t(std::countr_zero(open))];
         visit(u + move.stride, move.cost, Cell{c[0] + move.x, c[1] + move.y, c[2] + move.z});

@@ -66,7 +66,7 @@ class Beside {
     const PlanResult fresh = astar_->plan(request_);
     ASSERT_EQ(result().status, fresh.status)
         << what << ": " << result().message << "; afresh: " << fresh.message;
-    if (fresh.status == Status::solved) {
+    if (fresh.status == PlanStatus::solved) {
       ++solved_;
       ASSERT_NEAR(length(result().route), length(fresh.route), 1e-6 * length(fresh.route)) << what;
       ASSERT_TRUE(check(result().route, request_).ok()) << what;

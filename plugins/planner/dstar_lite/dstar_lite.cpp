@@ -19,6 +19,7 @@
 //   the way to the start; k_m what keys on the open list may be behind by.
 #include <memory>
 
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "dstar_session.hpp"
 

@@ -25,8 +25,8 @@ TEST(DStarLite, FirstPlanHasTheLengthOfAStarInCities) {
     const Request request = city_request(n % 2 == 0 ? "complex" : "simple", n / 2);
     const PlanResult result = dstar->plan(request);
     const PlanResult expected = astar->plan(request);
-    ASSERT_EQ(result.status, Status::solved) << n << ": " << result.message;
-    ASSERT_EQ(expected.status, Status::solved) << n;
+    ASSERT_EQ(result.status, PlanStatus::solved) << n << ": " << result.message;
+    ASSERT_EQ(expected.status, PlanStatus::solved) << n;
     EXPECT_NEAR(length(result.route), length(expected.route), 1e-9 * length(expected.route)) << n;
     EXPECT_TRUE(check(result.route, request).ok()) << n;
   }
@@ -62,18 +62,18 @@ TEST(DStarLite, BudgetAndCancellation) {
   for (const std::uint64_t most : {0, 7, 600}) {
     request.budget.max_iterations = most;
     const PlanResult cut = planner->plan(request);
-    EXPECT_EQ(cut.status, Status::timed_out);
+    EXPECT_EQ(cut.status, PlanStatus::timed_out);
     EXPECT_TRUE(cut.budget_hit);
     EXPECT_EQ(expanded(cut), std::int64_t(most));
   }
   request.budget = {};
   request.budget.max_memory_bytes = 9 * 640'000 + 10'000;
-  EXPECT_EQ(planner->plan(request).status, Status::timed_out);
+  EXPECT_EQ(planner->plan(request).status, PlanStatus::timed_out);
   std::stop_source stop;
   stop.request_stop();
   request.budget = {};
   request.budget.stop = stop.get_token();
-  EXPECT_EQ(planner->plan(request).status, Status::cancelled);
+  EXPECT_EQ(planner->plan(request).status, PlanStatus::cancelled);
 }
 
 TEST(DStarLite, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
@@ -83,11 +83,11 @@ TEST(DStarLite, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
   request.level_m = 5;
   const auto planner = make_planner("dstar_lite", "{cell_m: [10, 10, 10], moves: cells}");
   const PlanResult without = planner->plan(request);
-  EXPECT_EQ(without.status, Status::no_route);
+  EXPECT_EQ(without.status, PlanStatus::no_route);
   EXPECT_TRUE(without.proved);
   request.goal.tolerance_m = 8;
   const PlanResult within = planner->plan(request);
-  ASSERT_EQ(within.status, Status::solved) << within.message;
+  ASSERT_EQ(within.status, PlanStatus::solved) << within.message;
   EXPECT_EQ(within.route.back(), Vec3(5, 85, 5));
   EXPECT_TRUE(check(within.route, request).ok());
 }
@@ -97,10 +97,10 @@ TEST(DStarLite, ALimitOnTheRoutesLengthIsHeldToTheShortest) {
   const auto planner = make_planner("dstar_lite");
   const double shortest = length(planner->plan(drawn.request).route);
   drawn.request.limits.max_route_length = shortest + 0.01;
-  EXPECT_EQ(planner->plan(drawn.request).status, Status::solved);
+  EXPECT_EQ(planner->plan(drawn.request).status, PlanStatus::solved);
   drawn.request.limits.max_route_length = shortest - 0.01;
   const PlanResult result = planner->plan(drawn.request);
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_TRUE(result.proved);
   EXPECT_NE(result.message.find("route_length"), std::string::npos) << result.message;
 }
@@ -110,14 +110,14 @@ TEST(DStarLite, TurnsAreHeldByHeadingOrGivenUp) {
   drawn.request.level_m = 0.5;
   drawn.request.limits.max_turn_horizontal = 0.8;
   const PlanResult given_up = make_planner("dstar_lite", "{state: parent}")->plan(drawn.request);
-  EXPECT_EQ(given_up.status, Status::no_route);
+  EXPECT_EQ(given_up.status, PlanStatus::no_route);
   EXPECT_FALSE(given_up.proved);
   EXPECT_NE(given_up.message.find("turn"), std::string::npos) << given_up.message;
   Drawn near = drawn;  // and where a search for ends near the goal follows
   near.request.goal.position += Vec3(0.3, 0, 0);
   near.request.goal.tolerance_m = 0.2;
   const PlanResult still = make_planner("dstar_lite", "{state: parent}")->plan(near.request);
-  EXPECT_EQ(still.status, Status::no_route);
+  EXPECT_EQ(still.status, PlanStatus::no_route);
   EXPECT_FALSE(still.proved);
   EXPECT_EQ(still.message, given_up.message);
   const PlanResult searched = make_planner("dstar_lite")->plan(drawn.request);
@@ -134,7 +134,7 @@ TEST(DStarLite, TooLittleMemoryForHeadingsIsABudgetThatEnds) {
   drawn.request.budget.max_memory_bytes = 24 * 100;
   const PlanResult cut =
       make_planner("dstar_lite", "{state: cell_and_heading}")->plan(drawn.request);
-  EXPECT_EQ(cut.status, Status::timed_out) << cut.message;
+  EXPECT_EQ(cut.status, PlanStatus::timed_out) << cut.message;
   EXPECT_TRUE(cut.budget_hit);
   EXPECT_EQ(expanded(cut), 0);
 }
@@ -162,7 +162,7 @@ TEST(DStarLite, TracesEveryVertexItExpands) {
   Kept trace;
   drawn.request.trace = &trace;
   const PlanResult result = make_planner("dstar_lite")->plan(drawn.request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   ASSERT_EQ(std::int64_t(trace.events.size()), expanded(result));
   for (const TraceEvent& event : trace.events) {
     EXPECT_LE(event.value, length(result.route) + 1e-6);

@@ -82,7 +82,7 @@ class Search {
   const Vertices& vertices() const { return vertices_; }
 
   /// procedure Main, one round: the cheapest way from the start's place to the goal's.
-  Status plan(BudgetWatch& watch, std::size_t max_list_bytes) {
+  PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes) {
     watch_ = &watch;
     max_list_bytes_ = max_list_bytes;
     ended_ = false;
@@ -102,9 +102,9 @@ class Search {
       progress_.nearest = problem_.lattice.position(graph_.cell(nearest_vertex_));
     }
     if (ended_ || too_long_) {
-      return watch.cancelled() ? Status::cancelled : Status::timed_out;
+      return watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     }
-    return best_ == kNever ? Status::no_route : Status::solved;
+    return best_ == kNever ? PlanStatus::no_route : PlanStatus::solved;
   }
   /// Whether a way is longer than whole numbers hold.
   bool too_long() const { return too_long_; }

@@ -65,19 +65,14 @@ class Replanner {
 
   /// What needs no search.
   std::optional<PlanResult> settled() const {
-    PlanResult result;
-    for (const auto& [what, p] :
-         {std::pair("start", request_.start.position), std::pair("goal", request_.goal.position)}) {
-      if (const std::string problem = point_problem(p, request_); !problem.empty()) {
-        result.status = Status::invalid_problem;
-        result.message = std::string("the ") + what + " " + problem;
-        return result;
-      }
+    if (auto impossible = impossible_ends(request_)) {
+      return impossible;
     }
+    PlanResult result;
     if (!request_.goal.reached_at(request_.start.position)) {
       return std::nullopt;
     }
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.message = "the start is at the goal";
     result.route = {request_.start.position};
     result.counters = {{"expanded", 0}};
@@ -107,7 +102,7 @@ class Replanner {
     const kit::StepCosts costs(lattice, scale, longest_m);
     if (costs.error() > kGreatestError) {
       PlanResult result;
-      result.status = Status::invalid_problem;
+      result.status = PlanStatus::invalid_problem;
       result.message = "dstar_lite cannot tell the lengths of ways up to " +
                        std::to_string(longest_m) + " m apart on such cells: use astar";
       result.counters = spent;
@@ -130,7 +125,7 @@ class Replanner {
       const kit::Lattice lattice = plan_->lattice();
       return plan_on(lattice, 4 * plan_->costs().longest_m(), plan_->within(), result.counters);
     }
-    if (result.status != Status::no_route || request_.goal.tolerance_m == 0) {
+    if (result.status != PlanStatus::no_route || request_.goal.tolerance_m == 0) {
       return result;
     }
     if (!plan_->within()) {

@@ -33,12 +33,12 @@ void expect_as_afresh(Flown& flown, const Planner& afresh, const std::string& wh
   const PlanResult fresh = afresh.plan(flown.request());
   ASSERT_EQ(repaired.status, fresh.status)
       << what << ": " << repaired.message << "; afresh: " << fresh.message;
-  if (fresh.status == Status::solved) {
+  if (fresh.status == PlanStatus::solved) {
     // Links off the centres are whole numbers of small lengths.
     const double edge = flown.cells().spec().cell.minCoeff();
     ASSERT_NEAR(length(repaired.route), length(fresh.route), 2e-5 * edge) << what;
     ASSERT_TRUE(check(repaired.route, flown.request()).ok()) << what;
-  } else if (fresh.status == Status::no_route) {
+  } else if (fresh.status == PlanStatus::no_route) {
     ASSERT_TRUE(repaired.proved) << what;
   }
 }
@@ -143,7 +143,7 @@ TEST(DStarLiteSession, OneFarOffCellCostsLessThanAHundredthOfTheFirstPlan) {
     spec.rule = GridSpec::Rule::native;
     Flown flown("{moves: cells}", *request.world->voxels(spec), {1, 2, 4}, {67, 64, 4});
     flown.begin();
-    ASSERT_EQ(flown.result().status, Status::solved);
+    ASSERT_EQ(flown.result().status, PlanStatus::solved);
     const std::int64_t first = expanded(flown.result());
     flown.flip({75, 5, 90});
     EXPECT_LT(double(expanded(flown.update())), 0.01 * double(first)) << seed;
@@ -173,7 +173,7 @@ TEST(DStarLiteSession, ABudgetThatEndsInARepairIsMadeUpForByTheNext) {
       flown.request().budget.max_iterations = most;
       const PlanResult& cut = flown.update();
       ASSERT_LE(std::uint64_t(expanded(cut)), most);
-      cut_short += cut.status == Status::timed_out && cut.budget_hit;
+      cut_short += cut.status == PlanStatus::timed_out && cut.budget_hit;
     }
     flown.request().budget = {};
     flown.update();
@@ -221,11 +221,11 @@ TEST(DStarLiteSession, AWayThatCloses) {
   for (int n = 0; n < 3; ++n) {
     flown.flip({7, 6, 3});
     flown.update();
-    EXPECT_EQ(flown.result().status, Status::no_route);
+    EXPECT_EQ(flown.result().status, PlanStatus::no_route);
     EXPECT_TRUE(flown.result().proved);
     flown.flip({7, 6, 3});
     flown.update();
-    ASSERT_EQ(flown.result().status, Status::solved) << flown.result().message;
+    ASSERT_EQ(flown.result().status, PlanStatus::solved) << flown.result().message;
     EXPECT_NEAR(length(flown.result().route), way, 1e-6);
   }
 }
@@ -238,12 +238,12 @@ TEST(DStarLiteSession, FromAnotherPlaceALegMayLeadToTheGoalItself) {
   request.goal.tolerance_m = 0.2;  // holds no cell's centre
   const auto planner = testing::make_planner("dstar_lite");
   const auto session = planner->begin(request);
-  EXPECT_EQ(session->result().status, Status::no_route);
+  EXPECT_EQ(session->result().status, PlanStatus::no_route);
   EXPECT_TRUE(session->result().proved);
   request.start.position = {2.5, 0.5, 0.5};
   const PlanResult& result =
       session->update(request.start, request.goal, request.world, {}, request.budget);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_EQ(result.route.back(), request.goal.position);
 }
 
@@ -252,7 +252,7 @@ TEST(DStarLiteSession, AnotherGoalOrLatticeIsPlannedAfresh) {
   Flown flown("{moves: cells}", VoxelGrid(spec), {1, 1, 1}, {13, 1, 1});
   flown.begin();
   flown.request().goal.position = spec.centre({13, 7, 4});
-  EXPECT_EQ(flown.update().status, Status::solved);
+  EXPECT_EQ(flown.update().status, PlanStatus::solved);
   EXPECT_EQ(flown.result().route.back(), spec.centre({13, 7, 4}));
   const Request before = flown.request();
   const auto planner = make_planner("dstar_lite", "{moves: cells, cell_m: [10, 10, 10]}");
@@ -260,7 +260,7 @@ TEST(DStarLiteSession, AnotherGoalOrLatticeIsPlannedAfresh) {
   const auto empty = std::make_shared<const World>(before.world->without("cells"));
   const Change gone{Change::Kind::remove, "cells", spec.box()};
   const PlanResult result = session->update(before.start, before.goal, empty, {&gone, 1}, {});
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
 }
 }  // namespace
 }  // namespace altiplan

@@ -45,7 +45,7 @@ class Flown {
     cells_.set(c, !cells_.blocked(c));
     changed_ = changed_.united(cells_.spec().cell_box(c));
   }
-  const PlanResult& update() {
+  PlanResult update() {
     std::vector<Change> changes;
     if (!changed_.is_empty()) {
       changes.push_back({Change::Kind::set_cells, "cells", changed_});

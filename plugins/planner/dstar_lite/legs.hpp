@@ -39,7 +39,7 @@ class Legs {
   /// Takes in the request's world; what legs within a box were said to be has to be forgotten.
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
-    steps_ = rules_->steps() & (level_ ? kLevelSteps : ~kit::DirectionMask{0});
+    steps_ = rules_->steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
     if (judges_) {
       memory_.near.reset(lattice_.size());
     }
@@ -69,7 +69,6 @@ class Legs {
   }
 
  private:
-  static constexpr kit::DirectionMask kLevelSteps = 0x3FE00;
   static constexpr std::uint32_t kJudged = std::uint32_t{1} << kit::kDirections;
 
   kit::DirectionMask by_cells(const Cell& c) const {

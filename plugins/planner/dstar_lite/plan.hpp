@@ -111,8 +111,8 @@ class Plan {
     if (state == kit::SearchState::cell_and_heading && looks_back) {
       return run_by_heading({});
     }
-    const Status status = by_cell_->search.plan(watch, max_list_bytes<CellGraph>(0));
-    if (status != Status::solved) {
+    const PlanStatus status = by_cell_->search.plan(watch, max_list_bytes<CellGraph>(0));
+    if (status != PlanStatus::solved) {
       return without_route(by_cell_->search, status);
     }
     const Route route = route_over(*by_cell_);
@@ -121,7 +121,7 @@ class Plan {
     if (broken.empty()) {
       return with_route(by_cell_->search, route);
     }
-    PlanResult result = without_route(by_cell_->search, Status::no_route);
+    PlanResult result = without_route(by_cell_->search, PlanStatus::no_route);
     result.proved = false;
     result.message = "the shortest route over cells does not keep " + broken;
     return state == kit::SearchState::parent ? result : run_by_heading(result);
@@ -276,7 +276,7 @@ class Plan {
         lattice_.size() > (kNever - 1) / HeadingGraph::kPerCell) {
       const std::string why = "the memory allowed is too little for a search by cell and heading";
       if (by_cell.counters.empty()) {  // nothing was searched
-        by_cell.status = Status::timed_out;
+        by_cell.status = PlanStatus::timed_out;
         by_cell.budget_hit = true;
         by_cell.message = why;
         by_cell.counters = {{"expanded", 0}};
@@ -293,8 +293,8 @@ class Plan {
       rest.max_iterations -= std::uint64_t(by_cell.counters.front().value);
     }
     BudgetWatch watch(rest);
-    const Status status = by_heading_->search.plan(watch, max_list_bytes<HeadingGraph>(others));
-    PlanResult result = status == Status::solved
+    const PlanStatus status = by_heading_->search.plan(watch, max_list_bytes<HeadingGraph>(others));
+    PlanResult result = status == PlanStatus::solved
                             ? with_route(by_heading_->search, route_over(*by_heading_))
                             : without_route(by_heading_->search, status);
     result.message += "; searched by cell and heading";
@@ -326,7 +326,7 @@ class Plan {
   PlanResult with_route(const Search<Graph>& search, const Route& route) {
     const double allowed = problem_.request.limits.max_route_length;
     if (const double shortest = length(route); shortest > allowed + kLengthTolerance) {
-      PlanResult result = without_route(search, Status::no_route);
+      PlanResult result = without_route(search, PlanStatus::no_route);
       result.message = "no route: the shortest has " + std::to_string(shortest) +
                        " m, route_length allows " + std::to_string(allowed) + " m";
       return result;
@@ -335,14 +335,14 @@ class Plan {
   }
 
   template <class Graph>
-  PlanResult without_route(const Search<Graph>& search, Status status) {
-    if (status == Status::no_route) {  // counts what refused the moves
+  PlanResult without_route(const Search<Graph>& search, PlanStatus status) {
+    if (status == PlanStatus::no_route) {  // counts what refused the moves
       search.vertices().for_each_opened([&](const Cell& c) { legs_.rules().out_of(c); });
     }
     PlanResult result;
     result.status = status;
-    result.budget_hit = status != Status::no_route;
-    result.proved = status == Status::no_route;
+    result.budget_hit = status != PlanStatus::no_route;
+    result.proved = status == PlanStatus::no_route;
     result.message = explanation(status, search.progress(), problem_, legs_.rules());
     result.counters = kit::counters(search.progress(), lattice_, legs_.rules());
     return result;

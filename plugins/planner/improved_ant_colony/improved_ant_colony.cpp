@@ -17,6 +17,7 @@
 //   as in ant_colony.
 #include "altiplan/error.hpp"
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "region_colony.hpp"
 

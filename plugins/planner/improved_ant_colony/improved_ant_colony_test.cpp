@@ -45,7 +45,7 @@ TEST(ImprovedAntColony, CandidatesLieOnTheBorderSymmetrically) {
 TEST(ImprovedAntColony, FindsAWayAroundABlock) {
   const Request request = flat_world();
   const PlanResult result = plan_of(kName, kCells, request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
   EXPECT_EQ(counter(result, "alive"), 30);
   // The shortest route, around the corners (150, 320) and (250, 320), is 437.8 m long.
@@ -88,7 +88,7 @@ TEST(ImprovedAntColony, OnNarrowLevelsStepsAreNoLongerThanTheReach) {
   const PlanResult result = plan_of(
       kName, "cell_m: [10, 10, 10], reach_cells: 4, spacing_cells: 0, trim: false, ants: 20",
       request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   for (std::size_t n = 1; n < result.route.size(); ++n) {
     EXPECT_LE((result.route[n] - result.route[n - 1]).cwiseAbs().maxCoeff(), 40 + 1e-9);
   }
@@ -103,9 +103,9 @@ TEST(ImprovedAntColony, GeodesicDistancesLeadOutOfADeadEnd) {
                           {252.5, 202.5, 50}, {377.5, 202.5, 50}, {{0, 0, 50}, {400, 400, 50}});
   request.level_m = 50;
   const std::string few = "cell_m: [5, 5, 10], ants: 10, iterations: 3";
-  EXPECT_EQ(plan_of(kName, few, request).status, Status::no_route);
+  EXPECT_EQ(plan_of(kName, few, request).status, PlanStatus::no_route);
   const PlanResult around = plan_of(kName, few + ", heuristic: geodesic", request);
-  ASSERT_EQ(around.status, Status::solved) << around.message;
+  ASSERT_EQ(around.status, PlanStatus::solved) << around.message;
   EXPECT_EQ(counter(around, "alive"), 10);
   EXPECT_TRUE(check(around.route, request).ok());
 }
@@ -116,7 +116,7 @@ TEST(ImprovedAntColony, AGoalBehindAWallIsNoRouteWithAnyHeuristic) {
       testing::world_of({Shape{BoxShape{{{190, -10, 0}, {210, 410, 100}}}}}));
   for (const std::string heuristic : {"euclidean", "geodesic"}) {
     const PlanResult result = plan_of(kName, kCells + ", heuristic: " + heuristic, request);
-    EXPECT_EQ(result.status, Status::no_route) << heuristic;
+    EXPECT_EQ(result.status, PlanStatus::no_route) << heuristic;
     EXPECT_EQ(counter(result, "alive"), 0);
   }
 }

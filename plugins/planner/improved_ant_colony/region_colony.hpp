@@ -9,28 +9,11 @@
 
 #include "altiplan/kit/colony/colony.hpp"
 #include "altiplan/kit/lattice/line_of_sight.hpp"
-#include "altiplan/kit/smoothing/trimming.hpp"
 #include "geodesic.hpp"
 #include "neighbourhood.hpp"
+#include "settings.hpp"
 
 namespace altiplan::improved_ant_colony {
-
-enum class LegTest { remembered, guard_zone, always };
-enum class Heuristic { euclidean, geodesic };
-enum class Deposit { resampled, cells, nodes };
-
-struct Settings {
-  int reach = 8;    ///< l_c
-  int spacing = 2;  ///< l_s
-  LegTest leg_test = LegTest::remembered;
-  double tilt = 0.5;  ///< C
-  int region_radius = 2;
-  double region_decay = 0.5;
-  Heuristic heuristic = Heuristic::euclidean;
-  bool trims = true;
-  kit::TrimParams trim;
-  Deposit deposit = Deposit::resampled;
-};
 
 /// A colony whose pheromone lies on cells and counts around them.
 class RegionColony final : public kit::Colony {

@@ -14,6 +14,7 @@
 //   (with the goal's tolerance).
 #include "altiplan/kit/sampling/star_params.hpp"
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

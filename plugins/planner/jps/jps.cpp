@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "jps_search.hpp"
 
@@ -79,7 +80,7 @@ std::string beyond_cells(const Request& request) {
 
 PlanResult refused(const std::string& what) {
   PlanResult result;
-  result.status = Status::invalid_problem;
+  result.status = PlanStatus::invalid_problem;
   result.message = "jps " + what + ": use astar";
   return result;
 }

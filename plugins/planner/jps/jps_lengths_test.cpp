@@ -50,12 +50,12 @@ class Against {
   void hold(const PlanResult& result, double expected, const Request& request) {
     if (expected == kInfinity) {
       ++unreachable_;
-      ASSERT_EQ(result.status, Status::no_route) << result.message;
+      ASSERT_EQ(result.status, PlanStatus::no_route) << result.message;
       ASSERT_TRUE(result.proved);
       return;
     }
     ++solved_;
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     ASSERT_NEAR(length(result.route), expected, 1e-9 * expected);
     const CheckResult judged = check(result.route, request);
     ASSERT_TRUE(judged.ok()) << judged.violations.front().message;
@@ -202,7 +202,7 @@ TEST(JpsLengths, EndsOffTheCentresAsAstarHasThem) {
       const PlanResult expected = astar->plan(request);
       const PlanResult result = planner->plan(request);
       ASSERT_EQ(result.status, expected.status) << n << ": " << result.message;
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++solved;
         EXPECT_NEAR(length(result.route), length(expected.route), 1e-5) << n;
         const CheckResult judged = check(result.route, request);
@@ -224,7 +224,7 @@ TEST(JpsLengths, IntegerCostsComeWithinTheirError) {
     const std::vector<double> expected = shortest(map, free.front(), false);
     const PlanResult result = planner->plan(map.request(free.front(), free.back()));
     if (expected[std::size_t(free.back())] < kInfinity) {
-      ASSERT_EQ(result.status, Status::solved) << result.message;
+      ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
       EXPECT_LE(length(result.route), expected[std::size_t(free.back())] * (1 + 1e-4));
     }
   }

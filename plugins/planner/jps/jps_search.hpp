@@ -50,14 +50,14 @@ class Search {
         continue;  // reached by a shorter way since
       }
       if (watch_.spent(expanded_) || memory_full()) {
-        return ended(watch_.cancelled() ? Status::cancelled : Status::timed_out);
+        return ended(watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out);
       }
       expand(index, word, f);
       if (too_long_) {
         return std::nullopt;
       }
     }
-    return ended(Status::no_route);
+    return ended(PlanStatus::no_route);
   }
 
  private:
@@ -294,7 +294,7 @@ class Search {
 
   PlanResult found(std::uint32_t last, bool at_goal) const {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = route_to(last);
     if (at_goal) {
       if (last == goal_cell_) {
@@ -316,8 +316,8 @@ class Search {
   }
 
   /// The result of a search that did not reach the goal, with the reason.
-  PlanResult ended(Status status) const {
-    const bool budget_hit = status != Status::no_route;
+  PlanResult ended(PlanStatus status) const {
+    const bool budget_hit = status != PlanStatus::no_route;
     if (fallback_ != kNone) {
       PlanResult result = found(fallback_, false);
       result.budget_hit = budget_hit;
@@ -327,21 +327,21 @@ class Search {
     result.status = status;
     result.budget_hit = budget_hit;
     result.counters = counters();
-    result.message = status == Status::no_route    ? "no route"
-                     : status == Status::cancelled ? "cancelled"
-                     : memory_full()               ? "the memory allowed was used up"
-                                                   : "the budget was used up";
+    result.message = status == PlanStatus::no_route    ? "no route"
+                     : status == PlanStatus::cancelled ? "cancelled"
+                     : memory_full()                   ? "the memory allowed was used up"
+                                                       : "the budget was used up";
     result.message += ": " + std::to_string(expanded_) + " jump points expanded";
     if (expanded_ > 0) {
       const Vec3 at = lattice_.position(lattice_.cell(nearest_cell_));
       result.message += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) +
                         ", " + whole(at.z()) + "), " + whole((at - request_.goal.position).norm()) +
                         " m from it" + (budget_hit ? "" : "; blocked cells close the way on");
-    } else if (status == Status::no_route) {
+    } else if (status == PlanStatus::no_route) {
       result.message += ", the start cannot join the lattice";
     }
     // Cells farther from the goal than its links are were not looked at.
-    result.proved = status == Status::no_route &&
+    result.proved = status == PlanStatus::no_route &&
                     request_.goal.tolerance_m < lattice_.spec().cell.head<2>().minCoeff();
     return result;
   }

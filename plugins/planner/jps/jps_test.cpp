@@ -41,11 +41,11 @@ TEST(Jps, RoutesHaveTheirCornersOnly) {
 
 TEST(Jps, PassesBetweenCellsThatMeetInACornerOnlyUnderAny) {
   const Drawn corner = drawn("..#.\n.S#.\n###G");
-  EXPECT_EQ(jps(false)->plan(corner.request).status, Status::no_route);
+  EXPECT_EQ(jps(false)->plan(corner.request).status, PlanStatus::no_route);
   const Drawn gap = drawn("..#.\n.S#G\n##..");
-  EXPECT_EQ(jps(false)->plan(gap.request).status, Status::solved);
+  EXPECT_EQ(jps(false)->plan(gap.request).status, PlanStatus::solved);
   const PlanResult shut = jps(true)->plan(gap.request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_TRUE(shut.proved);
 }
 
@@ -54,27 +54,27 @@ TEST(Jps, BudgetAndCancellation) {
   Request request = serpentine(40, 41).request(0, 40 * 41 - 1);
   request.budget.max_iterations = 0;
   const PlanResult none = planner->plan(request);
-  EXPECT_EQ(none.status, Status::timed_out);
+  EXPECT_EQ(none.status, PlanStatus::timed_out);
   EXPECT_TRUE(none.budget_hit);
   request.budget.max_iterations = 7;
   const PlanResult some = planner->plan(request);
-  EXPECT_EQ(some.status, Status::timed_out);
+  EXPECT_EQ(some.status, PlanStatus::timed_out);
   EXPECT_EQ(counter(some, "expanded"), 7);
 
   std::stop_source stop;
   stop.request_stop();
   request.budget = {};
   request.budget.stop = stop.get_token();
-  EXPECT_EQ(planner->plan(request).status, Status::cancelled);
+  EXPECT_EQ(planner->plan(request).status, PlanStatus::cancelled);
 }
 
 TEST(Jps, SealedGoalAndStart) {
   const PlanResult goal = jps(true)->plan(drawn("S....\n.....\n..###\n..#G#\n..###").request);
-  EXPECT_EQ(goal.status, Status::no_route);
+  EXPECT_EQ(goal.status, PlanStatus::no_route);
   EXPECT_TRUE(goal.proved);
   EXPECT_NE(goal.message.find("the nearest to the goal at"), std::string::npos) << goal.message;
   const PlanResult start = jps(true)->plan(drawn("S#...\n##...\n....G").request);
-  EXPECT_EQ(start.status, Status::no_route);
+  EXPECT_EQ(start.status, PlanStatus::no_route);
   EXPECT_EQ(counter(start, "expanded"), 1);
 }
 
@@ -94,7 +94,7 @@ TEST(Jps, AWorldThatComesToLieWhereAnotherWasIsScannedAnew) {
     ASSERT_EQ(result.status, expected.status) << n;
     ASSERT_EQ(result.route, expected.route) << n;
     ASSERT_EQ(other_rule->plan(request).route, jps(false)->plan(request).route) << n;
-    solved += result.status == Status::solved;
+    solved += result.status == PlanStatus::solved;
   }
   EXPECT_GT(solved, 100);
 }
@@ -106,7 +106,7 @@ TEST(Jps, HundredthCallEqualsTheFirstOnAnyThread) {
   const std::vector<int> free = map.free_cells();
   const Request request = map.request(free.front(), free.back());
   const PlanResult first = planner->plan(request);
-  ASSERT_EQ(first.status, Status::solved);
+  ASSERT_EQ(first.status, PlanStatus::solved);
   const auto same = [&](const PlanResult& again) {
     return again.route == first.route && again.message == first.message &&
            counter(again, "generated") == counter(first, "generated");
@@ -133,7 +133,7 @@ TEST(Jps, KeepsTheVehiclesRadius) {
   request.vehicle.radius_m = request.limits.min_clearance = 3;
   const auto cells = testing::make_planner("jps", "{cell_m: [5, 5, 5]}");
   const PlanResult result = cells->plan(request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
   const PlanResult astar =
       testing::make_planner("astar", "{cell_m: [5, 5, 5], moves: cells}")->plan(request);
@@ -148,28 +148,28 @@ TEST(Jps, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
   request.level_m = 5;
   const auto planner = testing::make_planner("jps", "{cell_m: [10, 10, 10]}");
   const PlanResult without = planner->plan(request);
-  EXPECT_EQ(without.status, Status::no_route);
+  EXPECT_EQ(without.status, PlanStatus::no_route);
   EXPECT_TRUE(without.proved);
   request.goal.tolerance_m = 8;
   const PlanResult within = planner->plan(request);
-  ASSERT_EQ(within.status, Status::solved) << within.message;
+  ASSERT_EQ(within.status, PlanStatus::solved) << within.message;
   EXPECT_EQ(within.route.back(), Vec3(5, 85, 5));
   EXPECT_TRUE(check(within.route, request).ok());
   // Cells farther away than a link were not looked at.
   request.goal = {{17, 85, 5}, 11};
   const PlanResult beyond = planner->plan(request);
-  EXPECT_EQ(beyond.status, Status::no_route);
+  EXPECT_EQ(beyond.status, PlanStatus::no_route);
   EXPECT_FALSE(beyond.proved);
 }
 
 TEST(Jps, OneLevelOfCellsNeedsNoLevelFlight) {
   Drawn flat = draw({"S..#\n.#..\n...G"});
   const PlanResult result = jps(true)->plan(flat.request);
-  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, flat.request).ok());
   const Drawn deep = draw({"S..", "..G"});
   const PlanResult refused = jps(true)->plan(deep.request);
-  EXPECT_EQ(refused.status, Status::invalid_problem);
+  EXPECT_EQ(refused.status, PlanStatus::invalid_problem);
   EXPECT_NE(refused.message.find("this lattice has 2"), std::string::npos) << refused.message;
 }
 
@@ -191,13 +191,13 @@ TEST(Jps, RefusesRulesThatCellsCannotHoldAndNamesThem) {
     Request request = plain;
     set(request);
     const PlanResult result = jps(true)->plan(request);
-    EXPECT_EQ(result.status, Status::invalid_problem) << name;
+    EXPECT_EQ(result.status, PlanStatus::invalid_problem) << name;
     EXPECT_EQ(result.message, "jps cannot hold its steps to " + name + ": use astar");
   }
   Request bounded = plain;
   bounded.limits.min_leg = 0.1;
-  EXPECT_EQ(jps(true)->plan(bounded).status, Status::invalid_problem);
-  EXPECT_EQ(jps(true)->plan(plain).status, Status::solved);
+  EXPECT_EQ(jps(true)->plan(bounded).status, PlanStatus::invalid_problem);
+  EXPECT_EQ(jps(true)->plan(plain).status, PlanStatus::solved);
 }
 
 TEST(Jps, MemoryIsCheckedBeforeItIsTaken) {
@@ -220,7 +220,7 @@ TEST(Jps, CellsTooUnlikeForTheCostsAreRefused) {
   request.level_m = 5;
   const PlanResult result =
       testing::make_planner("jps", "{cell_m: [100000, 0.001, 1]}")->plan(request);
-  EXPECT_EQ(result.status, Status::invalid_problem);
+  EXPECT_EQ(result.status, PlanStatus::invalid_problem);
   EXPECT_NE(result.message.find("100000"), std::string::npos) << result.message;
 }
 
@@ -236,7 +236,7 @@ TEST(Jps, TracesEveryJumpPointItExpands) {
   Kept trace;
   request.trace = &trace;
   const PlanResult result = jps(true)->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   ASSERT_EQ(std::int64_t(trace.events.size()), counter(result, "expanded"));
   EXPECT_EQ(trace.events.front().parent, -1);
   double f = 0;

@@ -53,7 +53,7 @@ TEST(NightlyLazyThetaStar, IsNeverLongerThanTheGridInThePapersCities) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Request request = testing::in_city(seed % 2 == 0, seed);
     const PlanResult result = any_angle->plan(request);
-    ASSERT_EQ(result.status, Status::solved) << seed;
+    ASSERT_EQ(result.status, PlanStatus::solved) << seed;
     testing::expect_sound(result, request);
     EXPECT_LE(length(result.route), length(grid->plan(request).route) * (1 + 1e-9)) << seed;
   }

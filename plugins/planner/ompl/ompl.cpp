@@ -173,7 +173,7 @@ class Ompl final : public Planner {
     const Axes axes(request);
     if (axes.count() < 2) {
       PlanResult result;
-      result.status = Status::invalid_problem;
+      result.status = PlanStatus::invalid_problem;
       result.message = "OMPL plans in a plane or in space, this volume has no two extents";
       return result;
     }
@@ -241,7 +241,7 @@ class Ompl final : public Planner {
                                           broken.front().message);
     }
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.budget_hit = questions.budget_spent();
     result.message = planner + ": " + std::to_string(route.size()) + " waypoints, having asked " +
                      std::to_string(questions.asked()) + " questions";
@@ -252,10 +252,10 @@ class Ompl final : public Planner {
 
   static PlanResult without_route(const Questions& questions, const std::string& message) {
     PlanResult result;
-    result.status = questions.cancelled()      ? Status::cancelled
-                    : questions.budget_spent() ? Status::timed_out
-                                               : Status::no_route;
-    result.budget_hit = result.status == Status::timed_out;
+    result.status = questions.cancelled()      ? PlanStatus::cancelled
+                    : questions.budget_spent() ? PlanStatus::timed_out
+                                               : PlanStatus::no_route;
+    result.budget_hit = result.status == PlanStatus::timed_out;
     result.counters = questions.counters();
     result.message = message;
     return result;

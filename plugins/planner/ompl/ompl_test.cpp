@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Ompl, ::testing::ValuesIn(kPlanners));
 TEST_P(Ompl, FindsTheWindow) {
   const Request request = through_a_window();
   const PlanResult result = make_planner("ompl", with(GetParam(), 20'000))->plan(request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
   EXPECT_FALSE(result.budget_hit);
 }
@@ -49,7 +49,7 @@ TEST_P(Ompl, FliesOnALevel) {
   Request request = through_a_window();
   request.level_m = request.start.position.z() = request.goal.position.z() = 200;
   const PlanResult result = make_planner("ompl", with(GetParam(), 20'000))->plan(request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_TRUE(check(result.route, request).ok());
 }
 
@@ -68,8 +68,8 @@ TEST_P(Ompl, KeepsTheBudget) {
     const PlanResult result = make_planner("ompl", with(GetParam(), 20'000))->plan(request);
     ASSERT_FALSE(result.counters.empty());
     EXPECT_LE(std::uint64_t(result.counters[0].value), most);
-    EXPECT_TRUE(result.status != Status::solved || check(result.route, request).ok());
-    EXPECT_TRUE(most > 0 || result.status == Status::timed_out) << result.message;
+    EXPECT_TRUE(result.status != PlanStatus::solved || check(result.route, request).ok());
+    EXPECT_TRUE(most > 0 || result.status == PlanStatus::timed_out) << result.message;
   }
 }
 
@@ -128,13 +128,13 @@ TEST(OmplPlugin, ATurnThatItDoesNotKnowOfIsSaid) {
   Request request = through_a_window();
   request.limits.max_turn_space = radians(2);
   const PlanResult result = make_planner("ompl", "{planner: RRT, range_m: 50}")->plan(request);
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_TRUE(result.route.empty());
   EXPECT_NE(result.message.find("does not know of, turn_angle at waypoint"), std::string::npos)
       << result.message;
   request.limits.max_turn_space = kPi;
   EXPECT_EQ(make_planner("ompl", "{planner: RRT, range_m: 50}")->plan(request).status,
-            Status::solved);
+            PlanStatus::solved);
 }
 
 TEST(OmplPlugin, WithoutAWayItEndsWithItsQuestions) {
@@ -143,7 +143,7 @@ TEST(OmplPlugin, WithoutAWayItEndsWithItsQuestions) {
       testing::world_of({Shape{BoxShape{{{480, -10, -10}, {520, 1010, 410}}}}}));
   for (const std::string& planner : kPlanners) {
     const PlanResult result = make_planner("ompl", with(planner, 2000))->plan(request);
-    EXPECT_EQ(result.status, Status::no_route) << planner << ": " << result.message;
+    EXPECT_EQ(result.status, PlanStatus::no_route) << planner << ": " << result.message;
     EXPECT_FALSE(result.proved);
   }
 }
@@ -174,8 +174,8 @@ TEST(OmplPlugin, APlanWaitsForTheOneBeforeAsLongAsItHasTime) {
   Request request = through_a_window();
   request.world = std::make_shared<const World>(
       testing::world_of(std::make_shared<Interruption>([&] { beside = planner->plan(hurried); })));
-  EXPECT_EQ(planner->plan(request).status, Status::solved);
-  EXPECT_EQ(beside.status, Status::timed_out);
+  EXPECT_EQ(planner->plan(request).status, PlanStatus::solved);
+  EXPECT_EQ(beside.status, PlanStatus::timed_out);
   EXPECT_NE(beside.message.find("another plan had OMPL"), std::string::npos) << beside.message;
 }
 
@@ -186,7 +186,7 @@ TEST(OmplPlugin, AStopEndsThoseThatGoOn) {
   request.budget.stop = source.get_token();
   for (const std::string& planner : kPlanners) {
     const PlanResult result = make_planner("ompl", with(planner, 20'000))->plan(request);
-    EXPECT_EQ(result.status, Status::cancelled) << planner << ": " << result.message;
+    EXPECT_EQ(result.status, PlanStatus::cancelled) << planner << ": " << result.message;
   }
 }
 }  // namespace

@@ -18,6 +18,7 @@
 #include <memory>
 
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "rrt_session.hpp"
 

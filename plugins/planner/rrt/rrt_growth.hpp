@@ -65,9 +65,9 @@ class Growth {
   bool next_iteration() {
     if (watch_->spent(iterations_) ||
         tree_.size() * Tree::kBytesPerNode > request_.budget.max_memory_bytes) {
-      stopped_ = watch_->cancelled() ? Status::cancelled : Status::timed_out;
+      stopped_ = watch_->cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     } else if (iterations_ == settings_.max_iterations) {
-      stopped_ = Status::no_route;
+      stopped_ = PlanStatus::no_route;
     } else {
       ++iterations_;
     }
@@ -262,7 +262,7 @@ class Growth {
 
   PlanResult with_route() const {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = tree_.way_to(end_);
     result.message = std::to_string(result.route.size() - 1) + " legs of a tree of " +
                      std::to_string(tree_.in_use()) + " nodes";
@@ -270,15 +270,15 @@ class Growth {
     return result;
   }
 
-  PlanResult without_route(Status status) const {
+  PlanResult without_route(PlanStatus status) const {
     const Vec3& goal = request_.goal.position;
     const Node nearest = tree_.nearest(goal);
     const Vec3& p = tree_.point(nearest);
     const double away = (goal - p).norm();
     PlanResult result;
     result.status = status;
-    result.budget_hit = status == Status::timed_out;
-    if (status == Status::no_route) {
+    result.budget_hit = status == PlanStatus::timed_out;
+    if (status == PlanStatus::no_route) {
       result.message =
           "gave up after " + std::to_string(iterations_) + " extensions (max_iterations): ";
     }
@@ -306,7 +306,7 @@ class Growth {
   Tree& tree_;
   std::optional<BudgetWatch> watch_;
   std::uint64_t iterations_ = 0;
-  std::optional<Status> stopped_;
+  std::optional<PlanStatus> stopped_;
   std::string refused_;  ///< why the first route to the goal was
   Node root_ = kNone;
   Node end_ = kNone;

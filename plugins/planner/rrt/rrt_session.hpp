@@ -56,7 +56,7 @@ class TreeSession final : public Session {
       growth_.drop_end();
     }
     cut_.clear();
-    if (goal_moved || result_.status == Status::solved) {
+    if (goal_moved || result_.status == PlanStatus::solved) {
       damage_ = Box::empty();  // else it waits to be mended still
     }
     forget_waiting();
@@ -86,15 +86,9 @@ class TreeSession final : public Session {
 
   /// What makes start or goal impossible, else the way from one to the other.
   PlanResult solve(bool goal_moved) {
-    for (const auto& [what, p] :
-         {std::pair("start", request_.start.position), std::pair("goal", request_.goal.position)}) {
-      if (const std::string problem = point_problem(p, request_); !problem.empty()) {
-        PlanResult result;
-        result.status = Status::invalid_problem;
-        result.message = std::string("the ") + what + " " + problem;
-        result.counters = {{"expanded", 0}, {"nodes", std::int64_t(tree_.in_use())}};
-        return result;
-      }
+    if (auto impossible = impossible_ends(request_)) {
+      impossible->counters = {{"expanded", 0}, {"nodes", std::int64_t(tree_.in_use())}};
+      return *std::move(impossible);
     }
     growth_.start();
     if (goal_moved) {
@@ -128,7 +122,7 @@ class TreeSession final : public Session {
       if (change.kind == Change::Kind::remove || layer == nullptr) {
         continue;
       }
-      tree_.within(reach_of(change.box, layer->environment->has_ground()), near);
+      tree_.within(reach_of(change.box, layer->environment->ground() != nullptr), near);
       if (growth_.end() != kNone) {
         near.push_back(growth_.end());
       }
@@ -266,11 +260,11 @@ class TreeSession final : public Session {
     for (std::size_t i = next; i + 1 < route_.size(); ++i) {
       ahead += leg(route_[i], route_[i + 1]);
     }
-    if (result_.status == Status::solved) {
+    if (result_.status == PlanStatus::solved) {
       route_ = nodes_of_route();
     }
     double kept = 0;
-    for (std::size_t i = 0; i + 1 < route_.size() && result_.status == Status::solved; ++i) {
+    for (std::size_t i = 0; i + 1 < route_.size() && result_.status == PlanStatus::solved; ++i) {
       if (std::max(route_[i], route_[i + 1]) < first_new) {
         kept += leg(route_[i], route_[i + 1]);
       }
@@ -281,7 +275,7 @@ class TreeSession final : public Session {
 
   std::vector<Node> nodes_of_route() const {
     std::vector<Node> nodes;
-    if (result_.status == Status::solved) {
+    if (result_.status == PlanStatus::solved) {
       for (Node node = growth_.end(); node != kNone; node = tree_.parent(node)) {
         nodes.push_back(node);
       }

@@ -59,7 +59,7 @@ TEST(RrtSession, AnUpdateWithoutAChangeKeepsTheTree) {
   Request request = over_the_plain(1);
   const auto session = make_planner("rrt")->begin(request);
   const PlanResult first = session->result();
-  ASSERT_EQ(first.status, Status::solved) << first.message;
+  ASSERT_EQ(first.status, PlanStatus::solved) << first.message;
   const PlanResult& same = session->update(request.start, request.goal, request.world, {}, {});
   EXPECT_EQ(same.route, first.route);
   EXPECT_EQ(counters(same)["expanded"], 0);
@@ -71,7 +71,7 @@ TEST(RrtSession, AnUpdateWithoutAChangeKeepsTheTree) {
       testing::on_route(first.route, 1.5 * (first.route[1] - first.route[0]).norm(), 20);
   request.start = state;
   const PlanResult& rest = session->update(state, request.goal, request.world, {}, {});
-  ASSERT_EQ(rest.status, Status::solved) << rest.message;
+  ASSERT_EQ(rest.status, PlanStatus::solved) << rest.message;
   EXPECT_EQ(counters(rest)["expanded"], 0);
   EXPECT_EQ(rest.route.front(), state.position);
   EXPECT_TRUE(std::equal(rest.route.begin() + 1, rest.route.end(), first.route.begin() + 2));
@@ -88,12 +88,12 @@ TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
       request.trace = &nodes;
       const auto session =
           make_planner("rrt", std::string("{cut_off: ") + cut_off + "}")->begin(request);
-      ASSERT_EQ(session->result().status, Status::solved);
+      ASSERT_EQ(session->result().status, PlanStatus::solved);
       for (int update = 0; update < 6; ++update) {
         const std::int64_t before = counters(session->result())["nodes"];
         ASSERT_EQ(std::int64_t(nodes.at.size()), before);
         const std::map<std::int64_t, Vec3> known = nodes.at;
-        if (session->result().status == Status::solved && update % 4 != 3) {
+        if (session->result().status == PlanStatus::solved && update % 4 != 3) {
           request.start = testing::on_route(session->result().route, random.uniform(0, 60), 20);
           request.start.position += 0.01 * (update % 2) * Vec3(1, 1, 1);
         }
@@ -124,10 +124,10 @@ TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
           kept += found != known.end() && found->second == p ? 1 : 0;
         }
         EXPECT_EQ(kept, counted["nodes_kept"]);
-        if (result.status == Status::solved) {
+        if (result.status == PlanStatus::solved) {
           EXPECT_TRUE(check(result.route, request).ok());
         } else {
-          EXPECT_EQ(result.status, Status::invalid_problem) << result.message;
+          EXPECT_EQ(result.status, PlanStatus::invalid_problem) << result.message;
         }
       }
     }
@@ -146,11 +146,11 @@ TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
     Nodes nodes;
     request.trace = &nodes;
     const auto session = planner->begin(request);
-    ASSERT_EQ(session->result().status, Status::solved) << session->result().message;
+    ASSERT_EQ(session->result().status, PlanStatus::solved) << session->result().message;
     const std::map<std::int64_t, Vec3> known = nodes.at;
     request.start.position = {5, 190, 50};
     const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
-    EXPECT_TRUE(result.status == Status::no_route || check(result.route, request).ok());
+    EXPECT_TRUE(result.status == PlanStatus::no_route || check(result.route, request).ok());
     // The end that was given up was not kept.
     const auto kept = std::count_if(nodes.at.begin(), nodes.at.end(),
                                     [&](const auto& node) { return known.count(node.first) > 0; });
@@ -172,7 +172,7 @@ TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
     request.start.position.y() += 30;
     request.start.velocity = {0, 20, 0};
     const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_TRUE(check(result.route, request).ok());
     back += counters(result)["expanded"];
     planned += counters(planner->plan(request))["expanded"];
@@ -192,7 +192,7 @@ TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
     const std::vector<Change> changes = {pop_up_on(session->result().route, request)};
     const PlanResult& result =
         session->update(request.start, request.goal, request.world, changes, {});
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_TRUE(check(result.route, request).ok());
     repaired += counters(result)["expanded"];
     planned += counters(planner->plan(request))["expanded"];
@@ -210,7 +210,7 @@ TEST(RrtSession, AVehicleThatTurnsOnTheSpotIsHeldToItsHeading) {
       request.start.velocity = 20 * Vec3(std::cos(radians(heading)), std::sin(radians(heading)), 0);
       const PlanResult& result =
           session->update(request.start, request.goal, request.world, {}, {});
-      ASSERT_EQ(result.status, Status::solved) << result.message;
+      ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
       const CheckResult found = check(result.route, request);
       EXPECT_TRUE(found.ok()) << found.violations.front().message;
     }
@@ -226,13 +226,13 @@ TEST(RrtSession, AnUpdateMendsWhatTheOneBeforeHadNoBudgetFor) {
     const std::vector<Change> changes = {pop_up_on(session->result().route, request)};
     const PlanResult& at_once =
         session->update(request.start, request.goal, request.world, changes, {});
-    ASSERT_EQ(at_once.status, Status::solved) << at_once.message;
+    ASSERT_EQ(at_once.status, PlanStatus::solved) << at_once.message;
     Budget none;
     none.max_iterations = 0;
     EXPECT_EQ(late->update(request.start, request.goal, request.world, changes, none).status,
-              Status::timed_out);
+              PlanStatus::timed_out);
     const PlanResult& then = late->update(request.start, request.goal, request.world, {}, {});
-    ASSERT_EQ(then.status, Status::solved) << then.message;
+    ASSERT_EQ(then.status, PlanStatus::solved) << then.message;
     EXPECT_TRUE(check(then.route, request).ok());
     EXPECT_LE(counters(then)["expanded"], counters(at_once)["expanded"] + 200);
   }
@@ -244,7 +244,7 @@ TEST(RrtSession, ALongFlightDoesNotGatherNodes) {
   const auto session = make_planner("rrt")->begin(request);
   for (int update = 0; update < 2000; ++update) {
     const PlanResult& last = session->result();
-    ASSERT_EQ(last.status, Status::solved) << last.message;
+    ASSERT_EQ(last.status, PlanStatus::solved) << last.message;
     request.start = testing::on_route(last.route, 15, 20);
     if ((request.start.position - request.goal.position).norm() < 40) {
       request.goal.position.x() = request.goal.position.x() > 200 ? 10 : 390;

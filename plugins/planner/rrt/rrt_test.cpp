@@ -112,7 +112,7 @@ void expect_plain_tree(const std::string& parameters, double w_goal, double rand
     request.trace = &grown;
     request.budget.max_iterations = kIterations;
     const PlanResult result = make_planner("rrt", parameters)->plan(request);
-    EXPECT_EQ(result.status, Status::timed_out) << result.message;
+    EXPECT_EQ(result.status, PlanStatus::timed_out) << result.message;
     ASSERT_EQ(grown.nodes.size(), plain.points.size());
     EXPECT_GT(plain.points.size(), 300u);
     for (std::size_t i = 0; i < plain.points.size(); ++i) {
@@ -151,7 +151,7 @@ TEST(Rrt, RoutesKeepTheFlightConstraints) {
     }
     const PlanResult result =
         make_planner("rrt", "{step_m: 5, max_iterations: 5000}")->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       EXPECT_TRUE(check(result.route, request).ok())
           << check(result.route, request).violations[0].message;
@@ -163,7 +163,7 @@ TEST(Rrt, RoutesKeepTheFlightConstraints) {
 TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
   Request request = among_balls(1, false);
   const PlanResult result = make_planner("rrt", "{step_m: 4, max_iterations: 3000}")->plan(request);
-  EXPECT_EQ(result.status, Status::no_route);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_FALSE(result.proved);
   EXPECT_NE(result.message.find("m from the goal; on the next leg"), std::string::npos)
       << result.message;
@@ -173,7 +173,7 @@ TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
                                 {5, 50, 50}, {95, 50, 50}, {{0, 0, 0}, {100, 100, 100}});
   request.limits.max_route_length = 80;
   const PlanResult longer = make_planner("rrt", "{max_iterations: 3000}")->plan(request);
-  EXPECT_EQ(longer.status, Status::no_route);
+  EXPECT_EQ(longer.status, PlanStatus::no_route);
   EXPECT_NE(longer.message.find("refused: the route's length is"), std::string::npos)
       << longer.message;
 }

@@ -14,6 +14,7 @@
 // Symbols: q_rand the sample, q_near the nearest node, q_new the end of the new leg.
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/params.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "two_trees.hpp"
 

@@ -47,8 +47,8 @@ TEST(RrtConnect, FindsWaysAmongBallsInLegsOfTheRange) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Request request = among_balls(seed, 25);
     const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
-    solved += result.status == Status::solved;
-    if (result.status == Status::solved) {
+    solved += result.status == PlanStatus::solved;
+    if (result.status == PlanStatus::solved) {
       EXPECT_TRUE(check(result.route, request).ok());
       for (std::size_t i = 0; i + 1 < result.route.size(); ++i) {
         EXPECT_LE((result.route[i + 1] - result.route[i]).norm(), 12 * (1 + 1e-9));
@@ -71,7 +71,7 @@ TEST(RrtConnect, TurnsHoldAtBothEndsAndWhereTheTreesMeet) {
       request.limits.min_turn_radius = 9;
     }
     const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       const CheckResult judged = check(result.route, request);
       EXPECT_TRUE(judged.ok()) << judged.violations.front().message;
@@ -93,7 +93,7 @@ TEST(RrtConnect, ConstraintsThatLookAtTwoLegsAreKept) {
     Request request = among_balls(seed, 6);
     request.constraints.push_back({"no_porpoising", std::make_shared<NoPorpoising>()});
     const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       EXPECT_TRUE(check(result.route, request).ok());
     }
@@ -108,7 +108,7 @@ TEST(RrtConnect, RoutesAreNoLongerThanAllowedAndEndWithinTheTolerance) {
     request.limits.max_route_length = 150;
     request.goal.tolerance_m = seed % 2 == 0 ? 10 : 0;
     const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
-    if (result.status == Status::solved) {
+    if (result.status == PlanStatus::solved) {
       ++solved;
       EXPECT_TRUE(check(result.route, request).ok());
     }
@@ -121,14 +121,14 @@ TEST(RrtConnect, SaysWhatWasInTheWayAndNeverThatThereIsNoWay) {
   sealed.request.level_m = 0.5;
   const PlanResult shut =
       make_planner("rrt_connect", "{max_iterations: 500}")->plan(sealed.request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_FALSE(shut.proved || shut.budget_hit);
   EXPECT_EQ(counter(shut, "expanded"), 500);
   EXPECT_NE(shut.message.find("m of the goal"), std::string::npos) << shut.message;
   EXPECT_NE(shut.message.find("refused by '"), std::string::npos) << shut.message;
   sealed.request.budget.max_iterations = 30;
   const PlanResult cut = make_planner("rrt_connect")->plan(sealed.request);
-  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_EQ(cut.status, PlanStatus::timed_out);
   EXPECT_TRUE(cut.budget_hit);
 }
 
@@ -140,7 +140,7 @@ TEST(RrtConnect, TheTraceHoldsATreeForEachSide) {
   Request request = among_balls(3, 25);
   request.trace = &trace;
   const PlanResult result = make_planner("rrt_connect", kStep)->plan(request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_EQ(std::int64_t(trace.events.size()), counter(result, "nodes"));
   std::set<std::int64_t> added;
   for (const TraceEvent& event : trace.events) {

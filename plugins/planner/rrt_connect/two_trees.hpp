@@ -234,16 +234,16 @@ class TwoTrees {
                        {"legs_checked", rules_.checked()},
                        {"joins_tried", joins_tried_}};
     if (is_done()) {
-      result.status = Status::solved;
+      result.status = PlanStatus::solved;
       result.route = std::move(route_);
       result.message = "joined";
       return result;
     }
     const bool own_limit = expanded_ >= settings_.max_iterations && !watch_.cancelled();
-    result.status = own_limit            ? Status::no_route
-                    : watch_.cancelled() ? Status::cancelled
-                                         : Status::timed_out;
-    result.budget_hit = result.status == Status::timed_out;
+    result.status = own_limit            ? PlanStatus::no_route
+                    : watch_.cancelled() ? PlanStatus::cancelled
+                                         : PlanStatus::timed_out;
+    result.budget_hit = result.status == PlanStatus::timed_out;
     result.message = reason(nodes);
     return result;
   }

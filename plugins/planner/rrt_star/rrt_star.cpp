@@ -20,6 +20,7 @@
 //   n/n)^(1/d)).
 #include "altiplan/kit/sampling/star_params.hpp"
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

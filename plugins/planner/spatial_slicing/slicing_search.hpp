@@ -246,7 +246,7 @@ class Search {
   PlanResult solved() {
     straighten();
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.message = "a route of " + std::to_string(length(route_)) + " m through " +
                      std::to_string(planes_.count) + " planes, moved off the line on " +
                      std::to_string(moved_) + " of them";
@@ -257,9 +257,9 @@ class Search {
 
   PlanResult given_up(int plane) {
     PlanResult result;
-    result.status = !spent_              ? Status::no_route
-                    : watch_.cancelled() ? Status::cancelled
-                                         : Status::timed_out;
+    result.status = !spent_              ? PlanStatus::no_route
+                    : watch_.cancelled() ? PlanStatus::cancelled
+                                         : PlanStatus::timed_out;
     result.budget_hit = spent_;
     result.message = !spent_              ? "no route: " + why(plane)
                      : watch_.cancelled() ? "cancelled: " + where(plane)

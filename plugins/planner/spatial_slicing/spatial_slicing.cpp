@@ -10,6 +10,7 @@
 //   plane's point must lead on to the goal; points on a straight stretch are left out in the end.
 // Symbols: p_i the route's point on plane i, p_0 the start.
 #include "altiplan/kit/scratch.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "slicing_search.hpp"
 

@@ -147,11 +147,12 @@ TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {
                               std::string("{cell_m: [1, 1, 1], axis: ") + "xy"[axis] +
                                   ", plane_cells: " + std::to_string(apart) + "}")
             ->plan(request);
-    if (result.status == Status::invalid_problem) {  // an end in a drawn obstacle
+    if (result.status == PlanStatus::invalid_problem) {  // an end in a drawn obstacle
       continue;
     }
     const Route expected = full_scan(request, axis, apart);
-    ASSERT_EQ(result.status == Status::solved, !expected.empty()) << n << ": " << result.message;
+    ASSERT_EQ(result.status == PlanStatus::solved, !expected.empty())
+        << n << ": " << result.message;
     if (expected.empty()) {
       ++failed;
       continue;

@@ -46,25 +46,25 @@ TEST(SpatialSlicing, ARouteIsNoLongerThanAllowedEvenIfOneThatEndsShortOfTheGoalI
   open.request.goal.tolerance_m = 2.5;
   open.request.limits.max_route_length = 9.5;
   const PlanResult shorter = plan(open.request);
-  ASSERT_EQ(shorter.status, Status::solved) << shorter.message;
+  ASSERT_EQ(shorter.status, PlanStatus::solved) << shorter.message;
   EXPECT_EQ(length(shorter.route), 9);
   EXPECT_TRUE(check(shorter.route, open.request).ok());
   open.request.limits.max_route_length = 7;
   const PlanResult none = plan(open.request);
-  EXPECT_EQ(none.status, Status::no_route);
+  EXPECT_EQ(none.status, PlanStatus::no_route);
   EXPECT_NE(none.message.find("route_length"), std::string::npos) << none.message;
 }
 
 TEST(SpatialSlicing, SaysOnWhichPlaneItEndsAndWhy) {
   const PlanResult shut = plan(level("...#...\nS..#..G\n...#...").request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_FALSE(shut.proved);
   EXPECT_EQ(shut.message,
             "no route: on plane 3 of 5, at x = 4 m, from (3, 2, 1) none of 0 free cells can be "
             "reached; refused legs: blocked cells (1)");
   // The goal is in sight of no point of the last plane.
   const PlanResult last = plan(level("..#.\nS.#.\n...#\n..#G").request);
-  EXPECT_EQ(last.status, Status::no_route);
+  EXPECT_EQ(last.status, PlanStatus::no_route);
   EXPECT_NE(last.message.find("none of 1 free cells can be reached and left for the goal"),
             std::string::npos)
       << last.message;
@@ -74,20 +74,20 @@ TEST(SpatialSlicing, OnePlaneIsTheStraightLeg) {
   EXPECT_EQ(plan(level("S..\n...\nG..").request).route, (Route{{0.5, 2.5, 0.5}, {0.5, 0.5, 0.5}}));
   EXPECT_EQ(plan(level("S.\n.G").request).route.size(), 2u);
   const PlanResult shut = plan(level("S..\n#..\nG..").request);
-  EXPECT_EQ(shut.status, Status::no_route);
+  EXPECT_EQ(shut.status, PlanStatus::no_route);
   EXPECT_NE(shut.message.find("no plane lies between start and goal, at x = 1 and 1 m, and the "
                               "straight leg is not free; refused legs: blocked cells (1)"),
             std::string::npos)
       << shut.message;
-  EXPECT_EQ(plan(level("S..\n#..\nG..").request, "{axis: y}").status, Status::solved);
-  EXPECT_EQ(plan(level("S..\n#..\nG..").request, "{axis: auto}").status, Status::solved);
+  EXPECT_EQ(plan(level("S..\n#..\nG..").request, "{axis: y}").status, PlanStatus::solved);
+  EXPECT_EQ(plan(level("S..\n#..\nG..").request, "{axis: auto}").status, PlanStatus::solved);
 }
 
 TEST(SpatialSlicing, WaypointsOfAStraightStretchStayWhereALegWouldBeTooLong) {
   Drawn open = level("S.........G");
   open.request.limits.max_leg = 3;
   const PlanResult result = plan(open.request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_EQ(result.route.size(), 5u);
   EXPECT_TRUE(check(result.route, open.request).ok());
 }
@@ -95,7 +95,7 @@ TEST(SpatialSlicing, WaypointsOfAStraightStretchStayWhereALegWouldBeTooLong) {
 TEST(SpatialSlicing, EndsWithinTheToleranceWhereNoLegLeadsToTheGoal) {
   const auto end = [](const std::string& rows, double tolerance) {
     Drawn drawn = level(rows);
-    EXPECT_EQ(plan(drawn.request).status, Status::no_route);
+    EXPECT_EQ(plan(drawn.request).status, PlanStatus::no_route);
     drawn.request.goal.tolerance_m = tolerance;
     const PlanResult within = plan(drawn.request);
     EXPECT_TRUE(check(within.route, drawn.request).ok()) << within.message;
@@ -110,10 +110,10 @@ TEST(SpatialSlicing, LimitOnTheRoutesLength) {
   Drawn wall = level(".......\n.......\nS..#..G\n...#...");
   const double long_way = length(plan(wall.request).route);
   wall.request.limits.max_route_length = long_way;
-  EXPECT_EQ(plan(wall.request).status, Status::solved);
+  EXPECT_EQ(plan(wall.request).status, PlanStatus::solved);
   wall.request.limits.max_route_length = long_way - 0.1;
   const PlanResult refused = plan(wall.request);
-  EXPECT_EQ(refused.status, Status::no_route);
+  EXPECT_EQ(refused.status, PlanStatus::no_route);
   EXPECT_NE(refused.message.find("route_length"), std::string::npos) << refused.message;
 }
 
@@ -129,7 +129,7 @@ TEST(SpatialSlicing, BudgetStopAndTraceCountPointsLookedAt) {
   Kept trace;
   request.trace = &trace;
   const PlanResult whole = plan(request);
-  ASSERT_EQ(whole.status, Status::solved);
+  ASSERT_EQ(whole.status, PlanStatus::solved);
   const auto all = std::uint64_t(counter(whole, "expanded"));
   EXPECT_EQ(trace.events.size(), all);
   EXPECT_EQ(trace.events.front().parent, -1);
@@ -139,7 +139,7 @@ TEST(SpatialSlicing, BudgetStopAndTraceCountPointsLookedAt) {
   for (const std::uint64_t most : {std::uint64_t(0), all - 1}) {
     request.budget.max_iterations = most;
     const PlanResult some = plan(request);
-    EXPECT_EQ(some.status, Status::timed_out);
+    EXPECT_EQ(some.status, PlanStatus::timed_out);
     EXPECT_TRUE(some.budget_hit);
     EXPECT_EQ(counter(some, "expanded"), std::int64_t(most));
   }
@@ -148,7 +148,7 @@ TEST(SpatialSlicing, BudgetStopAndTraceCountPointsLookedAt) {
   std::stop_source stop;
   stop.request_stop();
   request.budget.stop = stop.get_token();
-  EXPECT_EQ(plan(request).status, Status::cancelled);
+  EXPECT_EQ(plan(request).status, PlanStatus::cancelled);
 }
 
 TEST(SpatialSlicing, MemoryIsCheckedBeforeItIsTaken) {
@@ -157,7 +157,7 @@ TEST(SpatialSlicing, MemoryIsCheckedBeforeItIsTaken) {
   EXPECT_THROW(plan(request, "{cell_m: [0.01, 0.01, 0.01]}"), ParameterError);
   request.budget.max_memory_bytes = 20'000;
   const PlanResult result = plan(request, "{cell_m: [1, 1, 1]}");
-  EXPECT_EQ(result.status, Status::timed_out);
+  EXPECT_EQ(result.status, PlanStatus::timed_out);
   EXPECT_NE(result.message.find("MiB"), std::string::npos) << result.message;
 }
 
@@ -177,7 +177,7 @@ TEST(SpatialSlicing, SolvesSimpleCitiesOfThePaperAndFewComplexOnes) {
               "city"),
           start, goal, {{0, 0, 0}, {800, 800, 1000}});
       const PlanResult result = plan(request);
-      if (result.status == Status::solved) {
+      if (result.status == PlanStatus::solved) {
         ++count;
         EXPECT_TRUE(check(result.route, request).ok()) << kind << " " << seed;
       }

@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "corridor.hpp"
 #include "levels.hpp"
@@ -80,7 +81,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     const int least = stratified::least_level(occupancy, params_.p_max, &watch);
     if (watch.spent(task.settings.before.expanded)) {
       Found none;
-      none.status = watch.cancelled() ? Status::cancelled : Status::timed_out;
+      none.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
       none.budget_hit = true;
       return none;
     }
@@ -91,8 +92,8 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       Found found = from_level(task, level, finest);
       task.settings.before = found.progress;
       const bool cut_short = found.budget_hit;
-      if (best.status != Status::solved ||
-          (found.status == Status::solved && length(found.route) < length(best.route))) {
+      if (best.status != PlanStatus::solved ||
+          (found.status == PlanStatus::solved && length(found.route) < length(best.route))) {
         best = std::move(found);
       }
       if (cut_short) {
@@ -114,7 +115,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       return std::nullopt;
     }
     Found found;
-    found.status = Status::solved;
+    found.status = PlanStatus::solved;
     found.route = {start, goal};
     found.at_goal = true;
     return found;
@@ -128,7 +129,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     found.progress = task.settings.before;
     for (int number = first; number <= finest; ++number) {
       Level level(number, occupancy);
-      if (found.status == Status::solved) {
+      if (found.status == PlanStatus::solved) {
         const Level coarse(number - 1, occupancy);
         for (const Cell& key : chain(coarse, found.route, occupancy.spec())) {
           level.add_around(coarse.place(key));
@@ -141,7 +142,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       Found finer = run(task, level.nodes());
       found.progress = finer.progress;
       const bool cut_short = finer.budget_hit;
-      if (finer.status == Status::solved || found.status != Status::solved) {
+      if (finer.status == PlanStatus::solved || found.status != PlanStatus::solved) {
         found = std::move(finer);
       }
       if (cut_short) {
@@ -164,7 +165,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     for (int around = 1;; around *= 2) {
       const VoxelGrid cells = blocks.corridor(way, around);
       Found found = run(task, kit::AnyAngleNodes::every_cell(cells));
-      if (found.status != Status::no_route || around >= blocks.longest_axis()) {
+      if (found.status != PlanStatus::no_route || around >= blocks.longest_axis()) {
         return found;
       }
       task.settings.before = found.progress;

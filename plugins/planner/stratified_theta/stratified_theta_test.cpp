@@ -21,8 +21,8 @@ int solved_of(int cities, bool complex, bool limits, const std::string& yaml) {
       request = testing::with_paper_limits(std::move(request));
     }
     const PlanResult result = planner->plan(request);
-    solved += result.status == Status::solved;
-    if (result.status == Status::solved) {
+    solved += result.status == PlanStatus::solved;
+    if (result.status == PlanStatus::solved) {
       expect_sound(result, request);
       EXPECT_EQ(result.route.back(), request.goal.position);
     }
@@ -64,7 +64,7 @@ TEST(StratifiedTheta, ANearGoalIsTriedStraight) {
   Request request = in_city(false, 0);
   request.goal.position = request.start.position + Vec3(0, 0, 130);
   const PlanResult near = make_planner("stratified_theta")->plan(request);
-  ASSERT_EQ(near.status, Status::solved);
+  ASSERT_EQ(near.status, PlanStatus::solved);
   EXPECT_EQ(near.route.size(), 2u);
   EXPECT_EQ(near.counters.front().value, 0);
   const PlanResult limited = make_planner("stratified_theta", "{d_limit_m: 100}")->plan(request);
@@ -79,7 +79,7 @@ TEST(StratifiedTheta, ACorridorLeadsToAGoalWhoseBlockIsClosed) {
   const auto planner =
       make_planner("stratified_theta", "{cell_m: [10, 10, 10], refine: corridor, d_limit_m: 0}");
   const PlanResult result = planner->plan(request);
-  ASSERT_EQ(result.status, Status::solved) << result.message;
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
   EXPECT_EQ(result.route.size(), 2u);
   expect_sound(result, request);
 }
@@ -91,11 +91,11 @@ TEST(StratifiedTheta, ACorridorThatLeadsNowhereLeavesTheTolerance) {
                           {5, 55, 55}, {455, 55, 55}, {{0, 0, 0}, {600, 100, 100}});
   const auto planner = make_planner("stratified_theta", "{cell_m: [10, 10, 10], refine: corridor}");
   const PlanResult none = planner->plan(request);
-  EXPECT_EQ(none.status, Status::no_route);
+  EXPECT_EQ(none.status, PlanStatus::no_route);
   EXPECT_GT(none.counters.front().value, 0) << none.message;
   request.goal.tolerance_m = 300;
   const PlanResult near = planner->plan(request);
-  ASSERT_EQ(near.status, Status::solved) << near.message;
+  ASSERT_EQ(near.status, PlanStatus::solved) << near.message;
   expect_sound(near, request);
 }
 
@@ -104,24 +104,24 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   Request request = in_city(true, 2);
   request.budget.max_iterations = 1;
   const PlanResult cut = planner->plan(request);
-  EXPECT_EQ(cut.status, Status::timed_out);
+  EXPECT_EQ(cut.status, PlanStatus::timed_out);
   EXPECT_TRUE(cut.budget_hit);
   // Levels are not looked at any more.
   request.budget.max_iterations = 0;
   const PlanResult none = planner->plan(request);
-  EXPECT_EQ(none.status, Status::timed_out);
+  EXPECT_EQ(none.status, PlanStatus::timed_out);
   EXPECT_EQ(none.counters.front().value, 0);
   std::stop_source stop;
   stop.request_stop();
   request.budget = {};
   request.budget.stop = stop.get_token();
-  EXPECT_EQ(planner->plan(request).status, Status::cancelled);
+  EXPECT_EQ(planner->plan(request).status, PlanStatus::cancelled);
   // Once a level has a route, what is left of the budget refines it.
   request.budget = {};
   const PlanResult whole = planner->plan(request);
   request.budget.max_iterations = std::uint64_t(whole.counters.front().value) - 1;
   const PlanResult rough = planner->plan(request);
-  ASSERT_EQ(rough.status, Status::solved) << rough.message;
+  ASSERT_EQ(rough.status, PlanStatus::solved) << rough.message;
   EXPECT_TRUE(rough.budget_hit);
   EXPECT_LE(rough.counters.front().value, whole.counters.front().value);
   expect_sound(rough, request);
@@ -134,7 +134,7 @@ TEST(StratifiedTheta, AStartLevelThatTheBudgetEndsIsTold) {
   EXPECT_FALSE(whole.budget_hit);
   request.budget.max_iterations = std::uint64_t(whole.counters.front().value) - 1;
   const PlanResult cut = planner->plan(request);
-  ASSERT_EQ(cut.status, Status::solved) << cut.message;
+  ASSERT_EQ(cut.status, PlanStatus::solved) << cut.message;
   EXPECT_TRUE(cut.budget_hit);
 }
 

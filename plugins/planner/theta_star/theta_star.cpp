@@ -13,6 +13,7 @@
 //   numbers (kit/any_angle.hpp); f that falls from a cell to its successor counts as the last f.
 // Symbols: g length of the way from the start, h straight line to the goal, f = g + h.
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 
 namespace {

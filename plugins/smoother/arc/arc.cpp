@@ -125,7 +125,7 @@ class Arc final : public Smoother {
     const double limit = request.limits.min_turn_radius;
     const double wanted = std::max(params_.radius_m.value.value_or(limit), limit);
     if (wanted <= 0) {
-      result.status = Status::invalid_problem;
+      result.status = PlanStatus::invalid_problem;
       result.message =
           "arc has no radius: give it radius_m, or the problem a turn_radius constraint";
       return result;
@@ -144,7 +144,7 @@ class Arc final : public Smoother {
           return fits(corner, radius, turns) ? std::optional(arc_at(corner, radius, turns))
                                              : std::nullopt;
         });
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.message = summary(rounded, wanted);
     result.budget_hit = rounded.budget_hit;
     result.counters = {{"expanded", rounded.attempts},

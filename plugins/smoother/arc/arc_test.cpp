@@ -22,7 +22,7 @@ PlanResult arcs(const Route& route, double radius, const std::string& more = "")
 TEST(Arc, IsACircumscribedPolygonOfItsCircle) {
   const Route route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   const PlanResult result = arcs(route, 200);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_EQ(result.message, "1 of 1 corners are arcs of 200 m");
   EXPECT_EQ(counter(result, "filleted"), 1);
   ASSERT_EQ(result.route.size(), 2u + 6u) << "six turns of 15 degrees";
@@ -124,7 +124,7 @@ TEST(Arc, NoRuleOfRandomRoutesGetsWorse) {
       continue;
     }
     const PlanResult result = make_smoother("arc", "{radius_m: 8}")->smooth(route, request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
     EXPECT_LE(length(result.route), length(route) + 1e-9);
@@ -194,7 +194,7 @@ TEST(Arc, OddRoutesAndNoRadius) {
 
   const Route bent = {{0, 0, 0}, {50, 0, 0}, {50, 50, 0}};
   const PlanResult none = make_smoother("arc")->smooth(bent, open_request(bent));
-  EXPECT_EQ(none.status, Status::invalid_problem);
+  EXPECT_EQ(none.status, PlanStatus::invalid_problem);
   EXPECT_NE(none.message.find("radius_m"), std::string::npos);
   // The parameter may only tighten the limit.
   Request request = open_request(bent);

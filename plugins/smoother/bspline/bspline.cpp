@@ -83,7 +83,7 @@ class BSpline final : public Smoother {
         route, request,
         [&](const kit::Corner& corner, int attempt) { return curve_of(corner, attempt, radius); });
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = std::move(rounded.route);
     result.budget_hit = rounded.budget_hit;
     result.message = std::to_string(rounded.replaced) + " of " + std::to_string(route.size() - 2) +

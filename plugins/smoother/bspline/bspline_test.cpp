@@ -17,7 +17,7 @@ TEST(BSpline, RoundsACornerWithinItsReach) {
   const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   const PlanResult result =
       make_smoother("bspline", "{reach_m: 20, samples: 8}")->smooth(route, request);
-  ASSERT_EQ(result.status, Status::solved);
+  ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_EQ(result.route.size(), 2u + 33u);
   EXPECT_EQ(result.route[1], Vec3(80, 0, 0));
   EXPECT_NEAR((result.route[33] - Vec3(100, 20, 0)).norm(), 0, 1e-9);
@@ -62,7 +62,7 @@ TEST(BSpline, NoRuleOfRandomRoutesGetsWorse) {
       continue;
     }
     const PlanResult result = make_smoother("bspline", "{samples: 3}")->smooth(route, request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
     EXPECT_LE(length(result.route), length(route) + 1e-9);
@@ -139,7 +139,7 @@ TEST(BSpline, OddRoutes) {
     Request request = testing::open_request(route);
     request.limits.min_turn_radius = 1;
     const PlanResult result = make_smoother("bspline")->smooth(route, request);
-    EXPECT_EQ(result.status, Status::solved);
+    EXPECT_EQ(result.status, PlanStatus::solved);
     EXPECT_EQ(testing::grown_excess(route, result.route, request), "");
     return result.route;
   };

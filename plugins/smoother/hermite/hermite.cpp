@@ -322,7 +322,7 @@ class Hermite final : public Smoother {
   PlanResult do_smooth(const Route& route, const Request& request) const override {
     Fitting fitting(route, request, params_);
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = fitting.fitted();
     result.budget_hit = fitting.budget_hit();
     result.counters = {{"expanded", fitting.legs_checked()}};

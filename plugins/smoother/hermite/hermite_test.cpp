@@ -200,7 +200,7 @@ TEST(Hermite, NoRuleOfRandomRoutesGetsWorse) {
     }
     const bool sound = check(route, request).ok();
     const PlanResult result = (seed % 2 == 0 ? parabola : chord)->smooth(route, request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
     ASSERT_TRUE(passes(result.route, route)) << seed;

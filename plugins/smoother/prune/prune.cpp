@@ -200,7 +200,7 @@ class Prune final : public Smoother {
  private:
   PlanResult do_smooth(const Route& route, const Request& request) const override {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = route;
     const Route clean = without_repeats(route);
     Pruning pruning(clean, request);

@@ -71,7 +71,7 @@ TEST(Prune, KeepsTheFewestOfAllSubsets) {
       continue;
     }
     const PlanResult result = prune->smooth(route, request);
-    ASSERT_EQ(result.status, Status::solved);
+    ASSERT_EQ(result.status, PlanStatus::solved);
     EXPECT_TRUE(check(result.route, request).ok());
     const auto [size, metres] = best_subset(route, request);
     EXPECT_EQ(result.route.size(), size);

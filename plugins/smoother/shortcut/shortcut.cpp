@@ -155,7 +155,7 @@ class Shortcut final : public Smoother {
       taken += shorter ? 1 : 0;
       in_vain = shorter ? 0 : in_vain + 1;
     }
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.counters = {
         {"expanded", drawn}, {"taken", taken}, {"legs_checked", shortening.legs_checked()}};
     // Rules of whole routes have the last word.

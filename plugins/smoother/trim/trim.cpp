@@ -79,7 +79,7 @@ class Trim final : public Smoother {
       trimming.round(stride);
     }
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.budget_hit = trimming.budget_hit();
     // Rules of whole routes have the last word.
     const bool stands = kit::Excess(check(trimming.nodes(), request).violations)

@@ -91,7 +91,7 @@ TEST(Trim, DoesWhatThePaperSaysAndNoRuleOfRandomRoutesGetsWorse) {
       continue;
     }
     const PlanResult result = smoother->smooth(route, request);
-    ASSERT_EQ(result.status, Status::solved) << result.message;
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     EXPECT_EQ(result.route, trimmed_plainly(route, request, {5, 4, 3, 2})) << seed;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;

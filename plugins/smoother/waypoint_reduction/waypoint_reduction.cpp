@@ -95,7 +95,7 @@ class WaypointReduction final : public Smoother {
     Reduction reduction(clean, request, max_turn_);
     Route reduced = reduction.reduced();
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.budget_hit = reduction.budget_hit();
     result.counters = {{"legs_checked", reduction.legs_checked()},
                        {"points_without_end", reduction.without_end()}};

@@ -15,6 +15,7 @@
 
 #include "altiplan/kit/tuning_space.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/tuner.hpp"
 
 namespace {
 using namespace altiplan;

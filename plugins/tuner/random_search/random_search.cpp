@@ -11,6 +11,7 @@
 
 #include "altiplan/kit/tuning_space.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/tuner.hpp"
 
 namespace {
 using namespace altiplan;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linked without the list of what a plugin exports.
+#include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
 
 /// Another plugin's function of this name would be taken for it.

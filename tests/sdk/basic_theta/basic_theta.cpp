@@ -2,6 +2,7 @@
 #include <altiplan/kit/lattice/move_rules.hpp>
 #include <altiplan/kit/lattice/open_list.hpp>
 #include <altiplan/kit/scratch.hpp>
+#include <altiplan/planner.hpp>
 #include <altiplan/plugin.hpp>
 
 #include <bit>
@@ -38,7 +39,7 @@ struct Search {
   std::int64_t expanded = 0;
   Route route{};
 
-  Status run() {
+  PlanStatus run() {
     nodes.reset(lattice.size() + 1);
     open.clear(1e-6);  // values of f that differ by less than a micrometre are a tie
     nodes.at(start, {0, start, 0, false});
@@ -49,17 +50,17 @@ struct Search {
       const std::uint32_t s = open.pop().node;
       if (request.goal.reached_at(place(s))) {
         route = route_to(s);
-        return Status::solved;
+        return PlanStatus::solved;
       }
       if (watch.spent(std::uint64_t(expanded)) || open.bytes() > max_open) {
-        return watch.cancelled() ? Status::cancelled : Status::timed_out;
+        return watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
       }
       if (!std::exchange(nodes[s].closed, true)) {
         ++expanded;
         expand(s);
       }
     }
-    return Status::no_route;
+    return PlanStatus::no_route;
   }
 
   void expand(std::uint32_t s) {
@@ -123,13 +124,13 @@ class BasicTheta final : public Planner {
                                {request.budget.max_memory_bytes, sizeof(Node) + 1});
     const auto nodes = nodes_.take();
     Search search{request, lattice, *nodes};
-    const Status status = search.run();
-    const bool none = status == Status::no_route;
+    const PlanStatus status = search.run();
+    const bool none = status == PlanStatus::no_route;
     return {.status = status,
             .message = none ? "refused moves: " + search.rules.refusals() : "",
             .route = std::move(search.route),
             .counters = {{"expanded", search.expanded}},
-            .budget_hit = status == Status::timed_out,
+            .budget_hit = status == PlanStatus::timed_out,
             .proved = none && !search.rules.parent_mattered() &&
                       request.limits.max_route_length == kInfinity};
   }

@@ -121,6 +121,46 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
   return verdict.failed() ? kBadPlugin : kDone;
 }
 
+/// The verdicts of tests run one by one in processes of their own, told while they come.
+std::vector<Verdict> verdicts_of(const Arguments& arguments, const std::vector<PluginTest>& tests,
+                                 const CheckedLibrary& library, RunnerOptions options) {
+  options.jobs = arguments.jobs;
+  options.time_limit_s = arguments.time_limit_s;
+  options.memory_limit_mb = arguments.memory_limit_mb;
+  const Interrupt interrupt;
+  options.stop = interrupt.token();
+  ProgressLine progress;
+  std::size_t done = 0;
+  std::vector<Verdict> verdicts = run_apart(tests, options, [&](const Verdict& verdict) {
+    progress.clear();
+    if (!arguments.json && (verdict.failed() || log_level() == LogLevel::info)) {
+      std::cout << verdict_text(library, verdict) << std::flush;
+    }
+    progress.show(std::to_string(++done) + " of " + std::to_string(tests.size()) + " tests");
+  });
+  progress.clear();
+  return verdicts;
+}
+
+/// The exit code that the verdicts of so many tests ask for.
+int exit_code(const std::vector<Verdict>& verdicts, std::size_t tests) {
+  if (verdicts.size() < tests) {
+    std::cerr << "altiplan: check-plugin: interrupted, " << tests - verdicts.size()
+              << " tests were not run\n";
+    return kInterrupted;
+  }
+  if (std::any_of(verdicts.begin(), verdicts.end(),
+                  [](const Verdict& verdict) { return verdict.failed(); })) {
+    return kBadPlugin;
+  }
+  const auto misfit = std::find_if(verdicts.begin(), verdicts.end(),
+                                   [](const Verdict& verdict) { return verdict.misfit; });
+  if (misfit != verdicts.end()) {
+    throw Error(misfit->test + " and others were skipped: " + misfit->skipped);
+  }
+  return kDone;
+}
+
 int check_plugin(const Arguments& arguments) {
   make_plugin_path_absolute();
   const PluginToCheck what = plugin_of(arguments);
@@ -154,47 +194,16 @@ int check_plugin(const Arguments& arguments) {
   if (!arguments.junit.empty()) {
     expect_writable(arguments.junit, "--junit");
   }
-  options.jobs = arguments.jobs;
-  options.time_limit_s = arguments.time_limit_s;
-  options.memory_limit_mb = arguments.memory_limit_mb;
-  const Interrupt interrupt;
-  options.stop = interrupt.token();
-  ProgressLine progress;
-  std::size_t done = 0;
   const auto from = Clock::now();
-  const std::vector<Verdict> verdicts = run_apart(tests, options, [&](const Verdict& verdict) {
-    progress.clear();
-    if (!arguments.json && (verdict.failed() || log_level() == LogLevel::info)) {
-      std::cout << verdict_text(library, verdict) << std::flush;
-    }
-    progress.show(std::to_string(++done) + " of " + std::to_string(tests.size()) + " tests");
-  });
-  progress.clear();
+  const std::vector<Verdict> verdicts = verdicts_of(arguments, tests, library, std::move(options));
   library.time_s = std::chrono::duration<double>(Clock::now() - from).count();
-  if (arguments.json) {
-    std::cout << host::file_text(verdicts_json(library, verdicts));
-  } else {
-    std::cout << summary_text(library, verdicts);
-  }
-  std::cout.flush();  // what is known, before what may fail
+  std::cout << (arguments.json ? host::file_text(verdicts_json(library, verdicts))
+                               : summary_text(library, verdicts))
+            << std::flush;  // what is known, before what may fail
   if (!arguments.junit.empty()) {
     host::write_file(arguments.junit, verdicts_junit(library, verdicts));
   }
-  if (verdicts.size() < tests.size()) {
-    std::cerr << "altiplan: check-plugin: interrupted, " << tests.size() - verdicts.size()
-              << " tests were not run\n";
-    return kInterrupted;
-  }
-  if (std::any_of(verdicts.begin(), verdicts.end(),
-                  [](const Verdict& verdict) { return verdict.failed(); })) {
-    return kBadPlugin;
-  }
-  const auto misfit = std::find_if(verdicts.begin(), verdicts.end(),
-                                   [](const Verdict& verdict) { return verdict.misfit; });
-  if (misfit != verdicts.end()) {
-    throw Error(misfit->test + " and others were skipped: " + misfit->skipped);
-  }
-  return kDone;
+  return exit_code(verdicts, tests.size());
 }
 
 std::string regex_problem(const std::string& text) {

@@ -18,7 +18,7 @@ std::shared_ptr<const World> world_of(const std::vector<Value>& layers, host::Re
     const std::shared_ptr<const Environment> made =
         registry.get("environment", plugin).environment(&layer.entries[0].value, site);
     world = world.with({plugin, plugin, made, true});
-    if (const auto frame = made->frame()) {
+    if (const auto& frame = made->info().frame) {
       world = world.with_frame(*frame);
     }
   }

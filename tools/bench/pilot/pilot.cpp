@@ -61,10 +61,10 @@ void add_times(Json& figures, host::Registry& registry, bool over_hills, int fli
     setup.pilot = &planner;
     setup.pilot_name = "apf";
     const host::FlightResult result = host::fly(setup);
-    if (result.status == Status::failed) {
+    if (result.status == host::RunStatus::failed) {
       throw Error("flight " + std::to_string(seed) + ": " + result.message);
     }
-    arrived += result.status == Status::solved;
+    arrived += result.status == host::RunStatus::solved;
   }
   for (const auto& [clock, us] :
        {std::pair("thread", &times.thread_us), {"wall", &times.wall_us}}) {

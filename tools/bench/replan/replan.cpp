@@ -75,7 +75,7 @@ Cell random_cell(const GridSpec& spec, RandomStream& random) {
 std::optional<Map> voxel_map(host::Registry& registry, const std::string& file,
                              RandomStream& random) {
   const auto layer = environment(registry, "voxel_map {file: '" + file + "'}");
-  VoxelGrid cells(*layer->native_grid());
+  VoxelGrid cells(*layer->info().native_grid);
   layer->rasterize(cells);
   Map map{file.substr(file.rfind('/') + 1), std::move(cells), {}, {}};
   const auto astar = planner(registry, "astar {moves: cells}");
@@ -89,7 +89,7 @@ std::optional<Map> voxel_map(host::Registry& registry, const std::string& file,
       continue;
     }
     const PlanResult way = astar->plan(request_in(map, world));
-    if (way.status == Status::solved && expanded(way) > 5000) {
+    if (way.status == PlanStatus::solved && expanded(way) > 5000) {
       return map;
     }
   }
@@ -181,7 +181,7 @@ void time_one(const Planner& astar, const Planner& dstar, const Map& map, const 
   Request request = request_in(map, world);
   const auto session = dstar.begin(request);
   const PlanResult first = session->result();
-  if (first.status != Status::solved) {
+  if (first.status != PlanStatus::solved) {
     return;
   }
   RandomStream random = RandomStream(trial).sub(kind.name);

@@ -36,7 +36,7 @@ std::unique_ptr<Smoother> smoother(host::Registry& registry, const std::string& 
 
 PlanResult solved(const Planner& planner, const Request& request) {
   PlanResult result = planner.plan(request);
-  if (result.status != Status::solved) {
+  if (result.status != PlanStatus::solved) {
     throw WrongAnswer("a problem of paper 002 is not solved: " + result.message);
   }
   return result;

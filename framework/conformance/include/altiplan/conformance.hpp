@@ -8,7 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
 
 /// What every plugin of a kind owes, as cases for any test framework: the laws numbered in the
 /// interfaces' class comments, held against small seeded worlds. Fixed seeds and, but for

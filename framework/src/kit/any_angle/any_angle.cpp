@@ -78,8 +78,8 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
   for (;; longest_m *= 4) {
     begin(longest_m);
     if (const auto status = search()) {
-      const bool at_goal = *status == Status::solved;
-      const bool cut_short = !at_goal && *status != Status::no_route;
+      const bool at_goal = *status == PlanStatus::solved;
+      const bool cut_short = !at_goal && *status != PlanStatus::no_route;
       progress_.memory_full = cut_short && memory_full();
       Result result{*status, {}, false, cut_short, progress_, {}};
       if (const Node last = at_goal ? goal_.node : fallback_; last != kNone) {
@@ -87,10 +87,10 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
         const bool fits =
             length(result.route) <= request_.limits.max_route_length + kLengthTolerance;
         if (fits) {
-          result.status = Status::solved;
+          result.status = PlanStatus::solved;
           result.at_goal = at_goal;
         } else {  // by less than costs tell
-          result.status = at_goal ? Status::no_route : *status;
+          result.status = at_goal ? PlanStatus::no_route : *status;
           result.route.clear();
           result.progress.too_long = true;
         }
@@ -162,7 +162,7 @@ void AnyAngleSearch::begin(double longest_m) {
 }
 
 /// Nothing where a way is too long for costs as fine as these.
-std::optional<Status> AnyAngleSearch::search() {
+std::optional<PlanStatus> AnyAngleSearch::search() {
   while (!open_.empty()) {
     const BucketQueue::Entry entry = open_.pop();
     const Node s = entry.node;
@@ -170,7 +170,7 @@ std::optional<Status> AnyAngleSearch::search() {
       continue;  // it waits in another place: a leg was refused, and its way is longer than that
     }
     if (watch_.spent(progress_.expanded) || memory_full()) {
-      return watch_.cancelled() ? Status::cancelled : Status::timed_out;
+      return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     }
     ++progress_.expanded;
     if (settings_.sight == Sight::lazy && !set_vertex(s)) {
@@ -184,11 +184,11 @@ std::optional<Status> AnyAngleSearch::search() {
       add_to_trace(s);
     }
     if (s == goal_.node) {
-      return Status::solved;
+      return PlanStatus::solved;
     }
     expand(s);
   }
-  return Status::no_route;
+  return PlanStatus::no_route;
 }
 
 void AnyAngleSearch::close(Node n) {

@@ -20,7 +20,7 @@ bool legs_differ(const Request& request) {
 PlanResult result_of(AnyAngleSearch::Result found, const Request& request, const Lattice& lattice,
                      const MoveRules& rules) {
   PlanResult result;
-  if (found.status == Status::solved) {
+  if (found.status == PlanStatus::solved) {
     result = solved(std::move(found.route), found.progress, lattice, rules);
   } else {
     result.status = found.status;
@@ -53,9 +53,10 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
     task.settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
     result = result_of(search(task), request, lattice, rules);
   }
-  if (result.status == Status::solved && params_.angle_rule == AnyAngleParams::Angles::printed) {
+  if (result.status == PlanStatus::solved &&
+      params_.angle_rule == AnyAngleParams::Angles::printed) {
     if (const CheckResult judged = check(result.route, request); !judged.ok()) {
-      result.status = result.budget_hit ? Status::timed_out : Status::no_route;
+      result.status = result.budget_hit ? PlanStatus::timed_out : PlanStatus::no_route;
       result.route.clear();
       result.message =
           "the rule as printed gave a route that breaks one: " + judged.violations.front().message;
@@ -63,7 +64,7 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
     }
     return result;
   }
-  if (result.status != Status::no_route) {
+  if (result.status != PlanStatus::no_route) {
     return result;
   }
   result.proved = looks_everywhere() && !legs_differ(request);

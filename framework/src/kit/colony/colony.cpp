@@ -89,7 +89,7 @@ std::optional<PlanResult> Colony::without_ants() {
   PlanResult result;
   result.counters = {{"expanded", 0}};
   if (start_ == kNone || goal_ == kNone) {
-    result.status = Status::no_route;
+    result.status = PlanStatus::no_route;
     result.message = std::string("no route: ") + (start_ == kNone ? "the start" : "the goal") +
                      " has no free cell beside it that it could join";
     return result;
@@ -102,7 +102,7 @@ std::optional<PlanResult> Colony::without_ants() {
   const bool straight =
       (goal - start).norm() <= request_.limits.max_route_length + kLengthTolerance &&
       leg_ok(request_.before_start(), start, goal, request_);
-  result.status = straight ? Status::solved : Status::no_route;
+  result.status = straight ? PlanStatus::solved : PlanStatus::no_route;
   result.message = straight ? "start and goal share a cell: the straight leg"
                             : "no route: start and goal share a cell, and the straight leg "
                               "between them breaks a rule";
@@ -295,10 +295,10 @@ PlanResult Colony::result() const {
   PlanResult result;
   const bool cut_short = stopped_ || expanded_ >= request_.budget.max_iterations;
   const bool found = !best_.way.empty();
-  result.status = found        ? Status::solved
-                  : cancelled_ ? Status::cancelled
-                  : cut_short  ? Status::timed_out
-                               : Status::no_route;
+  result.status = found        ? PlanStatus::solved
+                  : cancelled_ ? PlanStatus::cancelled
+                  : cut_short  ? PlanStatus::timed_out
+                               : PlanStatus::no_route;
   result.budget_hit = cut_short;
   result.route = found ? route_of(best_) : Route{};
   result.message = reason();
@@ -346,7 +346,7 @@ PlanResult ColonyPlanner::do_plan(const Request& request) const {
   }
   if (const int levels = lattice.spec().counts[2]; levels > 1) {
     PlanResult result;
-    result.status = Status::invalid_problem;
+    result.status = PlanStatus::invalid_problem;
     result.message = std::string(name_) + " searches one level of cells, this lattice has " +
                      std::to_string(levels) + " (no level flight is asked for): use astar";
     return result;

@@ -89,7 +89,10 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
 
 DirectionMask Lattice::inside(const Cell& c) const {
   // Directions with a component of -1 along each axis; those with +1 are the same bits, shifted.
-  constexpr std::array<DirectionMask, 3> kLow = {0x1249249, 0x01C0E07, 0x00001FF};
+  constexpr auto kLowAlong = [](std::size_t axis) {
+    return directions_where([axis](const Cell& o) { return o[axis] == -1; });
+  };
+  constexpr std::array<DirectionMask, 3> kLow = {kLowAlong(0), kLowAlong(1), kLowAlong(2)};
   constexpr std::array<int, 3> kShift = {2, 6, 18};
   DirectionMask outside = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -179,7 +182,7 @@ std::optional<PlanResult> beyond_budget(const Lattice& lattice, std::size_t byte
   }
   const auto mb = [](std::size_t count) { return std::to_string(count >> 20); };
   PlanResult result;
-  result.status = Status::timed_out;
+  result.status = PlanStatus::timed_out;
   result.budget_hit = true;
   result.message = "the lattice has " + std::to_string(lattice.size()) + " cells, which need " +
                    mb(bytes + (1 << 20) - 1) + " MiB; the budget is " +

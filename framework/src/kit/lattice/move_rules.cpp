@@ -45,7 +45,7 @@ std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice
   spec.inflation = std::max(request.limits.min_clearance, request.vehicle.radius_m);
   const auto& layers = request.world->layers();
   const bool own_cells = std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
-    return layer.environment->native_grid().has_value();
+    return layer.environment->info().native_grid.has_value();
   });
   spec.rule = own_cells && !layers.empty() && spec.inflation == 0 ? GridSpec::Rule::native
                                                                   : GridSpec::Rule::touched;
@@ -124,7 +124,8 @@ std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_
 void MoveRules::sort_layers() {
   obstacles_ = *request_.world;
   for (const Layer& layer : request_.world->layers()) {
-    if (layer.environment->has_ground() && layer.environment->ground_alone()) {
+    const Ground* ground = layer.environment->ground();
+    if (ground != nullptr && ground->is_all()) {
       obstacles_ = obstacles_.without(layer.id);
       bare_ground_ = bare_ground_.with(layer);
     }
@@ -140,13 +141,10 @@ void MoveRules::find_gaps() {
     too_low_ = by_clearance;
     refused_layer_ = layer.id;
     if (needed_ > 0) {
-      slope = std::max(slope, layer.environment->ground_slope(request_.volume.grown(needed_)));
+      slope = std::max(slope, layer.environment->ground()->slope(request_.volume.grown(needed_)));
     }
   }
-  const bool other_ground =
-      std::any_of(obstacles_.layers().begin(), obstacles_.layers().end(),
-                  [](const Layer& layer) { return layer.environment->has_ground(); });
-  needed_gap_ = other_ground ? -kInfinity : needed_gap_;
+  needed_gap_ = obstacles_.has_ground() ? -kInfinity : needed_gap_;
   certain_gap_ = needed_ > 0 ? needed_ * std::hypot(1, slope) : 0;
   const auto held_to = [&](double gap, Rule rule) {
     too_low_ = gap >= needed_gap_ ? rule : too_low_;
@@ -380,35 +378,5 @@ bool MoveRules::any_leg_ok(const std::optional<Approach>& before, const Vec3& a,
     ++refused_[by_turn];
   }
   return false;
-}
-
-std::string MoveRules::refusals() const {
-  const std::string names[rule_count] = {
-      "blocked cells",
-      "leg_length",
-      "climb_angle",
-      request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
-      "clearance to '" + refused_layer_ + "'",
-      "no ground below",
-      "ground_clearance",
-      "altitude",
-      refused_constraint_,
-      refused_link_ + " where start or goal join the lattice"};
-  std::vector<int> order;
-  for (int rule = 0; rule < rule_count; ++rule) {
-    if (refused_[std::size_t(rule)] > 0) {
-      order.push_back(rule);
-    }
-  }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return refused_[std::size_t(a)] > refused_[std::size_t(b)];
-  });
-  std::string text;
-  for (const int rule : order) {
-    text += (text.empty() ? "" : ", ") + names[rule] + " (" +
-            std::to_string(refused_[std::size_t(rule)]) + ")";
-  }
-  return text.empty() || steps_refused_by_.empty() ? text + steps_refused_by_
-                                                   : text + "; " + steps_refused_by_;
 }
 }  // namespace altiplan::kit

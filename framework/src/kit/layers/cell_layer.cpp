@@ -31,8 +31,10 @@ std::vector<Shape> boxes_of(const VoxelGrid& cells) {
   return shapes;
 }
 
-CellLayer::CellLayer(VoxelGrid cells)
-    : cells_(native(std::move(cells))), solid_(ObstacleSet::of_cells(cell_boxes_of(cells_))) {}
+CellLayer::CellLayer(VoxelGrid cells, std::vector<std::string> notes)
+    : cells_(native(std::move(cells))),
+      info_{{}, cells_.spec(), {}, std::move(notes)},
+      solid_(ObstacleSet::of_cells(cell_boxes_of(cells_))) {}
 
 double CellLayer::do_clearance(const Vec3& p) const {
   const double outside = solid_.clearance(p);

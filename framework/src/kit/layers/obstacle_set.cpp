@@ -320,6 +320,10 @@ std::vector<Threat> threats_of(const std::vector<Shape>& shapes) {
   return threats;
 }
 
+ShapeLayer::ShapeLayer(std::vector<Shape> shapes) : set_(std::move(shapes)) {
+  info_.threats = threats_of(set_.shapes());
+}
+
 void ObstacleSet::rasterize(VoxelGrid& grid) const {
   Solids solids = impl_->solids(shapes_);
   for (std::size_t n = 0; n < impl_->count; ++n) {

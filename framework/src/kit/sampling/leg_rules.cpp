@@ -46,11 +46,12 @@ std::optional<GridSpec> LegRules::cells_that_decide() const {
       std::max(request_.limits.min_clearance, request_.vehicle.radius_m) > 0) {
     return std::nullopt;
   }
-  const std::optional<GridSpec> spec = world.layers().front().environment->native_grid();
+  const std::optional<GridSpec> spec = world.layers().front().environment->info().native_grid;
   const bool one_grid =
       spec && spec->rule == GridSpec::Rule::native && spec->inflation == 0 &&
-      std::all_of(world.layers().begin() + 1, world.layers().end(),
-                  [&](const Layer& layer) { return layer.environment->native_grid() == spec; });
+      std::all_of(world.layers().begin() + 1, world.layers().end(), [&](const Layer& layer) {
+        return layer.environment->info().native_grid == spec;
+      });
   return one_grid ? spec : std::nullopt;
 }
 

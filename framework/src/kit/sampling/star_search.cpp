@@ -294,14 +294,14 @@ PlanResult StarSearch::result() {
                      {"legs_checked", rules_.checked()}};
   result.budget_hit = budget_ended_ && !watch_.cancelled();
   if (best_end_ != LegTree::kNone) {
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = memory_.legs.way_to(best_end_);
     result.message = "improved " + std::to_string(improved_ - 1) + " times";
     return result;
   }
-  result.status = watch_.cancelled() ? Status::cancelled
-                  : budget_ended_    ? Status::timed_out
-                                     : Status::no_route;
+  result.status = watch_.cancelled() ? PlanStatus::cancelled
+                  : budget_ended_    ? PlanStatus::timed_out
+                                     : PlanStatus::no_route;
   result.message = reason();
   return result;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <altiplan/environment.hpp>
 #include <altiplan/plugin.hpp>
 
 namespace {

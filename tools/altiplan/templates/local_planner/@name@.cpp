@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/check.hpp>
+#include <altiplan/local_planner.hpp>
 #include <altiplan/plugin.hpp>
 
 namespace {

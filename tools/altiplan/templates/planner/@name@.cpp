@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/check.hpp>
+#include <altiplan/planner.hpp>
 #include <altiplan/plugin.hpp>
 
 namespace {
@@ -31,7 +32,7 @@ class Dogleg final : public Planner {
       const double out = params_.step_m * ((tried + 1) / 2) * (tried % 2 == 0 ? 1 : -1);
       const Route route = {start, (start + goal) / 2 + out * left, goal};
       if (check(route, request).ok()) {  // the judge's own code
-        result.status = Status::solved;
+        result.status = PlanStatus::solved;
         result.route = route;
         break;
       }
@@ -39,10 +40,10 @@ class Dogleg final : public Planner {
     result.counters = {{"expanded", tried}};
     if (result.route.empty()) {
       const bool spent = tried <= 2 * params_.tries;
-      result.status = !spent              ? Status::no_route
-                      : watch.cancelled() ? Status::cancelled
-                                          : Status::timed_out;
-      result.budget_hit = result.status == Status::timed_out;
+      result.status = !spent              ? PlanStatus::no_route
+                      : watch.cancelled() ? PlanStatus::cancelled
+                                          : PlanStatus::timed_out;
+      result.budget_hit = result.status == PlanStatus::timed_out;
       result.message = "no single bend leads around, " + std::to_string(tried) + " tried";
     }
     return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/check.hpp>
 #include <altiplan/plugin.hpp>
+#include <altiplan/smoother.hpp>
 
 namespace {
 using namespace altiplan;
@@ -22,7 +23,7 @@ class DropWaypoints final : public Smoother {
   // that breaks a rule comes back better or as it was.
   PlanResult do_smooth(const Route& route, const Request& request) const override {
     PlanResult result;
-    result.status = Status::solved;
+    result.status = PlanStatus::solved;
     result.route = route;
     BudgetWatch watch(request.budget);
     std::int64_t tried = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/kit/tuning_space.hpp>
 #include <altiplan/plugin.hpp>
+#include <altiplan/tuner.hpp>
 
 namespace {
 using namespace altiplan;

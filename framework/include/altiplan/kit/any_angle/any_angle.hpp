@@ -132,7 +132,7 @@ class ALTIPLAN_API AnyAngleSearch {
                  AnyAngleMemory& memory);
 
   struct Result {
-    Status status = Status::no_route;
+    PlanStatus status = PlanStatus::no_route;
     Route route;
     bool at_goal = false;  ///< not only within its tolerance
     bool budget_hit = false;
@@ -156,7 +156,7 @@ class ALTIPLAN_API AnyAngleSearch {
   };
   End end_at(const Vec3& p, Node beyond) const;
   void begin(double longest_m);
-  std::optional<Status> search();
+  std::optional<PlanStatus> search();
   void expand(Node s);
   void update_vertex(Node s, Node v, std::uint32_t through_parent, std::uint32_t h);
   bool set_vertex(Node s);

@@ -55,7 +55,7 @@ class HeadingSearch : GoalSearch {
 
   Found run() {
     begin();
-    Status status = Status::no_route;
+    PlanStatus status = PlanStatus::no_route;
     while (!open_.empty()) {
       const auto [f, g, index] = open_.pop();
       if (index == kGoal) {
@@ -72,7 +72,7 @@ class HeadingSearch : GoalSearch {
       expand(index, g, cell);
     }
     if (fallback_ != kNone) {
-      return with(route_to(fallback_, false), fallback_g_, false, status != Status::no_route);
+      return with(route_to(fallback_, false), fallback_g_, false, status != PlanStatus::no_route);
     }
     progress_.memory_full = memory_full();
     Found none = without(status, lengths_prove());

@@ -30,6 +30,26 @@ inline constexpr int kHere = 13;
 constexpr int direction(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }
 constexpr Cell offset(int d) { return {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1}; }
 constexpr int opposite(int d) { return kDirections - 1 - d; }
+/// The directions, and the place itself, whose offset `holds`.
+template <class Holds>
+constexpr DirectionMask directions_where(const Holds& holds) {
+  DirectionMask mask = 0;
+  for (int d = 0; d < kDirections; ++d) {
+    mask |= holds(offset(d)) ? DirectionMask{1} << d : 0;
+  }
+  return mask;
+}
+inline constexpr DirectionMask kLevelDirections =
+    directions_where([](const Cell& o) { return o[2] == 0; });
+/// Those along one axis, two, and three.
+inline constexpr std::array<DirectionMask, 3> kAlongAxes = [] {
+  const auto along = [](int axes) {
+    return directions_where(
+        [axes](const Cell& o) { return (o[0] != 0) + (o[1] != 0) + (o[2] != 0) == axes; });
+  };
+  return std::array{along(1), along(2), along(3)};
+}();
+
 /// The opposites of the directions.
 constexpr DirectionMask reversed(DirectionMask mask) {
   mask = (mask & 0x55555555) << 1 | (mask >> 1 & 0x55555555);
@@ -180,7 +200,10 @@ inline DirectionMask blocked_around(const VoxelGrid& grid, const Cell& c) {
 /// Directions in which a step is free under the rule, given the blocked cells around.
 inline DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
   // Cells level with the middle one on each axis, and how far apart neighbours on it are.
-  constexpr std::array<DirectionMask, 3> kLevelWith = {0x2492492, 0x0E07038, 0x003FE00};
+  constexpr auto kLevelWith = [](std::size_t axis) {
+    return directions_where([axis](const Cell& o) { return o[axis] == 0; });
+  };
+  constexpr std::array<DirectionMask, 3> kLevel = {kLevelWith(0), kLevelWith(1), kLevelWith(2)};
   constexpr std::array<int, 3> kApart = {1, 3, 9};
   constexpr DirectionMask kMiddle = DirectionMask{1} << kHere;
   if ((blocked & kMiddle) != 0) {
@@ -188,7 +211,7 @@ inline DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
   }
   if (rule == CornerRule::free_box) {  // a blocked cell closes every step whose box holds it
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const DirectionMask level = blocked & kLevelWith[axis];
+      const DirectionMask level = blocked & kLevel[axis];
       blocked |= level << kApart[axis] | level >> kApart[axis];
     }
   }

@@ -149,12 +149,12 @@ inline Counters counters(const Progress& progress, const Lattice& lattice, const
 }
 
 /// Says why there is no route: how far the search came, and what stopped it.
-inline std::string explanation(Status status, const Progress& progress, const Request& request,
+inline std::string explanation(PlanStatus status, const Progress& progress, const Request& request,
                                const Lattice& lattice, const MoveRules& rules) {
-  std::string text = status == Status::no_route    ? "no route"
-                     : status == Status::cancelled ? "cancelled"
-                     : progress.memory_full        ? "the memory allowed was used up"
-                                                   : "the budget was used up";
+  std::string text = status == PlanStatus::no_route    ? "no route"
+                     : status == PlanStatus::cancelled ? "cancelled"
+                     : progress.memory_full            ? "the memory allowed was used up"
+                                                       : "the budget was used up";
   text += ": " + std::to_string(progress.expanded) + " of " + std::to_string(lattice.size()) +
           " cells expanded";
   if (progress.expanded > 0) {
@@ -162,7 +162,7 @@ inline std::string explanation(Status status, const Progress& progress, const Re
     const auto whole = [](double value) { return std::to_string(std::llround(value)); };
     text += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) + ", " +
             whole(at.z()) + "), " + whole((at - request.goal.position).norm()) + " m from it";
-  } else if (status == Status::no_route) {
+  } else if (status == PlanStatus::no_route) {
     text += ", the start cannot join the lattice";
   }
   const std::string refusals = rules.refusals();
@@ -227,8 +227,8 @@ inline Request after(const Request& request, const Counters& spent) {
 
 /// The result without the route that it may have.
 inline PlanResult without_route(PlanResult result) {
-  if (result.status == Status::solved) {
-    result.status = Status::timed_out;
+  if (result.status == PlanStatus::solved) {
+    result.status = PlanStatus::timed_out;
     result.message =
         "the budget was used up before the goal was reached or known to be out of reach";
     result.route.clear();
@@ -253,10 +253,10 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
     Found found = once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
     add(spent, found.result.counters);
     ++searches;
-    const bool cut_short = found.result.budget_hit || found.result.status == Status::cancelled;
+    const bool cut_short = found.result.budget_hit || found.result.status == PlanStatus::cancelled;
     // A route that ends within the tolerance counts only once the goal is known to be out of reach:
     // otherwise more budget could give a longer route.
-    const bool counts = found.result.status == Status::solved && (found.at_goal || !cut_short);
+    const bool counts = found.result.status == PlanStatus::solved && (found.at_goal || !cut_short);
     if (counts && (!best || found.cost < best->cost)) {
       best = std::move(found);
     } else if (!best && (cut_short || found.result.proved || inflation == 1)) {
@@ -273,13 +273,6 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
   return std::move(best->result);
 }
 
-/// What a planner with these settings gives: the best of several searches, or one alone.
-template <class Once>
-PlanResult plan_by(const SearchSettings& settings, const Request& request, const Once& once) {
-  return settings.anytime ? improve(settings, request, once)
-                          : once(settings, request, kInfinity).result;
-}
-
 /// Ends the route at the goal; `at_goal`: the last cell's centre is the goal but for rounding.
 inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
   if (at_goal && route.size() > 1) {
@@ -292,7 +285,7 @@ inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
 inline PlanResult solved(Route route, const Progress& progress, const Lattice& lattice,
                          const MoveRules& rules) {
   PlanResult result;
-  result.status = Status::solved;
+  result.status = PlanStatus::solved;
   result.route = std::move(route);
   result.message = "a route of " + std::to_string(length(result.route)) + " m, " +
                    std::to_string(progress.expanded) + " cells expanded";
@@ -365,7 +358,9 @@ class LatticeSearch {
   }
 
   /// The status of a search that its budget ends.
-  Status ended() const { return watch_.cancelled() ? Status::cancelled : Status::timed_out; }
+  PlanStatus ended() const {
+    return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+  }
   Found with(Route route, double cost, bool at_goal, bool budget_hit) const {
     Found found;
     found.cost = cost;
@@ -374,12 +369,12 @@ class LatticeSearch {
     found.result.budget_hit = budget_hit;
     return found;
   }
-  Found without(Status status, bool proved) const {
+  Found without(PlanStatus status, bool proved) const {
     Found found;
     found.parent_mattered = rules_.parent_mattered();
     found.result.status = status;
-    found.result.budget_hit = status != Status::no_route;
-    found.result.proved = proved && status == Status::no_route;
+    found.result.budget_hit = status != PlanStatus::no_route;
+    found.result.proved = proved && status == PlanStatus::no_route;
     found.result.message = explanation(status, progress_, request_, lattice_, rules_);
     found.result.counters = counters(progress_, lattice_, rules_);
     return found;

@@ -138,38 +138,40 @@ struct SearchParams {
     if (moves != Moves::automatic) {
       return moves == Moves::exact ? MoveCheck::exact : MoveCheck::cells;
     }
-    const bool all_cells =
-        std::all_of(request.world->layers().begin(), request.world->layers().end(),
-                    [](const Layer& layer) { return layer.environment->native_grid(); });
+    const bool all_cells = std::all_of(
+        request.world->layers().begin(), request.world->layers().end(),
+        [](const Layer& layer) { return layer.environment->info().native_grid.has_value(); });
     const bool no_clearance = request.limits.min_clearance <= 0 && request.vehicle.radius_m <= 0;
     return all_cells && no_clearance && !request.world->layers().empty() ? MoveCheck::cells
                                                                          : MoveCheck::exact;
   }
 };
 
-/// A search that takes one parent a cell, and one by (cell, heading) where the settings ask for it,
-/// or where the first found nothing and another parent might have. Both are called with a request;
-/// the second keeps `heading_bytes` a cell.
-template <class ByParent, class ByHeading>
-Found search_by_state(const SearchSettings& settings, const Request& request, double best_cost,
-                      std::size_t heading_bytes, const ByParent& by_parent,
-                      const ByHeading& by_heading) {
-  const bool looks_back = request.limits.turns() || !request.constraints.empty();
-  if (settings.state == SearchState::cell_and_heading && looks_back) {
-    return by_heading(request);
-  }
-  Found found = by_parent(request);
-  if (settings.state == SearchState::parent || found.result.status != Status::no_route ||
+/// Whether a search is to tell states apart by their heading from the first.
+inline bool begins_by_heading(const SearchSettings& settings, const Request& request) {
+  return settings.state == SearchState::cell_and_heading &&
+         (request.limits.turns() || !request.constraints.empty());
+}
+
+/// Whether a search by (cell, heading), which keeps so many bytes a cell, may find what one with a
+/// single parent a cell has not found.
+inline bool heading_may_help(const SearchSettings& settings, double best_cost, std::size_t bytes,
+                             Found& found) {
+  if (settings.state == SearchState::parent || found.result.status != PlanStatus::no_route ||
       !found.parent_mattered || best_cost < kInfinity) {
-    return found;
+    return false;
   }
   const auto cells = std::size_t(found.result.counters.back().value);
-  if (cells * heading_bytes > settings.max_bytes) {
+  if (cells * bytes > settings.max_bytes) {
     found.result.message += "; the memory allowed is too little for a search by cell and heading";
-    return found;
+    return false;
   }
-  Found second = by_heading(after(request, found.result.counters));
-  add(second.result.counters, found.result.counters);
+  return true;
+}
+
+/// The second search's answer, with what the first one took.
+inline Found after_one_parent(Found second, const Found& first) {
+  add(second.result.counters, first.result.counters);
   second.result.message += ", after one parent a cell led nowhere";
   return second;
 }

@@ -24,9 +24,9 @@ class StepGround {
         columns_east_(std::size_t(lattice.spec().counts[0])),
         pages_(columns_east_ * std::size_t(lattice.spec().counts[1]) / kColumns + 1) {
     for (const Layer& layer : world.layers()) {
-      if (layer.environment->has_ground()) {
+      if (const Ground* ground = layer.environment->ground()) {
         // Two grounds may meet in a step of their own, which no slope tells of.
-        only_ground_ = only_ground_ == nullptr && !has_ground_ ? layer.environment.get() : nullptr;
+        only_ground_ = has_ground_ ? nullptr : ground;
         has_ground_ = true;
       }
     }
@@ -105,7 +105,7 @@ class StepGround {
                                   : std::numeric_limits<float>::lowest();
     if (only_ground_ != nullptr) {
       const Vec3 reach(lattice_.spec().cell.x(), lattice_.spec().cell.y(), kInfinity);
-      column.slope = float(only_ground_->ground_slope({at - reach, at + reach}));
+      column.slope = float(only_ground_->slope({at - reach, at + reach}));
     }
   }
 
@@ -124,7 +124,7 @@ class StepGround {
   const World& world_;
   std::size_t columns_east_;
   std::vector<std::unique_ptr<Page>> pages_;
-  const Environment* only_ground_ = nullptr;
+  const Ground* only_ground_ = nullptr;
   bool has_ground_ = false;
 };
 }  // namespace altiplan::kit

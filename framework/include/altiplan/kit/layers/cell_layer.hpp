@@ -10,11 +10,12 @@ namespace altiplan::kit {
 ALTIPLAN_API std::vector<Shape> boxes_of(const VoxelGrid& cells);
 
 /// An environment that is a grid of blocked and free cells: exact, as the closed union of the
-/// blocked ones. Outside of its grid it is free. Cells are counted from the lower corner; a file
-/// that counts otherwise overrides `do_cell_centre`.
+/// blocked ones. Outside of its grid it is free. What it says of itself are its cells and the
+/// notes. Cells are counted from the lower corner; a file that counts otherwise overrides
+/// `do_cell_centre`.
 class ALTIPLAN_API CellLayer : public Environment {
  public:
-  explicit CellLayer(VoxelGrid cells);
+  explicit CellLayer(VoxelGrid cells, std::vector<std::string> notes = {});
   const VoxelGrid& cells() const { return cells_; }
 
  protected:
@@ -28,7 +29,7 @@ class ALTIPLAN_API CellLayer : public Environment {
   void do_rasterize(VoxelGrid& grid) const override;
   double do_slack() const override { return 0; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(boxes_of(cells_)); }
-  std::optional<GridSpec> do_native_grid() const override { return cells_.spec(); }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override;
 
  private:
@@ -37,6 +38,7 @@ class ALTIPLAN_API CellLayer : public Environment {
   bool runs_in_a_seam(const Vec3& a, const Vec3& b) const;
 
   VoxelGrid cells_;
+  LayerInfo info_;
   ObstacleSet solid_;  ///< boxes that cover the blocked cells and meet in faces
 };
 }  // namespace altiplan::kit

@@ -10,8 +10,8 @@
 
 #include "altiplan/voxel_grid.hpp"
 
-/// \file What layers with ground share, given two functions of theirs: ground(x, y), the height,
-/// and highest(x0, y0, x1, y1), an upper bound of the heights in a closed box, +infinity where part
+/// \file What layers with ground share, given two functions of theirs: height(x, y) and
+/// highest(x0, y0, x1, y1), an upper bound of the heights in a closed box, +infinity where part
 /// of it has no ground.
 namespace altiplan::kit {
 
@@ -90,7 +90,7 @@ struct GroundBounds {
 
 /// Whether the ground is nearer to the leg than r - 1e-6 m. The leg is halved, down to parts of
 /// `shortest` metres, for as long as the slope near a part leaves that in doubt; what lies r above
-/// the top is free for certain. gap(a, b, enough): as Environment::ground_gap; slope(a, b, r): at
+/// the top is free for certain. gap(a, b, enough): as Ground::gap; slope(a, b, r): at
 /// least the steepest within r of the leg, and no less than for any part of it; meets(a, b, keep):
 /// whether the ground is nearer than that to a part which is at least so high above it.
 template <class Gap, class Slope, class Meets>
@@ -118,14 +118,35 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds&
          too_near_ground(middle, b, r, least, shortest, gap, slope, meets);
 }
 
+/// The least distance of a leg above the ground from it, if that is below `least`, in the words of
+/// too_near_ground; nearest(a, b, least): the same of a part no longer than that.
+template <class Gap, class Slope, class Nearest>
+double ground_distance(const Vec3& a, const Vec3& b, double least, double top, double shortest,
+                       const Gap& gap, const Slope& slope, const Nearest& nearest) {
+  if (std::min(a.z(), b.z()) - top >= least) {
+    return least;
+  }
+  const double height = std::max(gap(a, b), 0.0);
+  least = std::min(least, height);  // the ground straight below
+  if (height >= height_for(least, slope(a, b, least))) {
+    return least;
+  }
+  if (std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(least, shortest)) {
+    return nearest(a, b, least);
+  }
+  const Vec3 middle = (a + b) / 2;
+  least = ground_distance(a, middle, least, top, shortest, gap, slope, nearest);
+  return ground_distance(middle, b, least, top, shortest, gap, slope, nearest);
+}
+
 /// A point of the ground, within `over` (horizontally), whose distance from p is the least there is
 /// to within 5 %, and least among its neighbours to within 0.1 %. p must lie more than 1e-6 m above
 /// the ground, or above that at the nearest place within `over`.
-template <class Ground, class Highest>
+template <class Height, class Highest>
 class NearestGround {
  public:
-  NearestGround(const Vec3& p, const Box& over, const Ground& ground, const Highest& highest)
-      : p_(p), over_(over), ground_(ground), highest_(highest) {
+  NearestGround(const Vec3& p, const Box& over, const Height& height, const Highest& highest)
+      : p_(p), over_(over), height_(height), highest_(highest) {
     const Vec3 nearest = p.cwiseMax(over.min).cwiseMin(over.max);
     try_at(nearest.x(), nearest.y());
     const double reach = best_;
@@ -142,7 +163,7 @@ class NearestGround {
   static constexpr double kFine = 1e-4;
 
   bool try_at(double x, double y) {
-    const Vec3 q(x, y, ground_(x, y));
+    const Vec3 q(x, y, height_(x, y));
     const double distance = (p_ - q).norm();
     if (!(distance < best_)) {
       return false;
@@ -193,7 +214,7 @@ class NearestGround {
 
   Vec3 p_;
   Box over_;
-  const Ground& ground_;
+  const Height& height_;
   const Highest& highest_;
   double best_ = kInfinity;
   Vec3 point_{0, 0, 0};

@@ -30,14 +30,18 @@ struct LegToPlane {
 ALTIPLAN_API LegToPlane leg_to_plane(const Vec3& a, const Vec3& b, const GroundPiece& piece,
                                      double half_x, double half_y);
 
-/// Whether ground is nearer than that to a leg which lies nowhere below it, by branch and bound:
-/// the rectangles searched are halved for as long as that is in doubt, by more than 1e-8 m.
+/// Whether ground is nearer than that to a leg which lies nowhere below it, or how near the nearest
+/// is, by branch and bound: the rectangles searched are halved for as long as that is in doubt, by
+/// more than 1e-8 m.
 class GroundWithin {
  public:
-  GroundWithin(const Vec3& a, const Vec3& b, double distance)
-      : a_(a), b_(b), box_(leg_box(a, b)), distance_(distance) {}
+  enum class Until { found, nearest };
+  GroundWithin(const Vec3& a, const Vec3& b, double distance, Until until = Until::found)
+      : a_(a), b_(b), box_(leg_box(a, b)), distance_(distance), until_(until) {}
 
   bool found() const { return found_; }
+  /// Of the nearest ground that was found, or else the distance asked for.
+  double distance() const { return distance_; }
 
   /// Whether the search goes on, and ground no higher than `top` over the rectangle may be so near.
   bool may_be_in(double x0, double y0, double x1, double y1, double top) const {
@@ -72,11 +76,30 @@ class GroundWithin {
     if (bound >= distance_) {
       return;
     }
-    const GroundPiece there = piece_of(found.x, found.y, found.x, found.y);
-    const Vec3 point(found.x, found.y, std::min(there.z, there.top));
-    found_ = (a_ + found.share * (b_ - a_) - point).norm() < distance_ + kFine ||
-             std::max(half_x, half_y) < kSmallest;  // where it is cut off the bounds meet slowly
-    if (found_) {
+    const auto way_to = [&](double x, double y) {
+      const GroundPiece there = piece_of(x, y, x, y);
+      return Vec3(a_ + found.share * (b_ - a_) - Vec3(x, y, std::min(there.z, there.top)));
+    };
+    Vec3 way = way_to(found.x, found.y);
+    if (piece.z + rise > piece.top && way.squaredNorm() > 0) {
+      // Up or down the plane lies the edge of the cut, which may be nearer.
+      const double slope2 = piece.dx * piece.dx + piece.dy * piece.dy;
+      const double below =
+          piece.top - piece.z - piece.dx * (found.x - piece.x) - piece.dy * (found.y - piece.y);
+      const double run = slope2 > 0 ? below / slope2 : 0;
+      const Vec3 to_edge = way_to(std::clamp(found.x + run * piece.dx, x0, x1),
+                                  std::clamp(found.y + run * piece.dy, y0, y1));
+      way = to_edge.squaredNorm() < way.squaredNorm() ? to_edge : way;
+      bound = std::max(bound, apart(off_the_leg(way, found.share), piece, half_x, half_y));
+    }
+    const double here = way.norm();
+    const bool is_smallest = std::max(half_x, half_y) < kSmallest;
+    if (until_ == Until::nearest) {
+      distance_ = std::min(distance_, here);
+    } else {
+      found_ = here < distance_ + kFine || is_smallest;
+    }
+    if (found_ || is_smallest || bound >= distance_ - kFine) {
       return;
     }
     const bool east = found.x > piece.x;
@@ -100,6 +123,37 @@ class GroundWithin {
            std::sqrt(1 + piece.dx * piece.dx + piece.dy * piece.dy);
   }
 
+  /// The unit vector of a way that leads to the leg there, turned so that no other place of the leg
+  /// lies farther back along it, where a little will do.
+  Vec3 off_the_leg(const Vec3& way, double share) const {
+    const Vec3 leg = b_ - a_;
+    const double along = way.dot(leg);
+    const bool is_end = (share <= 0 && along >= 0) || (share >= 1 && along <= 0);
+    const Vec3 across = is_end ? way : Vec3(way - along / leg.squaredNorm() * leg);
+    return across.squaredNorm() > 0 ? Vec3(across.normalized()) : Vec3(way.normalized());
+  }
+
+  /// How far apart the leg and a piece that is cut off are along the unit vector n: the piece lies
+  /// below its plane and below its top. Near the edge of the cut, where neither of them comes near
+  /// the ground, nothing else tells.
+  double apart(const Vec3& n, const GroundPiece& piece, double half_x, double half_y) const {
+    const double slope2 = piece.dx * piece.dx + piece.dy * piece.dy;
+    const double uphill = -(n.x() * piece.dx + n.y() * piece.dy);
+    // n = of_plane (-dx, -dy, 1) + of_top (0, 0, 1) + a rest along the map.
+    const double of_plane = slope2 > 0 ? std::clamp(uphill / slope2, 0.0, std::max(n.z(), 0.0)) : 0;
+    const double of_top = n.z() - of_plane;
+    if (of_top < 0) {
+      return 0;
+    }
+    const double rest_x = n.x() + of_plane * piece.dx;
+    const double rest_y = n.y() + of_plane * piece.dy;
+    const double of_piece =
+        of_plane * (piece.z + piece.off - piece.dx * piece.x - piece.dy * piece.y) +
+        of_top * piece.top + rest_x * piece.x + rest_y * piece.y + std::abs(rest_x) * half_x +
+        std::abs(rest_y) * half_y;
+    return std::min(n.dot(a_), n.dot(b_)) - of_piece;
+  }
+
   double at_least(double x0, double y0, double x1, double y1, double top) const {
     const double dx = std::max({x0 - box_.max.x(), box_.min.x() - x1, 0.0});
     const double dy = std::max({y0 - box_.max.y(), box_.min.y() - y1, 0.0});
@@ -110,6 +164,7 @@ class GroundWithin {
   Vec3 a_, b_;
   Box box_;
   double distance_;
+  Until until_;
   bool found_ = false;
 };
 }  // namespace altiplan::kit

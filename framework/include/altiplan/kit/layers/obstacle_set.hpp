@@ -51,7 +51,10 @@ ALTIPLAN_API std::vector<Threat> threats_of(const std::vector<Shape>& shapes);
 /// An environment that is a set of shapes.
 class ALTIPLAN_API ShapeLayer : public Environment {
  public:
-  explicit ShapeLayer(std::vector<Shape> shapes) : set_(std::move(shapes)) {}
+  explicit ShapeLayer(std::vector<Shape> shapes);
+  /// Of which something else than the discs around its shapes is to be said.
+  ShapeLayer(std::vector<Shape> shapes, LayerInfo info)
+      : set_(std::move(shapes)), info_(std::move(info)) {}
   const ObstacleSet& set() const { return set_; }
 
  private:
@@ -65,9 +68,10 @@ class ALTIPLAN_API ShapeLayer : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override { set_.rasterize(grid); }
   double do_slack() const override { return 0; }
-  std::vector<Threat> do_threats() const override { return threats_of(set_.shapes()); }
+  const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(set_.shapes()); }
 
   ObstacleSet set_;
+  LayerInfo info_;
 };
 }  // namespace altiplan::kit

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/kit/lattice/open_list.hpp"
+#include "altiplan/kit/scratch.hpp"
+
+namespace altiplan::bidirectional {
+
+/// A node of one side: a cell, and the step that leads to it (forward) or away from it (backward)
+/// on the path to that side's end.
+struct Arrival {
+  double g;       ///< cost of the way to that end
+  double length;  ///< of that way
+  std::uint32_t cell;
+  std::uint32_t from;    ///< the arrival before, toward that end
+  std::uint32_t beside;  ///< another arrival of this side at the cell
+  std::uint8_t along;    ///< that step; kHere: linked to the end
+};
+
+/// What one side knows of a cell.
+struct Reached {
+  double g;              ///< of its cheapest arrival
+  kit::StepMask taken;   ///< steps on from the cell that need no further arrival
+  std::uint32_t newest;  ///< of its arrivals
+  std::uint8_t along;    ///< of the cheapest
+  bool is_open;          ///< steps that no arrival may take are among `taken`
+};
+
+struct Node {
+  std::array<Reached, 2> by;
+  kit::MoveRules::KnownClearance clearance;
+  std::uint16_t stamp;
+};
+
+struct Memory {
+  kit::NodeStore<Node> nodes;
+  std::array<kit::OpenList, 2> open;
+  std::array<std::vector<Arrival>, 2> arrivals;
+};
+}  // namespace altiplan::bidirectional
