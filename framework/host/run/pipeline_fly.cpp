@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <exception>
+
 #include "altiplan/error.hpp"
 #include "host/flight/flight.hpp"
 #include "host/run/pipeline_run.hpp"
@@ -9,16 +11,16 @@ namespace {
 /// In place of a session that could not begin: each replan says why.
 class BrokenSession final : public Session {
  public:
-  explicit BrokenSession(PluginError error) : error_(std::move(error)) {}
+  explicit BrokenSession(std::exception_ptr error) : error_(std::move(error)) {}
 
  private:
-  const PlanResult& do_result() const override { throw error_; }
+  const PlanResult& do_result() const override { std::rethrow_exception(error_); }
   const PlanResult& do_update(const State&, const Goal&, std::shared_ptr<const World>,
                               std::span<const Change>, const Budget&) override {
-    throw error_;
+    std::rethrow_exception(error_);
   }
 
-  PluginError error_;
+  std::exception_ptr error_;
 };
 }  // namespace
 
@@ -135,8 +137,8 @@ void Run::find_replanner(const StepEntry& entry, const StepEntry& planner, const
       session = begin_session(*made, setup.route_request);
     } catch (const ParameterError& error) {
       throw at_its_key(planner, error);
-    } catch (const PluginError& error) {
-      session = std::make_unique<BrokenSession>(error);
+    } catch (const PluginError&) {
+      session = std::make_unique<BrokenSession>(std::current_exception());
     }
   }
   setup.replanner = session.get();

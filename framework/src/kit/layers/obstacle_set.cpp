@@ -11,7 +11,7 @@
 #include "altiplan/kit/layers/solid.hpp"
 
 #include "../../multiversion.hpp"
-#include "../../shape_parts.hpp"
+#include "../../shape/shape_parts.hpp"
 #include "box_tree.hpp"
 
 // A tree of boxes finds the shapes near a point or a leg, closed forms decide: see

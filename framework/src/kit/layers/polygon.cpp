@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "../../edge_tree.hpp"
+#include "../../shape/edge_tree.hpp"
 
 namespace altiplan::kit {
 namespace {
