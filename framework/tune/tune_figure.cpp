@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "tune/tune_report.hpp"
 
 namespace altiplan::tune {

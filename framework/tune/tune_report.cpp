@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "host/base/output_file.hpp"
-#include "study/drawing/tables.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/tables.hpp"
+#include "study/figures/text.hpp"
 #include "study/statistics/statistics.hpp"
 #include "tune/tuned_file.hpp"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "study/drawing/svg.hpp"
+#include "study/figures/svg.hpp"
 #include "tune/tune_run.hpp"
 
 namespace altiplan::tune {

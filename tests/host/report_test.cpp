@@ -11,7 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/yaml.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 #include "support/files.hpp"
 

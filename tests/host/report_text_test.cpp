@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names and messages hold any bytes; no form of the report may be broken by them.
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "study/drawing/svg.hpp"
-#include "study/drawing/tables.hpp"
+#include "study/figures/svg.hpp"
+#include "study/figures/tables.hpp"
 #include "study/report/packed.hpp"
 
 namespace altiplan::study::report {

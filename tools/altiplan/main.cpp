@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::cli {
 

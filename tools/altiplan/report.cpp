@@ -5,7 +5,7 @@
 
 #include "commands.hpp"
 #include "study/arena/arena.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/store/load_study.hpp"
 #include "study/store/place.hpp"
 

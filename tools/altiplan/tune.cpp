@@ -5,7 +5,7 @@
 
 #include "commands.hpp"
 #include "progress_line.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/model/run_values.hpp"
 #include "tune/tune_report.hpp"
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "study/claims/claims.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {

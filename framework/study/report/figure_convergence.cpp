@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/figures.hpp"
 
 namespace altiplan::study::report {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/figures.hpp"
 
 namespace altiplan::study::report {

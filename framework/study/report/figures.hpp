@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "study/drawing/svg.hpp"
+#include "study/figures/svg.hpp"
 #include "study/report/analysis.hpp"
 #include "study/report/convergence.hpp"
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "altiplan/error.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/plan/study_grid.hpp"
 #include "study/report/analysis.hpp"
 

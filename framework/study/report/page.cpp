@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "host/view/viewer_page.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/packed.hpp"
 #include "study/report/page_assets.hpp"
 

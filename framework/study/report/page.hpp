@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "study/claims/claims.hpp"
-#include "study/drawing/tables.hpp"
+#include "study/figures/tables.hpp"
 #include "study/report/analysis.hpp"
 #include "study/report/figures.hpp"
 #include "study/report/scenes.hpp"

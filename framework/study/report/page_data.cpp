@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 
 namespace altiplan::study::report {

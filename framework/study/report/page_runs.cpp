@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 
 namespace altiplan::study::report {

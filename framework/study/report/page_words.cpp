@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 
 namespace altiplan::study::report {

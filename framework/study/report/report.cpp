@@ -17,7 +17,7 @@
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 #include "study/store/load_study.hpp"
 

@@ -9,7 +9,7 @@
 #include "altiplan/random.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/view/scene.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 #include "study/report/packed.hpp"
 
 namespace altiplan::study::report {

@@ -14,7 +14,7 @@
 #include "host/result/result_json.hpp"
 #include "interrupt.hpp"
 #include "progress_line.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -35,16 +35,6 @@ FloatBox grown(const Box& box) {
   return result;
 }
 
-using Order = std::vector<std::int32_t>::iterator;
-
-/// Puts those boxes whose middles are the least along the axis first, up to `middle`.
-template <class Boxes>
-void divide_by_comparing(const Boxes& boxes, Order first, Order middle, Order end, int axis) {
-  std::nth_element(first, middle, end, [&](std::int32_t one, std::int32_t other) {
-    return boxes.twice_middle(one, axis) < boxes.twice_middle(other, axis);
-  });
-}
-
 /// Boxes as the tree has them, and what they are sorted by.
 class SolidBoxes {
  public:
@@ -57,9 +47,6 @@ class SolidBoxes {
     constexpr float kFar = 2e15F;  // the sum of two endless sides stays a number
     const FloatBox& box = boxes_[std::size_t(index)];
     return std::clamp(box.min[axis], -kFar, kFar) + std::clamp(box.max[axis], -kFar, kFar);
-  }
-  void divide(Order first, Order middle, Order end, int axis) const {
-    divide_by_comparing(*this, first, middle, end, axis);
   }
 
  private:
@@ -74,37 +61,11 @@ class BoxesOfCells {
   std::size_t count() const { return boxes_.boxes.size(); }
   FloatBox box(std::int32_t index) const { return grown(boxes_[std::size_t(index)].box); }
   float twice_middle(std::int32_t index, int axis) const {
-    return float(cells_to_middle(index, axis)) * edge_[axis];
-  }
-  /// By counting where there are more boxes than places for their middles: looking boxes up, three
-  /// times each then, is what takes the time of millions.
-  void divide(Order first, Order middle, Order end, int axis) const {
-    const std::size_t places = 2 * std::size_t(boxes_.spec.counts[std::size_t(axis)]);
-    if (std::size_t(end - first) < 4 * places) {
-      divide_by_comparing(*this, first, middle, end, axis);
-      return;
-    }
-    std::vector<std::ptrdiff_t> count(places);
-    for (Order at = first; at != end; ++at) {
-      ++count[cells_to_middle(*at, axis)];
-    }
-    std::size_t value = 0;
-    for (std::ptrdiff_t below = 0; below + count[value] <= middle - first; ++value) {
-      below += count[value];
-    }
-    const Order equal = std::partition(
-        first, end, [&](std::int32_t index) { return cells_to_middle(index, axis) < value; });
-    std::partition(equal, end,
-                   [&](std::int32_t index) { return cells_to_middle(index, axis) == value; });
+    const CellBox& box = boxes_.boxes[std::size_t(index)];
+    return float(box.first[std::size_t(axis)] + box.last[std::size_t(axis)]) * edge_[axis];
   }
 
  private:
-  /// Twice, from the lower corner of the cells.
-  std::size_t cells_to_middle(std::int32_t index, int axis) const {
-    const CellBox& box = boxes_.boxes[std::size_t(index)];
-    return std::size_t(box.first[std::size_t(axis)] + box.last[std::size_t(axis)]);
-  }
-
   const CellBoxes& boxes_;
   Eigen::Vector3f edge_;
 };
@@ -166,7 +127,9 @@ struct Builder {
     const std::size_t middle = range[0] + (range[1] - range[0]) * first / parts;
     const int axis = within.longest_axis();
     const auto at = [&](std::size_t n) { return order.begin() + std::ptrdiff_t(n); };
-    boxes.divide(at(range[0]), at(middle), at(range[1]), axis);
+    std::nth_element(at(range[0]), at(middle), at(range[1]), [&](auto one, auto other) {
+      return twice_middle(one, axis) < twice_middle(other, axis);
+    });
     Extent below = within;
     Extent above = within;
     below.high[axis] = above.low[axis] = twice_middle(order[middle], axis);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/drawing/tables.hpp"
+#include "study/figures/tables.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {

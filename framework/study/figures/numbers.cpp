@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "study/drawing/tables.hpp"
+#include "study/figures/tables.hpp"
 
 namespace altiplan::study::report {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/drawing/svg.hpp"
-#include "study/drawing/text.hpp"
+#include "study/figures/svg.hpp"
+#include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/drawing/text.hpp"
+#include "study/figures/text.hpp"
 
 #include <algorithm>
 #include <charconv>
