@@ -53,7 +53,8 @@ MENDED = (("report", "rename", slice(-4, None), 1, "EACCES"), ("view", "map", AL
           ("view", "stat", slice(24), 1, "EIO"), ("view", "open", ALL, 1, "EMFILE"),
           ("tune", "read", LAST, 5, "EIO"), ("report", "open", LAST, 1, "EMFILE"),
           ("merge", "lock", FIRST, 1, "EIO"), ("merge", "open", FIRST, 1, "EACCES"),
-          ("view", "open", FIRST, 1, "EACCES"), ("merge", "stat", slice(23, 26), 5, "EIO"))
+          ("view", "open", FIRST, 1, "EACCES"), ("replay", "open", slice(9), 1, "EACCES"),
+          ("merge", "stat", slice(23, 26), 5, "EIO"))
 
 
 class Wrong(Exception):

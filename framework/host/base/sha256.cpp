@@ -11,6 +11,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
@@ -60,6 +61,20 @@ std::string sha256(const std::filesystem::path& file) {
   const std::string sum = sum_of(file);
   if (is_settled && !sum.empty()) {
     known[state] = sum;
+  }
+  return sum;
+}
+
+std::string sha256_of_present(const std::filesystem::path& file) {
+  std::string sum = sha256(file);
+  if (sum.empty() && !is_folder(file)) {
+    if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+      throw MachineFault(file.string() + ": " + why);
+    }
+    sum = sha256(file);  // what kept it from being read is over
+    if (sum.empty()) {
+      throw MachineFault(file.string() + ": cannot be read");
+    }
   }
   return sum;
 }

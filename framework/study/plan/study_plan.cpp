@@ -19,15 +19,6 @@ namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
-/// Of a folder there is none. A key without it would be another run's.
-std::string hash_of(const fs::path& file) {
-  const std::string hash = host::sha256(file);
-  if (hash.empty() && !host::is_folder(file)) {
-    throw host::MachineFault(file.string() + ": " + kit::why_unreadable(file.string()));
-  }
-  return hash;
-}
-
 std::string build_of(const fs::path& file) {
   const host::Library library = host::examine_library(file);
   if (library.build.empty()) {
@@ -43,7 +34,7 @@ std::string pair_text(const host::Config& config, const StudyBudget& budget) {
   for (const fs::path& file : config.files) {
     // Comments of the two files change nothing, and their trees stand above.
     if (file != config.pipeline_path && file != config.scenario_path) {
-      text += hash_of(file) + "\n";
+      text += host::sha256_of_present(file) + "\n";
     }
   }
   text += host::plugins_json(config).dump() + "\n";
