@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/words.hpp"
 #include "host/view/picture_parts.hpp"
 
 namespace altiplan::host {
@@ -76,19 +77,12 @@ double round_step(double length, double steps) {
 
 std::string grouped(double value) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.6g", std::round(value * 1e6) / 1e6);
-  std::string digits = text;
   if (std::abs(value) >= 1e6) {
     std::snprintf(text, sizeof text, "%.0f", value);
-    digits = text;
+  } else {
+    std::snprintf(text, sizeof text, "%.6g", std::round(value * 1e6) / 1e6);
   }
-  const std::size_t end = std::min(digits.find('.'), digits.size());
-  const std::size_t first = digits[0] == '-' ? 1 : 0;
-  for (std::size_t at = end; at > first + 3;) {
-    at -= 3;
-    digits.insert(at, ",");
-  }
-  return digits;
+  return with_commas(text);
 }
 
 Map::Map(const Json& box, const Area& room) {

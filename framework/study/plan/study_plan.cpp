@@ -5,7 +5,6 @@
 
 #include <map>
 
-#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/registry/registry.hpp"
