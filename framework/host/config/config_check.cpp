@@ -89,6 +89,15 @@ Location place_of(const Value& map, std::string_view key) {
   return map.where;
 }
 
+std::string Ids::free_id(const std::string& name) {
+  int& last = last_.try_emplace(name, 1).first->second;
+  std::string id = last == 1 ? name : name + "_" + std::to_string(last);
+  while (contains(id)) {
+    id = name + "_" + std::to_string(++last);
+  }
+  return id;
+}
+
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string near = nearest_name(word, candidates);
   return near.empty() ? "" : "; did you mean '" + near + "'?";

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,17 @@ class Checker {
 
   Config& config_;
   std::vector<Problem> problems_;
+};
+
+/// The ids of one kind that are taken.
+class Ids : public std::set<std::string> {
+ public:
+  /// The name, then name_2, name_3 …: the first that is free. Goes on from the number it gave
+  /// last, since thousands of entries of one plugin may leave their ids out.
+  std::string free_id(const std::string& name);
+
+ private:
+  std::map<std::string, int> last_;
 };
 
 /// "steps.3"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <set>
-
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
@@ -8,18 +6,7 @@
 namespace altiplan::host {
 namespace {
 
-using Ids = std::set<std::string>;
-
 std::vector<std::string> list(const Ids& ids) { return {ids.begin(), ids.end()}; }
-
-/// The plugin's name, then name_2, name_3 …, where the user gives no id.
-std::string free_id(const std::string& name, const Ids& taken) {
-  std::string id = name;
-  for (int n = 2; taken.contains(id); ++n) {
-    id = name + "_" + std::to_string(n);
-  }
-  return id;
-}
 
 void check_layers(Checker& checker, ScenarioFile& scenario, const Value& tree, Ids& ids) {
   for (std::size_t i = 0; i < scenario.environment.size(); ++i) {
@@ -29,7 +16,7 @@ void check_layers(Checker& checker, ScenarioFile& scenario, const Value& tree, I
     checker.check_plugin("environment", layer.plugin, layer.parameters, place_of(map, layer.plugin),
                          path + "." + layer.plugin, path);
     if (layer.id.empty()) {
-      layer.id = free_id(layer.plugin, ids);
+      layer.id = ids.free_id(layer.plugin);
     } else if (ids.contains(layer.id)) {
       checker.problem(place_of(map, "id"), path + ".id",
                       "the id '" + layer.id + "' names another layer already");
@@ -78,7 +65,7 @@ void check_added(Checker& checker, ScenarioFile& scenario, const Value& tree, Id
     checker.check_plugin("environment", event.add->plugin, event.add->parameters,
                          place_of(map, "add"), key + "." + event.add->plugin, key);
     if (event.id.empty()) {
-      event.id = free_id(event.add->plugin, ids);
+      event.id = ids.free_id(event.add->plugin);
     } else if (ids.contains(event.id)) {
       checker.problem(place_of(map, "id"), item("events", i) + ".id",
                       "the id '" + event.id + "' names another layer already");

@@ -131,10 +131,7 @@ class StepCheck {
     check_plugins(checker_, *config_.registry, step, tree);
     check_replan(checker_, *config_.registry, step, plans_, tree);
     const bool given = tree.find("id") != nullptr;
-    std::string id = step.id;
-    for (int n = 2; !given && ids_.contains(id); ++n) {
-      id = step.id + "_" + std::to_string(n);
-    }
+    std::string id = given ? step.id : ids_.free_id(step.id);
     if (!ids_.insert(id).second) {
       checker_.problem(place_of(tree, "id"), step.path + ".id",
                        "the id '" + id + "' names another step already");
@@ -144,7 +141,7 @@ class StepCheck {
 
   Checker& checker_;
   Config& config_;
-  std::set<std::string> ids_;
+  Ids ids_;
   std::set<std::string> earlier_;
   std::set<std::string> plans_;
   bool flown_ = false;

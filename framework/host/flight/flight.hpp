@@ -35,10 +35,12 @@ struct FlightEvent {
   Box box;             ///< set_cells: where cells change; left out: all of the layer
   bool known = false;  ///< told to the vehicle at once, else it is met like all that is new
 
-  /// Whether it happens to a vehicle that is there then, if it has not happened yet.
+  /// Whether it happens to a vehicle that is there then, if it has not happened yet. Times and
+  /// places of a track are sums of steps, so that 56 s can read 55.99999999999998 s.
   bool is_due(double time_s, const Vec3& p) const {
-    return (at_s && time_s >= *at_s) ||
-           (when_near && (p - when_near->at).norm() <= when_near->within_m);
+    constexpr double kRounding = 1e-9;  // s, m
+    return (at_s && time_s >= *at_s - kRounding) ||
+           (when_near && (p - when_near->at).norm() <= when_near->within_m + kRounding);
   }
 };
 

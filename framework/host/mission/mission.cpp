@@ -230,7 +230,7 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     for (const std::string& note : info.notes) {
       mission.notes.push_back(entry.id + ": " + note);
     }
-    truth = truth.with(std::move(layer));
+    truth = std::move(truth).with(std::move(layer));
     if (info.frame && !truth.frame().has_position()) {
       truth = truth.with_frame(*info.frame);
     }

@@ -148,8 +148,8 @@ Json overrides_json(const Config& config) {
 }  // namespace
 
 Json plugins_json(const Config& config) {
-  std::set<std::pair<std::string, std::string>> used;
-  const auto use = [&](const char* kind, const std::string& plugin_name) {
+  std::set<std::pair<std::string_view, std::string_view>> used;
+  const auto use = [&](std::string_view kind, std::string_view plugin_name) {
     used.emplace(kind, plugin_name);
   };
   for (const LayerEntry& layer : config.scenario.environment) {
@@ -181,7 +181,7 @@ Json plugins_json(const Config& config) {
   }
   Json json = Json::array();
   for (const auto& [kind, plugin_name] : used) {
-    if (const Library* library = config.registry->offering(kind, plugin_name)) {
+    if (const Library* library = config.registry->offering(kind, std::string(plugin_name))) {
       json.push_back({{"kind", kind},
                       {"name", plugin_name},
                       {"build", library->build},

@@ -51,7 +51,8 @@ class ALTIPLAN_API World {
 
   // A new snapshot, one revision on.
   World with_frame(Frame frame) const;
-  World with(Layer layer) const;
+  World with(Layer layer) const&;
+  World with(Layer layer) &&;  ///< leaves the old snapshot empty: thousands are added one by one
   World with_replaced(Layer layer) const;
   World without(std::string_view id) const;
   World with_moving(std::vector<MovingObstacle> moving) const;
@@ -102,8 +103,9 @@ class ALTIPLAN_API World {
 
  private:
   struct Cache;
-  World next() const;
+  static World next(World world);
   void find_grounds();
+  void note_ground(std::size_t layer);
   std::vector<Layer> layers_;
   /// Of the layers that have one, in their order: the layer's index, and its ground.
   std::vector<std::pair<std::size_t, const Ground*>> grounds_;

@@ -58,17 +58,17 @@ const Layer* World::find(std::string_view id) const {
   return found == layers_.end() ? nullptr : &*found;
 }
 
-World World::next() const {
-  World world(*this);
-  world.revision_ = revision_ + 1;
+World World::next(World world) {
+  ++world.revision_;
+  const std::shared_ptr<Cache> before = std::move(world.cache_);
   world.cache_ = std::make_shared<Cache>();
-  const std::lock_guard lock(cache_->mutex);
-  world.cache_->earlier = cache_->earlier;
-  for (const auto& grid : cache_->grids) {
+  const std::lock_guard lock(before->mutex);
+  world.cache_->earlier = before->earlier;
+  for (const auto& grid : before->grids) {
     std::erase_if(world.cache_->earlier, [&](const Cache::Earlier& earlier) {
       return earlier.grid->spec() == grid->spec();
     });
-    world.cache_->earlier.push_back({grid, layers_});
+    world.cache_->earlier.push_back({grid, world.layers_});
   }
   return world;
 }
@@ -76,10 +76,14 @@ World World::next() const {
 void World::find_grounds() {
   grounds_.clear();
   for (std::size_t n = 0; n < layers_.size(); ++n) {
-    if (const Ground* ground =
-            answer_of(layers_[n], [](const Environment& asked) { return asked.ground(); })) {
-      grounds_.emplace_back(n, ground);
-    }
+    note_ground(n);
+  }
+}
+
+void World::note_ground(std::size_t layer) {
+  if (const Ground* ground =
+          answer_of(layers_[layer], [](const Environment& asked) { return asked.ground(); })) {
+    grounds_.emplace_back(layer, ground);
   }
 }
 
@@ -89,18 +93,20 @@ World World::with_frame(Frame frame) const {
   return world;
 }
 
-World World::with(Layer layer) const {
+World World::with(Layer layer) const& { return World(*this).with(std::move(layer)); }
+
+World World::with(Layer layer) && {
   if (find(layer.id) != nullptr) {
     throw Error("the world has a layer '" + layer.id + "' already");
   }
-  World world = next();
+  World world = next(std::move(*this));
   world.layers_.push_back(std::move(layer));
-  world.find_grounds();
+  world.note_ground(world.layers_.size() - 1);
   return world;
 }
 
 World World::with_replaced(Layer layer) const {
-  World world = next();
+  World world = next(*this);
   for (Layer& old : world.layers_) {
     if (old.id == layer.id) {
       old = std::move(layer);
@@ -112,7 +118,7 @@ World World::with_replaced(Layer layer) const {
 }
 
 World World::without(std::string_view id) const {
-  World world = next();
+  World world = next(*this);
   std::erase_if(world.layers_, [&](const Layer& layer) { return layer.id == id; });
   world.find_grounds();
   return world;
