@@ -4,6 +4,7 @@
 
 #include "altiplan/measures.hpp"
 #include "host/flight/events.hpp"
+#include "host/view/picture_svg.hpp"
 #include "scene_files.hpp"
 
 namespace altiplan::host {
@@ -137,10 +138,9 @@ TEST_F(SceneResult, ALongTrackIsThinnedAndKeepsWhatHappens) {
       track.push_back(
           {i * 0.01, 100 + std::min(i, 41'003) * 0.01, 500 + std::max(0, i - 41'003) * 0.01, 500});
     }
+    track[41'004][3] = 501;  // too fast, there and back
     json["flight"]["track"] = track;
     json["flight"]["handovers"] = {{{"at_s", 123.45}, {"to", "route"}, {"why", "so"}}};
-    json["flight"]["check"]["violations"] = {
-        {{"constraint", "speed"}, {"at", 41'003}, {"value", 1}, {"limit", 0}, {"message", "m"}}};
   });
   const Json all = scene_of({(folder_ / "result.json").string()}).json;
   const Json& flight = all.at("results").at(0).at("flight");
@@ -160,19 +160,97 @@ TEST_F(SceneResult, ALongTrackIsThinnedAndKeepsWhatHappens) {
   for (std::size_t i = 1; i < track.size(); ++i) {
     ASSERT_LE(track[i][0].get<double>() - track[i - 1][0].get<double>(), 0.1) << "evenly, too";
   }
-  ASSERT_EQ(all.at("notes").size(), 1U);
+  ASSERT_EQ(all.at("notes").size(), 2U);
   EXPECT_HAS(all.at("notes")[0].get<std::string>(), " of its 60001 points");
+  EXPECT_HAS(all.at("notes")[1].get<std::string>(), "says solved; judged now: not_reached: ");
 }
 
 TEST_F(SceneResult, ManyViolationsAreCut) {
-  result(kTold);
+  result(kTold + std::string("constraints: [{turn_angle: {max_deg: 60}}]\n"));
   edit("result.json", [](Json& json) {
-    json["check"]["violations"] = Json::array();
-    for (int i = 0; i < 1500; ++i) {
-      json["check"]["violations"].push_back({{"at", 0}, {"constraint", "c"}, {"message", "m"}});
+    Json route = Json::array();
+    for (int i = 0; i < 1500; ++i) {  // a zigzag
+      route.push_back({100 + i * 0.1, i % 2 == 0 ? 500 : 501, 500});
     }
+    json["route"] = route;
   });
   EXPECT_EQ(shown().at("check").at("violations").size(), 1000U);
+}
+
+TEST_F(SceneResult, WhatIsShownIsJudgedNow) {
+  const std::string file = result(kTold);
+  const Json before = shown();
+  EXPECT_EQ(before.at("status"), "solved");
+  EXPECT_TRUE(before.at("judged").is_null());
+  scenario("environment: [{sphere: {at_m: [500, 500, 500], radius_m: 20}}]\n");
+  const Scene scene = scene_of({file});
+  const Json& now = scene.json.at("results").at(0);
+  EXPECT_EQ(now.at("status"), "rejected");
+  EXPECT_EQ(now.at("judged"), "result.json says solved; judged now: rejected");
+  EXPECT_HAS(now.at("message").get<std::string>(), "judged now: rejected: the judge found 1 viol");
+  EXPECT_EQ(now.at("check").at("ok"), false);
+  EXPECT_NEAR(now.at("metrics").at("min_clearance_m").get<double>(), -20, 1e-3);
+  EXPECT_EQ(now.at("metrics").at("expanded"), before.at("metrics").at("expanded"));
+  EXPECT_EQ(now.at("steps").at(0).at("status"), "rejected");
+  EXPECT_EQ(now.at("steps").at(0).at("check").at("ok"), false);
+  ASSERT_EQ(scene.warnings.size(), 2U);
+  EXPECT_HAS(scene.warnings[1], "result.json says solved; judged now: rejected: ");
+  EXPECT_HAS(picture_svg(scene.json), "result.json says solved; judged now: rejected: ");
+}
+
+TEST_F(SceneResult, AnEditedResultIsJudgedNow) {
+  scenario("environment: [{sphere: {at_m: [500, 700, 500], radius_m: 50}}]\n");
+  result(kTold);
+  const Json before = shown();
+  edit("result.json", [](Json& json) {
+    json["status"] = "rejected";
+    json["metrics"]["length_m"] = 1;
+    json["check"]["ok"] = false;
+  });
+  Json now = shown();
+  EXPECT_EQ(now.at("status"), "solved");
+  EXPECT_EQ(now.at("message"), "result.json says rejected; judged now: solved");
+  EXPECT_EQ(now.at("metrics"), before.at("metrics"));
+  EXPECT_EQ(now.at("check"), before.at("check"));
+  edit("result.json", [](Json& json) {
+    json["status"] = "cancelled";  // which only the run can know
+    json["message"] = "interrupted";
+  });
+  EXPECT_EQ(shown().at("status"), "cancelled");
+  EXPECT_EQ(shown().at("message"), "interrupted");
+  edit("result.json", [](Json& json) {
+    json["status"] = "solved";
+    json["route"] = nullptr;
+  });
+  now = shown();
+  EXPECT_EQ(now.at("status"), "no_route");
+  EXPECT_TRUE(now.at("metrics").at("length_m").is_null());
+  EXPECT_TRUE(now.at("check").is_null());
+}
+
+TEST_F(SceneResult, AFlightIsJudgedNow) {
+  const std::string file = result(kFlown);
+  const Json before = shown();
+  EXPECT_EQ(before.at("flight").at("status"), "solved");
+  EXPECT_TRUE(before.at("flight").at("judged").is_null());
+  edit("result.json", [](Json& json) {
+    json["flight"]["collisions"] = 7;
+    json["flight"]["reached"] = false;
+    json["flight"]["min_separation_m"] = 3;
+    json["flight"]["metrics"]["length_m"] = 1;
+  });
+  EXPECT_EQ(shown().at("flight"), before.at("flight"));
+  scenario(
+      "moving: [{sphere: {at_m: [500, 500, 500], radius_m: 9, velocity_mps: [0, 0, 0]}, "
+      "known: false}]\n");
+  const Json now = shown();
+  EXPECT_EQ(now.at("flight").at("status"), "collided");
+  EXPECT_EQ(now.at("flight").at("collisions"), 1);
+  EXPECT_EQ(now.at("flight").at("reached"), false);
+  EXPECT_NEAR(now.at("flight").at("min_separation_m").get<double>(), -9, 1e-3);
+  EXPECT_HAS(now.at("flight").at("message").get<std::string>(), "the vehicle touches 'sphere_1'");
+  EXPECT_EQ(now.at("status"), "collided");
+  EXPECT_EQ(now.at("judged"), "result.json says solved; judged now: collided");
 }
 
 TEST_F(SceneResult, SeveralResultsOfOneWorld) {

@@ -2,6 +2,7 @@
 #include "host/flight/track_judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -42,6 +43,7 @@ class Replay {
       places.push_back(p);
     }
     finish(places);
+    take_measures(track, places);
     return std::move(verdict_);
   }
 
@@ -93,6 +95,7 @@ class Replay {
                     std::size_t at, bool& touching) {
     const std::string* met =
         world_.contact(from.second, from.first, to.second, to.first, request_.vehicle.radius_m);
+    world_.flown(from.second, from.first, to.second, to.first);
     if (met != nullptr && !touching) {
       ++verdict_.collisions;
       found().push_back({"collision", at, 0, 0, "the vehicle touches '" + *met + "'"});
@@ -109,6 +112,15 @@ class Replay {
     }
     for (Violation& violation : whole_track_violations(track, request_, min_turn_radius_)) {
       found().push_back(std::move(violation));
+    }
+  }
+
+  void take_measures(const Track& track, const Route& places) {
+    verdict_.measures = measure(places, request_);
+    verdict_.measures.min_radius_m = track_radius(places, request_.vehicle).radius_m;
+    verdict_.measures.duration_s = track.back().first - track.front().first;
+    if (const double separation = world_.separation().distance; std::isfinite(separation)) {
+      verdict_.min_separation_m = separation;
     }
   }
 

@@ -16,6 +16,8 @@ struct TrackVerdict {
   CheckResult check;
   int collisions = 0;  ///< times that the vehicle came to touch something
   bool reached = false;
+  Measures measures;                       ///< as of FlightResult
+  std::optional<double> min_separation_m;  ///< as of FlightResult
 };
 
 /// Judges a track against the true world in time, without flying it: every leg against the layers

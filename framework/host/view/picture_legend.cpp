@@ -69,11 +69,13 @@ class Legend {
         14, Align::start, true);
     y_ += kLine;
     const Json& metrics = result.at("metrics");
-    if (!result.at("route").is_null() && metrics.is_object()) {
+    const bool has_metrics = !result.at("route").is_null() && metrics.is_object();
+    if (has_metrics) {
       small("route" + number(metrics.value("length_m", Json()), 1000, " km") +
             number(metrics.value("min_clearance_m", Json()), 1, " m clearance") +
             number(metrics.value("duration_s", Json()), 1, " s"));
-    } else {
+    }
+    if (!has_metrics || !result.at("judged").is_null()) {
       small(result.at("message").get<std::string>());
     }
     if (const Json& flight = result.at("flight"); !flight.is_null()) {
@@ -136,7 +138,7 @@ std::string legend(const Json& scene, const Area& area) {
   legend.small(" ");
   const Json& results = scene.at("results");
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!legend.has_room(7)) {
+    if (!legend.has_room(9)) {
       legend.small("and " + std::to_string(results.size() - i) + " results more");
       break;
     }

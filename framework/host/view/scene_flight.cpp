@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "altiplan/nearest_place.hpp"
+#include "host/base/run_status.hpp"
 #include "host/flight/flight_world.hpp"
+#include "host/flight/track_judge.hpp"
 #include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {
@@ -235,6 +238,35 @@ Json happenings_json(const Json& list, std::initializer_list<const char*> texts)
   return happenings;
 }
 
+/// What the judge finds of the track now.
+TrackVerdict judged(const Track& track, const Mission& mission,
+                    const std::vector<FlightEvent>& events) {
+  FlightSetup setup;
+  setup.request = mission.track_request;
+  setup.truth = mission.truth;
+  setup.events = events;
+  return judge_track(track, setup);
+}
+
+/// The word for what the judge found of a flight.
+std::string status_of(const TrackVerdict& verdict) {
+  return name(verdict.collisions > 0 ? RunStatus::collided
+              : !verdict.reached     ? RunStatus::not_reached
+              : !verdict.check.ok()  ? RunStatus::rejected
+                                     : RunStatus::solved);
+}
+
+std::string first_found(const TrackVerdict& verdict, const Track& track) {
+  if (verdict.check.ok()) {
+    return "";
+  }
+  const Violation& first = verdict.check.violations.front();
+  char when[32];
+  std::snprintf(when, sizeof when,
+                "at %.1f s: ", track[std::min(first.at, track.size() - 1)].first);
+  return when + first.message;
+}
+
 /// The verdict, its points counted in the thinned track.
 Json recounted(Json check, const std::set<std::size_t>& shown) {
   const std::vector<std::size_t> points(shown.begin(), shown.end());
@@ -263,12 +295,14 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   }
   Json json;
   copy_texts(json, flight, {"status", "message"});
-  json["metrics"] = metrics_scene(flight.at("metrics"));
-  json["collisions"] = flight.at("collisions").get<int>();
-  json["min_separation_m"] = flight.at("min_separation_m");
-  json["reached"] = flight.at("reached").get<bool>();
-  json["check"] =
-      check_scene(recounted(flight.at("check"), shown), stored.file + ": the flight", notes);
+  const TrackVerdict now = judged(track, mission, events);
+  const std::string whose = stored.file + ": the flight";
+  set_status(json, stored.file, status_of(now), first_found(now, track));
+  json["metrics"] = metrics_now(flight.at("metrics"), to_json(now.measures));
+  json["collisions"] = now.collisions;
+  json["min_separation_m"] = now.min_separation_m ? Json(*now.min_separation_m) : Json(nullptr);
+  json["reached"] = now.reached;
+  json["check"] = check_scene(recounted(to_json(now.check), shown), whose, notes);
   json["handovers"] = happenings_json(flight.at("handovers"), {"to", "why"});
   json["replans"] = happenings_json(flight.at("replans"), {"step", "status", "message"});
   json["track"] = Json::array();

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/check.hpp"
+#include "altiplan/measures.hpp"
 #include "host/mission/mission.hpp"
 #include "host/view/scene.hpp"
 
@@ -72,7 +74,8 @@ class ClearanceProfile {
 /// each kind of layer and lowest above the ground; `samples` of them unless it has more waypoints.
 Json route_profile(const Route& route, const Request& request, std::size_t samples);
 
-/// The stored flight, its track thinned to what can be seen, its profile to so many samples.
+/// The stored flight, judged now, its track thinned to what can be seen, its profile to so many
+/// samples.
 Json flight_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 
@@ -84,11 +87,23 @@ void copy_texts(Json& to, const Json& from, std::initializer_list<const char*> k
 /// The metrics, or null; throws a Json::exception where one of them is no number and not null.
 Json metrics_scene(const Json& metrics);
 
+/// Puts the status that the judge finds now in place of the stored one, unless that is one that
+/// only the run can know. `judged` is null, or says both where they differ; the message then adds
+/// why.
+void set_status(Json& shown, const std::string& file, const std::string& now,
+                const std::string& why);
+/// The stored metrics with those measured now in their places.
+Json metrics_now(const Json& stored, const Json& now);
+/// The word for what the judge found of a route.
+std::string status_of(const CheckResult& check);
+/// The first of what the judge found; "" where it found nothing.
+std::string first_found(const CheckResult& check);
+
 /// A verdict with no more violations than can be read; throws a Json::exception where it is none.
 Json check_scene(Json check, const std::string& whose, SceneNotes& notes);
 
-/// One result: what the stored file says, and its profile, of so many samples, in the world that
-/// was known.
+/// One result: what the stored file says that only the run can know, its routes and its flight
+/// judged now, and its profile, of so many samples, in the world that was known.
 Json result_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 }  // namespace altiplan::host

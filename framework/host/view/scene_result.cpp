@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "host/base/run_status.hpp"
+#include "host/judge/judge.hpp"
 #include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {
@@ -19,17 +23,70 @@ Json limits_json(const Request& request) {
           {"climb_deg", below(limits.max_climb, kPi / 2)}};
 }
 
-Json step_scene(const Json& step, const std::string& file, SceneNotes& notes) {
+/// A route, and what the judge finds of it now.
+struct Judged {
+  Route route;
+  CheckResult check;
+  Measures measures;
+};
+
+Judged judged(const Route& route, const Mission& mission) {
+  return {route, judge(route, mission.request, mission.via), measure(route, mission.request)};
+}
+
+/// The metrics of a run without a route.
+Json no_metrics() {
+  Json metrics = to_json(Measures{});
+  for (auto& [key, value] : metrics.items()) {
+    value = nullptr;
+  }
+  return metrics;
+}
+
+Json step_scene(const Json& step, const StoredResult& stored, const std::optional<Judged>& standing,
+                const Mission& mission, SceneNotes& notes) {
+  const std::string whose = stored.file + ": " + step.at("id").get<std::string>();
   Json json;
   copy_texts(json, step, {"id", "verb", "plugin", "status", "message"});
   json["instead_of"] = step.at("instead_of");
   json["stands"] = step.at("stands").get<bool>();
-  const Json& route = step.at("route");
-  json["route"] = route.is_null() || route.empty() ? Json(nullptr) : to_json(route_of(route, file));
+  json["route"] = nullptr;
   json["metrics"] = metrics_scene(step.at("metrics"));
-  json["check"] =
-      check_scene(step.at("check"), file + ": " + step.at("id").get<std::string>(), notes);
+  json["check"] = check_scene(step.at("check"), whose, notes);
+  const Json& route = step.at("route");
+  if (route.is_null() || route.empty()) {
+    return json;
+  }
+  Route places = route_of(route, stored.file);
+  const Judged now = standing && standing->route == places ? *standing : judged(places, mission);
+  json["route"] = to_json(places);
+  json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
+  if (!json.at("check").is_null()) {  // else the run did not get as far as a verdict
+    json["check"] = check_scene(to_json(now.check), whose, notes);
+    set_status(json, stored.file, status_of(now.check), first_found(now.check));
+  }
   return json;
+}
+
+/// The status of the run: that of its route, and where that is valid of its flight.
+void conclude(Json& json, const StoredResult& stored, const std::optional<Judged>& standing,
+              SceneNotes& notes) {
+  const Json& flight = json.at("flight");
+  if (!standing) {
+    json["judged"] = nullptr;
+    if (json.at("status") == name(RunStatus::solved)) {
+      set_status(json, stored.file, name(RunStatus::no_route), "there is no route in it");
+    }
+  } else if (!standing->check.ok() || flight.is_null()) {
+    set_status(json, stored.file, status_of(standing->check), first_found(standing->check));
+  } else {
+    const bool differs = !flight.at("judged").is_null();
+    set_status(json, stored.file, flight.at("status").get<std::string>(),
+               differs ? "the flight: " + flight.at("message").get<std::string>() : "");
+  }
+  if (!json.at("judged").is_null()) {
+    notes.warn(stored.file + ": " + json.at("message").get<std::string>());
+  }
 }
 }  // namespace
 
@@ -71,20 +128,29 @@ Json check_scene(Json check, const std::string& whose, SceneNotes& notes) {
 Json result_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
   const Json& result = stored.json;
+  std::optional<Judged> standing;
+  if (stored.route) {
+    standing = judged(*stored.route, mission);
+  }
   Json json{{"name", std::filesystem::path(stored.file).stem().string()}, {"file", stored.file}};
   copy_texts(json, result, {"status", "message"});
+  json["judged"] = nullptr;
   json["seed"] = result.at("seed");
-  json["metrics"] = metrics_scene(result.at("metrics"));
-  json["check"] = check_scene(result.at("check"), stored.file, notes);
+  json["metrics"] =
+      metrics_now(result.at("metrics"), standing ? to_json(standing->measures) : no_metrics());
+  result.at("check");  // or it is no result
+  json["check"] =
+      check_scene(standing ? to_json(standing->check) : Json(nullptr), stored.file, notes);
   json["steps"] = Json::array();
   for (const Json& step : result.at("steps")) {
-    json["steps"].push_back(step_scene(step, stored.file, notes));
+    json["steps"].push_back(step_scene(step, stored, standing, mission, notes));
   }
-  json["route"] = stored.route ? to_json(*stored.route) : Json(nullptr);
+  json["route"] = standing ? to_json(standing->route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
   json["profile"] =
-      stored.route ? route_profile(*stored.route, mission.request, samples) : Json(nullptr);
+      standing ? route_profile(standing->route, mission.request, samples) : Json(nullptr);
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
+  conclude(json, stored, standing, notes);
   json["trace"] = trace_scene(stored, notes);
   return json;
 }
