@@ -29,11 +29,18 @@ std::string cause(int error, const char* words) {
   return error != 0 ? std::strerror(error) : words;
 }
 
-/// SQLite, refused by the system, goes on with reading alone, and keeps no error.
-std::string why_read_only(const std::filesystem::path& file) {
+/// The error with which the file could not be written to, 0 where it could. Not found by opening
+/// it: closing it again would drop the locks of this process.
+int write_error(const std::filesystem::path& file) {
   const std::filesystem::path folder = place_of(file).parent_path();
-  return std::strerror(
-      ::access(file.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0 ? errno : EACCES);
+  return ::access(file.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0 ? errno : 0;
+}
+
+/// SQLite, refused by the system, continues with reading alone, and keeps no error.
+std::string why_read_only(const std::filesystem::path& file) {
+  const int error = write_error(file);
+  return error != 0 ? std::strerror(error)
+                    : "the system refused it once, and would allow it now: try again";
 }
 
 /// SQLite's own words for what users meet say little. `error` is the system's.
@@ -177,15 +184,24 @@ void Statement::fail_type(int column, const char* expected) const {
 
 Sqlite::Sqlite(const std::filesystem::path& file, int flags) : file_(file) {
   expect_regular_or_absent(file);
+  open(flags);
+  const bool refused =
+      (flags & SQLITE_OPEN_READWRITE) != 0 && sqlite3_db_readonly(database_.get(), "main") == 1;
+  if (refused && write_error(file) == 0) {
+    open(flags);  // what hindered the system has passed
+  }
+  sqlite3_extended_result_codes(database_.get(), 1);
+  sqlite3_busy_timeout(database_.get(), 10000);  // a report that reads while a study writes
+}
+
+void Sqlite::open(int flags) {
   sqlite3* database = nullptr;
   const int code =
-      sqlite3_open_v2(std::filesystem::absolute(file).c_str(), &database, flags, nullptr);
+      sqlite3_open_v2(std::filesystem::absolute(file_).c_str(), &database, flags, nullptr);
   database_.reset(database);
   if (code != SQLITE_OK) {
-    fail(file, code, database);
+    fail(file_, code, database);
   }
-  sqlite3_extended_result_codes(database, 1);
-  sqlite3_busy_timeout(database, 10000);  // a report that reads while a study writes
 }
 
 void Sqlite::run(const char* sql) const {

@@ -64,6 +64,7 @@ class Sqlite {
   struct Close {
     void operator()(sqlite3* database) const { sqlite3_close(database); }
   };
+  void open(int flags);
   std::filesystem::path file_;
   std::unique_ptr<sqlite3, Close> database_;
 };
