@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Planners that break a law or a promise each: routes, statuses, budgets, traits.
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 
 #include "sound_planner.hpp"
 
@@ -172,12 +174,25 @@ PlanResult deaf_while_traced(const Sound& sound, const Request& request) {
 /// Beyond the 50 ms that are allowed, by as little as shows.
 constexpr auto kLate = std::chrono::milliseconds(70);
 
+double thread_seconds() {
+  timespec used{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return double(used.tv_sec) + 1e-9 * double(used.tv_nsec);
+}
+
+/// Works until it has had the time allowed and kLate of a processor: on a busy machine, waiting for
+/// one is not its fault.
 PlanResult late(const Sound& sound, const Request& request) {
-  Request told = request;
-  if (told.budget.deadline && *told.budget.deadline > Budget::Clock::now() + kLate) {
-    *told.budget.deadline += kLate;
+  const double began = thread_seconds();
+  std::chrono::duration<double> allowed = kLate;
+  if (request.budget.deadline) {
+    allowed +=
+        std::max(*request.budget.deadline - Budget::Clock::now(), Budget::Clock::duration(0));
   }
-  return sound.plan(told);
+  const PlanResult result = sound.plan(request);
+  while (result.status == PlanStatus::timed_out && thread_seconds() - began < allowed.count()) {
+  }
+  return result;
 }
 PlanResult stops_late(const Sound& sound, const Request& request) {
   Request told = request;
