@@ -550,6 +550,22 @@ events:
             self.assertIn(text, texts)
         self.assertNotIn("href=\"http", self.read("picture.svg"))
 
+    def test_numbers_of_the_call_are_finite(self):
+        self.call("run", self.pipeline, "--out", "result.json")
+        tune = ("tune", self.pipeline, "--over", "a=0..1", "--metric", "length_m", "--out", "folder")
+        calls = {("run", self.pipeline): ["--patience"],
+                 ("view", "result.json", "--png", "picture.png"): ["--cut"],
+                 ("export", "result.json", "--to", "csv"): ["--home-altitude"],
+                 ("compare", "a.db", "b.db"): ["--tolerance"],
+                 ("slurm", "study.yaml"): ["--chunk-minutes"],
+                 ("check-plugin", "nowhere.so"): ["--time-limit", "--memory-limit"],
+                 tune: ["--penalty", "--wall-s", "--memory-mb"]}
+        for call, options in calls.items():
+            for option in options:
+                for number in ("nan", "inf", "-inf", "1e999", "-nan"):
+                    _, err = self.call(*call, f"{option}={number}", code=2)
+                    self.assertRegex(err, f"{option}: expected a number from .*, found '{number}'")
+
     # plugins, describe, schema
 
     def test_plugins(self):

@@ -9,6 +9,7 @@ import errno
 import fcntl
 import json
 import os
+import resource
 import re
 import shutil
 import signal
@@ -241,6 +242,27 @@ class Output(Folder):
             with self.subTest("/dev/null " + what):
                 self.refused("is a device", *arguments)
         self.refused("is a symbolic link", "run", "pipeline.yaml", "--out", "/dev/stdout")
+
+    def test_a_store_is_not_where_the_lines_of_the_call_go(self):
+        for place, stream in (("/dev/stdout", "stdout"), ("/proc/self/fd/1", "stdout"),
+                              ("/dev/fd/2", "stderr"), ("file", "stdout")):
+            with self.subTest(place), open(self.path("file"), "w", encoding="utf-8") as file, \
+                    open(self.path("said"), "w", encoding="utf-8") as said:
+                other = {"stdout": "stderr", "stderr": "stdout"}[stream]
+                done = subprocess.run([PROGRAM, "study", "study.yaml", "--out", place],
+                                      stdin=subprocess.DEVNULL, cwd=self.folder, timeout=HANGS_S,
+                                      **{stream: file, other: said})
+                self.assertEqual(done.returncode, 3)
+                self.assertIn(f"is the file that {stream} of this call goes to",
+                              self.read("file") + self.read("said"))
+                self.assertNotIn("SQLite", self.read("file"))
+        self.refused("is the kernel's and holds no files", "run", "pipeline.yaml", "--out", "/proc/x")
+        self.refused("is the kernel's and holds no files", "study", "study.yaml", "--out", "/proc/x")
+
+    def test_a_store_that_cannot_be_begun_leaves_no_file(self):
+        self.call("study", "study.yaml", "--out", "none.db", code=3,
+                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)))
+        self.assertFalse([name for name in self.names() if name.startswith("none.db")])
 
     def test_a_link_is_refused_and_what_it_leads_to_stays(self):
         self.write("target", "mine")

@@ -31,6 +31,8 @@ TEST(Check, EndsAndVolume) {
   EXPECT_EQ(rules(check({{0, 0, 100}, {996, 0, 100}}, request)), "");
   EXPECT_EQ(rules(check({{0, 0, 100}, {994, 0, 100}}, request)), "goal@1 ");
   EXPECT_EQ(rules(check({{0, 0, 100.0000001}, {1000, 0, 100}}, request)), "start@0 ");
+  EXPECT_EQ(check({{0, 0, 100.0000001}, {1000, 0, 100}}, request).violations.at(0).message,
+            "the route begins 1e-07 m from the start");
   EXPECT_EQ(rules(check({}, request)), "route@0 ");
   EXPECT_EQ(rules(check({{0, 0, 100}, {0, kBig + 1, 100}, {1000, 0, 100}}, request)),
             "volume@1 volume@1 ");

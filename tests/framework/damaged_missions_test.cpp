@@ -151,7 +151,7 @@ TEST(DamagedMissions, Plans) {
 TEST(DamagedMissions, Waypoints) {
   expect_refused(
       "m.waypoints", kWaypoints,
-      {{"110", "120", "m.waypoints:1: expected QGC WPL 110, found version 120"},
+      {{"110", "120", "m.waypoints:1: expected QGC WPL 110, found version '120'"},
        {"QGC WPL 110", "QGC", "m.waypoints:1: expected QGC WPL 110, JSON or XML, found 'QGC'"},
        {"*", "QGC WPL 110\n", "there is no item in it"},
        {"*", kWaypoints.substr(0, kWaypoints.size() - 20), "m.waypoints:4: expected 12 columns"},

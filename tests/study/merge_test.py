@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """merge_test.py PROGRAM: parts of a study, put together."""
+import fcntl
 import os
+import struct
 import sys
 import unittest
 
@@ -42,6 +44,19 @@ class Merge(StudyCase):
         self.assertIn("is there already", why)
         self.call("merge", all_of_them, part, "-o", all_of_them)
         self.assertEqual(len(self.runs(all_of_them)), RUNS)
+
+    def test_a_store_that_is_being_written_is_refused(self):
+        part = self.store("part.db", "--shard", "1/2")
+        other = self.store("other.db", "--shard", "2/2")
+        with open(part, "r+b") as file:
+            beyond_all_stores = 1 << 62  # as study/store/store_lock.cpp has it
+            range_of = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, beyond_all_stores, 4712, 0)
+            F_OFD_SETLK = 37
+            fcntl.fcntl(file, F_OFD_SETLK, range_of)
+            why = self.refused("merge", other, part, "-o", self.path("all.db"))
+            self.assertIn(f"the database '{part}' is being written by process 4711", why)
+        self.assertFalse(os.path.exists(self.path("all.db")))
+        self.call("merge", other, part, "-o", self.path("all.db"))
 
     def test_nothing_of_the_users_is_removed(self):
         part = self.store("all.db.partial", "--shard", "1/2")

@@ -153,23 +153,39 @@ json.dump(result, open(folder + "/stored.json", "w"))
 EOF
   expect 3 "$1" check "$scratch/stored.json"
 }
-stored 'must be number' seed '"x"'
-stored 'must be string' scenario null
+stored 'seed: expected a whole number from 0' seed '"x"'
+stored "scenario: expected text, found 'null'" scenario null
+stored "status: expected one of solved, no_route, " status null
+stored 'status: expected one of solved, no_route, ' status '"great"'
 stored 'this is a pipeline, expected a scenario' scenario "\"$pipeline\""
 stored 'nowhere.yaml: there is no such file' pipeline '"nowhere.yaml"'
 stored 'is no index of this list' overrides '{"set": {"steps.9.plan": "astar"}}'
-stored 'must be string' overrides '{"set": {"steps.0.plan": 5}}'
+stored "overrides.set.steps.0.plan: expected text, found '5'" overrides '{"set": {"steps.0.plan": 5}}'
 stored 'stored.json' files 5
-stored 'three numbers, found one of 2' route '[[1, 2]]'
+stored "point 0 of the route: expected [x, y, z] in metres, found a list of 2" route '[[1, 2]]'
 stored "'track' not found" flight '{}'
 stored 'the flight has no track' flight '{"track": []}'
-stored 'index 3 is out of range' flight '{"track": [[0, 1, 2]]}'
+stored "flight.track.0: expected [t, x, y, z] in seconds and metres, found a list of 3" flight '{"track": [[0, 1, 2]]}'
 
 "$program" run "$pipeline" --out "$scratch/result.json" > /dev/null
-for seed in 1.5 1e300; do
+for seed in 1.5 1e300 -1 9223372036854775808; do
   sed "s/\"seed\": [0-9]*/\"seed\": $seed/" "$scratch/result.json" > "$scratch/seed.json"
   expect 3 'seed: expected a whole number' check "$scratch/seed.json"
 done
+
+sed 's/"status": /"status": "failed", "status": /' "$scratch/result.json" > "$scratch/twice.json"
+expect 3 "twice.json: the key 'status' is given twice in one object" check "$scratch/twice.json"
+printf 'x_m,y_m,z_m,altitude_m,altitude_frame\n1,2,3,3,moon\n' > "$scratch/moon.csv"
+expect 3 "moon.csv:2: expected sea, ground or home as altitude_frame, found 'moon'" \
+  check --route "$scratch/moon.csv" --scenario "$scratch/small.yaml"
+# A mission is known by its name.
+printf '{"fileType": "Plan"}' > "$scratch/m.qgc-plan"
+expect 3 'or a mission whose name ends in .plan, ' \
+  check --route "$scratch/m.qgc-plan" --scenario "$scratch/small.yaml"
+# No control character of a file reaches the terminal.
+printf 'QGC WPL 110\n\033[31mred\a 0 0 16 0 0 0 0 1 2 3 1\n' > "$scratch/red.waypoints"
+expect 3 "red.waypoints:2: expected a number as number, found '?[31mred?'" \
+  check --route "$scratch/red.waypoints" --scenario "$scratch/small.yaml"
 
 # The test runner refuses an option that ctest would pass over to run everything.
 said=$(ALTIPLAN_SKIP_SETUP=1 "$2/tools/test" --quik 2>&1 < /dev/null)

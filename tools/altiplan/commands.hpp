@@ -54,6 +54,9 @@ void info(const std::string& message);
 /// A folder that is not there, and what else forbids to write the file, is said before anything is
 /// computed: throws Error naming the option.
 void expect_writable(const std::optional<std::string>& file, const char* option);
+/// The same of a study's database, to which a link may lead; nor may it be the file that stdout or
+/// stderr of the call goes to.
+void expect_store_writable(const std::string& store, const char* option);
 /// Throws Error where the file is one of the others, which the call reads or writes.
 void expect_apart(const std::optional<std::string>& file, const char* option,
                   const std::vector<std::string>& others);

@@ -125,7 +125,7 @@ void add_export(CLI::App& app, Action& action) {
       ->add_option("--home-altitude", arguments->options.home_altitude_m,
                    "height of home above sea level; left out: the ground below the start")
       ->type_name("M")
-      ->check(CLI::Range(-1e4, 1e5));
+      ->check(number_from(-1e4, 1e5));
   command
       ->add_option("--max-items", arguments->options.max_items,
                    "at most so many items; points go while the route stays sound")

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "altiplan/error.hpp"
+#include "host/base/utf8.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -22,18 +23,18 @@ int code_of(const char* program, const std::function<int()>& action) {
     return action();
   } catch (const ConfigError& error) {
     for (const Problem& problem : error.problems()) {
-      std::cerr << problem.text() << '\n';
+      std::cerr << host::printable(problem.text(), true) << '\n';
     }
     return kBadFile;
   } catch (const PluginError& error) {
-    std::cerr << program << ": " << error.what() << '\n';
+    std::cerr << program << ": " << host::printable(error.what(), true) << '\n';
     return kBadPlugin;
   } catch (const Error& error) {
-    std::cerr << program << ": " << error.what() << '\n';
+    std::cerr << program << ": " << host::printable(error.what(), true) << '\n';
     return kBadFile;
   } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << program << ": " << error.path1().string() << ": " << error.code().message()
-              << '\n';
+    std::cerr << program << ": " << host::printable(error.path1().string()) << ": "
+              << error.code().message() << '\n';
     return kBadFile;
   } catch (const std::bad_alloc&) {
     std::cerr << program << ": out of memory: free some, or ask for less\n";

@@ -117,6 +117,13 @@ std::string command_line(int argc, char** argv) {
 }
 
 int main_checked(int argc, char** argv) {
+  const auto begin = [] {  // before anything else: a busy machine takes its time
+    catch_interrupts();
+    return kDone;
+  };
+  if (const int code = guarded("altiplan", begin); code != kDone) {
+    return code;
+  }
   CLI::App app("Plans and judges routes of unmanned aircraft with plugins composed in YAML.",
                "altiplan");
   app.set_version_flag("--version", ALTIPLAN_VERSION);
@@ -167,10 +174,7 @@ int main_checked(int argc, char** argv) {
     const int code = app.exit(error);
     return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
   }
-  return guarded("altiplan", [&] {
-    catch_interrupts();
-    return action();
-  });
+  return guarded("altiplan", action);
 }
 }  // namespace
 }  // namespace altiplan::cli

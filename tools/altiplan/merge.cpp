@@ -29,7 +29,7 @@ void expect_no_loss(const Arguments& arguments) {
 }
 
 int merge(const Arguments& arguments) {
-  expect_writable(study::place_of(arguments.out).string(), "-o");
+  expect_store_writable(arguments.out, "-o");
   expect_no_loss(arguments);
   const study::Merged merged = study::merge_stores(arguments.stores, arguments.out);
   for (const std::string& sentence : merged.differing) {

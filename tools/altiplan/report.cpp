@@ -70,7 +70,7 @@ int write_page(const Arguments& arguments) {
 
 int report(const Arguments& arguments) {
   if (arguments.arena) {
-    expect_writable(study::place_of(*arguments.arena).string(), "--arena");
+    expect_store_writable(*arguments.arena, "--arena");
   }
   expect_apart(arguments.arena, "--arena", arguments.stores);
   if (arguments.arena) {

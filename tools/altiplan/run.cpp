@@ -191,7 +191,7 @@ void add_run(CLI::App& app, Action& action) {
       ->add_option("--patience", arguments->patience_s,
                    "seconds for a step without within_s, and for all that has no time of its own: "
                    "making plugins and layers, judging")
-      ->check(CLI::Range(0.001, 1e8));
+      ->check(number_from(0.001, 1e8));
   command->add_flag("--json", arguments->json, "print the result as JSON, and nothing else");
   set_example(*command,
               "altiplan run configs/pipelines/ridge_crossing.yaml --seed 3 "

@@ -186,7 +186,7 @@ int slurm(const Arguments& arguments) {
         "there is no sbatch on PATH: this machine cannot submit to Slurm (--dry-run writes "
         "the scripts all the same)");
   }
-  expect_writable(study::place_of(arguments.out).string(), "--out");
+  expect_store_writable(arguments.out, "--out");
   const study::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
   const study::StudyPlan plan =
       study::load_study(arguments.study, selection, arguments.overrides.plugin_path);

@@ -115,7 +115,7 @@ int study(Arguments arguments) {
     arguments.options.store = std::filesystem::temp_directory_path() / name;
   } else {
     arguments.options.store = arguments.store;
-    expect_writable(study::place_of(arguments.store).string(), "--out");
+    expect_store_writable(arguments.store, "--out");
   }
   const study::StudyPlan plan =
       study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);

@@ -136,7 +136,7 @@ void add_view(CLI::App& app, Action& action) {
       ->add_option("--cut", arguments->cut_m,
                    "metres above sea level, above which the PNG leaves out all but the routes")
       ->type_name("M")
-      ->check(CLI::Range(-1e6, 1e6))
+      ->check(number_from(-1e6, 1e6))
       ->needs(png);
   command->add_option("--svg", arguments->svg, "a picture from above, with the routes' heights")
       ->type_name("FILE");

@@ -2,8 +2,10 @@
 #include "host/base/output_file.hpp"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/random.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -32,6 +34,13 @@ const char* kind_of(mode_t mode) {
          : S_ISFIFO(mode) ? "a pipe"
          : S_ISSOCK(mode) ? "a socket"
                           : "a device";
+}
+
+/// Whether the folder is in /proc or /sys.
+bool is_of_the_kernel(const fs::path& folder) {
+  struct statfs found {};
+  return ::statfs(folder.c_str(), &found) == 0 &&
+         (found.f_type == PROC_SUPER_MAGIC || found.f_type == SYSFS_MAGIC);
 }
 
 fs::path folder_of(const fs::path& place) {
@@ -78,6 +87,10 @@ std::string output_problem(const fs::path& place) {
   }
   if (!S_ISDIR(found.st_mode)) {
     return "cannot write into the folder '" + folder.string() + "': " + std::strerror(ENOTDIR);
+  }
+  if (is_of_the_kernel(folder)) {  // access() would let root write there
+    return "cannot write into the folder '" + folder.string() +
+           "': it is the kernel's and holds no files";
   }
   return ::access(folder.c_str(), W_OK | X_OK) == 0
              ? ""

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <set>
+
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
@@ -95,6 +98,23 @@ void check_references(Checker& checker, const ScenarioFile& scenario, const Valu
   }
 }
 
+/// What has gone cannot go again: ids are given once.
+void check_removed(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
+  std::map<std::string, std::size_t> removed;  // the event, by id
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    const std::optional<std::string>& id = scenario.events[i].remove;
+    if (!id) {
+      continue;
+    }
+    const auto [first, is_new] = removed.emplace(*id, i);
+    if (!is_new) {
+      checker.problem(place_of(tree.find("events")->items[i], "remove"),
+                      item("events", i) + ".remove",
+                      "'" + *id + "' is removed by " + item("events", first->second) + " already");
+    }
+  }
+}
+
 void check_points(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
   const auto check = [&](const Point& point, const Location& where, const std::string& key) {
     if (checker.has_problem_within(key)) {
@@ -132,6 +152,7 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   check_moving(checker, scenario, tree, moving);
   check_added(checker, scenario, tree, layers);
   check_references(checker, scenario, tree, layers, moving);
+  check_removed(checker, scenario, tree);
   check_points(checker, scenario, tree);
   check_constraints(checker, scenario.constraints, tree);
   if (scenario.start_time && !kit::parse_iso_time(*scenario.start_time)) {

@@ -118,7 +118,14 @@ ForeignRoute read_foreign_route(const std::string& file, const Mission& mission)
       ending == ".mission") {
     return route_in(kit::read_mission(file), world, start, file);
   }
-  const Json json = read_json(file, "a route as a list of [x, y, z] in metres");
-  return {route_of(json.is_object() && json.contains("route") ? json.at("route") : json, file), {}};
+  const std::string expected =
+      "a route as a list of [x, y, z] in metres, or a mission whose name ends in .plan, "
+      ".waypoints, "
+      ".kml, .gpx or .geojson";
+  const Json json = read_json(file, expected);
+  if (json.is_object() && !json.contains("route")) {
+    throw Error(file + ": expected " + expected);
+  }
+  return {route_of(json.is_object() ? json.at("route") : json, file), {}};
 }
 }  // namespace altiplan::host

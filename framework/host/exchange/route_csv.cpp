@@ -42,9 +42,21 @@ double metres_of(std::string_view cell) {
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
-    throw Error("expected a number of metres, found '" + std::string(cell.substr(0, 40)) + "'");
+    throw Error("expected a number of metres, found " + excerpt(cell));
   }
   return value;
+}
+/// The column that `export` writes, where there is one.
+void expect_frame(const std::vector<std::string_view>& head,
+                  const std::vector<std::string_view>& cells) {
+  const auto found = std::find(head.begin(), head.end(), "altitude_frame");
+  if (found == head.end()) {
+    return;
+  }
+  const std::string_view frame = cells[std::size_t(found - head.begin())];
+  if (frame != "sea" && frame != "ground" && frame != "home") {
+    throw Error("expected sea, ground or home as altitude_frame, found " + excerpt(frame));
+  }
 }
 }  // namespace
 
@@ -75,6 +87,7 @@ Route read_route_csv(const std::string& file, const std::string& text) {
         throw Error("expected " + std::to_string(head.size()) + " columns, found " +
                     std::to_string(cells.size()));
       }
+      expect_frame(head, cells);
       route.emplace_back(metres_of(cells[columns[0]]), metres_of(cells[columns[1]]),
                          metres_of(cells[columns[2]]));
     }

@@ -2,13 +2,20 @@
 #include "host/result/stored_result.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
+#include "host/result/stored_shape.hpp"
 
 namespace altiplan::host {
 namespace {
+
+bool is_point(const Json& json, std::size_t numbers) {
+  return json.is_array() && json.size() == numbers &&
+         std::all_of(json.begin(), json.end(), [](const Json& n) { return n.is_number(); });
+}
 
 Track track_of(const Json& json, const std::string& file) {
   Track track;
@@ -16,6 +23,10 @@ Track track_of(const Json& json, const std::string& file) {
     throw Error(file + ": expected the flight's track as a list of [t, x, y, z]");
   }
   for (const Json& point : json) {
+    if (!is_point(point, 4)) {
+      throw Error(file + ": flight.track." + std::to_string(track.size()) +
+                  ": expected [t, x, y, z] in seconds and metres, found " + found_text(point));
+    }
     track.emplace_back(
         point.at(0).get<double>(),
         Vec3(point.at(1).get<double>(), point.at(2).get<double>(), point.at(3).get<double>()));
@@ -32,11 +43,8 @@ Track track_of(const Json& json, const std::string& file) {
 }
 
 /// The overrides with which a stored run was made.
-Overrides stored_overrides(const Json& json, const std::string& file, Overrides overrides) {
+Overrides stored_overrides(const Json& json, Overrides overrides) {
   overrides.scenario = json.at("scenario").get<std::string>();
-  if (json.at("seed").is_number_float()) {
-    throw Error(file + ": seed: expected a whole number, found " + json.at("seed").dump());
-  }
   overrides.seed = json.at("seed").get<std::int64_t>();
   const Json& stored = json.at("overrides");
   if (stored.contains("set")) {
@@ -48,10 +56,30 @@ Overrides stored_overrides(const Json& json, const std::string& file, Overrides 
 }
 }  // namespace
 
+namespace {
+/// Parses, and throws Error where an object has a key twice: which one counts nobody can tell.
+Json parse_unique(std::istream& in, const std::string& file) {
+  std::vector<std::set<std::string>> open;
+  return Json::parse(in, [&](int, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) {
+      open.emplace_back();
+    } else if (event == Json::parse_event_t::object_end) {
+      open.pop_back();
+    } else if (event == Json::parse_event_t::key) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      if (!open.back().insert(key).second) {
+        throw Error(file + ": the key " + excerpt(key) + " is given twice in one object");
+      }
+    }
+    return true;
+  });
+}
+}  // namespace
+
 Json read_json(const std::string& file, const std::string& expected) {
   kit::InputFile in(file);
   try {
-    return Json::parse(in);
+    return parse_unique(in, file);
   } catch (const Json::parse_error& error) {
     in.clear();
     in.seekg(0);
@@ -78,9 +106,9 @@ Route route_of(const Json& json, const std::string& file) {
   Route route;
   try {
     for (const Json& p : json.get_ref<const Json::array_t&>()) {  // or it throws
-      if (p.is_array() && p.size() != 3) {
-        throw Error(file + ": expected points of three numbers, found one of " +
-                    std::to_string(p.size()));
+      if (!is_point(p, 3)) {
+        throw Error(file + ": point " + std::to_string(route.size()) +
+                    " of the route: expected [x, y, z] in metres, found " + found_text(p));
       }
       route.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
     }
@@ -105,7 +133,8 @@ StoredResult stored_result(const std::string& file, Json content, const Override
     if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {
       throw Error(file + ": expected a result of format 1");
     }
-    stored.overrides = stored_overrides(json, file, overrides);
+    expect_shape(json, file);
+    stored.overrides = stored_overrides(json, overrides);
     stored.pipeline = json.at("pipeline").get<std::string>();
     for (const Json& used : json.at("files")) {
       const std::string path = used.at("path").get<std::string>();

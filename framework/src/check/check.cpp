@@ -23,6 +23,18 @@ std::string fixed(double value, int digits = 2) {
   return text;
 }
 
+/// A distance, with digits however small it is.
+std::string distance_text(double value) {
+  if (value >= 1e-3) {
+    return fixed(value, 6);
+  }
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  std::string text(buffer);
+  std::replace(text.begin(), text.end(), ',', '.');
+  return text;
+}
+
 std::string place(const Vec3& p) {
   return "(" + fixed(p.x()) + ", " + fixed(p.y()) + ", " + fixed(p.z()) + ")";
 }
@@ -281,7 +293,7 @@ CheckResult check(const Route& route, const Request& request) {
   if (route.front() != request.start.position) {
     const double off = (route.front() - request.start.position).norm();
     found.push_back(
-        {"start", 0, off, 0, "the route begins " + fixed(off, 6) + " m from the start"});
+        {"start", 0, off, 0, "the route begins " + distance_text(off) + " m from the start"});
   }
   if (!request.goal.reached_at(route.back())) {
     const double off = (route.back() - request.goal.position).norm();

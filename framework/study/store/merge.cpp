@@ -10,6 +10,7 @@
 #include "study/pool/work_folder.hpp"
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
+#include "study/store/store_lock.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -237,7 +238,9 @@ Merged merge_stores(const std::vector<std::string>& stores, const std::filesyste
   {
     Merger merger(unfinished.file());
     for (const std::string& store : stores) {
+      expect_no_writer(store);
       merger.add(store);
+      expect_no_writer(store);  // nor one that began meanwhile
     }
     merged = merger.finish();
   }

@@ -19,7 +19,7 @@ struct Merged {
 /// Puts the runs of the stores, parts of one study, into a new one, which appears under its name
 /// when it is whole; it may take the place of one of them. Throws Error where they are of different
 /// studies, or hold results of one run from different files, plugins or hosts, and where another
-/// process is at work on `out`.
+/// process is at work on `out` or on one of the stores.
 Merged merge_stores(const std::vector<std::string>& stores, const std::filesystem::path& out);
 
 /// How two studies (Store::study) differ, "" where they are the same. Where the file lies does not

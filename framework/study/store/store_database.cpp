@@ -118,7 +118,15 @@ StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode)
     : sqlite(opened(file, mode)),
       lock_(mode == StoreMode::write ? std::make_unique<StoreLock>(file) : nullptr) {
   if (mode == StoreMode::write && is_new()) {
-    create();
+    try {
+      create();
+    } catch (...) {  // a full disk: no empty file is left behind
+      std::error_code ignored;
+      if (fs::file_size(file, ignored) == 0) {
+        fs::remove(place_of(file), ignored);
+      }
+      throw;
+    }
   }
   expect_store();
   sqlite.run("PRAGMA foreign_keys = ON");

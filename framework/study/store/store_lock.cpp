@@ -24,14 +24,19 @@ struct flock range_for(pid_t process) {
   return range;
 }
 
-std::string why_not_locked(int descriptor, int error) {
+/// Who has the lock: "process 4711", or "".
+std::string writer_of(int descriptor) {
   struct flock held = range_for(0);
+  const bool is_known = ::fcntl(descriptor, F_OFD_GETLK, &held) == 0 && held.l_type != F_UNLCK;
+  return is_known ? "process " + std::to_string(held.l_len - 1) : "";
+}
+
+std::string why_not_locked(int descriptor, int error) {
   if (error != EAGAIN && error != EACCES) {
     return std::string("cannot be locked: ") + std::strerror(error);
   }
-  const bool is_known = ::fcntl(descriptor, F_OFD_GETLK, &held) == 0 && held.l_type != F_UNLCK;
-  return "is being written by " +
-         (is_known ? "process " + std::to_string(held.l_len - 1) : "another process") +
+  const std::string writer = writer_of(descriptor);
+  return "is being written by " + (writer.empty() ? "another process" : writer) +
          ", under this name or another: wait for its end, or give another --out";
 }
 }  // namespace
@@ -45,6 +50,15 @@ StoreLock::StoreLock(const std::filesystem::path& file)
                                 ? std::string("cannot be opened: ") + std::strerror(error)
                                 : why_not_locked(descriptor_.number(), error);
     throw Error("the database '" + file.string() + "' " + why);
+  }
+}
+
+void expect_no_writer(const std::filesystem::path& file) {
+  const kit::Descriptor store(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  const std::string writer = store.number() < 0 ? "" : writer_of(store.number());
+  if (!writer.empty()) {
+    throw Error("the database '" + file.string() + "' is being written by " + writer +
+                ": wait for its end, for more runs are to come");
   }
 }
 }  // namespace altiplan::study

@@ -18,4 +18,6 @@ class StoreLock {
  private:
   kit::Descriptor descriptor_;
 };
+/// Throws Error where a process writes the store now. No store may be open in this process.
+void expect_no_writer(const std::filesystem::path& file);
 }  // namespace altiplan::study

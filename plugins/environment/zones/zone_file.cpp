@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/geojson.hpp"
@@ -55,12 +56,26 @@ FileZone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRu
   return result;
 }
 
+/// Limits under the names that scenarios have for them are not read by themselves.
+void expect_limits_read(const std::string& file, const GeoJson& json, const FileRules& rules) {
+  for (const auto& [name, key, property] : {std::tuple("floor_m", "floor_property", &rules.floor),
+                                            {"ceiling_m", "ceiling_property", &rules.ceiling}}) {
+    for (const GeoFeature& feature : json.features) {
+      if (property->empty() && feature.properties.contains(name)) {
+        throw Error(file + ": '" + feature.id + "': has the property '" + name +
+                    "', which is not read: expected " + key + ": " + name + " in the scenario");
+      }
+    }
+  }
+}
+
 FileZones read_features(const std::string& file, const FileRules& rules) {
   const GeoJson json = kit::read_geojson(file);
   if (!json.features.empty()) {
     kit::expect_properties(file, json,
                            {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
   }
+  expect_limits_read(file, json, rules);
   if (json.features.empty() && !json.flat.empty()) {
     throw Error(file + ": there is no zone in it: " + json.skipped_text());
   }

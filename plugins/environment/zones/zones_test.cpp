@@ -184,6 +184,10 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
     return refusal("{file: " + written(name, text) + ", floor_property: low}");
   };
   EXPECT_TRUE(says(refusal("{file: /nowhere.geojson}"), "there is no such file"));
+  const std::string triangle = "[[[0, 0], [1, 0], [1, 1], [0, 0]]]";
+  EXPECT_TRUE(says(
+      refusal("{file: " + written("limits", feature(triangle, R"({"ceiling_m": 90})")) + "}"),
+      "has the property 'ceiling_m', which is not read: expected ceiling_property: ceiling_m"));
   EXPECT_TRUE(says(refused("cut", R"({"type": "Feat)"), "not JSON"));
   EXPECT_TRUE(says(refused("kind", R"({"type": "Topology"})"), "Topology"));
   EXPECT_TRUE(

@@ -47,8 +47,8 @@ struct Row {
       const std::optional<double> value = number_of(words[n]);
       const bool is_parameter = n >= 4 && n <= 7;  // "nan": left to the autopilot
       if (!value || !(std::isfinite(*value) || (is_parameter && std::isnan(*value)))) {
-        throw Error(std::string("expected a number as ") + kNames[n] + ", found '" +
-                    std::string(words[n].substr(0, 40)) + "'");
+        throw Error(std::string("expected a number as ") + kNames[n] + ", found " +
+                    excerpt(words[n]));
       }
       fields[n] = *value;
     }
@@ -145,7 +145,7 @@ void expect_header(std::string_view first_line) {
   const std::vector<std::string_view> words = words_of(first_line);
   if (words.size() == 3 && words[0] == "QGC" && words[1] == "WPL") {
     if (words[2] != "110") {
-      throw Error("expected QGC WPL 110, found version " + std::string(words[2].substr(0, 40)));
+      throw Error("expected QGC WPL 110, found version " + excerpt(words[2]));
     }
     return;
   }
@@ -160,8 +160,7 @@ void expect_header(std::string_view first_line) {
   if (first_line.starts_with("PK")) {
     throw Error("this is a ZIP archive (KMZ?), expected what is in it");
   }
-  throw Error("expected QGC WPL 110, JSON or XML, found '" + std::string(first_line.substr(0, 40)) +
-              "'");
+  throw Error("expected QGC WPL 110, JSON or XML, found " + excerpt(first_line.substr(0, 40)));
 }
 
 /// Line 0 is the home position where it is a waypoint above sea level: ground stations put it

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/result/stored_shape.hpp"
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include "altiplan/error.hpp"
+#include "host/base/run_status.hpp"
+
+namespace altiplan::host {
+namespace {
+
+enum Kind : unsigned {
+  kText = 1,
+  kNumber = 2,
+  kTruth = 4,
+  kList = 8,
+  kObject = 16,
+  kNull = 32,
+  kStatus = 64,
+  kSeed = 128,
+};
+
+struct Key {
+  const char* name;
+  unsigned kinds;  ///< those that it may be
+};
+
+constexpr Key kResult[] = {
+    {"pipeline", kText},
+    {"scenario", kText},
+    {"files", kList},
+    {"overrides", kObject},
+    {"seed", kSeed},
+    {"status", kStatus},
+    {"message", kText},
+    {"steps", kList},
+    {"route", kList | kNull},
+    {"metrics", kObject},
+    {"check", kObject | kNull},
+    {"flight", kObject | kNull},
+    {"trace", kText | kNull},
+};
+constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};
+constexpr Key kStep[] = {
+    {"id", kText},
+    {"verb", kText},
+    {"plugin", kText},
+    {"instead_of", kText | kNull},
+    {"stands", kTruth},
+    {"status", kStatus},
+    {"message", kText},
+    {"route", kList | kNull},
+    {"metrics", kObject | kNull},
+    {"check", kObject | kNull},
+};
+constexpr Key kFlight[] = {
+    {"status", kStatus}, {"message", kText},      {"metrics", kObject},
+    {"check", kObject},  {"collisions", kNumber}, {"min_separation_m", kNumber | kNull},
+    {"reached", kTruth}, {"handovers", kList},    {"replans", kList},
+    {"track", kList},
+};
+
+std::string status_words() {
+  std::string words;
+  for (int status = 0; status <= int(RunStatus::not_reached); ++status) {
+    words += (words.empty() ? "" : ", ") + std::string(name(RunStatus(status)));
+  }
+  return words;
+}
+
+bool is_status(const Json& value) {
+  for (int status = 0; status <= int(RunStatus::not_reached); ++status) {
+    if (value == name(RunStatus(status))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool is_seed(const Json& value) {
+  return value.is_number_unsigned()
+             ? value.get<std::uint64_t>() <= std::uint64_t(std::numeric_limits<std::int64_t>::max())
+             : value.is_number_integer() && value.get<std::int64_t>() >= 0;
+}
+
+struct KindOf {
+  unsigned kind;
+  bool (*is)(const Json&);
+  std::string words;
+};
+
+/// The kinds in words: "a list or null".
+const std::array<KindOf, 8>& all_kinds() {
+  static const std::array<KindOf, 8> kAll{{
+      {kText, [](const Json& v) { return v.is_string(); }, "text"},
+      {kNumber, [](const Json& v) { return v.is_number(); }, "a number"},
+      {kTruth, [](const Json& v) { return v.is_boolean(); }, "true or false"},
+      {kList, [](const Json& v) { return v.is_array(); }, "a list"},
+      {kObject, [](const Json& v) { return v.is_object(); }, "an object"},
+      {kStatus, &is_status, "one of " + status_words()},
+      {kSeed, &is_seed, "a whole number from 0 to 9223372036854775807"},
+      {kNull, [](const Json& v) { return v.is_null(); }, "null"},
+  }};
+  return kAll;
+}
+
+void expect_kinds(const Json& value, unsigned kinds, const std::string& place) {
+  std::string expected;
+  for (const KindOf& kind : all_kinds()) {
+    if ((kinds & kind.kind) != 0) {
+      if (kind.is(value)) {
+        return;
+      }
+      expected += (expected.empty() ? "" : " or ") + kind.words;
+    }
+  }
+  throw Error(place + ": expected " + expected + ", found " + found_text(value));
+}
+
+void expect_keys(const Json& object, std::span<const Key> keys, const std::string& place) {
+  expect_kinds(object, kObject, place);
+  for (const Key& key : keys) {
+    if (const auto found = object.find(key.name); found != object.end()) {
+      expect_kinds(*found, key.kinds, place + (place.ends_with(": ") ? "" : ".") + key.name);
+    }
+  }
+}
+
+void expect_each(const Json& result, const char* list, std::span<const Key> keys,
+                 const std::string& file) {
+  if (!result.contains(list)) {
+    return;
+  }
+  std::size_t n = 0;
+  for (const Json& item : result.at(list)) {
+    expect_keys(item, keys, file + ": " + list + "." + std::to_string(n++));
+  }
+}
+}  // namespace
+
+std::string found_text(const Json& value) {
+  if (value.is_structured()) {  // which may be too deep to be written out
+    return value.is_array() ? "a list of " + std::to_string(value.size()) : "an object";
+  }
+  return excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+void expect_shape(const Json& result, const std::string& file) {
+  expect_keys(result, kResult, file + ": ");
+  if (result.contains("overrides") && result.at("overrides").contains("set")) {
+    const Json& set = result.at("overrides").at("set");
+    expect_kinds(set, kObject, file + ": overrides.set");
+    for (const auto& [key, value] : set.items()) {
+      expect_kinds(value, kText, file + ": overrides.set." + key);
+    }
+  }
+  expect_each(result, "files", kFile, file);
+  expect_each(result, "steps", kStep, file);
+  if (result.contains("flight") && !result.at("flight").is_null()) {
+    expect_keys(result.at("flight"), kFlight, file + ": flight");
+  }
+}
+}  // namespace altiplan::host
