@@ -1,96 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tune_test.py PROGRAM PLUGINS: `altiplan tune` as a user calls it, mostly with a planner whose route is
-the longer the further its parameters are from what the scenario likes best."""
-import csv
+"""tuning_test.py PROGRAM PLUGINS: `altiplan tune` as a user calls it."""
 import json
 import os
-import random
 import re
-import shutil
-import signal
 import subprocess
-import sys
-import tempfile
-import time
-import unittest
 
-PROGRAM, PLUGINS = "", ""
-SANITIZED = bool(os.environ.get("ALTIPLAN_SANITIZED"))
-
-SCENARIO = """altiplan: 1
-volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 1000]}
-start: {at_m: [100, 300, 500]}
-goal: {at_m: [900, 300, 500]}
-"""
-PIPELINE = """# SPDX-License-Identifier: Apache-2.0
-altiplan: 1
-scenario: scenarios/s.yaml    # where it is flown
-seed: 3
-steps:
-  - plan: tunable
-    id: route
-    with:
-      # x comes first.
-      x: 0.9        # of course
-      list: [0.1, 0.2]
-"""
-X = ("--over", "steps.0.with.x=0..1")
-SMALL = ("--set-tuner", "particles=4", "--set-tuner", "iterations=5")
-FILES = {"settings.json", "runs.log", "evaluations.csv", "convergence.svg", "summary.json",
-         "tuned.yaml"}
-
-
-class TuneCase(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="altiplan_tune_")
-        self.addCleanup(shutil.rmtree, self.folder)
-        os.mkdir(self.path("scenarios"))
-        self.write("scenarios/s.yaml", SCENARIO)
-        self.write("p.yaml", PIPELINE)
-
-    def path(self, *names):
-        return os.path.join(self.folder, *names)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as stream:
-            stream.write(text)
-
-    def read(self, *names):
-        with open(self.path(*names), encoding="utf-8") as stream:
-            return stream.read()
-
-    def arguments(self, *words, out="out", metric="length_m", size=SMALL):
-        return [PROGRAM, "tune", "p.yaml", "--metric", metric, "--out", out, "--plugin-path",
-                PLUGINS, *map(str, words), *size]
-
-    def tune(self, *words, expect=0, **options):
-        done = subprocess.run(self.arguments(*words, **options), cwd=self.folder, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=250)
-        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
-        return done.stdout + done.stderr
-
-    def refused(self, *words, expect=3, **options):
-        """The one sentence of a call that ends at once."""
-        done = subprocess.run(self.arguments(*words, **options), cwd=self.folder, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=250)
-        self.assertEqual((done.returncode, done.stdout), (expect, ""), done.stdout + done.stderr)
-        if expect != 2:  # there a hint at --help follows
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        return done.stderr
-
-    def evaluations(self, out="out"):
-        with open(self.path(out, "evaluations.csv"), newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
-
-    def summary(self, out="out"):
-        return json.loads(self.read(out, "summary.json"))
-
-    def results(self, out):
-        """Every byte of a finished tuning; tuned.yaml is called from its own folder. What a kill left
-        beside the files does not count."""
-        return {name: self.read(out, name) for name in os.listdir(self.path(out))
-                if not name.endswith(".partial")}
+import case
+from case import FILES, PIPELINE, PLUGINS, PROGRAM, SANITIZED, TuneCase, X
 
 
 class Tune(TuneCase):
@@ -280,124 +196,6 @@ class Failures(TuneCase):
         self.assertEqual(self.summary()["score_tuned"], None)
 
 
-class Resuming(TuneCase):
-    def start(self, *words, **options):
-        return subprocess.Popen(self.arguments(*words, **options), cwd=self.folder,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                start_new_session=True)
-
-    def slow(self):
-        self.write("p.yaml", PIPELINE.replace("      x: 0.9 ", "      slow_s: 0.01\n      x: 0.9 "))
-
-    def test_killed_at_any_moment(self):
-        self.slow()
-        words = (*X, "--hold-out", "scenarios/s.yaml[start.at_m=[[100,200,500],[100,400,500]]]",
-                 "--jobs", 2)
-        self.tune(*words, out="calm")
-        kills = 0
-        draw = random.Random(7)
-        for _ in range(200):
-            process = self.start(*words, out="killed")
-            try:
-                process.wait(timeout=draw.uniform(0.02, 0.25))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                kills += 1
-                process.communicate()
-                continue
-            said = process.communicate()[0]
-            self.assertEqual(process.returncode, 0, said)
-            break
-        self.assertGreater(kills, 0)
-        self.assertEqual(self.results("killed"), self.results("calm"))
-
-    def test_interrupted(self):
-        self.slow()
-        process = self.start(*X)
-        log = self.path("out", "runs.log")
-        while not os.path.exists(log):
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate()[0]
-        self.assertEqual(process.returncode, 130, said)
-        self.assertIn("interrupted", said)
-        self.assertNotIn("tuned.yaml", os.listdir(self.path("out")))
-        self.tune(*X)
-        self.tune(*X, out="calm")
-        self.assertEqual(self.results("out"), self.results("calm"))
-
-    def test_interrupted_before_the_first_run(self):
-        process = self.start(*X, "--tuner", "moody", "--set-tuner", "does=ponders", size=())
-        lock = self.path("out", "work", "lock")
-        while not (os.path.exists(lock) and os.path.getsize(lock)):
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate(timeout=60)[0]
-        self.assertEqual(process.returncode, 130, said)
-        self.assertIn("interrupted", said)
-
-    def test_one_call_at_a_time(self):
-        process = self.start(*X, "--tuner", "moody", "--set-tuner", "does=ponders", size=())
-        lock = self.path("out", "work", "lock")
-        while not (os.path.exists(lock) and os.path.getsize(lock)):
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
-        said = self.refused(*X)
-        process.kill()
-        process.communicate()
-        self.assertIn(f"another process is at work here: {process.pid} on ", said)
-        self.assertNotIn("study", said)
-
-    def test_finished_is_finished(self):
-        self.tune(*X)
-        before = self.results("out")
-        self.assertIn("0 runs done now", self.tune(*X))
-        self.assertEqual(self.results("out"), before)
-
-    def test_a_torn_log_is_mended(self):
-        self.tune(*X)
-        before = self.results("out")
-        log = before["runs.log"].encode()
-        for size in (len(log) - 5, len(log) // 2, 1):
-            with open(self.path("out", "runs.log"), "wb") as stream:
-                stream.write(log[:size])
-            self.tune(*X)
-            self.assertEqual(self.results("out"), before)
-        spoilt = log.replace(b"solved", b"solvex", 1)
-        with open(self.path("out", "runs.log"), "wb") as stream:
-            stream.write(spoilt)
-        self.assertIn("1 line was damaged; its run is done again", self.tune(*X))
-        self.assertEqual(self.results("out"), before)
-
-    def test_more_evaluations(self):
-        self.tune(*X, "--evaluations", 7)
-        self.assertEqual(len(self.evaluations()), 8)
-        self.tune(*X, "--evaluations", 13)
-        self.tune(*X, "--evaluations", 13, out="calm")
-        self.assertEqual(self.results("out"), self.results("calm"))
-
-    def test_another_tuning_is_refused(self):
-        self.tune(*X)
-        said = self.refused(*X, "--seed", 4)
-        self.assertIn('"--seed (0 before, 4 now)'[1:], said)
-        self.assertIn("--fresh", said)
-        self.assertIn("--metric", self.refused(*X, metric="expanded"))
-        self.assertIn("--over", self.refused("--over", "steps.0.with.x=0..0.5"))
-        self.assertIn("--tuner", self.refused(*X, "--set-tuner", "inertia=0.5"))
-        self.write("scenarios/s.yaml", SCENARIO + "# changed\n")
-        self.assertIn("the content of " + self.path("scenarios/s.yaml"), self.refused(*X))
-        self.tune(*X, "--fresh")
-
-    def test_a_folder_of_something_else_is_left_alone(self):
-        os.mkdir(self.path("out"))
-        self.write("out/thesis.txt", "years of work")
-        for fresh in ((), ("--fresh",)):
-            self.assertIn("holds 'thesis.txt' and no tuning", self.refused(*X, *fresh))
-        self.assertEqual(os.listdir(self.path("out")), ["thesis.txt"])
-        self.assertIn("--out", self.refused(*X, out="p.yaml"))
-
-
 class Refusals(TuneCase):
     def test_usage(self):
         for words, expected in (
@@ -467,5 +265,4 @@ class Refusals(TuneCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, PLUGINS = (os.path.abspath(path) for path in sys.argv[1:3])
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    case.main()

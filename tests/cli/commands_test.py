@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cli_test.py PROGRAM BROKEN: the command line, as a user calls it.
+"""commands_test.py PROGRAM BROKEN: the command line, as a user calls it.
 
 BROKEN is the folder of the libraries that no one can use."""
 import glob
@@ -9,49 +9,13 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
-import xml.etree.ElementTree
 
-PROGRAM, BROKEN = sys.argv[1:3]
+import case
+from case import BROKEN, CliCase, PIPELINE, PROGRAM, SCENARIO
+
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 BAD_FILES = os.path.join(ROOT, "tests", "bad_files")
-
-# A wall between start and goal, passed on either side; the vehicle then meets a post.
-SCENARIO = """altiplan: 1
-environment:
-  - box: {min_m: [300, 300, 0], max_m: [310, 700, 1000]}
-    id: wall
-  - cylinder: {at_m: [700, 500], radius_m: 30}
-    id: post
-    known: KNOWN
-volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
-vehicle: {radius_m: 2, sensing_m: 300}
-start: {at_m: [100, 500, 100]}
-goal: {at_m: [900, 500, 100], tolerance_m: 5}
-"""
-PIPELINE = """altiplan: 1
-scenario: scenario.yaml
-seed: 3
-steps:
-  - plan: astar
-    with: {cell_m: [50, 50, 50]}
-"""
-# The goal in a closed shell: a search sees all of the lattice before it gives up.
-SEALED = """altiplan: 1
-environment:
-  - box: {min_m: [800, 400, 50], max_m: [1000, 410, 150]}
-  - box: {min_m: [800, 590, 50], max_m: [1000, 600, 150]}
-  - box: {min_m: [800, 400, 50], max_m: [810, 600, 150]}
-  - box: {min_m: [990, 400, 50], max_m: [1000, 600, 150]}
-  - box: {min_m: [800, 400, 50], max_m: [1000, 600, 60]}
-  - box: {min_m: [800, 400, 140], max_m: [1000, 600, 150]}
-volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
-start: {at_m: [100, 500, 100]}
-goal: {at_m: [900, 500, 100]}
-"""
 
 
 def bad_files():
@@ -74,37 +38,7 @@ def bad_files():
     return cases
 
 
-class Cli(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="altiplan_cli_")
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "true"))
-        self.pipeline = self.write("pipeline.yaml", PIPELINE)
-        self.sealed = self.write("sealed.yaml", SEALED)
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w") as stream:
-            stream.write(text)
-        return self.path(name)
-
-    def read(self, name):
-        with open(self.path(name)) as stream:
-            return stream.read()
-
-    def call(self, *arguments, code=0, stdout=subprocess.PIPE):
-        """What the program printed on stdout and on stderr; it must end with this code."""
-        done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=stdout,
-                              stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=250)
-        self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
-        return done.stdout, done.stderr
-
-    def result(self, *arguments, code=0):
-        out, _ = self.call("run", "--json", *arguments, code=code)
-        return json.loads(out)
-
+class Cli(CliCase):
     # Exit codes.
 
     def test_exit_codes(self):
@@ -355,201 +289,6 @@ events:
             blocks += out.count(": valid\n")
         self.assertGreaterEqual(blocks, 5)
 
-    # check
-
-    def test_check_a_route_from_elsewhere(self):
-        around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
-                            "[900,500,100]]")
-        out, _ = self.call("check", "--route", around, "--scenario", "scenario.yaml")
-        self.assertTrue(out.startswith("sound: 4 waypoints"), out)
-        through = self.write("through.json", "[[100,500,100],[900,500,100]]")
-        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", code=1)
-        self.assertIn("'post'", out)
-        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", "--json",
-                           code=1)
-        self.assertFalse(json.loads(out)["check"]["ok"])
-        for text in ("[]", "[[1,2]]", "{}", "[1", '"text"', '[["a","b","c"]]'):
-            route = self.write("wrong.json", text)
-            self.call("check", "--route", route, "--scenario", "scenario.yaml", code=3)
-        _, err = self.call("check", "scenario.yaml", code=3)
-        self.assertEqual(err, "altiplan: scenario.yaml:1: this is not JSON: expected a result of "
-                              "altiplan run\n")
-        self.call("check", "--route", around, code=2)
-        self.call("check", code=2)
-
-    def test_check_a_result_without_a_flight(self):
-        self.call("run", self.pipeline, "-o", "result.json")
-        out, _ = self.call("check", "result.json")
-        self.assertTrue(out.startswith("sound"), out)
-        self.assertNotIn("flight", out)
-        result = json.loads(self.read("result.json"))
-        result["route"] = [result["route"][0], result["route"][-1]]
-        self.write("forged.json", json.dumps(result))
-        out, _ = self.call("check", "forged.json", code=1)
-        self.assertTrue(out.startswith("not sound"), out)
-        self.write("scenario.yaml", self.read("scenario.yaml") + "# changed\n")
-        _, err = self.call("check", "result.json")
-        self.assertIn("scenario.yaml is not the file that the result was made from", err)
-        for text in ("{}", "[1", "[]", '{"altiplan": 2}'):
-            self.call("check", self.write("wrong.json", text), code=3)
-
-    def test_check_a_flight_against_the_true_world(self):
-        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
-        flies = self.write("flies.yaml", PIPELINE + "  - fly: apf\n"
-                           "    with: {influence_m: 200}\n")
-        self.call("run", flies, "--out", "result.json")
-        out, _ = self.call("check", "result.json")
-        self.assertIn("\nflight sound: ", out)
-        self.assertIn("0 collisions, reached the goal", out)
-
-        result = json.loads(self.read("result.json"))
-        result["flight"]["track"] = [[0, 100, 500, 100], [60, 900, 500, 100]]
-        self.write("forged.json", json.dumps(result))
-        out, _ = self.call("check", "forged.json", code=1)
-        self.assertIn("flight not sound: 2 points", out)
-        self.assertIn("collision: the vehicle touches 'wall'", out)
-        verdict = json.loads(self.call("check", "forged.json", "--json", code=1)[0])
-        self.assertTrue(verdict["check"]["ok"], "the route is as it was")
-        self.assertEqual((verdict["flight"]["collisions"], verdict["flight"]["reached"]),
-                         (1, False))
-
-        alone = self.write("alone.yaml", PIPELINE + "  - fly: route\n")
-        self.call("run", alone, "--out", "alone.json", code=1)
-        out, _ = self.call("check", "alone.json", code=1)
-        self.assertIn("1 collision, did not reach the goal", out)
-        self.assertIn("collision: the vehicle touches 'post'", out)
-
-    def test_why_a_flight_ended_early_is_printed(self):
-        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
-        late = self.write("late.yaml", PIPELINE + "  - fly: route\n    max_time_s: 3\n")
-        out, _ = self.call("run", late, code=1)
-        self.assertIn("flight: did not reach the goal after 3 s,", out)
-        self.assertIn("; the flight: timed out after 3 s (max_time_s) at (", out)
-        replans = self.write("replans.yaml", PIPELINE + "  - fly: route\n    replan:\n"
-                             "      plan: astar\n      within_iterations: 1\n"
-                             "      with: {cell_m: [50, 50, 50]}\n")
-        out, _ = self.call("run", replans, code=1)
-        self.assertRegex(out, r"\n +\d+ s  replan by \S+: timed_out: the budget was used up")
-
-    def test_check_says_where_events_count(self):
-        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") +
-                   "events:\n  - {at_s: 20, remove: post}\n")
-        self.call("run", self.write("alone.yaml", PIPELINE + "  - fly: route\n"), "--out", "r.json")
-        out, _ = self.call("check", "r.json")
-        self.assertIn("0 collisions, reached the goal\n  each event was applied at", out)
-
-    # view
-
-    def view(self, *arguments, code=0):
-        """As call; there is no Chromium."""
-        done = subprocess.run([PROGRAM, "view", *arguments], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, cwd=self.folder, timeout=250,
-                              env={**os.environ, "ALTIPLAN_CHROMIUM": "/nowhere"})
-        self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
-        return done.stdout, done.stderr
-
-    def scene(self, page):
-        found = re.findall(r'<script id="scene" type="application/json">(.*?)</script>',
-                           self.read(page), re.DOTALL)
-        self.assertEqual(len(found), 1)
-        return json.loads(found[0])
-
-    def test_view_makes_a_page(self):
-        self.call("run", self.pipeline, "--out", "one.json", "--trace", "trace.jsonl")
-        self.call("run", self.pipeline, "--out", "two.json", "--seed", "5", "--set",
-                  "steps.0.with.weight_g=0.9")
-        self.write("page.html", "before")
-        out, err = self.view("one.json", "two.json", "-o", "page.html")
-        self.assertRegex(out, r"^page\.html: 0\.\d\d MB: 2 routes, 0 flights, 2 solids\n$")
-        self.assertEqual(err, "")
-        scene = self.scene("page.html")
-        stored = [json.loads(self.read(name)) for name in ("one.json", "two.json")]
-        self.assertEqual([result["route"] for result in scene["results"]],
-                         [result["route"] for result in stored], "to the last bit")
-        self.assertEqual([result["name"] for result in scene["results"]], ["one", "two"])
-        self.assertEqual(scene["results"][0]["trace"]["events"],
-                         len(self.read("trace.jsonl").splitlines()) - 1)
-        self.assertIsNone(scene["results"][1]["trace"])
-        self.assertEqual(scene["notes"], [])
-        self.assertEqual(sorted(os.listdir(self.folder)), sorted([
-            "scenario.yaml", "pipeline.yaml", "sealed.yaml", "one.json", "two.json", "trace.jsonl",
-            "page.html"]))
-
-    def test_view_of_no_route_and_of_what_has_changed(self):
-        self.call("run", self.pipeline, "--out", "result.json", "--scenario", self.sealed,
-                  "--trace", "trace.jsonl", code=1)
-        self.view("result.json", "-o", "page.html")
-        scene = self.scene("page.html")
-        self.assertEqual(len(scene["solids"]), 6)
-        self.assertIsNone(scene["results"][0]["route"])
-        self.assertEqual(scene["results"][0]["status"], "no_route")
-        self.assertTrue(scene["results"][0]["message"])
-        whole = self.read("trace.jsonl")
-        self.write("trace.jsonl", whole[:len(whole) // 2])
-        _, err = self.view("result.json", "-o", "page.html")
-        self.assertRegex(err, r"^altiplan: warning: trace\.jsonl:\d+: this is not an event of a "
-                              r"search: it is shown up to here\n$")
-        os.remove(self.path("trace.jsonl"))
-        self.write("sealed.yaml", SEALED + "# changed\n")
-        _, err = self.view("result.json", "-o", "page.html")
-        self.assertEqual(err, f"altiplan: warning: {self.sealed} is not the file that result.json "
-                              "was made from\naltiplan: warning: trace.jsonl: there is no such "
-                              "file: the search is not shown\n")
-        os.remove(self.sealed)
-        self.view("result.json", "-o", "page.html", code=3)
-
-    def test_view_refuses_what_it_cannot_show(self):
-        self.call("run", self.pipeline, "--out", "one.json")
-        self.call("run", self.pipeline, "--out", "other.json", "--scenario", self.sealed, code=1)
-        self.write("page.html", "before")
-        before = sorted(os.listdir(self.folder))
-        _, err = self.view("one.json", "other.json", "-o", "page.html", code=3)
-        self.assertEqual(err, f"altiplan: 'one.json' and 'other.json' are of different worlds: "
-                              f"{self.path('scenario.yaml')}, and {self.sealed}\n")
-        for wrong in ("nowhere.json", ".", "", "scenario.yaml"):
-            out, err = self.view("one.json", wrong, "-o", "page.html", code=3)
-            self.assertEqual((out, err.count("\n")), ("", 1), err)
-        result = json.loads(self.read("one.json"))
-        keys = set(result) - {"version", "plugins", "budget_hit", "reason", "setup_time_s", "route_lonlat"}
-        for key in keys:
-            damaged = self.write("damaged.json", json.dumps(
-                {name: value for name, value in result.items() if name != key}))
-            _, err = self.view("damaged.json", "-o", "page.html", code=3)
-            self.assertRegex(err, r"^altiplan: damaged\.json: expected a result of ", key)
-            for value in (7, "text", [1], {"a": 1}, [[1, 2]], [{}]):
-                self.write("damaged.json", json.dumps({**result, key: value}))
-                done = subprocess.run([PROGRAM, "view", "damaged.json", "--svg", "damaged.svg"],
-                                      capture_output=True, text=True, cwd=self.folder, timeout=60)
-                self.assertIn(done.returncode, (0, 3), (key, value, done.stderr))
-        os.remove(damaged)
-        for option in ("-o", "--png", "--svg"):
-            for place in ("missing/page.html", self.folder, ""):
-                _, err = self.view("one.json", option, place, code=3)
-                self.assertIn(option, err)
-        self.view("one.json", code=2)
-        self.view("-o", "page.html", code=2)
-        self.assertEqual(self.read("page.html"), "before")
-        self.assertEqual([name for name in sorted(os.listdir(self.folder))
-                          if name != "damaged.svg"], before)
-
-    def test_pictures_without_chromium(self):
-        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
-        flies = self.write("flies.yaml", PIPELINE + "  - fly: apf\n"
-                           "    with: {influence_m: 200}\n")
-        self.call("run", flies, "--out", "<result> & co.json")
-        out, err = self.view("<result> & co.json", "--png", "picture.png", "--svg", "other.svg")
-        self.assertEqual(err, "altiplan: warning: no Chromium was found (ALTIPLAN_CHROMIUM may name "
-                              "one): the picture is an SVG from above, picture.svg\n")
-        self.assertRegex(out, r"^other\.svg: .*\npicture\.svg: 0\.\d\d MB: 1 route, 1 flight, ")
-        self.assertFalse(os.path.exists(self.path("picture.png")))
-        self.assertEqual(self.read("picture.svg"), self.read("other.svg"))
-        svg = xml.etree.ElementTree.fromstring(self.read("picture.svg"))
-        texts = [element.text for element in svg.iter("{http://www.w3.org/2000/svg}text")]
-        for text in ("scenario", "Start", "Goal", "N", "<result> & co: solved",
-                     "Obstacle, met in flight", "200 m"):
-            self.assertIn(text, texts)
-        self.assertNotIn("href=\"http", self.read("picture.svg"))
-
     # plugins, describe, schema
 
     def test_plugins(self):
@@ -578,4 +317,4 @@ events:
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    case.main()
