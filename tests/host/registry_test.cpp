@@ -306,6 +306,17 @@ TEST_F(RegistryTest, WhatTheMachineDoesNotGiveIsNotTheLibrarysFault) {
   EXPECT_STREQ(registry.get("planner", "alpha").name, "alpha") << "the fault has passed";
 }
 
+TEST_F(RegistryTest, ALibraryIsNotExcusedByTheWordsOfItsName) {
+  const fs::path folder = folder_ / "Input" / "output error";  // as EIO is called
+  fs::create_directories(folder);
+  fs::copy(kBroken / "undefined_symbol.so", folder / "undefined_symbol.so");
+  Registry registry({folder});
+  const Library& library = registry.libraries().front();
+  EXPECT_HAS(text_of<PluginError>(
+                 [&] { registry.get(library.plugins.front().kind, library.plugins.front().name); }),
+             "Input/output error/undefined_symbol.so cannot be loaded");
+}
+
 TEST_F(RegistryTest, AChildsReportNeedsNoDescriptor) {
   EXPECT_EQ(text_of<Error>([] { in_child("it: ", [] { ::close_range(0, ~0U, 0); }); }), "");
   EXPECT_EQ(text_of<PluginError>([] { in_child("it: ", [] { throw Error("is bad"); }); }),

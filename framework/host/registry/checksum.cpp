@@ -183,7 +183,7 @@ void write_checksum(const std::filesystem::path& file) {
     ::close(to);
   }
   if (written != ssize_t(sizeof stated)) {
-    throw ElfError(std::string("cannot be written: ") + std::strerror(error));
+    throw ElfError("cannot be written", error);
   }
 }
 }  // namespace altiplan::host

@@ -48,7 +48,7 @@ ElfFile::ElfFile(const std::filesystem::path& file) {
   // Opening a FIFO would wait for its other end.
   descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) {
-    throw ElfError(std::string("cannot be opened: ") + std::strerror(errno));
+    throw ElfError("cannot be opened", errno);
   }
   try {
     read_headers();
@@ -63,7 +63,7 @@ ElfFile::~ElfFile() { ::close(descriptor_); }
 void ElfFile::read_headers() {
   struct stat status;
   if (::fstat(descriptor_, &status) != 0) {
-    throw ElfError(std::string("cannot be read: ") + std::strerror(errno));
+    throw ElfError("cannot be read", errno);
   }
   if (!S_ISREG(status.st_mode)) {
     throw ElfError("not a regular file");
@@ -123,9 +123,11 @@ std::string ElfFile::read_all(std::uint64_t offset, std::uint64_t size) const {
     if (got < 0 && errno == EINTR) {
       continue;
     }
-    if (got <= 0) {
-      throw ElfError(std::string("cannot be read: ") +
-                     (got < 0 ? std::strerror(errno) : "it has become shorter"));
+    if (got < 0) {
+      throw ElfError("cannot be read", errno);
+    }
+    if (got == 0) {
+      throw ElfError("cannot be read: it has become shorter");
     }
     done += static_cast<std::size_t>(got);
   }

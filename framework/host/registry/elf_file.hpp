@@ -16,7 +16,15 @@ namespace altiplan::host {
 /// Why a file cannot be a library for this machine.
 class ElfError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ElfError(const std::string& why) : runtime_error(why) {}
+  /// "WHAT: No such file or directory"
+  ElfError(const std::string& what, int error)
+      : runtime_error(what + ": " + std::strerror(error)), error_(error) {}
+  /// The errno of a file that could not be read; 0 where its content is wrong.
+  int error() const { return error_; }
+
+ private:
+  int error_ = 0;
 };
 
 /// A shared library read as a file; none of its code runs. The constructor holds every header

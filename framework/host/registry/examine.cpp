@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "host/base/machine_fault.hpp"
 #include "host/registry/checksum.hpp"
 #include "host/registry/registry.hpp"
 
@@ -135,7 +136,7 @@ void read_manifest(const std::string& bytes, Library& library) {
 std::string hash_of(const std::filesystem::path& file) {
   std::array<char, SHA256_DIGEST_STRING_LENGTH> digest;
   if (SHA256File(file.c_str(), digest.data()) == nullptr) {
-    throw ElfError(std::string("cannot be read: ") + std::strerror(errno));
+    throw ElfError("cannot be read", errno);
   }
   return digest.data();
 }
@@ -171,6 +172,7 @@ Library examine_library(const std::filesystem::path& file) {
     }
   } catch (const ElfError& error) {
     library.refused = error.what();
+    library.is_machine_fault = is_machine_fault(error.error());
   }
   return library;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/dll/shared_library.hpp>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -28,15 +29,17 @@ boost::dll::shared_library& open_for_ever(const fs::path& path, const fs::path& 
       *new std::vector<std::unique_ptr<boost::dll::shared_library>>;
   auto library = std::make_unique<boost::dll::shared_library>();
   boost::dll::fs::error_code error;
+  errno = 0;  // the loader says in words alone why it fails; what failed it has left here
   library->load(path, error, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   if (error) {
+    const int of_system = errno;
     // Boost's own text ends in an unrelated "Bad file descriptor".
     const char* reason = ::dlerror();
     std::string text = reason != nullptr ? reason : error.message();
     if (text.starts_with(path.string() + ": ")) {
       text.erase(0, path.string().size() + 2);
     }
-    fail_to_use(file.string() + " cannot be loaded: " + text);
+    fail_to_use(file.string() + " cannot be loaded: " + text, of_system);
   }
   return *open.emplace_back(std::move(library));
 }
@@ -95,7 +98,8 @@ boost::dll::shared_library& open_copy(const Library& library, PrivateCopy& copy)
   try {
     open_neighbours(ElfFile(copy.path()), file.parent_path());
   } catch (const ElfError& error) {
-    throw PluginError(library.file.string() + ": a library that it needs: " + error.what());
+    fail_to_use(library.file.string() + ": a library that it needs: " + error.what(),
+                error.error());
   }
   return open_for_ever(copy.path_to_load(), library.file);
 }
@@ -170,7 +174,7 @@ void try_out(const Library& library, PrivateCopy& copy) {
 /// Holds the copy to what was examined. A file may be written to while it is examined and copied.
 void verify(const Library& library, const PrivateCopy& copy) {
   const Library now = examine_library(copy.path());
-  if (names_machine_fault(now.refused)) {
+  if (now.is_machine_fault) {
     throw MachineFault(library.file.string() + ": " + now.refused);
   }
   if (!now.refused.empty() || now.build != library.build || now.checksum != library.checksum) {
@@ -180,7 +184,7 @@ void verify(const Library& library, const PrivateCopy& copy) {
   try {
     verify_checksum(ElfFile(copy.path()));
   } catch (const ElfError& error) {
-    throw PluginError(library.file.string() + ": " + error.what());
+    fail_to_use(library.file.string() + ": " + error.what(), error.error());
   }
 }
 

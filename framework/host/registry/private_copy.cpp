@@ -40,7 +40,7 @@ bool copy(int from, int to) {
 
 PrivateCopy::PrivateCopy(const fs::path& file) {
   const auto fail = [&](const char* what, int error) {
-    fail_to_use(file.string() + what + std::strerror(error));
+    fail_to_use(file.string() + what + std::strerror(error), error);
   };
   kit::Descriptor from(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (from.number() < 0) {
@@ -78,7 +78,8 @@ fs::path PrivateCopy::path_to_load() {
     const int old = descriptor_.number();
     descriptor_ = kit::Descriptor(::fcntl(old, F_DUPFD_CLOEXEC, old + 1));
     if (descriptor_.number() < 0) {
-      fail_to_use(std::string("no descriptor for a library: ") + std::strerror(errno));
+      const int error = errno;
+      fail_to_use(std::string("no descriptor for a library: ") + std::strerror(error), error);
     }
   }
   return path();

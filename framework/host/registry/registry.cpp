@@ -169,12 +169,16 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
 
 const Library* Registry::offering(std::string_view kind, std::string_view name) const {
   const auto refuse = [&](const Library& library) {
-    fail_to_use("the library of the " + std::string(kind) + " '" + std::string(name) +
-                "' is refused: " + library.file.string() + ": " + library.refused);
+    const std::string why = "the library of the " + std::string(kind) + " '" + std::string(name) +
+                            "' is refused: " + library.file.string() + ": " + library.refused;
+    if (library.is_machine_fault) {
+      throw MachineFault(why);
+    }
+    throw PluginError(why);
   };
   const std::string file = "libaltiplan_" + std::string(kind) + "_" + std::string(name) + ".so";
   for (const Library& library : libraries_) {
-    if (library.file.filename() == file && names_machine_fault(library.refused)) {
+    if (library.file.filename() == file && library.is_machine_fault) {
       refuse(library);  // a copy of it would be another build, maybe
     }
   }

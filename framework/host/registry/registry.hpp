@@ -27,6 +27,7 @@ struct Library {
   std::string checksum;           ///< of what is loaded, as the file states it; hexadecimal
   std::vector<Manifest> plugins;  ///< empty where refused before the manifest could be read
   std::string refused;            ///< why, with both sides; "" when it may be loaded
+  bool is_machine_fault = false;  ///< it is refused because the machine did not give its bytes
 };
 
 /// By which a file that was written to, or put in another's place, is told at a glance.
