@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 #include "altiplan/params.hpp"
 #include "host/base/in_child.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/registry/checksum.hpp"
+#include "host/plugins/checksum.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::host {

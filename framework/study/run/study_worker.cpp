@@ -18,7 +18,7 @@
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
-#include "study/pool/job_record.hpp"
+#include "study/workers/job_record.hpp"
 
 namespace altiplan::study {
 namespace {
