@@ -14,7 +14,7 @@
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
-#include "study/pool/job_record.hpp"
+#include "study/workers/job_record.hpp"
 
 namespace altiplan::tune {
 namespace fs = std::filesystem;

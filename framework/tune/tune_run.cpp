@@ -10,9 +10,9 @@
 #include "study/claims/claim_pairs.hpp"
 #include "study/claims/claims.hpp"
 #include "study/model/run_values.hpp"
-#include "study/pool/worker_pool.hpp"
 #include "study/run/study_worker.hpp"
 #include "study/statistics/statistics.hpp"
+#include "study/workers/worker_pool.hpp"
 #include "tune/tune_guards.hpp"
 
 namespace altiplan::tune {

@@ -1,118 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""files_test.py PROGRAM PLUGINS FAULTS: what is read and written, and what an interruption leaves.
+"""files_test.py PROGRAM PLUGINS FAULTS: what is read and written.
 
-PLUGINS is the folder of the plugins that misbehave, FAULTS the library that makes calls of the system
-fail ("" for none). A pipe, a socket or a device where a file is expected is refused and never waited
-for; a file is written as a whole or not at all; a signal ends every call. Each call has a time limit,
-as what is tested for here would hang."""
+A pipe, a socket or a device where a file is expected is refused and never waited for; a file is written
+as a whole or not at all."""
 import errno
-import fcntl
 import json
 import os
 import resource
-import re
-import shutil
-import signal
-import socket
 import stat
 import subprocess
 import sys
-import tempfile
-import time
 import unittest
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "faults"))
 import injector  # pylint: disable=wrong-import-position
 
-PROGRAM, PLUGINS, FAULTS = sys.argv[1:4]
-HANGS_S = 60
-
-SCENARIO = """altiplan: 1
-environment:
-  - box: {min_m: [300, 300, 0], max_m: [310, 700, 1000]}
-volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 200]}
-frame: {origin_lonlat: [24.9, 60.2]}
-start: {at_m: [100, 500, 100]}
-goal: {at_m: [900, 500, 100], tolerance_m: 5}
-"""
-PIPELINE = """altiplan: 1
-scenario: scenario.yaml
-steps:
-  - plan: astar
-    with: {cell_m: [50, 50, 50]}
-"""
-STUDY = """altiplan: 1
-scenarios: [{file: scenario.yaml}]
-pipelines: [{id: it, file: pipeline.yaml}]
-"""
-KINDS = {"pipe": "is a pipe", "socket": "is a socket", "device": "is a device",
-         "folder": "is a folder"}
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="altiplan_files_")
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.write("scenario.yaml", SCENARIO)
-        self.write("pipeline.yaml", PIPELINE)
-        self.write("study.yaml", STUDY)
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-        return name
-
-    def read(self, name):
-        with open(self.path(name), encoding="utf-8") as file:
-            return file.read()
-
-    def names(self):
-        return sorted(os.listdir(self.folder))
-
-    def make(self, kind, name):
-        """What is no file, under that name."""
-        if os.path.lexists(self.path(name)):
-            os.remove(self.path(name))
-        if kind == "pipe":
-            os.mkfifo(self.path(name))
-        elif kind == "socket":
-            here = os.getcwd()
-            os.chdir(self.folder)  # the name of a socket is short
-            try:
-                with socket.socket(socket.AF_UNIX) as made:
-                    made.bind(name)
-            finally:
-                os.chdir(here)
-        elif kind == "device":
-            os.symlink("/dev/zero", self.path(name))  # as a link: making one takes root
-        else:
-            os.mkdir(self.path(name))
-        return name
-
-    def remove(self, name):
-        if os.path.isdir(self.path(name)):
-            os.rmdir(self.path(name))
-        else:
-            os.remove(self.path(name))
-
-    def call(self, *arguments, code=0, **more):
-        done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, cwd=self.folder,
-                              capture_output=True, text=True, timeout=HANGS_S, **more)
-        self.assertEqual(done.returncode, code, (arguments, done.stdout[-1000:], done.stderr))
-        return done.stdout, done.stderr
-
-    def result(self, name="result.json", *arguments):
-        self.call("run", "pipeline.yaml", "--out", name, *arguments)
-        return name
-
-    def refused(self, said, *arguments):
-        """Ends with 3 and one line on stderr."""
-        _, err = self.call(*arguments, code=3)
-        self.assertIn(said, err, arguments)
-        self.assertEqual(len(err.splitlines()), 1, (arguments, err))
+import folder
+from folder import FAULTS, Folder, HANGS_S, KINDS, PIPELINE, PLUGINS, PROGRAM, SCENARIO, STUDY
 
 
 class Input(Folder):
@@ -366,141 +270,5 @@ class Output(Folder):
                          ["out.json.partial"])
 
 
-class Interruption(Folder):
-    def begin(self, *arguments, ready=None, **more):
-        """The call, once it is in the middle of it: as `ready` says, or where a plugin sleeps."""
-        call = subprocess.Popen([PROGRAM, *arguments, "--plugin-path", PLUGINS], text=True,
-                                stdin=subprocess.DEVNULL, cwd=self.folder,
-                                **{"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **more})
-        self.addCleanup(call.stderr.close)
-        self.addCleanup(call.wait)
-        self.addCleanup(call.kill)
-        self.wait_for(ready or (lambda: self.sleeps(call)), call)
-        return call
-
-    def sleeps(self, call):
-        """Whether it is in a plugin that never returns, which sleeps and wakes all the time."""
-        with open("/proc/%d/maps" % call.pid, encoding="utf-8") as file:
-            if "rogues.so" not in file.read():
-                return False
-        before = self.sleeps_of(call)
-        time.sleep(0.1)
-        return self.sleeps_of(call) > before + 10
-
-    def sleeps_of(self, call):
-        with open("/proc/%d/status" % call.pid, encoding="utf-8") as file:
-            return int(re.search(r"^voluntary_ctxt_switches:\s+(\d+)", file.read(), re.M)[1])
-
-    def used_s(self, call):
-        with open("/proc/%d/stat" % call.pid, encoding="utf-8") as file:
-            fields = file.read().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    def wait_for(self, condition, call):
-        end = time.monotonic() + HANGS_S
-        while not condition():
-            self.assertIsNone(call.poll(), "ended by itself")
-            self.assertLess(time.monotonic(), end, "nothing has happened")
-            time.sleep(0.01)
-
-    def ends(self, call, number):
-        call.send_signal(number)
-        self.assertEqual(call.wait(timeout=HANGS_S), 130)
-
-    def layer(self, layer):
-        self.write("hangs.yaml", SCENARIO.replace("volume:", "  - " + layer + "\nvolume:"))
-
-    def test_a_world_that_is_being_built(self):
-        result = self.result()
-        self.layer("rogue_layer: {does: making_never_returns}")
-        stored = json.loads(self.read(result))
-        stored["scenario"] = self.path("hangs.yaml")
-        self.write("hangs.json", json.dumps(stored))
-        before = self.names()
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            for arguments in (
-                    ("explain", "pipeline.yaml", "--scenario", "hangs.yaml"),
-                    ("check", "hangs.json"),
-                    ("check", "--route", "result.json", "--scenario", "hangs.yaml"),
-                    ("view", "hangs.json", "-o", "page.html"),
-                    ("export", "hangs.json", "--to", "csv", "-o", "route.csv")):
-                with self.subTest((number, *arguments)):
-                    self.ends(self.begin(*arguments), number)
-                    self.assertEqual(self.names(), before)
-
-    def test_a_city_of_two_billion_buildings(self):
-        self.layer("city: {generate: complex, buildings: 2000000000}")
-        for number in (signal.SIGINT, signal.SIGTERM):
-            call = self.begin("run", "pipeline.yaml", "--scenario", "hangs.yaml", "--out",
-                              "out.json", "--trace", "trace.jsonl", ready=lambda: True)
-            self.wait_for(lambda: self.used_s(call) > 0.5, call)
-            self.ends(call, number)
-            self.assertEqual(json.loads(self.read("out.json"))["status"], "cancelled")
-            self.assertFalse([name for name in self.names() if "partial" in name])
-
-    def test_a_run_that_does_not_heed_it(self):
-        rule = "constraints: [{rogue_rule: {does: never_returns}}]\n"
-        rogue = "  - plan: rogue\n    with: {does: %s}\n"
-        for what, text, steps in (
-                ("judging", PIPELINE + rule, ["cancelled"]),
-                ("planning", PIPELINE + rogue % "never_returns", ["solved", "cancelled"]),
-                ("making", PIPELINE + rogue % "making_never_returns", ["solved", "cancelled"])):
-            for number in (signal.SIGINT, signal.SIGTERM):
-                with self.subTest((what, number)):
-                    self.write("hangs.yaml", text)
-                    call = self.begin("run", "hangs.yaml", "--out", "out.json", "--trace",
-                                      "trace.jsonl")
-                    self.ends(call, number)
-                    result = json.loads(self.read("out.json"))
-                    self.assertEqual(result["status"], "cancelled")
-                    self.assertEqual([step["status"] for step in result["steps"]], steps)
-                    self.assertEqual(result["route"] is None, len(steps) == 1)
-                    self.assertTrue(self.read("trace.jsonl").startswith('{"altiplan_trace": 1}\n'))
-                    self.assertFalse([name for name in self.names() if "partial" in name])
-
-    def test_a_reader_that_does_not_read(self):
-        self.write("flies.yaml", PIPELINE + "  - fly: route\n")
-        for arguments in (("schema",), ("run", "flies.yaml", "--json", "--out", "out.json")):
-            with self.subTest(arguments):
-                reader, writer = os.pipe()
-                fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
-                call = self.begin(*arguments, ready=lambda: True, stdout=writer)
-                os.close(writer)
-                full = lambda: len(self.waiting_in(reader)) >= 4096
-                self.wait_for(full, call)
-                self.ends(call, signal.SIGINT)
-                os.close(reader)
-        self.assertEqual(json.loads(self.read("out.json"))["status"], "solved")
-
-    def waiting_in(self, reader):
-        count = fcntl.ioctl(reader, 0x541B, b"\0\0\0\0")  # FIONREAD
-        return range(int.from_bytes(count, sys.byteorder))
-
-    def test_a_browser_that_never_draws(self):
-        self.result()
-        self.write("browser", "#!/bin/sh\necho $$ > '%s'\nexec sleep 1000\n" % self.path("pid"))
-        os.chmod(self.path("browser"), 0o755)
-        os.mkdir(self.path("tmp"))
-        call = self.begin("view", "result.json", "--png", "out.png", ready=lambda: True,
-                          env={**os.environ, "ALTIPLAN_CHROMIUM": self.path("browser"),
-                               "TMPDIR": self.path("tmp")})
-        self.wait_for(lambda: os.path.exists(self.path("pid")) and self.read("pid").strip(), call)
-        self.ends(call, signal.SIGTERM)
-        self.assertEqual(os.listdir(self.path("tmp")), [])
-        self.assertFalse(os.path.exists(self.path("out.png")))
-        self.assertRaises(ProcessLookupError, os.kill, int(self.read("pid")), 0)
-
-    def test_a_study_and_a_tuning(self):
-        self.write("hangs.yaml", PIPELINE.replace("astar", "rogue").replace(
-            "cell_m: [50, 50, 50]", "does: never_returns"))
-        self.write("study.yaml", STUDY.replace("pipeline.yaml", "hangs.yaml"))
-        for number in (signal.SIGINT, signal.SIGTERM):
-            with self.subTest(number):
-                call = self.begin("study", "study.yaml", "--out", "out.db", ready=lambda: True)
-                self.wait_for(lambda: os.path.exists(self.path("out.db.work")), call)
-                self.ends(call, number)
-                self.assertEqual([name for name in self.names() if ".work" in name], [])
-
-
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
+    folder.main()

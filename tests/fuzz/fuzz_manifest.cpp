@@ -10,8 +10,8 @@
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "fuzz/memory_file.hpp"
-#include "host/registry/checksum.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/checksum.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace {
 using namespace altiplan;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/pool/cgroup.hpp"
+#include "study/workers/cgroup.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "altiplan/error.hpp"
-#include "study/pool/worker_pool.hpp"
+#include "study/workers/worker_pool.hpp"
 
 namespace altiplan::host {
 using namespace study;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is exported, read back by our own reader and judged again; what cannot be said is.
-#include "host/exchange/export.hpp"
+#include "host/import_export/export.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "altiplan/error.hpp"
-#include "host/exchange/foreign_route.hpp"
-#include "host/exchange/thinning.hpp"
+#include "host/import_export/foreign_route.hpp"
+#include "host/import_export/thinning.hpp"
 #include "host/judge/judge.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"

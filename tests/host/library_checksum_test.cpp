@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "altiplan/error.hpp"
-#include "host/registry/checksum.hpp"
-#include "host/registry/private_copy.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/checksum.hpp"
+#include "host/plugins/private_copy.hpp"
+#include "host/plugins/registry.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::host {

@@ -2,8 +2,8 @@
 #include "study/store/merge.hpp"
 
 #include "stored_study.hpp"
-#include "study/pool/work_folder.hpp"
 #include "study/store/place.hpp"
+#include "study/workers/work_folder.hpp"
 
 namespace altiplan::host {
 using namespace study;

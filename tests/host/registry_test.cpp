@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 #include "altiplan/params.hpp"
 #include "host/base/in_child.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/registry/checksum.hpp"
+#include "host/plugins/checksum.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::host {
@@ -304,6 +304,17 @@ TEST_F(RegistryTest, WhatTheMachineDoesNotGiveIsNotTheLibrarysFault) {
     EXPECT_EQ(examine_library(file).refused, "cannot be opened: Too many open files");
   }
   EXPECT_STREQ(registry.get("planner", "alpha").name, "alpha") << "the fault has passed";
+}
+
+TEST_F(RegistryTest, ALibraryIsNotExcusedByTheWordsOfItsName) {
+  const fs::path folder = folder_ / "Input" / "output error";  // as EIO is called
+  fs::create_directories(folder);
+  fs::copy(kBroken / "undefined_symbol.so", folder / "undefined_symbol.so");
+  Registry registry({folder});
+  const Library& library = registry.libraries().front();
+  EXPECT_HAS(text_of<PluginError>(
+                 [&] { registry.get(library.plugins.front().kind, library.plugins.front().name); }),
+             "Input/output error/undefined_symbol.so cannot be loaded");
 }
 
 TEST_F(RegistryTest, AChildsReportNeedsNoDescriptor) {

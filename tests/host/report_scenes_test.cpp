@@ -31,7 +31,7 @@ TEST(ReportScenes, CostNothingButThemselves) {
   };
   EXPECT_EQ(why([]() -> std::string { throw Error("no such file"); }), "no such file");
   EXPECT_THROW(made_in_child([]() -> std::string { throw std::bad_alloc(); }, 20), MachineFault);
-  EXPECT_THROW(made_in_child([]() -> std::string { throw Error("a: Input/output error"); }, 20),
+  EXPECT_THROW(made_in_child([]() -> std::string { throw MachineFault("a disk"); }, 20),
                MachineFault);
   EXPECT_EQ(why([]() -> std::string { throw 1; }),
             "something that is not a std::exception was thrown");

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "study/pool/job_record.hpp"
+#include "study/workers/job_record.hpp"
 #include "worker_pool_fixture.hpp"
 
 namespace altiplan::host {

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "study/pool/process_tree.hpp"
-#include "study/pool/worker_pool.hpp"
+#include "study/workers/process_tree.hpp"
+#include "study/workers/worker_pool.hpp"
 
 namespace altiplan::host {
 using namespace study;

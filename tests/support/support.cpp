@@ -7,7 +7,7 @@
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "host/config/yaml.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 #include "support/folders.hpp"
 
 namespace altiplan::testing {

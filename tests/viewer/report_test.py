@@ -1,137 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""report_test.py PROGRAM MAKE_STORE: what `altiplan report` writes, in headless Chromium, from a
-file, with no network.
+"""report_test.py PROGRAM MAKE_STORE: what `altiplan report` writes.
 
-`/usr/bin/python3 report_test.py PROGRAM MAKE_STORE Page.test_sorting` runs one case; skipped without
-Chromium. With ALTIPLAN_PICTURES in the environment, pictures of the pages go into that folder."""
+`/usr/bin/python3 report_test.py PROGRAM MAKE_STORE Page.test_sorting` runs one case."""
 import csv
 import filecmp
 import glob
 import math
 import os
 import re
-import shutil
 import subprocess
-import sys
-import tempfile
-import unittest
 import xml.etree.ElementTree as xml
 
-SKIPPED = 77
-try:
-    import selenium
-    MISSING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
-except ImportError as error:
-    MISSING = [str(error)]
-if MISSING:
-    print(f"skipped: needs Debian's chromium, chromium-driver and python3-selenium: {MISSING}")
-    sys.exit(SKIPPED)
-
-from selenium.webdriver.support.ui import WebDriverWait
-
-import browser
+import reports
 import studies
-
-PROGRAM, MAKE_STORE = sys.argv[1:3]
-PICTURES = os.environ.get("ALTIPLAN_PICTURES")
-NIGHTLY = bool(os.environ.get("ALTIPLAN_NIGHTLY"))
-
-
-def report(store, folder, *options):
-    done = subprocess.run([PROGRAM, "report", store, "-o", folder, *options], check=False,
-                          capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    return folder
-
-
-class Reports(unittest.TestCase):
-    """One study for all tests of a class."""
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix="altiplan_report_")
-        cls.store = studies.store(MAKE_STORE, os.path.join(cls.folder, "study.db"), cls.content())
-        cls.report = report(cls.store, os.path.join(cls.folder, "report"))
-        cls.browser = browser.shared()
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
-
-    def setUp(self):
-        self.browser.size(1200, 900)
-        self.open()
-
-    def tearDown(self):
-        self.browser.driver.switch_to.default_content()
-        self.assertEqual(self.js("return altiplan_report.errors"), [])
-        self.assertEqual(self.browser.console(), [])
-        asked = self.browser.requests()
-        page = f"file://{self.report}/index.html"
-        self.assertEqual({url for url in asked if not url.startswith(("data:", "about:", "blob:"))},
-                         {page})
-
-    def open(self):
-        self.browser.driver.get_log("performance")
-        self.browser.driver.get(f"file://{self.report}/index.html")
-        self.wait("return altiplan_report.ready")
-
-    def js(self, script, *arguments):
-        return self.browser.run(script, *arguments)
-
-    def wait(self, script, *arguments):
-        return WebDriverWait(self.browser.driver, 60).until(
-            lambda driver: driver.execute_script(script, *arguments))
-
-    def click(self, selector):
-        self.js("document.querySelector(arguments[0]).dispatchEvent("
-                "new MouseEvent('click', {bubbles: true}))", selector)
-
-    def text(self, selector):
-        return self.js("return document.querySelector(arguments[0]).textContent", selector)
-
-    def picture(self, name):
-        if PICTURES:
-            self.browser.picture(os.path.join(PICTURES, f"{name}.png"))
-
-    def assert_figures_are_drawn(self):
-        figures = self.js("""return [...document.querySelectorAll('figure')].map((figure) => {
-            const box = figure.querySelector('svg').getBoundingClientRect();
-            const marks = [...figure.querySelectorAll('svg path, svg rect')].filter((mark) => {
-              const {width, height} = mark.getBoundingClientRect();
-              return width + height > 0;
-            });
-            return [figure.id, box.width, box.height, marks.length];
-          })""")
-        self.assertGreater(len(figures), 4)
-        for name, width, height, marks in figures:
-            self.assertGreater(width, 200, name)
-            self.assertGreater(height, 60, name)
-            self.assertGreater(marks, 2, name)
-        return figures
-
-    def assert_text_lies_within(self):
-        """No label runs out of its figure, or into another one of its line."""
-        wrong = self.js("""const wrong = [];
-          for (const svg of document.querySelectorAll('figure svg')) {
-            const room = svg.getBoundingClientRect();
-            const lines = new Map();
-            for (const text of svg.querySelectorAll('text')) {
-              const box = text.getBoundingClientRect();
-              if (box.left < room.left - 3 || box.right > room.right + 3 ||
-                  box.top < room.top - 3 || box.bottom > room.bottom + 3) {
-                wrong.push('out: ' + text.textContent);
-              }
-              const y = text.getAttribute('y');
-              for (const [other, what] of lines.get(y) ?? []) {
-                if (box.left < other.right - 1 && other.left < box.right - 1) {
-                  wrong.push('over: ' + what + ' | ' + text.textContent);
-                }
-              }
-              lines.set(y, [...lines.get(y) ?? [], [box, text.textContent]]);
-            }
-          }
-          return wrong;""")
-        self.assertEqual(wrong, [])
+from reports import PROGRAM, Reports, report
 
 
 class Page(Reports):
@@ -432,59 +314,5 @@ class Convergence(Reports):
         self.assert_text_lies_within()
 
 
-class Large(Reports):
-    """A thousand scenarios, with as many values of each run as studies have: by night 10,000 runs, whose
-    report takes ten seconds, by day 3,000."""
-    @classmethod
-    def content(cls):
-        made = studies.made_up(1000, *((5, 2) if NIGHTLY else (3, 1)))
-        cls.runs = len(made["runs"])
-        for run in made["runs"]:
-            run["values"].update({f"steps.astar.{name}": value * 1.01
-                                  for name, value in list(run["values"].items())})
-        return made
-
-    def test_small_and_soon_ready(self):
-        """The best of three, on a machine that may do other things besides."""
-        size = os.path.getsize(os.path.join(self.report, "index.html"))
-        times = []
-        while len(times) < 3 and min(times, default=math.inf) > 2000:
-            self.open()
-            times.append(self.js("return altiplan_report.ready_ms"))
-        print(f"{self.runs} runs: {size / 1e6:.2f} MB, ready after {min(times):.0f} ms",
-              file=sys.stderr)
-        self.assertLess(size, 5e6)
-        self.assertLessEqual(min(times), 2000)
-        self.assert_figures_are_drawn()
-        self.assert_text_lies_within()
-
-    def test_a_click_is_answered_soon(self):
-        took = self.browser.driver.execute_async_script("""
-            const done = arguments[0]; const start = performance.now();
-            new MutationObserver((_, observer) => { observer.disconnect();
-              done(performance.now() - start); }).observe(document.getElementById('panel'),
-              {childList: true});
-            document.querySelector('#boxes-length_m [data-open]').dispatchEvent(
-              new MouseEvent('click', {bubbles: true}));""")
-        print(f"{self.runs} runs: a click is answered after {took:.0f} ms", file=sys.stderr)
-        self.assertLessEqual(took, 2000)
-        self.assertIn("no 3-D scene of this run", self.text("#panel"))
-
-    def test_heads_of_long_tables_say_that_they_sort(self):
-        sign = ("return getComputedStyle(document.querySelector(arguments[0] + ' thead th'), "
-                "'::after').content")
-        self.assertIn("↕", self.js(sign, "#table-scenarios"))
-        self.assertNotIn("↕", self.js(sign, "#table-success"))
-        self.js("const head = document.querySelector('#table-scenarios thead th'); head.focus();"
-                "head.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}))")
-        self.assertEqual(self.js("return document.activeElement.ariaSort"), "ascending")
-
-    def test_all_rows(self):
-        rows = "return document.querySelectorAll('#table-scenarios tbody tr').length"
-        self.assertEqual(self.js(rows), 50)
-        self.click("#more")
-        self.wait("return document.querySelectorAll('#table-scenarios tbody tr').length === 1000")
-
-
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    reports.main()

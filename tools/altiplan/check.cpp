@@ -3,9 +3,9 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "host/exchange/foreign_route.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
+#include "host/import_export/foreign_route.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"

@@ -4,8 +4,8 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/exchange/export.hpp"
 #include "host/flight/events.hpp"
+#include "host/import_export/export.hpp"
 #include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {

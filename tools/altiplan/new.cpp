@@ -10,8 +10,8 @@
 #include "host/base/output_file.hpp"
 #include "host/base/unfinished.hpp"
 #include "host/config/shapes.hpp"
-#include "host/registry/install_root.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/install_root.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/planner.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::bench {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::bench {
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <iostream>
 
-#include "host/registry/checksum.hpp"
+#include "host/plugins/checksum.hpp"
 
 int main(int count, char** arguments) {
   if (count != 2) {

@@ -2,6 +2,7 @@
 #include "host/base/input.hpp"
 
 #include "altiplan/kit/formats/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
 
@@ -11,6 +12,12 @@ std::string file_problem(const std::filesystem::path& file) {
     return "there is no file '" + file.string() + "'";
   }
   const std::string why = kit::why_unreadable(file.string());
-  return why.empty() ? "" : "'" + file.string() + "' " + why;
+  if (why.empty()) {
+    return "";
+  }
+  if (is_machine_fault(reading_error(file))) {
+    throw MachineFault(file.string() + ": " + why);
+  }
+  return "'" + file.string() + "' " + why;
 }
 }  // namespace altiplan::host

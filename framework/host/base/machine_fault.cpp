@@ -2,6 +2,7 @@
 #include "host/base/machine_fault.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,22 +18,6 @@ namespace fs = std::filesystem;
 constexpr std::array kOfTheMachine = {EIO,    EMFILE, ENFILE, ENOSPC, ENOMEM,
                                       EAGAIN, EDQUOT, ESTALE, ENOLCK, ETIMEDOUT};
 
-/// 0, or why the file cannot be read to its end.
-int reading_error(const fs::path& file) {
-  const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (from < 0) {
-    return errno;
-  }
-  std::array<char, 65536> buffer;
-  ssize_t got = 0;
-  do {
-    got = ::read(from, buffer.data(), buffer.size());
-  } while (got > 0 || (got < 0 && errno == EINTR));
-  const int error = got < 0 ? errno : 0;
-  ::close(from);
-  return error;
-}
-
 fs::file_status as_told(const fs::file_status& status, const fs::path& file,
                         const std::error_code& error) {
   if (is_machine_fault(error.value())) {
@@ -43,11 +28,6 @@ fs::file_status as_told(const fs::file_status& status, const fs::path& file,
 }  // namespace
 
 bool is_machine_fault(int error) { return std::ranges::count(kOfTheMachine, error) > 0; }
-
-bool names_machine_fault(std::string_view message) {
-  return std::ranges::any_of(
-      kOfTheMachine, [&](int error) { return message.find(std::strerror(error)) != message.npos; });
-}
 
 fs::file_status status_of(const fs::path& file) {
   std::error_code error;
@@ -65,8 +45,8 @@ bool is_there(const fs::path& file) { return fs::exists(status_of(file)); }
 
 bool is_folder(const fs::path& file) { return fs::is_directory(status_of(file)); }
 
-void fail_to_use(const std::string& why) {
-  if (names_machine_fault(why)) {
+void fail_to_use(const std::string& why, int error) {
+  if (is_machine_fault(error)) {
     throw MachineFault(why);
   }
   throw PluginError(why);
@@ -74,6 +54,28 @@ void fail_to_use(const std::string& why) {
 
 std::string unreadable(const fs::path& file, int error) {
   return file.string() + ": cannot be read: " + std::strerror(error);
+}
+
+int reading_error(const fs::path& file) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0) {
+    return errno;
+  }
+  if (!S_ISREG(found.st_mode)) {
+    return 0;  // opening a device does things, and what it gives may have no end
+  }
+  const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (from < 0) {
+    return errno;
+  }
+  std::array<char, 65536> buffer;
+  ssize_t got = 0;
+  do {
+    got = ::read(from, buffer.data(), buffer.size());
+  } while (got > 0 || (got < 0 && errno == EINTR));
+  const int error = got < 0 ? errno : 0;
+  ::close(from);
+  return error;
 }
 
 std::string first_unreadable(const std::vector<fs::path>& files) {

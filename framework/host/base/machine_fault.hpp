@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "altiplan/error.hpp"
@@ -20,9 +19,6 @@ class MachineFault : public Error {
 /// Whether an errno is the machine's and not the file's: EIO, EMFILE, ENOMEM …
 bool is_machine_fault(int error);
 
-/// Whether a message, of the dynamic loader for one, holds the words of such an errno.
-bool names_machine_fault(std::string_view message);
-
 /// What stands under a name. Throws MachineFault where the machine does not say: what it cannot
 /// look at is not absent.
 std::filesystem::file_status status_of(const std::filesystem::path& file);
@@ -30,12 +26,15 @@ std::filesystem::file_status link_status_of(const std::filesystem::path& file);
 bool is_there(const std::filesystem::path& file);
 bool is_folder(const std::filesystem::path& file);
 
-/// Throws why a library cannot be used: a MachineFault where that is the machine's, so that it is
-/// not attributed to the library, else a PluginError.
-[[noreturn]] void fail_to_use(const std::string& why);
+/// Throws why a library cannot be used: a MachineFault where the errno is the machine's, so that it
+/// is not attributed to the library, else a PluginError.
+[[noreturn]] void fail_to_use(const std::string& why, int error);
 
 /// "FILE: cannot be read: Input/output error"
 std::string unreadable(const std::filesystem::path& file, int error);
+
+/// 0, or the errno that keeps a regular file from being read to its end.
+int reading_error(const std::filesystem::path& file);
 
 /// The first of the files that cannot be read to its end, as `unreadable` has it; "" where all can.
 std::string first_unreadable(const std::vector<std::filesystem::path>& files);

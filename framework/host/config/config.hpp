@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/config/pipeline_file.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::host {
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "altiplan/kit/formats/input_file.hpp"
+#include "host/base/machine_fault.hpp"
 #include "host/config/yaml_reader.hpp"
 
 namespace altiplan::host {
@@ -103,6 +104,9 @@ std::string read_file(const std::filesystem::path& file) {
   try {
     return kit::read_file(file.string(), kMaxBytes);
   } catch (const kit::InputError& error) {
+    if (is_machine_fault(reading_error(file))) {
+      throw MachineFault(error.what());
+    }
     throw ConfigError({file.string(), 0, 0, ""}, "", error.why());
   }
 }

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 std::vector<Library> examine_all(Registry& registry) {
   std::vector<Library> libraries = registry.libraries();
   for (Library& library : libraries) {
-    if (names_machine_fault(library.refused)) {
+    if (library.is_machine_fault) {
       throw MachineFault(library.file.string() + ": " + library.refused);
     }
     if (library.refused.empty()) {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::host {
 

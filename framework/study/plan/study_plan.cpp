@@ -7,7 +7,7 @@
 
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 #include "host/result/result_json.hpp"
 #include "study/model/records.hpp"
 #include "study/plan/study_grid.hpp"

@@ -6,7 +6,7 @@
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 #include "host/result/result_json.hpp"
 #include "study/claims/claim_text.hpp"
 #include "study/claims/claims.hpp"

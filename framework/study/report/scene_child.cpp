@@ -26,7 +26,8 @@ constexpr std::size_t kMostBytes = 64'000'000;
 
 /// Memory too, whoever has asked for it.
 bool is_of_machine(const std::exception& error) {
-  return host::names_machine_fault(error.what()) || host::reason_of(error) == Reason::out_of_memory;
+  return dynamic_cast<const host::MachineFault*>(&error) != nullptr ||
+         host::reason_of(error) == Reason::out_of_memory;
 }
 
 void write_all(int to, std::string_view text) {
@@ -127,8 +128,10 @@ std::string made_in_child(const std::function<std::string()>& make, unsigned sec
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!whole) {
-    throw Error(late ? "it was not built within " + std::to_string(seconds) + " s"
-                     : ending(status));
+    if (late) {
+      throw SceneLate("it was not built within " + std::to_string(seconds) + " s");
+    }
+    throw Error(ending(status));
   }
   const std::string content = text.substr(1, text.size() - 2);
   if (text.front() == kNotGiven) {

@@ -60,7 +60,13 @@ void thin_scene(host::Json& scene);
 /// Without keys that end in time_s, at any depth.
 void drop_times(host::Json& json);
 
-/// What `make` returns, made in a child process within a time; throws Error with what it throws, or
-/// with how the child ended, and MachineFault where the machine gave no file, memory or process.
+class SceneLate : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What `make` returns, made in a child process within a time, or throws SceneLate; throws Error
+/// with what it throws, or with how the child ended, and MachineFault where the machine gave no
+/// file, memory or process.
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds);
 }  // namespace altiplan::study::report

@@ -9,11 +9,11 @@
 #include "host/base/words.hpp"
 #include "study/model/run_values.hpp"
 #include "study/plan/study_selection.hpp"
-#include "study/pool/worker_pool.hpp"
 #include "study/run/machine.hpp"
 #include "study/run/study_worker.hpp"
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
+#include "study/workers/worker_pool.hpp"
 
 namespace altiplan::study {
 namespace fs = std::filesystem;

@@ -18,7 +18,7 @@
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
-#include "study/pool/job_record.hpp"
+#include "study/workers/job_record.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -214,7 +214,7 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     for (const Problem& problem : error.problems()) {
       all += (all.empty() ? "" : "; ") + problem.text();
     }
-    if (planned.is_on_trial && !host::names_machine_fault(all)) {
+    if (planned.is_on_trial) {  // not final if a file of it cannot be read
       return without_result(Outcome::bad_parameters, all);
     }
     // All was read and checked when the study began, or cannot be read now.

@@ -8,7 +8,7 @@
 #include "study/model/outcome.hpp"
 #include "study/model/run_values.hpp"
 #include "study/model/study_file.hpp"
-#include "study/pool/worker_pool.hpp"
+#include "study/workers/worker_pool.hpp"
 
 namespace altiplan::study {
 

@@ -7,10 +7,10 @@
 
 #include "altiplan/error.hpp"
 #include "host/result/difference.hpp"
-#include "study/pool/work_folder.hpp"
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
 #include "study/store/store_lock.hpp"
+#include "study/workers/work_folder.hpp"
 
 namespace altiplan::study {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "altiplan/error.hpp"
-#include "host/registry/elf_file.hpp"
+#include "host/plugins/elf_file.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "altiplan/conformance.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::cli {
 

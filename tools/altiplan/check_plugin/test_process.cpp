@@ -17,7 +17,7 @@
 
 #include "altiplan/error.hpp"
 #include "commands.hpp"
-#include "study/pool/process_tree.hpp"
+#include "study/workers/process_tree.hpp"
 
 namespace altiplan::cli {
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "host/flight/flight.hpp"
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::bench {
 

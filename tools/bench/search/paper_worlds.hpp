@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "host/registry/registry.hpp"
+#include "host/plugins/registry.hpp"
 
 namespace altiplan::bench {
 

@@ -145,6 +145,8 @@ class ALTIPLAN_API AnyAngleSearch {
   using Node = std::uint32_t;
   using Place = std::array<double, 3>;  ///< in units of costs
   static constexpr Node kNone = ~Node{0};
+  /// Cost of the longest way, so that the sum of two and an estimate keeps a bit free.
+  static constexpr std::uint32_t kMost = 900'000'000;
   /// Start or goal.
   struct End {
     Node node;

@@ -102,9 +102,20 @@ class GroundWithin {
     if (found_ || is_smallest || bound >= distance_ - kFine) {
       return;
     }
+    search_halves(x0, y0, x1, y1, piece, found, piece_of);
+  }
+
+ private:
+  static constexpr double kFine = 1e-8;
+  static constexpr double kSmallest = 1e-5;
+
+  /// Across the longer edge, first the half with what was found.
+  template <class PieceOf>
+  void search_halves(double x0, double y0, double x1, double y1, const GroundPiece& piece,
+                     const LegToPlane& found, const PieceOf& piece_of) {
     const bool east = found.x > piece.x;
     const bool north = found.y > piece.y;
-    if (half_x > half_y) {
+    if (x1 - x0 > y1 - y0) {
       search(east ? piece.x : x0, y0, east ? x1 : piece.x, y1, piece_of);
       search(east ? x0 : piece.x, y0, east ? piece.x : x1, y1, piece_of);
     } else {
@@ -112,10 +123,6 @@ class GroundWithin {
       search(x0, north ? y0 : piece.y, x1, north ? piece.y : y1, piece_of);
     }
   }
-
- private:
-  static constexpr double kFine = 1e-8;
-  static constexpr double kSmallest = 1e-5;
 
   /// How far the place is above the piece's plane, at a right angle.
   static double above(const Vec3& p, const GroundPiece& piece) {

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/import_export/fence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/shape.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using kit::MissionZone;
+
+struct Zone {
+  MissionZone zone;
+  Shape flat;  ///< without limits in height, and without a keep-out zone's holes
+};
+
+std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
+  kit::Ring result;
+  for (const kit::Point2& p : ring) {
+    result.push_back(frame.to_lonlat(p[0], p[1]));
+  }
+  return result;
+}
+
+/// The circle of true metres around the local one, or inside it where it is to be kept in: the
+/// world's frame has a scale of its own away from its origin.
+Zone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
+  constexpr int kDirections = 64;
+  Zone result;
+  result.zone.centre = frame.to_lonlat(x, y);
+  const auto [lon, lat] = result.zone.centre;
+  const Frame around = Frame::geographic(lon, lat, lat);
+  double low = kInfinity;
+  double high = 0;
+  for (int n = 0; n < kDirections; ++n) {
+    const double angle = 2 * kPi * n / kDirections;
+    const auto at = frame.to_lonlat(x + radius * std::cos(angle), y + radius * std::sin(angle));
+    const auto [east, north] = around.to_local(at[0], at[1]);
+    low = std::min(low, std::hypot(east, north));
+    high = std::max(high, std::hypot(east, north));
+  }
+  result.zone.radius_m = keep_in ? low : high;
+  result.flat = Cylinder{x, y, radius};
+  return result;
+}
+
+Zone prism_of(const Frame& frame, Prism prism, bool keep_in) {
+  Zone result;
+  result.zone.polygon.outline = lonlat(frame, prism.outline);
+  for (const kit::Ring& hole : prism.holes) {
+    result.zone.polygon.holes.push_back(lonlat(frame, hole));
+  }
+  if (!keep_in) {
+    prism.holes.clear();
+  }
+  result.flat = Prism{prism.outline, prism.holes};
+  return result;
+}
+
+/// A box is a prism; a sphere the cylinder around it.
+Zone zone_of(const Frame& frame, const Drawn& drawn) {
+  const bool keep_in = drawn.role == Drawn::Role::keep_in;
+  Zone result;
+  const Box box = bounds(drawn.shape);
+  if (const auto* cylinder = std::get_if<Cylinder>(&drawn.shape)) {
+    result = circle_of(frame, cylinder->x, cylinder->y, cylinder->radius, keep_in);
+  } else if (const auto* sphere = std::get_if<Sphere>(&drawn.shape)) {
+    result = circle_of(frame, sphere->centre.x(), sphere->centre.y(), sphere->radius, keep_in);
+  } else if (const auto* prism = std::get_if<Prism>(&drawn.shape)) {
+    result = prism_of(frame, *prism, keep_in);
+  } else {
+    result = prism_of(frame,
+                      {{{box.min.x(), box.min.y()},
+                        {box.max.x(), box.min.y()},
+                        {box.max.x(), box.max.y()},
+                        {box.min.x(), box.max.y()}},
+                       {}},
+                      keep_in);
+  }
+  result.zone.keep_in = keep_in;
+  result.zone.floor_m = finite(box.min.z());
+  result.zone.ceiling_m = finite(box.max.z());
+  result.zone.name = drawn.name;
+  return result;
+}
+
+std::vector<Zone> all_zones(const World& world) {
+  std::vector<Zone> zones;
+  for (const Layer& layer : world.layers()) {
+    const std::optional<Drawing> drawing = layer.environment->drawing();
+    if (!drawing) {
+      continue;
+    }
+    for (const Drawn& drawn : drawing->shapes) {
+      if (drawn.role == Drawn::Role::keep_out || drawn.role == Drawn::Role::keep_in) {
+        Zone zone = zone_of(world.frame(), drawn);
+        if (zone.zone.name.empty()) {
+          zone.zone.name = layer.id + "_" + std::to_string(zones.size() + 1);
+        }
+        zones.push_back(std::move(zone));
+      }
+    }
+  }
+  return zones;
+}
+
+bool crosses(const Shape& flat, const Route& route) {
+  for (std::size_t n = 0; n + 1 < route.size(); ++n) {
+    if (leg_depth(flat, route[n], route[n + 1]) > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// "floor 50 m, ceiling 900 m", "" without limits.
+std::string limits_of(const MissionZone& zone) {
+  std::string text;
+  const auto add = [&](const char* what, const std::optional<double>& value) {
+    if (value) {
+      text += (text.empty() ? "" : ", ") + std::string(what) + " " +
+              std::to_string(std::lround(*value)) + " m";
+    }
+  };
+  add("floor", zone.floor_m);
+  add("ceiling", zone.ceiling_m);
+  return text;
+}
+}  // namespace
+
+Fence zones_of(const World& world) {
+  Fence fence;
+  for (Zone& zone : all_zones(world)) {
+    fence.zones.push_back(std::move(zone.zone));
+  }
+  return fence;
+}
+
+Fence flat_fence_of(const World& world, const Route& route) {
+  Fence fence;
+  for (const Zone& zone : all_zones(world)) {
+    const MissionZone& said = zone.zone;
+    const std::string limits = limits_of(said);
+    const bool lost_hole = !said.keep_in && !said.polygon.holes.empty();
+    if (!said.keep_in && crosses(zone.flat, route)) {
+      fence.notes.push_back("zone '" + said.name + "' is left out of the fence: the route passes " +
+                            (limits.empty() ? "through its hole" : "beyond its " + limits) +
+                            ", which a fence cannot say");
+      continue;
+    }
+    if (!limits.empty()) {
+      fence.notes.push_back("zone '" + said.name + "' (" + limits +
+                            ") stands in the fence at every height: a fence has no limits");
+    }
+    if (lost_hole) {
+      fence.notes.push_back("zone '" + said.name + "' stands in the fence without its holes");
+    }
+    fence.zones.push_back(said);
+  }
+  const auto inside = std::count_if(fence.zones.begin(), fence.zones.end(),
+                                    [](const MissionZone& zone) { return zone.keep_in; });
+  if (inside > 1) {
+    fence.notes.push_back(std::to_string(inside) +
+                          " keep-in zones: autopilots differ on whether one of them must hold the "
+                          "vehicle, or all");
+  }
+  return fence;
+}
+}  // namespace altiplan::host

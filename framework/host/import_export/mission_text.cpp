@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/import_export/mission_text.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "altiplan/frame.hpp"
+#include "altiplan/geometry.hpp"
+
+namespace altiplan::host {
+
+std::string rounded_text(double value, int decimals) {
+  char text[400];
+  const auto [end, error] =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
+  std::string result(text, end);
+  if (result.find('.') != std::string::npos) {
+    result.erase(result.find_last_not_of('0') + 1);
+    if (result.back() == '.') {
+      result.pop_back();
+    }
+  }
+  return result == "-0" ? "0" : result;
+}
+
+double rounded(double value, int decimals) {
+  const std::string text = rounded_text(value, decimals);
+  double result = 0;
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
+const char* name(kit::AltitudeFrame frame) {
+  switch (frame) {
+    case kit::AltitudeFrame::sea:
+      return "sea";
+    case kit::AltitudeFrame::ground:
+      return "ground";
+    case kit::AltitudeFrame::home:
+      break;
+  }
+  return "home";
+}
+
+kit::Polygon circle_outline(const kit::MissionZone& circle) {
+  constexpr int kCorners = 64;
+  const Frame frame = Frame::geographic(circle.centre[0], circle.centre[1], circle.centre[1]);
+  const double radius =
+      circle.keep_in ? circle.radius_m : circle.radius_m / std::cos(kPi / kCorners);
+  kit::Polygon polygon;
+  for (int n = 0; n < kCorners; ++n) {
+    const double angle = 2 * kPi * n / kCorners;
+    polygon.outline.push_back(frame.to_lonlat(radius * std::cos(angle), radius * std::sin(angle)));
+  }
+  return polygon;
+}
+
+std::string mission_text(const MissionText& mission) {
+  using Format = kit::MissionFile::Format;
+  switch (mission.mission.format) {
+    case Format::qgc_plan:
+      return qgc_plan_text(mission);
+    case Format::waypoints:
+      return waypoints_text(mission);
+    case Format::kml:
+      return kml_text(mission);
+    case Format::gpx:
+      return gpx_text(mission);
+    case Format::geojson:
+      break;
+  }
+  return geojson_text(mission);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "host/import_export/mission_text.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using kit::AltitudeFrame;
+using kit::MissionItem;
+using kit::MissionPoint;
+using kit::MissionZone;
+
+constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const bool control = static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n';
+    result += c == '&'   ? "&amp;"
+              : c == '<' ? "&lt;"
+              : c == '>' ? "&gt;"
+              : control  ? "?"  // XML has no way to write it
+                         : std::string(1, c);
+  }
+  return result;
+}
+
+const char* words_of(AltitudeFrame frame) {
+  return frame == AltitudeFrame::sea      ? "above mean sea level"
+         : frame == AltitudeFrame::ground ? "above the ground below each point"
+                                          : "relative to the home position";
+}
+
+kit::Polygon outline_of(const MissionZone& zone) {
+  return zone.polygon.outline.empty() ? circle_outline(zone) : zone.polygon;
+}
+
+/// Writes KML with the indentation of its element.
+class KmlWriter {
+ public:
+  explicit KmlWriter(const MissionText& text) : decimals_(text.decimals) {
+    const kit::MissionFile& mission = text.mission;
+    const AltitudeFrame frame = mission.items.front().at.frame;
+    out_ = kXml;
+    out_ += "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n";
+    out_ += "  <name>" + escaped(mission.name) + "</name>\n";
+    out_ +=
+        "  <Style id=\"keep_out\"><PolyStyle><color>800000ff</color></PolyStyle></Style>\n"
+        "  <Style id=\"keep_in\"><PolyStyle><color>4000ff00</color></PolyStyle></Style>\n";
+    add_route(mission, frame);
+    for (const MissionZone& zone : mission.zones) {
+      add_zone(zone);
+    }
+    out_ += "</Document>\n</kml>\n";
+  }
+  const std::string& text() const { return out_; }
+
+ private:
+  std::string coordinate(const kit::Point2& p, double altitude) const {
+    return rounded_text(p[0], decimals_.degrees) + "," + rounded_text(p[1], decimals_.degrees) +
+           "," + rounded_text(altitude, decimals_.metres);
+  }
+
+  void add_route(const kit::MissionFile& mission, AltitudeFrame frame) {
+    out_ += "  <Placemark>\n    <name>route</name>\n    <description>altitudes are metres " +
+            std::string(words_of(frame)) +
+            "</description>\n    <LineString>\n      <altitudeMode>" +
+            (frame == AltitudeFrame::sea ? "absolute" : "relativeToGround") +
+            "</altitudeMode>\n      <coordinates>\n";
+    for (const MissionItem& item : mission.items) {
+      out_ += "        " + coordinate({item.at.lon, item.at.lat}, item.at.altitude_m) + "\n";
+    }
+    out_ += "      </coordinates>\n    </LineString>\n  </Placemark>\n";
+  }
+
+  void add_ring(const char* element, const kit::Ring& ring, double altitude) {
+    out_ += std::string("      <") + element + "><LinearRing><coordinates>\n";
+    for (std::size_t n = 0; n <= ring.size(); ++n) {
+      out_ += "        " + coordinate(ring[n % ring.size()], altitude) + "\n";
+    }
+    out_ += std::string("      </coordinates></LinearRing></") + element + ">\n";
+  }
+
+  void add_data(const char* key, const std::string& value) {
+    out_ += std::string("      <Data name=\"") + key + "\"><value>" + value + "</value></Data>\n";
+  }
+
+  /// Extruded from its ceiling down to the ground; both limits stand beside it as data.
+  void add_zone(const MissionZone& zone) {
+    const char* role = zone.keep_in ? "keep_in" : "keep_out";
+    out_ += "  <Placemark>\n    <name>" + escaped(zone.name.empty() ? role : zone.name) +
+            "</name>\n    <styleUrl>#" + role + "</styleUrl>\n    <ExtendedData>\n";
+    add_data("role", role);
+    if (zone.floor_m) {
+      add_data("floor_m", rounded_text(*zone.floor_m, decimals_.metres));
+    }
+    if (zone.ceiling_m) {
+      add_data("ceiling_m", rounded_text(*zone.ceiling_m, decimals_.metres));
+    }
+    out_ += "    </ExtendedData>\n    <Polygon>\n";
+    out_ += zone.ceiling_m
+                ? "      <extrude>1</extrude>\n      <altitudeMode>absolute</altitudeMode>\n"
+                : "      <altitudeMode>clampToGround</altitudeMode>\n";
+    const kit::Polygon polygon = outline_of(zone);
+    const double altitude = zone.ceiling_m.value_or(0);
+    add_ring("outerBoundaryIs", polygon.outline, altitude);
+    for (const kit::Ring& hole : polygon.holes) {
+      add_ring("innerBoundaryIs", hole, altitude);
+    }
+    out_ += "    </Polygon>\n  </Placemark>\n";
+  }
+
+  Decimals decimals_;
+  std::string out_;
+};
+
+Json ring_json(const kit::Ring& ring, int decimals) {
+  Json corners = Json::array();
+  for (std::size_t n = 0; n <= ring.size(); ++n) {
+    const kit::Point2& p = ring[n % ring.size()];
+    corners.push_back({rounded(p[0], decimals), rounded(p[1], decimals)});
+  }
+  return corners;
+}
+
+Json zone_json(const MissionZone& zone, const Decimals& decimals) {
+  const kit::Polygon polygon = outline_of(zone);
+  Json rings = Json::array({ring_json(polygon.outline, decimals.degrees)});
+  for (const kit::Ring& hole : polygon.holes) {
+    rings.push_back(ring_json(hole, decimals.degrees));
+  }
+  const auto limit = [&](const std::optional<double>& value) {
+    return value ? Json(rounded(*value, decimals.metres)) : Json(nullptr);
+  };
+  return {{"type", "Feature"},
+          {"properties",
+           {{"name", zone.name},
+            {"role", zone.keep_in ? "keep_in" : "keep_out"},
+            {"floor_m", limit(zone.floor_m)},
+            {"ceiling_m", limit(zone.ceiling_m)}}},
+          {"geometry", {{"type", "Polygon"}, {"coordinates", rings}}}};
+}
+}  // namespace
+
+std::string kml_text(const MissionText& text) { return KmlWriter(text).text(); }
+
+std::string gpx_text(const MissionText& text) {
+  const Decimals& decimals = text.decimals;
+  std::string out = kXml;
+  out +=
+      "<gpx version=\"1.1\" creator=\"altiplan\" "
+      "xmlns=\"http://www.topografix.com/GPX/1/1\">\n<rte>\n  <name>" +
+      escaped(text.mission.name) +
+      "</name>\n  <desc>ele is in metres above mean sea level</desc>\n";
+  for (const MissionItem& item : text.mission.items) {
+    out += "  <rtept lat=\"" + rounded_text(item.at.lat, decimals.degrees) + "\" lon=\"" +
+           rounded_text(item.at.lon, decimals.degrees) + "\"><ele>" +
+           rounded_text(item.at.altitude_m, decimals.metres) + "</ele></rtept>\n";
+  }
+  return out + "</rte>\n</gpx>\n";
+}
+
+std::string geojson_text(const MissionText& text) {
+  const Decimals& decimals = text.decimals;
+  const kit::MissionFile& mission = text.mission;
+  const AltitudeFrame frame = mission.items.front().at.frame;
+  Json line = Json::array();
+  for (const MissionItem& item : mission.items) {
+    line.push_back({rounded(item.at.lon, decimals.degrees), rounded(item.at.lat, decimals.degrees),
+                    rounded(item.at.altitude_m, decimals.metres)});
+  }
+  Json properties{{"name", mission.name},
+                  {"role", "route"},
+                  {"altitude_frame", name(frame)},
+                  {"altitudes", std::string("metres ") + words_of(frame)}};
+  if (frame == AltitudeFrame::home) {
+    const MissionPoint& home = mission.home.value();
+    properties["home"] = {rounded(home.lon, decimals.degrees), rounded(home.lat, decimals.degrees),
+                          rounded(home.altitude_m, decimals.metres)};
+  }
+  Json features = Json::array({{{"type", "Feature"},
+                                {"properties", properties},
+                                {"geometry", {{"type", "LineString"}, {"coordinates", line}}}}});
+  for (const MissionZone& zone : mission.zones) {
+    features.push_back(zone_json(zone, decimals));
+  }
+  const Json json{{"type", "FeatureCollection"}, {"features", features}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+}  // namespace altiplan::host

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/import_export/route_csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+namespace {
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t at = 0; at <= line.size();) {
+    const std::size_t end = std::min(line.find(',', at), line.size());
+    cells.push_back(line.substr(at, end - at));
+    at = end + 1;
+  }
+  return cells;
+}
+
+/// Where x_m, y_m and z_m stand.
+std::array<std::size_t, 3> columns_of(const std::vector<std::string_view>& head) {
+  std::array<std::size_t, 3> columns{};
+  static constexpr std::array<std::string_view, 3> kNames{"x_m", "y_m", "z_m"};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto found = std::find(head.begin(), head.end(), kNames[n]);
+    if (found == head.end()) {
+      throw Error("expected a first line that names the columns x_m, y_m and z_m, found no '" +
+                  std::string(kNames[n]) + "'");
+    }
+    columns[n] = std::size_t(found - head.begin());
+  }
+  return columns;
+}
+
+double metres_of(std::string_view cell) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
+    throw Error("expected a number of metres, found " + excerpt(cell));
+  }
+  return value;
+}
+/// The column that `export` writes, where there is one.
+void expect_frame(const std::vector<std::string_view>& head,
+                  const std::vector<std::string_view>& cells) {
+  const auto found = std::find(head.begin(), head.end(), "altitude_frame");
+  if (found == head.end()) {
+    return;
+  }
+  const std::string_view frame = cells[std::size_t(found - head.begin())];
+  if (frame != "sea" && frame != "ground" && frame != "home") {
+    throw Error("expected sea, ground or home as altitude_frame, found " + excerpt(frame));
+  }
+}
+}  // namespace
+
+Route read_route_csv(const std::string& file, const std::string& text) {
+  Route route;
+  std::vector<std::string_view> head;
+  std::array<std::size_t, 3> columns{};
+  std::size_t line = 0;
+  try {
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      std::string_view content = std::string_view(text).substr(at, end - at);
+      at = end + 1;
+      ++line;
+      if (content.ends_with('\r')) {
+        content.remove_suffix(1);
+      }
+      if (content.empty()) {
+        continue;
+      }
+      const std::vector<std::string_view> cells = cells_of(content);
+      if (head.empty()) {
+        columns = columns_of(cells);
+        head = cells;
+        continue;
+      }
+      if (cells.size() != head.size()) {
+        throw Error("expected " + std::to_string(head.size()) + " columns, found " +
+                    std::to_string(cells.size()));
+      }
+      expect_frame(head, cells);
+      route.emplace_back(metres_of(cells[columns[0]]), metres_of(cells[columns[1]]),
+                         metres_of(cells[columns[2]]));
+    }
+  } catch (const Error& error) {
+    throw Error(file + ":" + std::to_string(line) + ": " + error.what());
+  }
+  if (route.empty()) {
+    throw Error(file + ": there is no route in it");
+  }
+  return route;
+}
+}  // namespace altiplan::host

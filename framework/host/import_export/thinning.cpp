@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/import_export/thinning.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "altiplan/check.hpp"
+#include "host/judge/judge.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Distance of p from the segment a–b.
+double off_line(const Vec3& a, const Vec3& p, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length = along.squaredNorm();
+  const double share = length > 0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
+  return (p - a - share * along).norm();
+}
+
+/// The route's points that are left, and which of them cannot go as things are.
+class Thinning {
+ public:
+  Thinning(const Route& route, const Request& request, const std::vector<Goal>& via)
+      : route_(route), request_(request), left_(route.size()), stuck_(route.size(), false) {
+    std::iota(left_.begin(), left_.end(), std::size_t{0});
+    for (const std::size_t n : via_indices(route, via)) {
+      fixed_.push_back(n);
+    }
+  }
+
+  std::vector<std::size_t> down_to(std::size_t most) {
+    while (left_.size() > most) {
+      const std::size_t k = nearest_to_line();
+      if (k == 0) {
+        break;
+      }
+      if (can_go(k)) {
+        left_.erase(left_.begin() + std::ptrdiff_t(k));
+        // The neighbours' legs are others now.
+        for (std::size_t n = k < 3 ? 0 : k - 3; n < std::min(k + 3, left_.size()); ++n) {
+          stuck_[left_[n]] = false;
+        }
+      } else {
+        stuck_[left_[k]] = true;
+      }
+    }
+    return left_;
+  }
+
+ private:
+  const Vec3& at(std::size_t k) const { return route_[left_[k]]; }
+
+  /// Place in left_ of the point to try next; 0 where there is none.
+  std::size_t nearest_to_line() const {
+    std::size_t best = 0;
+    double least = kInfinity;
+    for (std::size_t k = 1; k + 1 < left_.size(); ++k) {
+      const bool fixed = std::find(fixed_.begin(), fixed_.end(), left_[k]) != fixed_.end();
+      if (fixed || stuck_[left_[k]]) {
+        continue;
+      }
+      if (const double off = off_line(at(k - 1), at(k), at(k + 1)); off < least) {
+        least = off;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+  /// The leg past the point and the one after it, whose turn is another one then; past a leg
+  /// without a heading those after it too.
+  bool can_go(std::size_t k) const {
+    std::optional<Approach> before = request_.before_start();
+    for (std::size_t i = 0; i + 1 < k; ++i) {
+      before = onward(before, at(i));
+    }
+    std::size_t from = k - 1;
+    for (std::size_t to = k + 1; to < left_.size(); ++to) {
+      if (!leg_ok(before, at(from), at(to), request_)) {
+        return false;
+      }
+      if (from > k && has_heading(at(to) - at(from))) {
+        break;
+      }
+      before = onward(before, at(from));
+      from = to;
+    }
+    return true;
+  }
+
+  const Route& route_;
+  const Request& request_;
+  std::vector<std::size_t> left_;
+  std::vector<bool> stuck_;
+  std::vector<std::size_t> fixed_;
+};
+}  // namespace
+
+std::vector<std::size_t> thinned(const Route& route, std::size_t most, const Request& request,
+                                 const std::vector<Goal>& via) {
+  return Thinning(route, request, via).down_to(most);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <sha256.h>
+#include <sys/types.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "host/base/machine_fault.hpp"
+#include "host/plugins/checksum.hpp"
+#include "host/plugins/registry.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr std::array<std::string_view, 6> kKinds = {"environment",   "constraint", "planner",
+                                                    "local_planner", "smoother",   "tuner"};
+
+template <std::size_t N>
+bool ends_with_nul(const char (&text)[N]) {
+  return std::memchr(text, '\0', N) != nullptr;
+}
+
+std::string layout_text(std::uint32_t layout) {
+  return std::to_string(layout / 64) + " bytes aligned to " + std::to_string(layout % 64);
+}
+
+std::string sanitizer_text(unsigned bits) {
+  std::string text;
+  for (const auto& [bit, name] :
+       {std::pair{1U, "address"}, std::pair{2U, "thread"}, std::pair{4U, "memory"}}) {
+    if ((bits & bit) != 0) {
+      text += (text.empty() ? "" : "+") + std::string(name);
+    }
+  }
+  return text.empty() ? "no sanitizer" : "sanitizer " + text;
+}
+
+/// What keeps a plugin with this manifest out of this host, both sides named; "" where nothing.
+std::string mismatch(const Manifest& plugin) {
+  const Manifest host = make_manifest<Planner>("", "", "");
+  const auto version = [](const Manifest& m) {
+    return std::to_string(m.api_major) + "." + std::to_string(m.api_minor);
+  };
+  if (plugin.api_major != host.api_major || plugin.api_minor > host.api_minor) {
+    return "built for API " + version(plugin) + ", this altiplan offers " + version(host);
+  }
+  const auto differ = [](const char* what, unsigned theirs, unsigned ours) {
+    return "built with " + std::string(what) + " = " + std::to_string(theirs) +
+           ", this altiplan with " + std::to_string(ours);
+  };
+  if (plugin.cxx11_abi != host.cxx11_abi) {
+    return differ("_GLIBCXX_USE_CXX11_ABI", plugin.cxx11_abi, host.cxx11_abi);
+  }
+  if (plugin.glibcxx_debug != host.glibcxx_debug) {
+    return differ("_GLIBCXX_DEBUG", plugin.glibcxx_debug, host.glibcxx_debug);
+  }
+  if (plugin.sanitizers != host.sanitizers) {
+    return "built with " + sanitizer_text(plugin.sanitizers) + ", this altiplan with " +
+           sanitizer_text(host.sanitizers);
+  }
+  for (std::size_t i = 0; i < Manifest::kLayouts; ++i) {
+    if (plugin.layouts[i] != 0 && plugin.layouts[i] != host.layouts[i]) {
+      return std::string("its ") + kLayoutNames[i] + " has " + layout_text(plugin.layouts[i]) +
+             ", this altiplan's " + layout_text(host.layouts[i]) +
+             ": built with other headers or ABI flags";
+    }
+  }
+  return "";
+}
+
+/// Adds the record to the library, or throws what is wrong with it.
+void take_record(const Manifest& record, Library& library) {
+  if (!ends_with_nul(record.compiler) || !ends_with_nul(record.kind) ||
+      !ends_with_nul(record.name) || !ends_with_nul(record.sentence)) {
+    throw ElfError("damaged manifest: a text without an end");
+  }
+  if (std::find(kKinds.begin(), kKinds.end(), record.kind) == kKinds.end()) {
+    throw ElfError("offers '" + std::string(record.name) + "' of the unknown kind '" + record.kind +
+                   "'");
+  }
+  if (!is_snake_case(record.name)) {
+    throw ElfError("offers a " + std::string(record.kind) + " named '" + record.name +
+                   "', expected lower-case letters, digits and '_'");
+  }
+  for (const Manifest& other : library.plugins) {
+    if (std::strcmp(other.kind, record.kind) == 0 && std::strcmp(other.name, record.name) == 0) {
+      throw ElfError("offers the " + std::string(record.kind) + " '" + record.name + "' twice");
+    }
+  }
+  library.plugins.push_back(record);
+}
+
+/// The records of the manifest section; compilers may align each, so that zeros stand between.
+void read_manifest(const std::string& bytes, Library& library) {
+  std::size_t at = 0;
+  while (at + sizeof(std::uint32_t) <= bytes.size()) {
+    if (bytes.compare(at, 4, std::string(4, '\0')) == 0) {
+      at += 4;
+      continue;
+    }
+    constexpr std::size_t kFixed = sizeof(Manifest::magic) + sizeof(Manifest::struct_size);
+    if (bytes.size() - at < kFixed ||
+        std::memcmp(bytes.data() + at, Manifest::kMagic, sizeof Manifest::kMagic) != 0) {
+      throw ElfError("damaged manifest: expected 'altiplan plugin' at byte " + std::to_string(at));
+    }
+    Manifest record;
+    std::memcpy(&record, bytes.data() + at, kFixed);
+    if (record.struct_size != sizeof(Manifest)) {
+      throw ElfError("its manifest has " + std::to_string(record.struct_size) +
+                     " bytes a plugin, this altiplan's " + std::to_string(sizeof(Manifest)) +
+                     ": built for another API");
+    }
+    if (bytes.size() - at < sizeof(Manifest)) {
+      throw ElfError("damaged manifest: cut off in a record");
+    }
+    std::memcpy(&record, bytes.data() + at, sizeof record);
+    if (record.checksum != checksum_of(record)) {
+      throw ElfError("damaged manifest: a record does not fit its checksum");
+    }
+    take_record(record, library);
+    at += sizeof(Manifest);
+  }
+  if (library.plugins.empty()) {
+    throw ElfError("its manifest is empty");
+  }
+  // Compilers put the records in an order of their own.
+  std::sort(library.plugins.begin(), library.plugins.end(),
+            [](const Manifest& a, const Manifest& b) {
+              const int kinds = std::strcmp(a.kind, b.kind);
+              return kinds < 0 || (kinds == 0 && std::strcmp(a.name, b.name) < 0);
+            });
+}
+
+std::string hash_of(const std::filesystem::path& file) {
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digest;
+  if (SHA256File(file.c_str(), digest.data()) == nullptr) {
+    throw ElfError("cannot be read", errno);
+  }
+  return digest.data();
+}
+}  // namespace
+
+bool is_snake_case(std::string_view name) {
+  const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && small(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return small(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+Library examine_library(const std::filesystem::path& file) {
+  Library library;
+  library.file = file;
+  try {
+    const ElfFile elf(file);
+    library.build = elf.build_id();
+    if (library.build.empty()) {
+      library.build = hash_of(file);
+    }
+    if (!elf.has_section("altiplan_manifest")) {
+      throw ElfError("not an altiplan plugin (no section altiplan_manifest)");
+    }
+    read_manifest(elf.section("altiplan_manifest"), library);
+    for (const Manifest& plugin : library.plugins) {
+      if (library.refused.empty()) {
+        library.refused = mismatch(plugin);
+      }
+    }
+    if (library.refused.empty()) {
+      library.checksum = hexadecimal(stated_checksum(elf).sum);
+    }
+  } catch (const ElfError& error) {
+    library.refused = error.what();
+    library.is_machine_fault = is_machine_fault(error.error());
+  }
+  return library;
+}
+}  // namespace altiplan::host

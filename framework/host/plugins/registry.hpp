@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/local_planner.hpp"
+#include "altiplan/planner.hpp"
+#include "altiplan/plugin_abi.hpp"
+#include "altiplan/smoother.hpp"
+#include "altiplan/tuner.hpp"
+
+namespace altiplan::host {
+
+/// A plugin library as its file describes it; nothing of it has run yet.
+struct Library {
+  std::filesystem::path file;
+  std::string build;              ///< GNU build id, else a hash of the file; hexadecimal
+  std::string checksum;           ///< of what is loaded, as the file states it; hexadecimal
+  std::vector<Manifest> plugins;  ///< empty where refused before the manifest could be read
+  std::string refused;            ///< why, with both sides; "" when it may be loaded
+  bool is_machine_fault = false;  ///< it is refused because the machine did not give its bytes
+};
+
+/// By which a file that was written to, or put in another's place, is told at a glance.
+class FileStamp {
+ public:
+  explicit FileStamp(const std::filesystem::path& file);
+  bool operator==(const FileStamp&) const = default;
+
+ private:
+  std::array<std::int64_t, 7> numbers_{};
+};
+
+/// A second copy of one build: the one that comes first in search order is used.
+struct LibraryCopy {
+  std::filesystem::path file;
+  std::filesystem::path used;
+};
+
+/// Knows which library offers which plugin, and loads one when it is first asked for. Libraries are
+/// read as ELF files first; only one whose manifest fits this host, and whose bytes fit its
+/// checksum, is ever opened (rtld_now, local), and none is unloaded.
+class Registry {
+ public:
+  /// Folders in search order; missing ones are passed over.
+  explicit Registry(std::vector<std::filesystem::path> folders);
+  Registry(const Registry&) = delete;
+  Registry& operator=(const Registry&) = delete;
+
+  /// `extra` (the command line, then the config), ALTIPLAN_PLUGIN_PATH (colon-separated), and the
+  /// install folder relative to this program; never the current folder.
+  static std::vector<std::filesystem::path> search_path(
+      const std::vector<std::filesystem::path>& extra);
+
+  const std::vector<std::filesystem::path>& folders() const { return folders_; }
+  const std::vector<Library>& libraries() const { return libraries_; }
+  /// Files that were passed over as copies of a library found before.
+  const std::vector<LibraryCopy>& copies() const { return copies_; }
+  /// Names offered for a kind, sorted.
+  std::vector<std::string> names(std::string_view kind) const;
+  /// The library that offers the plugin; null where none does. Throws PluginError where a library
+  /// that offers the name, or is called libaltiplan_KIND_NAME.so, is refused. Libraries that share
+  /// a name (planners and local planners have theirs in common) are all refused.
+  const Library* offering(std::string_view kind, std::string_view name) const;
+
+  /// Loads at the first call, in a child process before this one. Throws PluginError where the
+  /// library cannot be used, Error where no library offers the name (with the folders searched and
+  /// the nearest name).
+  const PluginEntry& get(std::string_view kind, std::string_view name);
+
+  /// Files of libraries that were asked for and are no longer what was loaded; each change once.
+  std::vector<std::filesystem::path> changed();
+
+ private:
+  std::string not_offered(std::string_view kind, std::string_view name) const;
+
+  std::vector<std::filesystem::path> folders_;
+  std::vector<Library> libraries_;
+  std::vector<LibraryCopy> copies_;
+  std::mutex mutex_;  ///< of used_
+  std::map<const Library*, FileStamp> used_;
+};
+
+/// Reads a library's ELF headers, manifest and build id without running any of its code; never
+/// throws: what is wrong stands in `refused`.
+Library examine_library(const std::filesystem::path& file);
+
+/// The library's entries, in the manifest's order. At the first call it is copied, verified, tried
+/// in a child process (a damaged one can end the process) and opened in this one, for ever. Throws
+/// PluginError where it cannot be opened, has changed since it was examined, or does not hold what
+/// its manifest announces; Error where the system has no room for it.
+std::vector<const PluginEntry*> load_library(const Library& library);
+
+/// Whether the file still holds what was examined.
+bool is_unchanged(const Library& library);
+
+/// Lower-case letters, digits and '_', the first a letter: a plugin, and a parameter, are so named.
+bool is_snake_case(std::string_view name);
+}  // namespace altiplan::host

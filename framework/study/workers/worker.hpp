@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "study/workers/worker_pool.hpp"
+
+namespace altiplan::study {
+
+/// What a worker tells its parent while it is at it, in memory that both have. A plugin may have
+/// written anything over it: the parent trusts the records alone, and takes this for hints.
+struct Blackboard {
+  std::atomic<std::uint32_t> begun = 0;      ///< jobs of its batch that have begun
+  std::atomic<std::uint32_t> handed_in = 0;  ///< records that it has written
+  std::atomic<std::int64_t> began_ns = 0;    ///< when the last of them has, on the steady clock
+  std::atomic<double> base_cpu_s = 0;        ///< what the process had used before it
+  std::atomic<double> base_memory_mb = 0;
+  std::atomic<int> error = 0;  ///< why there is no record; `note` says of what
+  std::array<char, 512> note{};
+};
+
+/// Nanoseconds of the steady clock, which parent and worker share.
+std::int64_t steady_ns();
+
+/// What a worker is given.
+struct WorkerTask {
+  std::vector<std::size_t> batch;  ///< jobs, one after the other
+  std::vector<std::string> keys;
+  std::string records;     ///< the files for its records, …
+  std::string last_words;  ///< …
+  std::string scratch;
+  std::string group;  ///< entrance of its control group, if it has one
+  std::uint64_t mark = 0;
+  int said = -1;  ///< descriptor for stdout and stderr
+  JobLimits limits;
+  pid_t parent = 0;
+};
+
+/// The life of a worker, in the process that was forked for it.
+[[noreturn]] void be_worker(const WorkerTask& task, Blackboard& board, const Work& work);
+}  // namespace altiplan::study

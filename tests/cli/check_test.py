@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""check_test.py PROGRAM BROKEN: `altiplan check`, and what `run` prints of a flight."""
+import json
+
+import case
+from case import CliCase, PIPELINE, SCENARIO
+
+
+class Check(CliCase):
+    def test_check_a_route_from_elsewhere(self):
+        around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
+                            "[900,500,100]]")
+        out, _ = self.call("check", "--route", around, "--scenario", "scenario.yaml")
+        self.assertTrue(out.startswith("sound: 4 waypoints"), out)
+        through = self.write("through.json", "[[100,500,100],[900,500,100]]")
+        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", code=1)
+        self.assertIn("'post'", out)
+        out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", "--json",
+                           code=1)
+        self.assertFalse(json.loads(out)["check"]["ok"])
+        for text in ("[]", "[[1,2]]", "{}", "[1", '"text"', '[["a","b","c"]]'):
+            route = self.write("wrong.json", text)
+            self.call("check", "--route", route, "--scenario", "scenario.yaml", code=3)
+        _, err = self.call("check", "scenario.yaml", code=3)
+        self.assertEqual(err, "altiplan: scenario.yaml:1: this is not JSON: expected a result of "
+                              "altiplan run\n")
+        self.call("check", "--route", around, code=2)
+        self.call("check", code=2)
+
+    def test_check_a_result_without_a_flight(self):
+        self.call("run", self.pipeline, "-o", "result.json")
+        out, _ = self.call("check", "result.json")
+        self.assertTrue(out.startswith("sound"), out)
+        self.assertNotIn("flight", out)
+        result = json.loads(self.read("result.json"))
+        result["route"] = [result["route"][0], result["route"][-1]]
+        self.write("forged.json", json.dumps(result))
+        out, _ = self.call("check", "forged.json", code=1)
+        self.assertTrue(out.startswith("not sound"), out)
+        self.write("scenario.yaml", self.read("scenario.yaml") + "# changed\n")
+        _, err = self.call("check", "result.json")
+        self.assertIn("scenario.yaml is not the file that the result was made from", err)
+        for text in ("{}", "[1", "[]", '{"altiplan": 2}'):
+            self.call("check", self.write("wrong.json", text), code=3)
+
+    def test_check_a_flight_against_the_true_world(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
+        flies = self.write("flies.yaml", PIPELINE + "  - fly: apf\n"
+                           "    with: {influence_m: 200}\n")
+        self.call("run", flies, "--out", "result.json")
+        out, _ = self.call("check", "result.json")
+        self.assertIn("\nflight sound: ", out)
+        self.assertIn("0 collisions, reached the goal", out)
+
+        result = json.loads(self.read("result.json"))
+        result["flight"]["track"] = [[0, 100, 500, 100], [60, 900, 500, 100]]
+        self.write("forged.json", json.dumps(result))
+        out, _ = self.call("check", "forged.json", code=1)
+        self.assertIn("flight not sound: 2 points", out)
+        self.assertIn("collision: the vehicle touches 'wall'", out)
+        verdict = json.loads(self.call("check", "forged.json", "--json", code=1)[0])
+        self.assertTrue(verdict["check"]["ok"], "the route is as it was")
+        self.assertEqual((verdict["flight"]["collisions"], verdict["flight"]["reached"]),
+                         (1, False))
+
+        alone = self.write("alone.yaml", PIPELINE + "  - fly: route\n")
+        self.call("run", alone, "--out", "alone.json", code=1)
+        out, _ = self.call("check", "alone.json", code=1)
+        self.assertIn("1 collision, did not reach the goal", out)
+        self.assertIn("collision: the vehicle touches 'post'", out)
+
+    def test_why_a_flight_ended_early_is_printed(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))
+        late = self.write("late.yaml", PIPELINE + "  - fly: route\n    max_time_s: 3\n")
+        out, _ = self.call("run", late, code=1)
+        self.assertIn("flight: did not reach the goal after 3 s,", out)
+        self.assertIn("; the flight: timed out after 3 s (max_time_s) at (", out)
+        replans = self.write("replans.yaml", PIPELINE + "  - fly: route\n    replan:\n"
+                             "      plan: astar\n      within_iterations: 1\n"
+                             "      with: {cell_m: [50, 50, 50]}\n")
+        out, _ = self.call("run", replans, code=1)
+        self.assertRegex(out, r"\n +\d+ s  replan by \S+: timed_out: the budget was used up")
+
+    def test_check_says_where_events_count(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") +
+                   "events:\n  - {at_s: 20, remove: post}\n")
+        self.call("run", self.write("alone.yaml", PIPELINE + "  - fly: route\n"), "--out", "r.json")
+        out, _ = self.call("check", "r.json")
+        self.assertIn("0 collisions, reached the goal\n  each event was applied at", out)
+
+
+if __name__ == "__main__":
+    case.main()

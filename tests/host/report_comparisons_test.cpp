@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a report compares, and how sure it is of it.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "report_study.hpp"
+
+namespace altiplan::study::report {
+namespace {
+
+TEST(Report, ComparesOnThePairsThatBothSolved) {
+  StudyData data = study(2, 10);
+  data.rows[0].outcome = "timed_out";  // p0 s0
+  data.rows[3].values[1] = kNaN;       // p1 s1
+  const Analysis analysis = analyse(in_order(data, true), true);
+  const Comparison& made = analysis.metrics.front().comparisons.front();
+  EXPECT_EQ(analysis.metrics.front().metric, "length_m");
+  EXPECT_EQ(made.pairs, 10u);
+  EXPECT_EQ(made.used, 8u);
+  EXPECT_EQ(made.pipeline, 1u);
+  EXPECT_EQ(made.against, 0u);
+  EXPECT_TRUE(analysis.metrics.front().is_ratio);
+  ASSERT_TRUE(made.effect.test && made.effect.interval);
+  EXPECT_DOUBLE_EQ(made.rank_biserial(), 1);  // p1 is always one metre longer
+  EXPECT_GE(made.effect.median, made.effect.interval->low);
+  EXPECT_LE(made.effect.median, made.effect.interval->high);
+  EXPECT_EQ(analysis.success_comparisons.front().only_pipeline, 1u);
+  EXPECT_EQ(analysis.success_comparisons.front().test.second_more, 1u);
+}
+
+TEST(Report, RatiosOrDifferencesOfAMetricAlike) {
+  StudyData data = study(3, 8);
+  EXPECT_TRUE(analyse(in_order(data, true), true).metrics.front().is_ratio);
+  data.rows[2].values[1] = 0;  // of p2, which two of three comparisons have
+  EXPECT_FALSE(analyse(in_order(data, true), true).metrics.front().is_ratio);
+  const auto files = written(data);
+  const std::string& csv = files.at("figures/pairs-length_m.csv");
+  EXPECT_EQ(csv.find("ratio"), std::string::npos);
+  EXPECT_NE(files.at("tables/pairs-length_m.md").find("median difference"), std::string::npos);
+}
+
+TEST(Report, FigureAndTableNameThePipelinesInOneOrder) {
+  const auto files = written(study(2, 8, 3));
+  EXPECT_NE(files.at("figures/pairs-length_m.svg").find(">p1 / p0<"), std::string::npos);
+  EXPECT_NE(files.at("tables/pairs-length_m.md").find("| p1 | p0 | 1.001 |"), std::string::npos)
+      << files.at("tables/pairs-length_m.md");
+  const std::string& csv = files.at("figures/pairs-length_m.csv");
+  EXPECT_TRUE(csv.starts_with(
+      "pipeline,against,effect_is,effect,low,high,n,n_of,n_differ,p,p_holm,rank_biserial,"
+      "pairs_both_solved,pairs\r\np1,p0,ratio,1.0009"))
+      << csv;
+  EXPECT_NE(csv.find(",8,scenarios,8,0.0078125,0.0078125,1,24,24"), std::string::npos) << csv;
+  EXPECT_NE(files.at("index.html").find("Left of the dashed line A, the pipeline named first"),
+            std::string::npos);
+}
+
+TEST(Report, SaysHowManyScenariosDiffer) {
+  StudyData data = study(2, 8);
+  for (std::size_t at = 0; at < 10; ++at) {
+    data.rows[at].values[1] = 1000;  // five scenarios are equal
+  }
+  const auto files = written(data);
+  EXPECT_NE(files.at("tables/pairs-length_m.md").find("| 8 scenarios, 3 differ | 0.25 |"),
+            std::string::npos)
+      << files.at("tables/pairs-length_m.md");
+  EXPECT_NE(files.at("figures/pairs-length_m.csv").find(",8,scenarios,3,0.25,"), std::string::npos);
+}
+
+TEST(Report, AShareHasOneInterval) {
+  StudyData data = study(2, 10, 3);
+  for (RunRow& row : data.rows) {
+    if (row.pipeline == 1 && (row.scenario == 4 || (row.scenario == 7 && row.repetition == 0))) {
+      row.outcome = "no_route";
+    }
+  }
+  const StudyData ordered = in_order(data, true);
+  const Analysis analysis = analyse(ordered, true);
+  const JudgedClaim judged = judge_claim(ordered, {"c", "share(p1.solved)", ">= 0.5", 0.95});
+  const ShareInterval& shown = analysis.success[1].interval;
+  ASSERT_TRUE(shown.interval && judged.interval);
+  EXPECT_EQ(shown.method, "bootstrap of 10 scenarios");
+  EXPECT_EQ(judged.method, shown.method);
+  EXPECT_EQ(judged.interval->low, shown.interval->low);
+  EXPECT_EQ(judged.interval->high, shown.interval->high);
+  EXPECT_EQ(analysis.success[0].interval.method, "Wilson, 10 scenarios");
+  // Two scenarios speak for p0, of which one by a single repetition; four runs do.
+  const SuccessComparison& made = analysis.success_comparisons.front();
+  EXPECT_EQ(made.only_against, 4u);
+  EXPECT_EQ(made.test.first_more, 2u);
+  EXPECT_EQ(made.test.p, 0.5);
+}
+
+TEST(Report, OfTooFewScenariosThereIsNoInterval) {
+  StudyData data = study(2, 5, 4);
+  data.file.claims = {{"longer", "median(p1.length_m / p0.length_m)", "> 1", 0.95}};
+  const auto files = written(data);
+  const std::string& page = files.at("index.html");
+  EXPECT_NE(page.find("its claim is undecided"), std::string::npos);
+  EXPECT_NE(page.find("too few scenarios: at least 6 for 95 %"), std::string::npos);
+  EXPECT_NE(page.find("too few scenarios, at least 6 are needed"), std::string::npos);
+}
+
+TEST(Report, AVerdictSaysNothingTwice) {
+  StudyData data = study(2, 8);
+  data.file.claims = {{"about", "median(p1.length_m / p0.length_m)", "0.9..1.1", 0.95}};
+  const std::string page = written(data).at("index.html");
+  EXPECT_NE(
+      page.find("<code>median(p1.length_m / p0.length_m) within 0.9..1.1</code><p>Found: 1.00"),
+      std::string::npos);
+  EXPECT_NE(page.find("its claim holds"), std::string::npos);
+  data.file.claims[0].is = "> 2";
+  EXPECT_NE(written(data).at("index.html").find("its claim fails"), std::string::npos);
+}
+
+TEST(Report, AMetricIsComparedOnce) {
+  StudyData data = study(2, 4);
+  for (const char* name : {"length_m", "expanded", "length_m", "no_such_m", "plan_time_s"}) {
+    data.file.metrics.push_back({name, {}});
+  }
+  const Analysis analysis = analyse(in_order(data, false), false);
+  ASSERT_EQ(analysis.metrics.size(), 2u);
+  EXPECT_EQ(analysis.left_out,
+            (std::vector<std::string>{"length_m is named twice.",
+                                      "no_such_m is not compared: no run has such a number.",
+                                      "plan_time_s is not compared: it differs from run to run."}));
+}
+
+TEST(Report, AScenarioCountsOnceInTests) {
+  const Analysis analysis = analyse(in_order(study(3, 6, 5), true), true);
+  EXPECT_EQ(analysis.metrics.front().comparisons.front().effect.units.count, 6u);
+  EXPECT_EQ(analysis.metrics.front().comparisons.front().used, 30u);
+  EXPECT_EQ(analysis.metrics.front().ranking->blocks, 6u);
+  const Analysis of_one = analyse(in_order(study(3, 1, 5), true), true);
+  EXPECT_EQ(of_one.metrics.front().ranking->blocks, 5u);
+}
+}  // namespace
+}  // namespace altiplan::study::report
