@@ -8,6 +8,7 @@
 
 #include "altiplan/blame.hpp"
 #include "altiplan/request.hpp"
+#include "cells_touching.hpp"
 
 namespace altiplan {
 namespace {
@@ -308,21 +309,6 @@ namespace {
 bool shows(const std::vector<Layer>& layers, const Layer& layer) {
   return std::any_of(layers.begin(), layers.end(),
                      [&](const Layer& other) { return other.environment == layer.environment; });
-}
-
-/// Cells that may touch the box, clipped to the grid.
-std::pair<Cell, Cell> cells_touching(const GridSpec& spec, const Box& box) {
-  Cell low{};
-  Cell high{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto index = [&](double at, double margin) {
-      const double cell = std::floor((at - spec.origin[axis]) / spec.cell[axis]) + margin;
-      return int(std::clamp(cell, -1.0, double(spec.counts[axis])));
-    };
-    low[axis] = std::max(0, index(box.min[axis], -1));
-    high[axis] = std::min(spec.counts[axis] - 1, index(box.max[axis], 1));
-  }
-  return {low, high};
 }
 
 /// The earlier grid brought up to date: added layers are drawn over it; where a layer went, the box
