@@ -98,7 +98,7 @@ Limits random_limits(RandomStream& random) {
 
 /// Over ground, among solids, of the size in which constraints are written: hundreds of metres.
 Scene scene_of(std::uint64_t seed) {
-  Scene scene = random_scene(100, seed, Flight::space);
+  Scene scene = random_scene(100, seed, Flight::spatial);
   scene.ridge = std::make_shared<Ridge>(1000, 120, 0.2);
   scene.request.world = std::make_shared<const World>(
       scene.request.world->with({"ridge", "conformance", scene.ridge, true}));

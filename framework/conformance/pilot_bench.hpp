@@ -48,7 +48,7 @@ struct Bench {
     request.vehicle.speed_mps = 0.01 * reach;
     request.vehicle.radius_m = request.limits.min_clearance = 0.001 * reach;
     request.random = RandomStream(options.seed);
-    return make()->traits().space ? request : in_level_flight(request);
+    return make()->traits().spatial ? request : in_level_flight(request);
   }
 };
 

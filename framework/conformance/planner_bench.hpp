@@ -30,15 +30,15 @@ struct PlannerBench {
   std::vector<Flight> flights() const {
     const Traits traits = make()->traits();
     std::vector<Flight> all;
-    if (traits.space) {
-      all.push_back(Flight::space);
+    if (traits.spatial) {
+      all.push_back(Flight::spatial);
     }
-    if (traits.plane) {
+    if (traits.planar) {
       all.push_back(Flight::level);
     }
     return all;
   }
-  Flight flight() const { return make()->traits().space ? Flight::space : Flight::level; }
+  Flight flight() const { return make()->traits().spatial ? Flight::spatial : Flight::level; }
   /// Gives the scene the budget of one plan, and its own seed.
   Scene budgeted(Scene scene) const {
     scene.request.budget.max_iterations = options.iterations;

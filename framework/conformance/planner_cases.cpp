@@ -139,7 +139,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
       judge(report, bench.make()->plan(scene.request), scene);
     }
   }
-  if (bench.make()->traits().space) {
+  if (bench.make()->traits().spatial) {
     const Scene ridge = bench.budgeted(ridge_scene(bench.options.unit_m));
     judge(report, bench.make()->plan(ridge.request), ridge);
   }

@@ -22,7 +22,7 @@ struct Bench {
 
   Scene world(int n) const {
     Scene scene =
-        random_scene(options.unit_m, options.seed * 1000 + std::uint64_t(n), Flight::space);
+        random_scene(options.unit_m, options.seed * 1000 + std::uint64_t(n), Flight::spatial);
     scene.request.budget.max_iterations = options.iterations;
     scene.request.random = RandomStream(options.seed).sub("smooth");
     return scene;

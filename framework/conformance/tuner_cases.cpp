@@ -20,7 +20,7 @@ using Batch = std::vector<Point>;
 using Score = std::function<double(const Point&)>;
 
 /// A search that asks for more has no end, as far as a study is concerned.
-constexpr std::size_t kMostPoints = 100'000;
+constexpr std::size_t kMaxPoints = 100'000;
 
 struct Bench {
   Factory<Tuner> make;
@@ -82,7 +82,7 @@ std::vector<Batch> search(const Bench& bench, const std::vector<Dimension>& spac
   }
   std::vector<Batch> batches;
   std::size_t points = 0;
-  while (points < kMostPoints) {
+  while (points < kMaxPoints) {
     batches.push_back(search->ask());
     std::vector<double> scores;
     for (const Point& point : batches.back()) {

@@ -152,7 +152,7 @@ class Bench:
 
     def run(self, file, folder):
         pipeline = self.folder / "problems" / file.stem / "pipeline.yaml"
-        return self.call(["run", "--json", str(pipeline), "--patience", "5"], folder,
+        return self.call(["run", "--json", str(pipeline), "--timeout", "5"], folder,
                          self.folder / "others" / file.stem)
 
     def run_undamaged(self, file):

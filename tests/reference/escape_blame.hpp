@@ -169,7 +169,7 @@ class BlameSearch {
     Way way = escape(from, known, lattice);
     for (int i = 0; i < 2 && !way.found(); ++i) {
       lattice = lattice.halved();
-      lattice.most_places = kMostFinePlaces;
+      lattice.max_places = kMaxFinePlaces;
       way = escape(from, known, lattice);
     }
     return way;
@@ -185,7 +185,7 @@ class BlameSearch {
     }
     const Request& request = setup_.request;
     const Scene scene = scene_of(all);
-    const double direct = scene.least_time(request.start.position, request.goal.position);
+    const double direct = scene.min_time(request.start.position, request.goal.position);
     Lattice lattice = lattice_;
     Way way;
     for (int i = 0; i == 0 || (i < 3 && way.outcome == Way::Outcome::undecided); ++i) {
@@ -205,7 +205,7 @@ class BlameSearch {
     return result_.message.substr(from, result_.message.find('\'', from) - from);
   }
 
-  static constexpr std::size_t kMostFinePlaces = 20'000;
+  static constexpr std::size_t kMaxFinePlaces = 20'000;
 
   const host::FlightSetup& setup_;
   const host::FlightResult& result_;

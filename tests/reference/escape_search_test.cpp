@@ -185,7 +185,7 @@ TEST(EscapeSearch, KeepsToTheVolumeTheLevelAndTheClimb) {
 
 TEST(EscapeSearch, SaysWhenItGivesUp) {
   Lattice small;
-  small.most_places = 10;
+  small.max_places = 10;
   EXPECT_EQ(escape(scene_with(ring(12, 500, 140, kSpeed / 2)), small).outcome,
             Way::Outcome::undecided);
 }

@@ -116,6 +116,8 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
+const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
+
 int main_checked(int argc, char** argv) {
   const auto begin = [] {  // before anything else: a busy machine takes its time
     catch_interrupts();
@@ -170,6 +172,13 @@ int main_checked(int argc, char** argv) {
       std::cerr << "altiplan: unknown command '" << rest.front()
                 << "' (altiplan --help lists the commands)\n";
       return kUsage;
+    }
+    for (const std::string& argument : app.remaining(true)) {
+      const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
+      if (renamed != kRenamedOptions.end()) {
+        std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
+        return kUsage;
+      }
     }
     const int code = app.exit(error);
     return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });

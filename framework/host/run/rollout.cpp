@@ -12,7 +12,7 @@ namespace altiplan::host {
 namespace {
 
 /// A pilot that neither arrives nor gives up is stopped here, budget or none.
-constexpr std::uint64_t kMostSteps = 1'000'000;
+constexpr std::uint64_t kMaxSteps = 1'000'000;
 constexpr double kStepSeconds = 1;
 
 /// What Pilot::step does not see: a step is no faster than the vehicle, and `arrived` is at the
@@ -69,7 +69,7 @@ PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
       }
       break;
     }
-    if (steps == kMostSteps) {
+    if (steps == kMaxSteps) {
       result.status = PlanStatus::no_route;
       result.message = "the pilot did not arrive in " + std::to_string(steps) + " steps";
       break;

@@ -81,6 +81,7 @@ class ALTIPLAN_API FieldRef {
   FieldRef& one_of(std::initializer_list<const char*> words);
   FieldRef& min_items(std::size_t count);
   FieldRef& required();
+  FieldRef& was(std::string_view name);  ///< the former key, refused with the present one
 
  private:
   FieldSpec& spec();
@@ -299,6 +300,7 @@ class ALTIPLAN_API Fields {
   std::string path_;
   std::vector<BoundField> bound_;
   std::vector<std::string> known_;
+  std::vector<std::pair<std::string, std::string>> former_;  ///< keys, and what they are now
   std::vector<std::size_t> missing_;
   std::vector<Number> numbers_;
   std::vector<Problem> problems_;

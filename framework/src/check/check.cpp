@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "altiplan/measures.hpp"
 #include "altiplan/what_blocks.hpp"
 
@@ -274,7 +274,7 @@ namespace {
 /// The answer of a constraint; what it throws gets its name.
 template <class Ask>
 auto answer_of(const NamedConstraint& named, const Ask& ask) {
-  return blamed([&] { return "the constraint '" + named.name + "'"; },
+  return attributed([&] { return "the constraint '" + named.name + "'"; },
                 [&] { return ask(*named.constraint); });
 }
 }  // namespace

@@ -50,6 +50,11 @@ FieldRef& FieldRef::required() {
   return *this;
 }
 
+FieldRef& FieldRef::was(std::string_view name) {
+  fields_->former_.emplace_back(name, spec().name);
+  return *this;
+}
+
 Fields::Fields(const Value* source, std::string path) : source_(source), path_(std::move(path)) {
   if (source_ != nullptr && !expect_map(*source_, path_)) {
     source_ = nullptr;
@@ -183,7 +188,12 @@ void Fields::finish() {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) {
       continue;
     }
-    problems_.push_back({entry.where, key_of(entry.key), unknown_key(entry.key, known_)});
+    const auto former = std::find_if(former_.begin(), former_.end(), [&](const auto& renamed) {
+      return renamed.first == entry.key;
+    });
+    problems_.push_back({entry.where, key_of(entry.key),
+                         former == former_.end() ? unknown_key(entry.key, known_)
+                                                 : "is now '" + former->second + "'"});
   }
   if (problems_.empty()) {
     for (const std::string& rule : broken_rules_) {

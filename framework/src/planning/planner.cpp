@@ -49,7 +49,7 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
     result.counters = {{"expanded", 0}};
     return result;
   } catch (...) {
-    blame("");
+    attribute_to("");
   }
 }
 
