@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shared by the scripts beside it. Messages go to stderr: stdout is for results.
+# Shared by the scripts in this folder. Messages go to stderr, results to stdout.
 # shellcheck shell=bash
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 say() { echo "${0##*/}: $*" >&2; }
 
-# setup GROUP: the packages of that group, unless ALTIPLAN_SKIP_SETUP is set.
+# setup GROUP: installs the packages of that group, unless ALTIPLAN_SKIP_SETUP is set.
 setup() {
   if [[ -z ${ALTIPLAN_SKIP_SETUP:-} ]]; then
     "$root/tools/setup" "$1"
@@ -26,7 +26,7 @@ quietly() {
   return "$status"
 }
 
-# configure PRESET TESTING: makes build/PRESET, unless it is there with tests ON if so asked.
+# configure PRESET TESTING: configures build/PRESET, unless it exists, with tests if TESTING is ON.
 configure() {
   local folder=$root/build/$1
   if [[ ! -f $folder/build.ninja ]] ||
@@ -39,7 +39,7 @@ configure() {
 build() {
   local preset=$1 cache
   shift
-  # ccache compiles nothing where it cannot write, as for a user without a home folder.
+  # ccache fails without a writable folder, e.g. for a user without a home folder.
   cache=$(ccache --get-config cache_dir 2>/dev/null) || cache=
   if [[ -z $cache ]] || ! mkdir -p "$cache" 2>/dev/null || [[ ! -w $cache ]]; then
     export CCACHE_DIR=$root/build/ccache

@@ -14,8 +14,9 @@ using Clock = Budget::Clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
 constexpr const char* kDeadline =
-    "Planner law 4: a deadline is overrun by at most 50 ms at the 99th percentile";
-constexpr const char* kStop = "Planner law 4: a stop is heeded within 50 ms at the 99th percentile";
+    "Planner contract 4: a deadline is overrun by at most 50 ms at the 99th percentile";
+constexpr const char* kStop =
+    "Planner contract 4: a stop is honoured within 50 ms at the 99th percentile";
 constexpr const char* kSmootherDeadline = "Smoother: a deadline is overrun by at most 50 ms";
 constexpr double kMax = 50;
 
@@ -23,8 +24,8 @@ Clock::time_point after(double ms) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(Milliseconds(ms));
 }
 
-/// Milliseconds in which this thread could have run, and the machine was at something else; 0 where
-/// the system does not count them.
+/// Milliseconds for which this thread was ready, but the machine ran others; 0 where the system
+/// does not count them.
 double kept_waiting() {
   std::ifstream counts("/proc/thread-self/schedstat");
   double ran_ns = 0;
@@ -33,7 +34,7 @@ double kept_waiting() {
   return counts ? waited_ns / 1e6 : 0;
 }
 
-/// A clock that stands still while the machine lets this thread wait.
+/// A clock that pauses while the machine lets this thread wait.
 class FairClock {
  public:
   double ms() const {
@@ -45,8 +46,8 @@ class FairClock {
   Clock::time_point from_ = Clock::now();
 };
 
-/// The least of three, as soon as one is short enough: what else the machine does only ever adds,
-/// as memory and caches are shared.
+/// The minimum of three measurements, fewer if one is short enough: other load on the machine only
+/// ever adds time, as memory and caches are shared.
 template <class Measure>
 double min_of_three(const Measure& measure) {
   double least = measure();
@@ -56,7 +57,7 @@ double min_of_three(const Measure& measure) {
   return least;
 }
 
-/// A million obstacles, and no way to the goal.
+/// A million obstacles, and an unreachable goal.
 Scene long_search(const PlannerBench& bench) {
   Scene scene = bench.budgeted(crowded_scene(bench.options.unit_m, bench.flight()));
   enclose_goal(scene);
@@ -81,7 +82,7 @@ void deadlines(const PlannerBench& bench, Report& report) {
       });
       report.expect(overrun <= kMax, kDeadline, [&] {
         return scene.name + ": of " + text(allowed) + " ms the planner took " +
-               text(allowed + overrun) + " ms; it said " + said;
+               text(allowed + overrun) + " ms; it returned " + said;
       });
     }
   }
@@ -117,7 +118,7 @@ void stops(const PlannerBench& bench, Report& report) {
 void smoother_deadlines(const Factory<Smoother>& make, const Options& options, Report& report) {
   const auto smoother = make();
   Scene scene = crowded_scene(options.unit_m, Flight::spatial);
-  // A walk there and back between the obstacles.
+  // A walk back and forth between the obstacles.
   Route route;
   for (int i = 0; i <= 1000; ++i) {
     const double t = i / 1000.0;

@@ -7,12 +7,13 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kPure = "Constraint law 1: pure and const, any number of threads may ask";
-constexpr const char* kTightens = "Constraint law 2: tighten only ever makes a limit stricter";
+constexpr const char* kPure =
+    "Constraint contract 1: pure and const, callable from any number of threads";
+constexpr const char* kTightens = "Constraint contract 2: tighten only ever makes a limit stricter";
 constexpr const char* kLegAlone =
-    "Constraint law 3: admits depends on the leg alone, and is monotone under the parameter";
+    "Constraint contract 3: admits depends on the leg alone, and is monotone under the parameter";
 constexpr const char* kViolations =
-    "Constraint law 4: violations is empty if and only if the route keeps the rule";
+    "Constraint contract 4: violations is empty if and only if the route satisfies the constraint";
 constexpr const char* kNothing = "Suite: there must be something to judge";
 
 struct Bench {
@@ -21,7 +22,7 @@ struct Bench {
   Options options;
 };
 
-/// Limits as numbers of which less is stricter.
+/// Limits as numbers, of which a smaller one is stricter.
 constexpr std::array kLimitNames{"min_clearance",
                                  "min_ground_clearance",
                                  "min_leg",
@@ -59,7 +60,7 @@ Figures figures(const Limits& limits) {
   return all;
 }
 
-/// The first limit that is not at least as strict in `now`; "" where all are.
+/// The first limit that is not at least as strict in `now`; "" if all are.
 std::string loosened(const Limits& before, const Limits& now) {
   const Figures was = figures(before);
   const Figures is = figures(now);
@@ -96,7 +97,7 @@ Limits random_limits(RandomStream& random) {
   return limits;
 }
 
-/// Over ground, among solids, of the size in which constraints are written: hundreds of metres.
+/// Over ground, among solids, at the scale of typical constraints: hundreds of metres.
 Scene scene_of(std::uint64_t seed) {
   Scene scene = random_scene(100, seed, Flight::spatial);
   scene.ridge = std::make_shared<Ridge>(1000, 120, 0.2);
@@ -147,7 +148,7 @@ bool equal_violations(const std::vector<Violation>& a, const std::vector<Violati
       });
 }
 
-/// All that a constraint answers to a fixed set of questions.
+/// All answers of a constraint to a fixed set of queries.
 struct Answers {
   std::vector<Figures> limits;
   std::vector<bool> admitted;
@@ -194,14 +195,14 @@ void pure(const Bench& bench, Report& report) {
              std::to_string(bench.options.seed);
     });
   };
-  same(ask(*constraint, bench), "at the second asking");
-  same(ask(*constraint, bench, true), "when legs are asked for from the last to the first");
+  same(ask(*constraint, bench), "at the second call");
+  same(ask(*constraint, bench, true), "with the legs in reverse order");
   same(ask(*bench.make(), bench), "between two objects");
   Answers one;
   Answers other;
   in_two_threads([&] { one = ask(*constraint, bench); }, [&] { other = ask(*constraint, bench); });
-  same(one, "with another thread beside");
-  same(other, "with another thread beside");
+  same(one, "with a second thread running");
+  same(other, "with a second thread running");
 }
 
 void tightens(const Bench& bench, Report& report) {
@@ -219,7 +220,7 @@ void tightens(const Bench& bench, Report& report) {
     Limits twice = once;
     constraint->tighten(twice, scene.request);
     report.expect(figures(twice) == figures(once), kTightens, [&] {
-      return limits + "tightened again they change once more: " + loosened(twice, once);
+      return limits + "tightening again changes them once more: " + loosened(twice, once);
     });
     if (bench.tighter) {
       Limits strict = before;
@@ -268,7 +269,8 @@ void legs_and_routes(const Bench& bench, Report& report) {
     if (stricter != nullptr) {
       report.expect(
           found.empty() || !stricter->violations(route, scene.request).empty(), kViolations, [&] {
-            return text(route) + " breaks the rule, and keeps it with the stricter parameter";
+            return text(route) +
+                   " violates the constraint, but satisfies it with the stricter parameter";
           });
     }
     Limits limits;
@@ -280,8 +282,8 @@ void legs_and_routes(const Bench& bench, Report& report) {
   });
 }
 
-/// What the judge says with the constraint is what the constraint says: a route that keeps the
-/// limits, and whose legs are admitted, is broken where violations says so and nowhere else.
+/// The judge's result with the constraint agrees with the constraint's own: a route within the
+/// limits, whose legs are admitted, is violated exactly where violations reports it.
 void agrees_with_the_judge(const Bench& bench, Report& report) {
   const std::shared_ptr<const Constraint> constraint = bench.make();
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
@@ -289,7 +291,7 @@ void agrees_with_the_judge(const Bench& bench, Report& report) {
     RandomStream random = RandomStream(bench.options.seed).sub("judge", std::uint64_t(n));
     const Route route = random_route(random, scene);
     Request& request = scene.request;
-    request.world = std::make_shared<const World>();  // only the rule speaks
+    request.world = std::make_shared<const World>();  // only the constraint reports
     request.vehicle.radius_m = 0;
     request.limits = Limits{};
     if (!check(route, request).ok()) {

@@ -10,7 +10,7 @@ namespace {
 
 using Bench = EnvironmentBench;
 
-/// Answers to a fixed list of questions.
+/// Answers to a fixed list of queries.
 struct Answers {
   std::vector<double> numbers;
   std::vector<bool> yes;
@@ -60,8 +60,8 @@ void pure(const Bench& bench, Report& report) {
   Answers one;
   Answers other;
   in_two_threads([&] { one = ask(*layer, legs); }, [&] { other = ask(*layer, legs); });
-  same(one, "with another thread beside");
-  same(other, "with another thread beside");
+  same(one, "with a second thread running");
+  same(other, "with a second thread running");
 }
 
 void clearances(const Bench& bench, Report& report) {
@@ -83,7 +83,7 @@ void clearances(const Bench& bench, Report& report) {
     double at_b = layer.clearance(b);
     report.expect(!std::isnan(at_a), kEnvironmentClearance,
                   [&] { return "clearance at " + text(a) + " is not a number"; });
-    // Halved, toward the half that changes more: there a step shows.
+    // Bisected, toward the half that changes more: a discontinuity shows there.
     for (int half = 0; half < 24; ++half) {
       const double run = (b - a).norm();
       const double rounding = 1e-9 * (1 + a.cwiseAbs().maxCoeff());
@@ -104,7 +104,7 @@ void clearances(const Bench& bench, Report& report) {
   }
 }
 
-/// blocked against what samples of clearance and of blocked itself prove.
+/// `blocked` against the proofs by samples of clearance and of blocked itself.
 void blocked_legs(const Bench& bench, Report& report) {
   Probe probe(bench, "blocked");
   const Environment& layer = probe.layer();
@@ -130,18 +130,18 @@ void blocked_legs(const Bench& bench, Report& report) {
         return text(leg) + " is free, and its point " + text(on) + " is blocked";
       });
     }
-    const double gap = (b - a).norm() / kSamples / 2;  // no place is farther from a sample
+    const double gap = (b - a).norm() / kSamples / 2;  // no point is farther from a sample
     const double rounding = 1e-9 * (1 + a.cwiseAbs().maxCoeff());
     const double clear = std::min(least - gap - layer.over_approximation() - kDeep - rounding, 1e6);
     report.expect(!(clear > 0) || !layer.blocked(a, b, clear), kEnvironmentBlocked, [&] {
       return text(a) + " to " + text(b) + " is blocked for r " + text(clear) +
-             ", and all of it is at least " + text(least - gap) + " m clear, the slack being " +
-             text(layer.over_approximation());
+             ", and all of it is at least " + text(least - gap) +
+             " m clear, with an over-approximation of " + text(layer.over_approximation());
     });
   }
 }
 
-/// The radius at which a leg comes just too near to the solid, as found by way of near.
+/// The radius at which a leg just comes too near to the solid, as found by `near`.
 void blocked_just_so(const Bench& bench, Report& report) {
   Probe probe(bench, "just so");
   const Environment& layer = probe.layer();
@@ -174,7 +174,7 @@ void symmetric_and_monotone(const Bench& bench, Report& report) {
     const double r = leg.r;
     const bool blocked = layer.blocked(a, b, r);
     report.expect(blocked == layer.blocked(b, a, r), kEnvironmentSymmetric,
-                  [&] { return text(leg) + " is blocked one way only"; });
+                  [&] { return text(leg) + " is blocked in one direction only"; });
     const double less = r * probe.random().uniform();
     report.expect(blocked || !layer.blocked(a, b, less), kEnvironmentSymmetric,
                   [&] { return text(leg) + " is free, and blocked for r " + text(less); });
@@ -209,9 +209,10 @@ void near_by(const Bench& bench, Report& report) {
     const double clearance = layer.clearance(p);
     report.expect(
         clearance <= nearest + kDeep + 1e-9 * std::abs(nearest), kEnvironmentNear,
-        told("an obstacle is " + text(nearest) + " m away, clearance says " + text(clearance)));
+        told("an obstacle is " + text(nearest) + " m away, clearance is " + text(clearance)));
     const Vec3 beside = probe.around(p, r);
-    report.expect(!probe.inside(beside) || nearest <= (beside - p).norm() + layer.over_approximation() + kDeep,
+    report.expect(!probe.inside(beside) ||
+                      nearest <= (beside - p).norm() + layer.over_approximation() + kDeep,
                   kEnvironmentNear,
                   told("nothing is reported within " + text((beside - p).norm()) + " m, and " +
                        text(beside) + " lies inside the layer"));
@@ -244,7 +245,7 @@ void bounds_hold(const Bench& bench, Report& report) {
   }
 }
 
-/// From outside, what is nearest is what sticks out of the bounds first.
+/// From outside, the nearest obstacle is the one that would extend beyond the bounds first.
 void bounds_from_outside(const Bench& bench, Report& report) {
   Probe probe(bench, "outside");
   const Environment& layer = probe.layer();
@@ -268,7 +269,7 @@ void bounds_from_outside(const Bench& bench, Report& report) {
   }
 }
 
-/// Nothing is promised of the answers but that there are some.
+/// Only that an answer is returned is required.
 void odd_places(const Bench& bench, Report&) {
   Probe probe(bench, "odd");
   const Environment& layer = probe.layer();
@@ -303,8 +304,8 @@ void kin(const Bench& bench, Report& report) {
   Probe probe(bench, "kin");
   const Environment& layer = probe.layer();
   const LayerInfo& info = layer.info();
-  report.expect(layer.over_approximation() >= 0 && std::isfinite(layer.over_approximation()), kEnvironmentKin,
-                [&] { return "slack is " + text(layer.over_approximation()); });
+  report.expect(layer.over_approximation() >= 0 && std::isfinite(layer.over_approximation()),
+                kEnvironmentKin, [&] { return "slack is " + text(layer.over_approximation()); });
   const Box bounds = layer.bounds();
   report.expect(!bounds.min.hasNaN() && !bounds.max.hasNaN(), kEnvironmentBounds,
                 [&] { return "bounds are " + text(bounds.min) + " to " + text(bounds.max); });

@@ -8,7 +8,7 @@ namespace {
 using Bench = EnvironmentBench;
 using Rule = GridSpec::Rule;
 
-/// A grid over most of the volume, and a small one about a place of the layer.
+/// A grid over most of the volume, and a small one around a point of the layer.
 std::vector<GridSpec> grids(Probe& probe) {
   const Vec3 edges = probe.volume().max - probe.volume().min;
   GridSpec large;
@@ -89,7 +89,8 @@ void rasters(const Bench& bench, Report& report) {
   }
 }
 
-/// Layers are drawn over one another: what is blocked stays so, and the same grid comes again.
+/// Layers are rasterized into the same grid: blocked cells stay blocked, and the result is
+/// reproducible.
 void drawn_over(const Bench& bench, Report& report) {
   Probe probe(bench, "raster twice");
   for (const GridSpec& spec : grids(probe)) {

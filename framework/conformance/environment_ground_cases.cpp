@@ -46,7 +46,7 @@ void points(const Bench& bench, Report& report) {
     }
     p.z() = *height - 1;
     report.expect(layer.blocked(p, p, 0), kEnvironmentGround,
-                  [&] { return text(p) + " is 1 m below ground, and free"; });
+                  [&] { return text(p) + " is 1 m below ground, but free"; });
   }
   report.expect(found > 0, kEnvironmentGround, [&] {
     return "there is a ground, and no height was found between " + text(probe.volume().min) +
@@ -95,14 +95,14 @@ void legs(const Bench& bench, Report& report) {
     const double between = (1 + steepest) * step + kLengthTolerance;
     report.expect(gap <= least + kLengthTolerance && gap >= least - between, kEnvironmentGround,
                   [&] {
-                    return text(leg) + ": gap is " + text(gap) + ", the samples' least " +
+                    return text(leg) + ": gap is " + text(gap) + ", the samples' minimum " +
                            text(least) + ", the ground's slope " + text(steepest);
                   });
-    report.expect(
-        gap_max >= most - kLengthTolerance && gap_max <= most + between, kEnvironmentGround, [&] {
-          return text(leg) + ": gap_max is " + text(gap_max) + ", the samples' greatest " +
-                 text(most) + ", the ground's slope " + text(steepest);
-        });
+    report.expect(gap_max >= most - kLengthTolerance && gap_max <= most + between,
+                  kEnvironmentGround, [&] {
+                    return text(leg) + ": gap_max is " + text(gap_max) + ", the samples' maximum " +
+                           text(most) + ", the ground's slope " + text(steepest);
+                  });
     const double enough = gap + probe.random().uniform(-1, 1) * (1 + std::abs(gap));
     const double shown = ground->gap(a, b, enough);
     const bool right = gap >= enough ? shown >= enough : std::abs(shown - gap) <= kLengthTolerance;
@@ -125,7 +125,7 @@ void distances(const Bench& bench, Report& report) {
     }
     const auto distance = ground->distance(leg.a, leg.b);
     if (!distance) {
-      return;  // it does not tell
+      return;  // not implemented
     }
     const bool too_far = layer.blocked(leg.a, leg.b, *distance - kWithin);
     const bool too_near = !layer.blocked(leg.a, leg.b, *distance + kWithin);
@@ -153,17 +153,18 @@ void slopes(const Bench& bench, Report& report) {
     const double steepest = ground->slope(leg_box(a, b));
     report.expect(rise <= steepest * run * (1 + 1e-9) + kLengthTolerance, kEnvironmentGround, [&] {
       return "ground rises " + text(rise) + " m over " + text(run) + " m from " + text(a) + " to " +
-             text(b) + ", slope says " + text(steepest);
+             text(b) + ", slope is " + text(steepest);
     });
   }
 }
 
-/// Climbs to where the ground is steep, by steps of chance that grow smaller.
+/// Hill climbing to steep ground, by random steps of decreasing size.
 void steepest_slopes(const Bench& bench, Report& report) {
   Probe probe(bench, "steepest");
   const Ground* ground = probe.layer().ground();
   const double apart = std::max(1e-6 * probe.size(), 1e-3);
-  // The rise along the gradient: what its slope promises holds for it, whichever cells it meets.
+  // The rise along the gradient: the bound given by the slope applies to it, whichever cells it
+  // crosses.
   const auto slope = [&](double x, double y) {
     const auto at = ground->height(x, y);
     const auto east = ground->height(x + apart, y);
@@ -191,7 +192,7 @@ void steepest_slopes(const Bench& bench, Report& report) {
     report.expect(most <= ground->slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
                   kEnvironmentGround, [&] {
                     return "at " + text(best) + " the ground's slope is " + text(most) +
-                           ", slope says " + text(ground->slope(box));
+                           ", slope is " + text(ground->slope(box));
                   });
   }
 }

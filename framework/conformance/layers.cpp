@@ -87,7 +87,7 @@ void BallField::do_near(const Vec3& p, double reach, const NearSink& sink) const
 namespace {
 using Vec2 = std::array<double, 2>;
 
-/// Distance between a point and the side of the ridge that goes down from its crest to the left
+/// Distance between a point and the side of the ridge that descends from its crest to the left
 /// (sign -1) or right, in the plane across it.
 double side_distance(const Vec2& p, double slope, double sign) {
   const double scale = 1 / std::sqrt(1 + slope * slope);

@@ -8,7 +8,7 @@ namespace {
 
 using namespace pilots;
 
-constexpr int kMax = 3000;  // more than three times the straight way
+constexpr int kMax = 3000;  // more than three times the straight path
 
 void open_world(const Bench& bench, Report& report) {
   const double reach = bench.reach();
@@ -37,7 +37,7 @@ void open_world(const Bench& bench, Report& report) {
                     return "from " + text(request.start.position) + " to " +
                            text(request.goal.position) + ": after " + std::to_string(flight.steps) +
                            " steps the pilot is at " + text(flight.last.next.position) +
-                           " and says " + std::string(flight.last.why);
+                           " and reports " + std::string(flight.last.why);
                   });
   }
   Request there = plain;
@@ -61,7 +61,7 @@ void goal_out_of_reach(const Bench& bench, Report& report) {
   const Flown flight = fly(bench, request, report, kMax);
   const bool may_arrive = !bench.make()->traits().avoids_obstacles;
   report.expect(may_arrive || flight.last.outcome != PilotStep::Outcome::arrived, kArrived,
-                [&] { return "the goal lies inside a ball, and the pilot says arrived"; });
+                [&] { return "the goal lies inside a ball, and the pilot reports arrived"; });
 }
 
 void put_elsewhere(const Bench& bench, Report& report) {
@@ -122,7 +122,7 @@ void reach_holds(const Bench& bench, Report& report) {
     RandomStream random = RandomStream(bench.options.seed).sub("reach", std::uint64_t(n));
     Vec3 off(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     if (near.level_m) {
-      off.z() = 0;  // a pilot of the plane may take the ball for a disc
+      off.z() = 0;  // a 2-D pilot may treat the ball as a disc
     }
     const double radius = random.uniform(0.1, 3) * reach;
     Request request = near;
@@ -171,13 +171,13 @@ void equal_flights(const Bench& bench, Report& report) {
   run(steps[0], why[0]);
   in_two_threads([&] { run(steps[1], why[1]); }, [&] { run(steps[2], why[2]); });
   for (int i = 1; i < 3; ++i) {
-    report.expect(why[i] == why[0] && std::equal(steps[0].begin(), steps[0].end(), steps[i].begin(),
-                                                 steps[i].end(), equal_steps),
-                  kEqualSteps, [&] {
-                    return "two pilots with equal observations part, with another thread beside";
-                  });
+    report.expect(
+        why[i] == why[0] && std::equal(steps[0].begin(), steps[0].end(), steps[i].begin(),
+                                       steps[i].end(), equal_steps),
+        kEqualSteps,
+        [&] { return "two pilots with equal observations diverge, with a second thread running"; });
   }
-  // Two pilots of one planner, in turns.
+  // Two pilots of one planner, interleaved.
   const auto one = planner->begin(request);
   const auto other = planner->begin(request);
   Observation seen = first_observation(request);

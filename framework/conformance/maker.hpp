@@ -13,8 +13,8 @@ inline std::shared_ptr<const Value> kept(const Value* value) {
   return value != nullptr ? std::make_shared<const Value>(*value) : nullptr;
 }
 
-/// Calls `visit` with the factory of the entry's kind; what it returns, or its type's default where
-/// the entry makes nothing.
+/// Calls `visit` with the factory of the entry's kind and returns its result; its type's default if
+/// the entry has no factory.
 template <class Visit>
 auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit& visit) {
   const std::shared_ptr<const Value> with = kept(parameters);
@@ -41,7 +41,7 @@ auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit
   return Result();
 }
 
-/// One callable of several, for with_factory.
+/// One callable made of several, for with_factory.
 template <class... Visits>
 struct Overloaded : Visits... {
   using Visits::operator()...;

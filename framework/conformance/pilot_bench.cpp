@@ -63,7 +63,7 @@ std::string text(const Observation& seen) {
 
 namespace {
 
-/// Holds a step to laws 1 and 2, and to its own word.
+/// Checks a step against contracts 1 and 2, and against its own outcome.
 void judge(Report& report, const PilotStep& step, const Observation& seen, const Request& request) {
   const double dt = step.next.time_s - seen.state.time_s;
   if (step.outcome == PilotStep::Outcome::stuck) {
@@ -75,7 +75,7 @@ void judge(Report& report, const PilotStep& step, const Observation& seen, const
   });
   const double way = (step.next.position - seen.state.position).norm();
   const double most = top_speed(request.vehicle) * dt;
-  // A pilot that goes on from its own last answer seems to leap from where it was put.
+  // A pilot that continues from its own last answer appears to leap from its new position.
   const bool leaps = way > 3 * most + kLengthTolerance;
   report.expect(
       way <= most * (1 + 1e-9) + kLengthTolerance, leaps ? kContinues : kTimeAndSpeed, [&] {
@@ -90,7 +90,7 @@ void judge(Report& report, const PilotStep& step, const Observation& seen, const
   report.expect(
       step.outcome != PilotStep::Outcome::arrived || seen.goal.reached_at(step.next.position),
       kArrived, [&] {
-        return text(seen) + ": the pilot says arrived at " + text(step.next.position) + ", " +
+        return text(seen) + ": the pilot reports arrived at " + text(step.next.position) + ", " +
                text((step.next.position - seen.goal.position).norm()) + " m from the goal";
       });
   if (request.level_m) {
@@ -105,13 +105,14 @@ PilotStep step_of(Pilot& pilot, const Observation& seen, Report& report) {
     return pilot.step(seen);
   } catch (const PluginError& error) {
     report.add(kTimeAndSpeed, text(seen) + ": " + error.what());
-    return {seen.state, PilotStep::Outcome::stuck, "broke a law"};
+    return {seen.state, PilotStep::Outcome::stuck, "violated the contract"};
   }
 }
 
 namespace {
 
-/// The step's leg, by dense samples: through is through, whatever clearance was asked for.
+/// The step's leg, by dense samples: it must not pass through an obstacle, whatever clearance is
+/// required.
 void judge_way(Report& report, const PilotStep& step, const Observation& seen) {
   if (step.outcome == PilotStep::Outcome::stuck || seen.world->clearance(seen.state.position) < 0) {
     return;

@@ -10,19 +10,20 @@
 
 namespace altiplan::conformance::pilots {
 
-// The laws of Pilot, and what goes with them.
-inline constexpr const char* kContinues = "Pilot law 1: continues from the observed state";
+// The contract of Pilot, and the requirements related to it.
+inline constexpr const char* kContinues = "Pilot contract 1: continues from the observed state";
 inline constexpr const char* kTimeAndSpeed =
-    "Pilot law 2: 0 < next.time - state.time <= max_dt, and the speed kept is the vehicle's";
-inline constexpr const char* kNoAllocation = "Pilot law 3: no allocation in a step";
+    "Pilot contract 2: 0 < next.time - state.time <= max_dt, and the speed is at most the "
+    "vehicle's";
+inline constexpr const char* kNoAllocation = "Pilot contract 3: no allocation in a step";
 inline constexpr const char* kEqualSteps =
-    "Pilot law 4: equal observations in equal order give equal steps";
-inline constexpr const char* kReach = "Pilot::reach_m: obstacles farther away do not move it";
+    "Pilot contract 4: equal observations in equal order give equal steps";
+inline constexpr const char* kReach = "Pilot::reach_m: obstacles farther away do not influence it";
 inline constexpr const char* kArrived = "PilotStep: arrived means within the goal's tolerance";
 inline constexpr const char* kOpen = "Pilot: arrives in an open world";
 inline constexpr const char* kNotThrough =
-    "Pilot: a step that says flying does not lead through an obstacle of the observed world";
-inline constexpr const char* kLevel = "Planner trait `plane`: level flight stays on its level";
+    "Pilot: a step with outcome flying does not lead through an obstacle of the observed world";
+inline constexpr const char* kLevel = "Planner trait `planar`: level flight stays on its level";
 inline constexpr const char* kNoThrow = "Pilot: being stuck is an outcome, never an exception";
 
 /// The same flight at the start's height.
@@ -36,8 +37,8 @@ struct Bench {
     const double reach = make()->begin(flight(nullptr))->reach_m();
     return std::isfinite(reach) && reach > 0 ? reach : 10 * options.unit_m;
   }
-  /// Eastward, 8 reaches far, a hundredth of the reach a second; scaled by `reach` itself while
-  /// that is not known.
+  /// Eastward, 8 reaches far, a hundredth of the reach per second; scaled by `reach` itself until
+  /// that is known.
   Request flight(std::shared_ptr<const World> world, double reach = 3000) const {
     Request request;
     request.world = world != nullptr ? std::move(world) : std::make_shared<const World>();
@@ -53,21 +54,21 @@ struct Bench {
 };
 
 std::shared_ptr<const World> balls(std::vector<Sphere> all);
-/// Balls beside and across the straight way, none within half a reach of its ends.
+/// Balls beside and across the straight path, none within half a reach of its ends.
 std::vector<Sphere> drawn(std::uint64_t seed, const Request& request, double reach);
 Observation first_observation(const Request& request);
 using conformance::text;
 std::string text(const Observation& seen);
 
-/// A step; what Pilot::step refuses of it is a finding, and ends the flight.
+/// A step; a refusal by Pilot::step becomes a finding, and ends the flight.
 PilotStep step_of(Pilot& pilot, const Observation& seen, Report& report);
 
 struct Flown {
   PilotStep last;
   int steps = 0;
 };
-/// Flies until the pilot arrives or is stuck, each step judged; `between` may change what it sees
-/// before a step.
+/// Flies until the pilot arrives or is stuck, with each step judged; `between` may change its
+/// observation before a step.
 Flown fly(const Bench& bench, const Request& request, Report& report, int most,
           const std::function<void(Observation&, int)>& between = {});
 }  // namespace altiplan::conformance::pilots

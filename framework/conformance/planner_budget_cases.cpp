@@ -8,17 +8,17 @@
 namespace altiplan::conformance {
 namespace {
 
-/// The law's bound, in iterations.
+/// The contract's bound, in iterations.
 constexpr std::int64_t kStopWithin = 1024;
 
-/// Much to search and nothing to find.
+/// A large search space and no route.
 Scene hopeless(const PlannerBench& bench) {
   Scene scene = bench.budgeted(open_scene(bench.options.unit_m, bench.flight()));
   enclose_goal(scene);
   return scene;
 }
 
-/// The same problem, every query of its world reported.
+/// The same problem, with every query of its world reported.
 Request watched(const Scene& scene, const Watched::Asked& asked) {
   World world;
   for (const Layer& layer : scene.request.world->layers()) {
@@ -30,7 +30,7 @@ Request watched(const Scene& scene, const Watched::Asked& asked) {
   return request;
 }
 
-/// Where it asks the world, in order, with that budget.
+/// Positions at which it queries the world, in order, with that budget.
 std::vector<Vec3> queries_of(const PlannerBench& bench, const Scene& scene,
                              std::uint64_t iterations) {
   std::vector<Vec3> queries;
@@ -44,8 +44,8 @@ std::vector<Vec3> queries_of(const PlannerBench& bench, const Scene& scene,
   return queries;
 }
 
-/// Of those with more iterations, how many come before the iterations given have ended. What a
-/// planner asks after its search, for its message, differs from what the search goes on with.
+/// Number of the queries of a larger budget made before the given iterations ended. Queries after a
+/// search, for its message, differ from those with which the search continues.
 std::size_t queries_within(const PlannerBench& bench, const Scene& scene, std::uint64_t iterations,
                            const std::vector<Vec3>& with_more) {
   const std::vector<Vec3> queries = queries_of(bench, scene, iterations);
@@ -59,18 +59,19 @@ void no_iterations(const PlannerBench& bench, Report& report) {
                       bench.world(0, bench.flight()), bench.cells(0, bench.flight())}) {
     scene.request.budget.max_iterations = 0;
     const PlanResult result = bench.make()->plan(scene.request);
-    report.expect(
-        result.status == PlanStatus::timed_out && result.route.empty(), kPlannerBudget, [&] {
-          return scene.name + ", a budget of 0 iterations: expected timed_out, the planner said " +
-                 text(result);
-        });
+    report.expect(result.status == PlanStatus::timed_out && result.route.empty(), kPlannerBudget,
+                  [&] {
+                    return scene.name +
+                           ", a budget of 0 iterations: expected timed_out, the planner returned " +
+                           text(result);
+                  });
   }
 }
 
 void iterations_kept(const PlannerBench& bench, Report& report) {
   for (Scene scene :
        {hopeless(bench), bench.world(0, bench.flight()), bench.cells(1, bench.flight())}) {
-    // Also in each phase of what it does with more: it may sample, then join, then search.
+    // Also in each later phase of a larger budget: the planner may sample, then join, then search.
     const auto all = std::uint64_t(
         std::max(std::int64_t(0), counter(bench.make()->plan(scene.request).counters, "expanded")));
     for (const std::uint64_t most :
@@ -103,7 +104,7 @@ void stopped_before(const PlannerBench& bench, Report& report) {
     report.expect(result.status == PlanStatus::cancelled || result.status == PlanStatus::solved ||
                       result.status == PlanStatus::no_route,
                   kPlannerBudget, [&] {
-                    return scene.name + ", stopped before it begins: the planner said " +
+                    return scene.name + ", stopped before it begins: the planner returned " +
                            text(result);
                   });
     report.expect(counter(result.counters, "expanded") <= kStopWithin, kPlannerBudget, [&] {
@@ -113,8 +114,8 @@ void stopped_before(const PlannerBench& bench, Report& report) {
   }
 }
 
-/// The stop fires within a query of the world. How many iterations that is, tell runs with fewer:
-/// equal requests do equal things.
+/// The stop fires within a query of the world. Runs with fewer iterations determine the iteration
+/// of that query: equal requests do equal things.
 void stopped_at_a_query(const PlannerBench& bench, Report& report) {
   const Scene scene = hopeless(bench);
   const std::vector<Vec3> queries = queries_of(bench, scene, bench.options.iterations);

@@ -13,7 +13,7 @@ Case planner_case(const PlannerBench& bench, const char* name,
     try {
       body(bench, report);
     } catch (const PluginError& error) {
-      if (error.reason() != Reason::law_of_ends) {
+      if (error.reason() != Reason::contract_of_ends) {
         throw;
       }
       report.add(kPlannerEnds, error.what());
@@ -23,15 +23,17 @@ Case planner_case(const PlannerBench& bench, const char* name,
 
 bool judge(Report& report, const PlanResult& result, const Scene& scene) {
   const auto told = [&](const std::string& what) {
-    return [&, what] { return scene.name + ": the planner " + what + "; it said " + text(result); };
+    return [&, what] {
+      return scene.name + ": the planner " + what + "; it returned " + text(result);
+    };
   };
   if (result.status != PlanStatus::solved) {
     const bool known =
         result.status == PlanStatus::no_route || result.status == PlanStatus::timed_out ||
         result.status == PlanStatus::cancelled || result.status == PlanStatus::invalid_problem;
-    report.expect(known, kPlannerStatus, told("used a status that is none"));
+    report.expect(known, kPlannerStatus, told("returns an undefined status"));
     report.expect(result.route.empty(), kPlannerStatus,
-                  told("returns a route without saying solved"));
+                  told("returns a route, but not the status solved"));
     report.expect(result.status != PlanStatus::no_route || !result.message.empty(), kPlannerStatus,
                   told("does not say why there is no route"));
     return false;
@@ -48,7 +50,7 @@ bool judge(Report& report, const PlanResult& result, const Scene& scene) {
 
 namespace {
 
-// Tops of walls, in units: one to fly over, one to go round.
+// Tops of walls, in units: one to fly over, one to fly around.
 constexpr double kLow = 2.2;
 constexpr double kHigh = 7;
 
@@ -91,7 +93,7 @@ void million_obstacles(const PlannerBench& bench, Report& report) {
   }
 }
 
-/// A rule of an author's own, which looks at two legs at a time.
+/// A third-party constraint that depends on two legs at a time.
 class NoSharpTurns final : public Constraint {
  private:
   bool do_admits(const Leg& leg) const override {
@@ -117,7 +119,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
          const double highest = std::max(r.start.position.z(), r.goal.position.z());
          r.limits.altitude.push_back({AltitudeBand::Datum::sea, unit, highest + unit / 2});
        }},
-      {"route length 1.1 of the straight way",
+      {"route length 1.1 of the straight path",
        [&](Request& r) {
          r.limits.max_route_length = 1.1 * (r.goal.position - r.start.position).norm();
        }},
@@ -126,7 +128,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
          r.start.velocity = {-1, 0, 0};
          r.limits.max_turn_horizontal = radians(100);
        }},
-      {"a rule of its own: no turn in space above 40 degrees", [](Request& r) {
+      {"a custom constraint: no turn in 3-D above 40 degrees", [](Request& r) {
          r.constraints.push_back({"no_sharp_turns", std::make_shared<NoSharpTurns>()});
        }}};
   for (const auto& [name, set] : limits) {
@@ -168,7 +170,7 @@ void impossible_ends(const PlannerBench& bench, Report& report) {
       report.expect(result.status == PlanStatus::invalid_problem && result.route.empty(),
                     kPlannerStatus, [&] {
                       return plain.name + ", " + (at_start ? "start" : "goal") + " at " +
-                             text(place) + ": expected invalid_problem, the planner said " +
+                             text(place) + ": expected invalid_problem, the planner returned " +
                              text(result);
                     });
     }
@@ -184,7 +186,7 @@ void possible_ends(const PlannerBench& bench, Report& report) {
     report.expect(judge(report, bench.make()->plan(same.request), same), kPlannerStatus,
                   [&] { return same.name + ": the planner does not solve it"; });
     Scene near = bench.world(1, flight);
-    near.name += ", the goal's tolerance reaches half way";
+    near.name += ", the goal's tolerance covers half of the distance";
     near.request.goal.tolerance_m =
         (near.request.goal.position - near.request.start.position).norm() / 2;
     judge(report, bench.make()->plan(near.request), near);
@@ -201,7 +203,7 @@ void possible_ends(const PlannerBench& bench, Report& report) {
     with_solid(touching, Sphere{touching.request.start.position + Vec3(off, 0, 0), 2 * unit},
                "ball", changes);
     judge(report, bench.make()->plan(touching.request), touching);
-    // A volume with nothing to spare: flat in level flight, else a cell thick.
+    // A volume without margin: flat in level flight, else a cell thick.
     Scene thin = bench.budgeted(open_scene(unit, flight));
     thin.name += " without height";
     thin.request.volume.min.z() = thin.request.volume.max.z() = thin.request.goal.position.z() =
@@ -237,8 +239,8 @@ void answers_again(const PlannerBench& bench, Report& report) {
     PlanResult beside_b;
     in_two_threads([&] { beside_a = planner->plan(a.request); },
                    [&] { beside_b = planner->plan(b.request); });
-    same(first_a, beside_a, a, "an answer with another thread beside");
-    same(first_b, beside_b, b, "an answer with another thread beside");
+    same(first_a, beside_a, a, "an answer with a second thread running");
+    same(first_b, beside_b, b, "an answer with a second thread running");
   }
   Scene many = b;
   many.name += ", with 4 threads";
@@ -262,7 +264,7 @@ void inputs_unchanged(const PlannerBench& bench, Report& report) {
                     request.budget.max_iterations == scene.request.budget.max_iterations &&
                     before() == after();
   report.expect(kept, kPlannerPure,
-                [&] { return scene.name + ": the planner wrote into its request"; });
+                [&] { return scene.name + ": the planner modified its request"; });
 }
 }  // namespace
 

@@ -13,12 +13,12 @@ constexpr const char* kAnyAngle =
     "Planner trait `any_angle`: never longer than the grid's shortest";
 constexpr const char* kAnytime = "Planner trait `anytime`: more budget never gives a longer route";
 constexpr const char* kProved =
-    "Planner law 3: no_route is `proved` only where the planner's search space holds no route";
+    "Planner contract 3: no_route is `proved` only where the planner's search space holds no route";
 
 constexpr Lanes kFewest{6, true};
 constexpr Lanes kMax{26, false};
 
-/// Cells to search, drawn by hand and at random.
+/// Cells to search, hand-made and random.
 std::vector<Scene> mazes(const PlannerBench& bench) {
   const double unit = bench.options.unit_m;
   std::vector<Scene> all;
@@ -27,7 +27,7 @@ std::vector<Scene> mazes(const PlannerBench& bench) {
                              {"S........./####.#####/####..####/#####.####/.........G"}, flight));
     all.push_back(cell_scene(unit, "a goal walled in",
                              {"S........./......####/......#..#/......#.G#/......####"}, flight));
-    all.push_back(cell_scene(unit, "a start with nowhere to go",
+    all.push_back(cell_scene(unit, "an enclosed start",
                              {"S#......../##......../........../........../.........G"}, flight));
     all.push_back(cell_scene(unit, "cells that meet in a corner only",
                              {"S..#....../...#....../..#......./###......./.........G"}, flight));
@@ -58,17 +58,17 @@ void complete(const PlannerBench& bench, Report& report) {
     const bool solved = judge(report, result, scene);
     const bool surely_open = shortest(scene, kFewest) < kInfinity;
     report.expect(!surely_open || !result.proved, kProved, [&] {
-      return scene.name + ": there is a route, the planner said " + text(result);
+      return scene.name + ": there is a route, the planner returned " + text(result);
     });
     if (!claims || result.budget_hit) {
       continue;
     }
     report.expect(!surely_open || solved, kComplete, [&] {
-      return scene.name + ": there is a route, the planner said " + text(result);
+      return scene.name + ": there is a route, the planner returned " + text(result);
     });
     if (shortest(scene, kMax) == kInfinity) {
       report.expect(result.status == PlanStatus::no_route, kComplete, [&] {
-        return scene.name + ": expected no_route, the planner said " + text(result);
+        return scene.name + ": expected no_route, the planner returned " + text(result);
       });
     }
   }
@@ -76,12 +76,12 @@ void complete(const PlannerBench& bench, Report& report) {
     const Scene open = bench.budgeted(open_scene(bench.options.unit_m, flight));
     const PlanResult result = planner->plan(open.request);
     report.expect(!claims || result.status == PlanStatus::solved || result.budget_hit, kComplete,
-                  [&] { return open.name + ": the planner said " + text(result); });
+                  [&] { return open.name + ": the planner returned " + text(result); });
   }
 }
 
-/// Which lattice is the planner's own it need not say: in every world its length must be the
-/// optimum of the same one.
+/// A planner need not declare its lattice: in every world its length must be the optimum of the
+/// same one.
 void optimal(const PlannerBench& bench, Report& report) {
   const auto planner = bench.make();
   const Traits traits = planner->traits();

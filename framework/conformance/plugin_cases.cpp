@@ -9,15 +9,15 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kEntry = "Plugin entry: a kind, a name in snake_case, a sentence, one maker";
+constexpr const char* kEntry =
+    "Plugin entry: a kind, a name in snake_case, a sentence, one factory";
 constexpr const char* kDescribe = "Plugin parameters: describe never throws";
 constexpr const char* kNamed = "Plugin parameters: names in snake_case, each with a sentence";
 constexpr const char* kDefaults = "Plugin parameters: defaults lie within their own bounds";
 constexpr const char* kRefuses =
     "Plugin parameters: unknown keys and values out of bounds are reported";
 constexpr const char* kMakes =
-    "Plugin entry: makes objects, any number, and throws nothing but "
-    "the framework's Error";
+    "Plugin entry: creates any number of objects, and throws nothing but the framework's Error";
 
 bool is_snake_case(const std::string& name) {
   const auto allowed = [](char c) {
@@ -58,7 +58,7 @@ std::size_t numbers_in(FieldType type) {
   return type == FieldType::vec2 ? 2 : type == FieldType::vec3 ? 3 : 0;
 }
 
-/// The numbers of a JSON text, wherever they stand outside of strings.
+/// The numbers of a JSON text outside of strings.
 std::vector<double> numbers_of(const std::string& json) {
   std::vector<double> all;
   bool quoted = false;
@@ -82,7 +82,7 @@ bool within(double value, const FieldSpec& spec) {
 
 using Wrap = std::function<Value(Value)>;
 
-/// Visits the declaration, the fields of structures and of lists of them included. `wrap` puts a
+/// Visits the declaration, including the fields of structures and of lists of them. `wrap` puts a
 /// field's value where the plugin reads it.
 void walk(const std::vector<FieldSpec>& specs, const Wrap& wrap,
           const std::function<void(const FieldSpec&, const Wrap&)>& visit) {
@@ -124,7 +124,7 @@ void whole_entry(const PluginEntry& entry, Report& report) {
       {"tuner", entry.tuner != nullptr}};
   for (const auto& [of, set] : makers) {
     report.expect(set == (of == kind), kEntry, [&, of = of, set = set] {
-      return "of kind '" + kind + "', the maker of " + of + (set ? " is set" : " is not set");
+      return "of kind '" + kind + "', the factory of " + of + (set ? " is set" : " is not set");
     });
   }
   const bool known = std::any_of(makers.begin(), makers.end(),
@@ -162,7 +162,7 @@ void declaration(const PluginEntry& entry, Report& report) {
   });
 }
 
-/// Whether describing the parameters reports a problem that names the key.
+/// True if describing the parameters reports a problem that names the key.
 bool reported(const PluginEntry& entry, const Value& parameters, const std::string& key) {
   const ParamReport report = entry.describe(&parameters, "with");
   return std::any_of(report.problems.begin(), report.problems.end(), [&](const Problem& problem) {
@@ -173,7 +173,7 @@ bool reported(const PluginEntry& entry, const Value& parameters, const std::stri
 void refuses(const PluginEntry& entry, Report& report) {
   const auto must = [&](const Value& parameters, const std::string& key, const std::string& what) {
     report.expect(reported(entry, parameters, key), kRefuses,
-                  [&] { return "no problem is reported of " + what; });
+                  [&] { return "no problem is reported for " + what; });
   };
   must(map_of("no_such_key", scalar("1")), "no_such_key", "the unknown key 'no_such_key'");
   must(scalar("text"), "expected a map", "a text in place of the map");
@@ -218,7 +218,7 @@ void makes(const PluginEntry& entry, Report& report) {
   const Value wrong = map_of("no_such_key", scalar("1"));
   try {
     (void)make(&wrong);
-    report.add(kMakes, "an object is made of parameters with an unknown key");
+    report.add(kMakes, "an object is created from parameters with an unknown key");
   } catch (const Error&) {
   }
   const Value none = [] {
@@ -232,12 +232,13 @@ void makes(const PluginEntry& entry, Report& report) {
   try {
     for (int i = 0; i < 2; ++i) {
       report.expect(make(nullptr) && make(&none), kMakes,
-                    [] { return "of the default parameters nothing is made"; });
+                    [] { return "nothing is created from the default parameters"; });
     }
   } catch (const Error& error) {
-    // A layer may need another before it; what needs none is made of what describe accepts.
+    // A layer may need another before it; one that needs none is made from the parameters that
+    // describe accepts.
     report.expect(entry.environment != nullptr, kMakes, [&] {
-      return std::string("describe accepts the default parameters, the maker does not: ") +
+      return std::string("describe accepts the default parameters, the factory does not: ") +
              error.what();
     });
   }

@@ -6,7 +6,7 @@
 namespace altiplan::conformance {
 namespace {
 
-/// The bounds, a little more; within a kilometre of what is bounded where they are infinite.
+/// The bounds with a margin; where they are infinite, within a kilometre of the bounded part.
 Box volume_around(Box box) {
   constexpr double kReach = 1000;
   for (int axis = 0; axis < 3; ++axis) {
@@ -72,7 +72,7 @@ void Probe::find_surface() {
     if (const auto height = ground != nullptr ? ground->height(next.x(), next.y()) : std::nullopt) {
       surface_.emplace_back(next.x(), next.y(), *height);
     }
-    // Small obstacles are not hit by chance, but lead to themselves.
+    // Random points miss small obstacles; `near` finds them.
     layer_->near(next, size(), [&](const Nearby& nearby) {
       if (is_finite(nearby.point) && surface_.size() < kEnough) {
         surface_.push_back(nearby.point);

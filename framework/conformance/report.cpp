@@ -9,7 +9,7 @@ namespace altiplan::conformance {
 
 void Report::add(const std::string& law, std::string message) {
   constexpr std::ptrdiff_t kMax = 3;
-  const auto same = [&](const Finding& finding) { return finding.law == law; };
+  const auto same = [&](const Finding& finding) { return finding.contract == law; };
   if (std::count_if(findings_.begin(), findings_.end(), same) < kMax) {
     findings_.push_back({law, std::move(message)});
   }

@@ -11,9 +11,10 @@ namespace altiplan::conformance {
 /// Collects the findings of one case.
 class Report {
  public:
-  /// Of one law the first few are kept: a broken law breaks everywhere.
+  /// Only the first few findings of each contract are kept: one violation usually occurs
+  /// everywhere.
   void add(const std::string& law, std::string message);
-  /// Adds the finding unless the law is kept; `message` is called only then.
+  /// Adds the finding unless the contract is kept; `message` is called only then.
   template <class Message>
   bool expect(bool kept, const std::string& law, const Message& message) {
     if (!kept) {
@@ -27,21 +28,21 @@ class Report {
   std::vector<Finding> findings_;
 };
 
-/// A case whose body reports; what the body lets escape becomes a finding of `thrown`, the law that
-/// forbids it.
+/// A case whose body reports; an exception that escapes it becomes a finding of `thrown`, the
+/// contract that forbids it.
 Case make_case(std::string name, std::string thrown, std::function<void(Report&)> body);
 
-/// Digits enough to make the same number again.
+/// With enough digits to reproduce the number.
 std::string text(double value);
 std::string text(const Vec3& p);
 std::string text(const Route& route);
 
 bool equal(const PlanResult& a, const PlanResult& b);
-/// A result in a line: status, counters, message.
+/// A result in one line: status, counters, message.
 std::string text(const PlanResult& result);
 /// The value of a counter; -1 where there is none.
 std::int64_t counter(const Counters& counters, std::string_view name);
 
-/// Runs both at the same time; rethrows what either threw.
+/// Runs both at the same time; rethrows an exception from either.
 void in_two_threads(const std::function<void()>& one, const std::function<void()>& other);
 }  // namespace altiplan::conformance

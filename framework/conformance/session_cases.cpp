@@ -7,12 +7,13 @@ namespace altiplan::conformance {
 namespace {
 
 constexpr const char* kContinues =
-    "Session law 1: update continues from the given state, where its route begins";
-constexpr const char* kKeepsResult = "Session law 2: after an update, result() is what it returned";
+    "Session contract 1: update continues from the given state, where its route begins";
+constexpr const char* kKeepsResult =
+    "Session contract 2: after an update, result() is what it returned";
 constexpr const char* kIncremental =
     "Planner trait `incremental`: the session keeps what it searched";
 
-/// A session and the problem as it is now; every result is judged.
+/// A session and the current problem; every result is judged.
 class Flown {
  public:
   Flown(const PlannerBench& bench, Scene scene, Report& report)
@@ -32,13 +33,13 @@ class Flown {
     PlanResult said;
     try {
       said = session_->update(request.start, request.goal, request.world, changes, request.budget);
-    } catch (const PluginError& error) {  // Session::update holds it to both laws
-      const bool law_of_results = error.reason() == Reason::law_of_results;
-      if (!law_of_results && error.reason() != Reason::law_of_ends) {
+    } catch (const PluginError& error) {  // Session::update checks both clauses of the contract
+      const bool contract_of_results = error.reason() == Reason::contract_of_results;
+      if (!contract_of_results && error.reason() != Reason::contract_of_ends) {
         throw;
       }
       report_.add(
-          law_of_results ? kKeepsResult : kContinues,
+          contract_of_results ? kKeepsResult : kContinues,
           told.name + ", the state at " + text(request.start.position) + ": " + error.what());
       return said;
     }
@@ -82,7 +83,7 @@ void goes_on(const PlannerBench& bench, Report& report) {
   }
 }
 
-/// Where a ball may appear: on the route, clear of its ends; none where the route is too short.
+/// Possible position of a ball: on the route, clear of its ends; none where the route is too short.
 std::optional<Sphere> in_the_way(const Scene& scene, const Route& route) {
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     const Sphere ball{(route[i] + route[i + 1]) / 2, 0.8 * scene.unit};

@@ -7,14 +7,15 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kEnds = "Smoother law 1: first and last points stay";
+constexpr const char* kEnds = "Smoother contract 1: first and last points stay";
 constexpr const char* kExcess =
-    "Smoother law 2: for every constraint the worst excess does not grow; a sound route stays "
-    "sound";
-constexpr const char* kShort = "Smoother law 3: routes of one or two points come back as they are";
+    "Smoother contract 2: for every constraint the worst excess does not grow; a valid route stays "
+    "valid";
+constexpr const char* kShort =
+    "Smoother contract 3: routes of one or two points are returned unchanged";
 constexpr const char* kPure =
     "Smoother: const and shareable; equal requests give equal routes, on any threads, in any order";
-constexpr const char* kStatus = "Smoother: what it cannot do is a status, never an exception";
+constexpr const char* kStatus = "Smoother: a failure is a status, never an exception";
 
 struct Bench {
   Factory<Smoother> make;
@@ -29,7 +30,7 @@ struct Bench {
   }
 };
 
-/// What a rule is exceeded by at worst, of each rule; rules without figures count as 1.
+/// Worst excess over each constraint; constraints without figures count as 1.
 std::map<std::string, double> excesses(const Route& route, const Scene& scene) {
   std::map<std::string, double> worst;
   for (const Violation& violation : check(route, scene.request).violations) {
@@ -50,15 +51,16 @@ Scene ending_as(Scene scene, const Route& route) {
   return scene;
 }
 
-/// Smooths and holds the result to laws 1 and 2; the route, or the input where there is none.
+/// Smooths and checks the result against contracts 1 and 2; returns the route, or the input if
+/// there is none.
 Route judged(Report& report, const Smoother& smoother, const Route& route, const Scene& scene) {
   const Route before = route;
   const auto input = [&] { return scene.name + ", smoothing " + text(before); };
   PlanResult result;
   try {
     result = smoother.smooth(route, scene.request);
-  } catch (const PluginError& error) {  // Smoother::smooth has looked at the ends already
-    report.add(error.reason() == Reason::law_of_ends ? kEnds : kStatus,
+  } catch (const PluginError& error) {  // Smoother::smooth has already checked the ends
+    report.add(error.reason() == Reason::contract_of_ends ? kEnds : kStatus,
                input() + ": the smoother failed: " + error.what());
   }
   report.expect(route == before, kPure, [&] { return input() + ": the input was changed"; });
@@ -71,7 +73,7 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
                      [&] { return input() + ": the smoother's route is " + text(result.route); })) {
     return route;
   }
-  // The tolerance of a clearance, which the judge bisects for, is the widest of all.
+  // The tolerance of a clearance, which the judge finds by bisection, is the widest of all.
   constexpr double kWidest = 1e-5;
   const std::map<std::string, double> was = excesses(before, scene);
   for (const auto& [rule, excess] : excesses(result.route, scene)) {
@@ -84,14 +86,14 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
   }
   if (unsound(before, scene).empty()) {
     report.expect(unsound(result.route, scene).empty(), kExcess, [&] {
-      return input() + ": a sound route went in, what came out " + unsound(result.route, scene) +
+      return input() + ": the input was valid, the smoothed route " + unsound(result.route, scene) +
              ": " + text(result.route);
     });
   }
   return result.route;
 }
 
-/// A walk through the world whose legs all keep the request's rules.
+/// A walk through the world whose legs all satisfy the request's constraints.
 Route sound_walk(const Scene& scene, RandomStream random) {
   Route route{scene.request.start.position};
   std::optional<Approach> before = scene.request.before_start();
@@ -116,7 +118,7 @@ Route any_walk(const Scene& scene, RandomStream random) {
   return route;
 }
 
-/// The rules under which routes are smoothed: none, each, and all together.
+/// The constraints under which routes are smoothed: none, each, and all together.
 std::vector<std::pair<const char*, std::function<void(Limits&)>>> rules(double unit) {
   std::vector<std::pair<const char*, std::function<void(Limits&)>>> all{
       {"no limit", [](Limits&) {}},
@@ -257,8 +259,8 @@ void answers_again(const Bench& bench, Report& report) {
   PlanResult beside_b;
   in_two_threads([&] { beside_a = smoother->smooth(a, to_a); },
                  [&] { beside_b = smoother->smooth(b, scene.request); });
-  same(first_a, beside_a, "with another thread beside");
-  same(first_b, beside_b, "with another thread beside");
+  same(first_a, beside_a, "with a second thread running");
+  same(first_b, beside_b, "with a second thread running");
   Request threads = to_a;
   threads.threads = 4;
   same(first_a, smoother->smooth(a, threads), "with 4 threads");

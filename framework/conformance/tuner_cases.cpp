@@ -8,18 +8,21 @@ namespace altiplan::conformance {
 namespace {
 
 constexpr const char* kInside =
-    "Tuner law 1: ask returns points inside the space, all groups summing to 1; an empty batch "
+    "Tuner contract 1: ask returns points inside the space, all groups summing to 1; an empty "
+    "batch "
     "ends "
     "the search";
 constexpr const char* kScores =
-    "Tuner law 2: tell follows ask, a score a point, lower is better, infinity a failure";
-constexpr const char* kEqual = "Tuner law 3: equal spaces, streams and scores give equal batches";
+    "Tuner contract 2: tell follows ask, one score per point, lower is better, infinity for a "
+    "failure";
+constexpr const char* kEqual =
+    "Tuner contract 3: equal spaces, streams and scores give equal batches";
 
 using Point = std::vector<double>;
 using Batch = std::vector<Point>;
 using Score = std::function<double(const Point&)>;
 
-/// A search that asks for more has no end, as far as a study is concerned.
+/// A search that asks for more counts as endless for a study.
 constexpr std::size_t kMaxPoints = 100'000;
 
 struct Bench {
@@ -47,7 +50,7 @@ std::string text(const Point& point) {
   return all + ")";
 }
 
-/// Why the point does not lie in the space; "" where it does.
+/// Why the point does not lie in the space; "" if it does.
 std::string misplaced(const Point& point, const std::vector<Dimension>& space) {
   if (point.size() != space.size()) {
     return std::to_string(point.size()) + " numbers for " + std::to_string(space.size()) +
@@ -150,12 +153,12 @@ void equal_searches(const Bench& bench, Report& report) {
     in_two_threads([&] { one = search(bench, dimensions, bowl, aside[0], what); },
                    [&] { other = search(bench, dimensions, bowl, aside[1], what); });
     report.expect(first == one && first == other, kEqual, [&] {
-      return std::string(what) + ": searches with equal streams and scores part";
+      return std::string(what) + ": searches with equal streams and scores diverge";
     });
   }
 }
 
-/// Two searches of one tuner, in turns.
+/// Two searches of one tuner, interleaved.
 void searches_in_turns(const Bench& bench, Report& report) {
   const auto tuner = bench.make();
   const std::vector<Dimension> space = spaces()[3].second;

@@ -6,7 +6,7 @@
 namespace altiplan::conformance {
 namespace {
 
-/// Wider than the judge's tolerances: what fails here fails there.
+/// Wider than the judge's tolerances: anything that fails here fails there.
 constexpr double kMetres = 1e-5;
 constexpr double kRadians = 1e-6;
 
@@ -18,7 +18,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
 bool is_upright(const Vec3& leg) { return std::hypot(leg.x(), leg.y()) < 1e-6; }
 
 /// The corner at `here`, for a vehicle that comes from `before`; `heading` is that of the last leg
-/// which was not upright, zero where there was none.
+/// which was not vertical, zero where there was none.
 std::string bend_problem(const Vec3& before, const Vec3& heading, const Vec3& here,
                          const Vec3& next, const Request& request) {
   const Limits& limits = request.limits;
@@ -31,8 +31,7 @@ std::string bend_problem(const Vec3& before, const Vec3& heading, const Vec3& he
     return "turns by " + text(degrees(level)) + " degrees at " + text(here);
   }
   if (angle_between(in, out) > limits.max_turn_space + kRadians) {
-    return "turns by " + text(degrees(angle_between(in, out))) + " degrees in space at " +
-           text(here);
+    return "turns by " + text(degrees(angle_between(in, out))) + " degrees in 3-D at " + text(here);
   }
   // Half of the shorter leg is the tangent of a circle over half of the turn.
   const double half_turn = std::tan(angle_between(in, out) / 2);

@@ -113,7 +113,7 @@ Scene random_scene(double unit, std::uint64_t seed, Flight flight) {
 }
 
 Scene wall_scene(double unit, double top, Flight flight) {
-  Scene scene = scene_of(unit, "a wall " + text(top) + " units high across the way");
+  Scene scene = scene_of(unit, "a wall " + text(top) + " units high across the straight path");
   Request& request = scene.request;
   request.goal.position = unit * Vec3(18.5, 1.5, 1.5);
   level_out(scene, flight);
@@ -152,7 +152,7 @@ void enclose_goal(Scene& scene) {
 }
 
 Scene ridge_scene(double unit) {
-  Scene scene = scene_of(unit, "a crest across the way");
+  Scene scene = scene_of(unit, "a crest across the straight path");
   scene.ridge = std::make_shared<Ridge>(10 * unit, 2.3 * unit, 0.3);
   Request& request = scene.request;
   request.goal.position.z() = 1.5 * unit;

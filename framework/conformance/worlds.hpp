@@ -12,7 +12,7 @@
 
 namespace altiplan::conformance {
 
-/// Solid balls in closed form: nothing allocates in a query.
+/// Solid balls in closed form: queries do not allocate.
 class Balls final : public Environment {
  public:
   explicit Balls(std::vector<Sphere> balls);
@@ -28,7 +28,7 @@ class Balls final : public Environment {
   LayerInfo info_;
 };
 
-/// Balls of one size on the posts of a grid, as many as there are posts; each query looks at a few.
+/// Balls of one size on the posts of a grid, any number of posts; each query tests only a few.
 class BallField final : public Environment {
  public:
   BallField(const Vec3& first, double spacing, const std::array<int, 3>& counts, double radius)
@@ -65,7 +65,8 @@ class Ridge final : public Environment, public Ground {
   double slope_;
 };
 
-/// Passes everything on to another layer, and tells `asked` where at each query of obstacles.
+/// Forwards everything to another layer, and reports the position of each obstacle query to
+/// `asked`.
 class Watched final : public Environment {
  public:
   using Asked = std::function<void(const Vec3&)>;
@@ -84,56 +85,56 @@ class Watched final : public Environment {
   const LayerInfo& do_info() const override { return info_; }
   std::shared_ptr<const Environment> inner_;
   Asked asked_;
-  LayerInfo info_;  ///< of its cells alone
+  LayerInfo info_;  ///< its cells only
 };
 
-/// A problem, and what it is made of, so that it can be judged apart from the world's queries.
+/// A problem and its parts, so that it can be judged independently of the world's queries.
 struct Scene {
-  std::string name;  ///< says how to make it again
+  std::string name;  ///< identifies how to reproduce it
   double unit = 1;
   Request request;
   std::vector<Shape> solids;  ///< spheres and boxes
   std::shared_ptr<const Ridge> ridge;
 };
 
-/// How a scene is cut for a planner that knows level flight only, or should try it.
+/// Flight mode of a scene: `level` for planners that know level flight only, or to test it.
 enum class Flight { space, level };
 
-/// Nothing in the way.
+/// An empty scene.
 Scene open_scene(double unit, Flight flight);
-/// Balls and boxes, drawn; start and goal in opposite corners.
+/// Random balls and boxes; start and goal in opposite corners.
 Scene random_scene(double unit, std::uint64_t seed, Flight flight);
-/// A wall across the straight way, `top` units high, with a way round that is long.
+/// A wall across the straight path, `top` units high, with a long detour around it.
 Scene wall_scene(double unit, double top, Flight flight);
-/// Ten times as far each way, with a million balls in between.
+/// Ten times as large on each axis, with a million balls in between.
 Scene crowded_scene(double unit, Flight flight);
-/// Puts a hollow box around the goal: there is no way in.
+/// Puts a hollow box around the goal, which makes it unreachable.
 void enclose_goal(Scene& scene);
-/// A crest across the straight way, to be crossed at a height above ground.
+/// A crest across the straight path, to be crossed at a height above ground.
 Scene ridge_scene(double unit);
-/// Cells as drawn: one text a level from the lowest, rows by '/' from the north, '#' solid, 'S' and
-/// 'G' start and goal. The cells are the layer's own, with an edge of one unit.
+/// Cells from text: one string per level from the lowest, rows separated by '/' from the north, '#'
+/// solid, 'S' and 'G' start and goal. The cells are the layer's own, with an edge of one unit.
 Scene cell_scene(double unit, std::string name, const std::vector<std::string>& levels,
                  Flight flight);
-/// Cells at random.
+/// Random cells.
 Scene random_cells(double unit, std::uint64_t seed, Flight flight);
-/// The world of the scene with one more solid, and the change that says so.
+/// The world of the scene with one more solid, and the corresponding change.
 std::shared_ptr<const World> with_solid(Scene& scene, const Shape& solid, const std::string& id,
                                         std::vector<Change>& changes);
-/// The scene, moved.
+/// The scene, translated.
 Scene moved_scene(const Scene& scene, const Vec3& by);
 
-/// Distance to the nearest solid of the scene, by formulas of this library's own.
+/// Distance to the nearest solid of the scene, by this library's own formulas.
 double own_clearance(const Scene& scene, const Vec3& p);
 
-/// What is wrong with the route, judged by dense samples and own formulas; "" for a sound one.
+/// The defect of the route, found by dense samples and own formulas; "" for a valid one.
 std::string unsound(const Route& route, const Scene& scene);
 
-/// Length of the shortest way over the scene's free cells from start to goal; infinite where there
+/// Length of the shortest path over the scene's free cells from start to goal; infinite where there
 /// is none.
 struct Lanes {
   int neighbours = 26;    ///< or 6; in level flight 8 or 4
-  bool free_box = false;  ///< a step needs every cell free that its box spans
+  bool free_box = false;  ///< a step needs every cell of its bounding box free
 };
 double shortest(const Scene& cells, const Lanes& lanes);
 }  // namespace altiplan::conformance

@@ -62,7 +62,7 @@ ConfigError::ConfigError(Location where, std::string key, std::string message)
     : ConfigError(std::vector<Problem>{{std::move(where), std::move(key), std::move(message)}}) {}
 
 namespace {
-/// Edit distance with swaps of neighbours (optimal string alignment).
+/// Edit distance with transpositions (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> older;
   std::vector<std::size_t> previous(b.size() + 1);
@@ -94,7 +94,7 @@ std::string excerpt(std::string_view text) {
 }
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string_view head = word.substr(0, 64);  // a long word costs its square
+  const std::string_view head = word.substr(0, 64);  // the cost is quadratic in the length
   std::size_t best = std::max<std::size_t>(1, head.size() / 3) + 1;
   std::string found;
   for (const std::string& candidate : candidates) {

@@ -2,8 +2,8 @@
 #pragma once
 
 /// ALTIPLAN_CLONES before a function: compiled for the baseline and once more for CPUs with AVX2,
-/// chosen when the library is loaded. The arithmetic stays that of the source (no contraction), so
-/// both give the same bits. Sanitizers cannot start before the choice is made: none there.
+/// selected when the library is loaded. The arithmetic is that of the source (no contraction), so
+/// both give the same bits. Not used with sanitizers, which start after the selection.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define ALTIPLAN_CLONES

@@ -16,13 +16,13 @@ using study::report::pixels;
 
 constexpr double kLeft = 66;
 constexpr double kRight = study::report::kFigureWidth - 14;
-constexpr double kTop = 30;  ///< below the label of what goes up
+constexpr double kTop = 30;  ///< below the label of the vertical axis
 constexpr double kBottom = 238;
 
 /// By iteration, from the first.
 struct Curves {
-  std::vector<double> best;  ///< so far; infinite while all has failed
-  std::vector<double> mean;  ///< of the iteration's evaluations that have not failed; NaN of none
+  std::vector<double> best;  ///< so far; infinite while all have failed
+  std::vector<double> mean;  ///< of the iteration's successful evaluations; NaN if none
 };
 
 Curves curves_of(const Tuning& tuning) {
@@ -49,7 +49,7 @@ Curves curves_of(const Tuning& tuning) {
   return curves;
 }
 
-/// "Length, m" of a value, an expression as it is: its names carry their units.
+/// "Length, m" for a value, an expression unchanged: its names carry their units.
 std::string score_label(const TunePlan& plan, const Axis& up) {
   constexpr std::size_t kMaxCharacters = 60;
   const std::string metric = study::report::printable(plan.request.metric);
@@ -82,9 +82,9 @@ study::report::Figure convergence_figure(const TunePlan& plan, const Tuning& tun
   draw_curve(canvas, iterations, curves.best, along, up, study::report::series_line(0));
   double y = kBottom + study::report::kAxisHeight + 20;
   y = draw_key(canvas, kLeft, y, 0, "best so far");
-  y = draw_key(canvas, kLeft, y, 1, "mean of the iteration, failures left out");
+  y = draw_key(canvas, kLeft, y, 1, "mean of the iteration, without failures");
   canvas.line(kLeft, y - 4, kLeft + 26, y - 4, "reference");
-  canvas.text(kLeft + 34, y, "the pipeline as it is");
+  canvas.text(kLeft + 34, y, "original pipeline");
   const std::string metric = study::report::printable(plan.request.metric);
   study::report::Grid numbers{{"iteration", "best", "mean"}, {}};
   for (std::size_t i = 0; i < curves.best.size(); ++i) {

@@ -16,7 +16,7 @@
 
 namespace altiplan::tune {
 
-/// The files of a tuning, by what a change of them would change at least.
+/// The input files of a tuning, by what depends on them.
 class FileWatch {
  public:
   explicit FileWatch(const host::Json& files) {
@@ -28,8 +28,8 @@ class FileWatch {
     for (const auto& [file, before] : stamps_) {
       if (stamp(file) != before) {
         throw Error("'" + file +
-                    "' has changed since the tuning began; what had been run before is "
-                    "kept: put the file back, or begin anew with --fresh");
+                    "' has changed since the tuning began; earlier runs are kept: restore the "
+                    "file, or start over with --fresh");
       }
     }
   }

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kSettings = "settings.json";
 constexpr const char* kLog = "runs.log";
-/// All that a tuning writes: what --fresh removes.
+/// All files that a tuning writes, which --fresh removes.
 constexpr std::array kOurs = {kSettings,         kLog,           "evaluations.csv", "held_back.csv",
                               "convergence.svg", "summary.json", "tuned.yaml"};
 
@@ -44,14 +44,14 @@ std::string line_of(const RunId& id, const std::string& parameters, const Scored
   return text + " " + check_sum(text) + "\n";
 }
 
-/// "" where it is not there.
+/// "" if it does not exist.
 std::string text_of(const fs::path& file) {
   return host::is_there(file)
              ? kit::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
              : "";
 }
 
-/// Where two settings differ, in words.
+/// The differences of two settings, in words.
 std::string differences(const host::Json& before, const host::Json& now) {
   std::set<std::string> keys;
   for (const host::Json* all : {&before, &now}) {
@@ -73,7 +73,7 @@ std::string differences(const host::Json& before, const host::Json& now) {
         const bool same = was.is_object() && was.value(file, host::Json()) == hash;
         what += !same ? (what.empty() ? "" : ", ") + file : "";
       }
-      what = what.empty() ? "the files that it reads" : "the content of " + what;
+      what = what.empty() ? "its input files" : "the content of " + what;
     } else if (key == "plugins" || key == "program" || key == "altiplan") {
       what = key == "plugins" ? "the build of a plugin" : "the build of the program";
     } else if (is.is_primitive()) {
@@ -84,14 +84,14 @@ std::string differences(const host::Json& before, const host::Json& now) {
   return text;
 }
 
-/// Whether a call that was killed while it wrote a file of ours has left it: "FILE.HEX.partial".
+/// True for a partial file of ours that a killed call has left: "FILE.HEX.partial".
 bool is_left_over(const std::string& name) {
   return name.ends_with(".partial") && std::ranges::any_of(kOurs, [&](const char* ours) {
            return name.starts_with(std::string(ours) + ".");
          });
 }
 
-/// The folder's files, without what a killed call has left over, which goes.
+/// The folder's files; removes partial files of a killed call.
 std::vector<std::string> files_in(const fs::path& folder) {
   std::vector<std::string> names;
   std::vector<fs::path> left_over;
@@ -119,29 +119,28 @@ TuneLog::TuneLog(fs::path folder, const host::Json& settings, bool fresh)
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) {
-    refuse(folder_, "cannot be made a folder: " + error.message());
+    refuse(folder_, "cannot be created: " + error.message());
   }
   const fs::path described = folder_ / kSettings;
   const std::vector<std::string> files = files_in(folder_);
   if (!host::is_there(described)) {
     for (const std::string& name : files) {
       if (name != "work") {
-        refuse(folder_,
-               "holds '" + name + "' and no tuning: give a folder that is empty or not there");
+        refuse(folder_, "contains '" + name + "' and no tuning: give an empty or new folder");
       }
     }
   } else if (fresh) {
     for (const char* ours : kOurs) {
       fs::remove(folder_ / ours, error);
     }
-  } else if (host::is_there(file_)) {  // else nothing has been run that could be lost
+  } else if (host::is_there(file_)) {  // otherwise no run can be lost
     const host::Json before = host::Json::parse(text_of(described), nullptr, false);
     if (!before.is_object()) {
-      refuse(folder_, "holds a damaged settings.json: give another folder, or --fresh");
+      refuse(folder_, "contains a damaged settings.json: give another folder, or --fresh");
     }
     if (before != settings) {
-      refuse(folder_, "holds a tuning that differs in " + differences(before, settings) +
-                          ": give another folder, or --fresh to begin anew");
+      refuse(folder_, "contains a tuning that differs in " + differences(before, settings) +
+                          ": give another folder, or --fresh to start over");
     }
   }
   host::write_file(described, host::file_text(settings));
@@ -172,10 +171,10 @@ void TuneLog::read() {
   std::error_code error;
   if (damaged_ > 0) {
     finish();
-  } else if (begin < text.size()) {  // a kill has cut it off
+  } else if (begin < text.size()) {  // truncated by a kill
     fs::resize_file(file_, begin, error);
     if (error) {
-      refuse(folder_, "holds a log that cannot be written: " + error.message());
+      refuse(folder_, "contains a log that cannot be written: " + error.message());
     }
   }
 }
@@ -187,7 +186,7 @@ const ScoredRun* TuneLog::find(const RunId& id, const std::string& parameters) c
   }
   if (found->second.parameters != parameters) {
     throw PluginError("the tuner is not deterministic: evaluation " + std::to_string(id.first) +
-                      " was of " + found->second.parameters + ", and is now of " + parameters);
+                      " had the parameters " + found->second.parameters + ", now " + parameters);
   }
   return &found->second.run;
 }

@@ -11,11 +11,11 @@
 
 namespace altiplan::tune {
 
-/// What a run of an evaluation came to.
+/// The outcome of a run of an evaluation.
 struct ScoredRun {
   std::string outcome;          ///< as of a study's run
-  std::optional<double> value;  ///< of the metric; none where the run failed
-  std::string message;          ///< why; "" where it did not
+  std::optional<double> value;  ///< of the metric; none if the run failed
+  std::string message;          ///< why it failed; "" if it did not
 
   bool operator==(const ScoredRun&) const = default;
 };
@@ -23,24 +23,24 @@ struct ScoredRun {
 /// A run by its evaluation and scenario.
 using RunId = std::pair<std::size_t, std::size_t>;
 
-/// The folder of a tuning: its settings, and a log to which every run is added as it ends.
+/// The folder of a tuning: its settings, and a log to which each run is appended as it ends.
 ///
-/// A line of the log is JSON and its CRC-32. One that a kill has cut off, or that is damaged, is
-/// dropped: the search is deterministic, so what is missing is done again.
+/// A line of the log is JSON and its CRC-32. Truncated or damaged lines are dropped: the search is
+/// deterministic, so missing runs are repeated.
 class TuneLog {
  public:
-  /// Makes the folder, or goes on with the tuning in it. Throws Error where it holds other files,
-  /// or a tuning with other settings, saying which.
+  /// Creates the folder, or continues the tuning in it. Throws Error if it contains other files, or
+  /// a tuning with different settings, naming them.
   TuneLog(std::filesystem::path folder, const host::Json& settings, bool fresh);
 
-  /// The run, if it is known; throws Error where it was of other parameters, so that the tuner is
-  /// not deterministic.
+  /// The run, if logged; throws Error if it had other parameters, i.e. the tuner is not
+  /// deterministic.
   const ScoredRun* find(const RunId& id, const std::string& parameters) const;
   void add(const RunId& id, const std::string& parameters, const ScoredRun& run);
   std::size_t size() const { return runs_.size(); }
-  /// Lines that were not as they were written, beside one that a kill has cut off.
+  /// Number of damaged lines, not counting one truncated by a kill.
   std::size_t damaged() const { return damaged_; }
-  /// The log in order of evaluations, as every tuning with these settings leaves it.
+  /// Writes the log in the order of evaluations, identical for every tuning with these settings.
   void finish() const;
 
  private:

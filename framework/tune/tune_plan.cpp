@@ -17,7 +17,7 @@ namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
-/// "a=1,b=[2,3]" at the commas that stand in no bracket.
+/// Splits "a=1,b=[2,3]" at the commas outside brackets.
 std::vector<std::string> split_outside_brackets(const std::string& text) {
   std::vector<std::string> parts{""};
   int depth = 0;
@@ -32,7 +32,7 @@ std::vector<std::string> split_outside_brackets(const std::string& text) {
   return parts;
 }
 
-/// The keys and values of FILE[KEY=VALUES,…], as a study's `set` has them.
+/// The keys and values of FILE[KEY=VALUES,…], like a study's `set`.
 Value set_of(const std::string& text, const Location& where) {
   Value set;
   set.kind = Value::Kind::map;
@@ -79,7 +79,7 @@ std::vector<study::Variant> scenarios_of(const std::string& entry, const std::st
   return all;
 }
 
-/// What two names of one scenario have in common.
+/// A canonical form, equal for two names of the same scenario.
 std::string identity(const fs::path& file, const std::vector<std::string>& set) {
   return fs::weakly_canonical(file).string() + " " + host::Json(set).dump();
 }
@@ -96,7 +96,7 @@ void find_scenarios(TunePlan& plan) {
           throw ConfigError(
               Location{"", 0, 0, std::string(option) + " " + entry}, "",
               "the scenario '" + variant.name + "' is given twice" +
-                  (entries == &request.hold_out ? ": what is held back must be new to the tuning"
+                  (entries == &request.hold_out ? ": held-out scenarios must be new to the tuning"
                                                 : ""));
         }
         plan.scenarios.push_back(std::move(variant));
@@ -109,7 +109,7 @@ void find_scenarios(TunePlan& plan) {
   }
 }
 
-/// The pipeline in that scenario, with what is wrong told at the option that named it.
+/// The pipeline in that scenario; problems are reported at the option that named the scenario.
 host::Config load_in(const TunePlan& plan, std::size_t scenario) {
   try {
     return host::load_config(plan.request.pipeline, plan.overrides(scenario, {}),
@@ -233,8 +233,8 @@ TunePlan plan_tuning(const TuneRequest& request) {
     for (std::size_t s = plan.tuned_on; s < plan.scenarios.size(); ++s) {
       if (identity(plan.scenarios[s].file, plan.scenarios[s].set) == identity(own, {})) {
         throw ConfigError(Location{"", 0, 0, "--hold-out " + own.string()}, "",
-                          "the scenario is the pipeline's own, which it is tuned on: what is held "
-                          "back must be new to the tuning");
+                          "the scenario is the pipeline's own, which it is tuned on: held-out "
+                          "scenarios must be new to the tuning");
       }
     }
   }

@@ -18,8 +18,8 @@ namespace {
 using study::report::counted;
 using study::report::exact;
 
-/// What the paired test says of the differences, now less before, as the end of a sentence. It
-/// looks at their ranks, so that a few great ones can leave the mean on the other side.
+/// The result of the paired test of the differences, now minus before, as the end of a sentence.
+/// The test uses ranks, so a few large differences can put the mean on the other side.
 std::string test_words(const std::vector<double>& differences) {
   const std::optional<study::Wilcoxon> test = study::wilcoxon(differences);
   if (!test) {
@@ -27,7 +27,7 @@ std::string test_words(const std::vector<double>& differences) {
   }
   const std::string p = "Wilcoxon's signed-rank test: " + study::report::p_equals(test->p);
   if (!(test->p < 0.05)) {
-    return p + ", no difference that chance does not explain";
+    return p + ", no significant difference";
   }
   const bool is_better = test->rank_biserial < 0;
   const double change = study::mean(differences);
@@ -70,7 +70,7 @@ TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) 
                std::to_string(made.worse) + " and equal in " + std::to_string(made.equal) + " of " +
                counted(made.scenarios, "scenario");
   if (made.failed_before + made.failed_now > 0) {
-    made.words += " (as it is fails in " + std::to_string(made.failed_before) + ", tuned in " +
+    made.words += " (original fails in " + std::to_string(made.failed_before) + ", tuned in " +
                   std::to_string(made.failed_now) + ")";
   }
   made.words += differences.empty() ? "" : "; " + test_words(differences);
@@ -92,7 +92,7 @@ host::Json json_of(const TunedComparison& made) {
           {"words", made.words}};
 }
 
-/// The part behind '=' of an assignment.
+/// The part of an assignment after '='.
 std::string value_of(const std::string& assignment) {
   return assignment.substr(assignment.find('=') + 1);
 }
@@ -165,12 +165,12 @@ host::Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSu
   return json;
 }
 
-/// What stands above the tuned pipeline.
+/// The header comment of the tuned pipeline.
 std::string heading(const TunePlan& plan, const Tuning& tuning) {
   const std::string where = counted(plan.tuned_on, "scenario");
   return "# Tuned by altiplan tune from " + plan.config.pipeline_path.filename().string() + ": " +
          study::report::printable(plan.request.metric) + " = " + exact(tuning.tuned().score) +
-         " over " + where + ", as it was " +
+         " over " + where + ", originally " +
          (std::isfinite(tuning.as_it_is().score) ? exact(tuning.as_it_is().score) : "a failure") +
          " (" + plan.request.tuner + ", seed " + std::to_string(plan.request.seed) + ", " +
          counted(tuning.evaluations.size() - 1, "evaluation") + ").\n";

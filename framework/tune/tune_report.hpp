@@ -9,24 +9,24 @@
 
 namespace altiplan::tune {
 
-/// How the tuned pipeline does in scenarios, beside the pipeline as it is.
+/// Comparison of the tuned with the original pipeline over scenarios.
 struct TunedComparison {
   std::size_t scenarios = 0;
-  std::size_t failed_before = 0;  ///< of the pipeline as it is
+  std::size_t failed_before = 0;  ///< of the original pipeline
   std::size_t failed_now = 0;
   std::size_t better = 0;  ///< scenarios that both solved, by the metric
   std::size_t worse = 0;
   std::size_t equal = 0;
-  double mean_before = 0;  ///< over those that both solved; NaN of none
+  double mean_before = 0;  ///< over those that both solved; NaN if none
   double mean_now = 0;
   std::string words;  ///< a sentence, with the paired test
 };
 
 struct TuneSummary {
   TunedComparison tuned_on;
-  TunedComparison held_back;  ///< of no scenarios where nothing is held back
+  TunedComparison held_back;  ///< without scenarios if none are held out
   std::size_t evaluations = 0;
-  std::size_t on_plateau = 0;  ///< whose score is the least, within a part in 1e9
+  std::size_t on_plateau = 0;  ///< with the lowest score, to a relative 1e-9
   std::size_t failed = 0;      ///< with a run that failed
 };
 TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning);
@@ -34,6 +34,6 @@ TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning);
 /// The best and the mean score of each iteration.
 study::report::Figure convergence_figure(const TunePlan& plan, const Tuning& tuning);
 
-/// evaluations.csv, held_back.csv (where there are any), convergence.svg, summary.json, tuned.yaml.
+/// Writes evaluations.csv, held_back.csv (if any), convergence.svg, summary.json, tuned.yaml.
 void write_tuning(const TunePlan& plan, const Tuning& tuning, const std::filesystem::path& folder);
 }  // namespace altiplan::tune

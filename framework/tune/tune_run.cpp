@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls the tuner; what it throws says whose it is.
+/// Calls the tuner; attributes its exceptions to it.
 template <class Call>
 auto of_tuner(const TunePlan& plan, const Call& call) {
   const std::string who = "the tuner '" + plan.request.tuner + "' ";
@@ -34,7 +34,7 @@ auto of_tuner(const TunePlan& plan, const Call& call) {
   }
 }
 
-/// How many points the tuner asks for when nothing is better than anything.
+/// Number of points that the tuner requests if all scores are equal.
 std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
   constexpr std::size_t kMax = 1'000'000;
   const auto limit = std::size_t(plan.request.evaluations.value_or(kMax));
@@ -62,7 +62,7 @@ class TuningRun {
         log_(options.out, plan.settings, options.fresh),
         files_(plan.settings.at("files")),
         pool_(folder_, pool_options()) {
-    folder_.clear();  // of a call that was killed: done again
+    folder_.clear();  // records of a killed call: run again
   }
 
   Tuning operator()() {
@@ -80,7 +80,7 @@ class TuningRun {
   }
 
  private:
-  /// A run that is still to be done.
+  /// A pending run.
   struct Wanted {
     std::size_t evaluation;
     std::size_t scenario;
@@ -157,12 +157,12 @@ class TuningRun {
     tell_progress();
   }
 
-  /// Whatever a penalty makes of failures: what solves more scenarios comes first.
+  /// Solving more scenarios ranks first, whatever the penalty of failures.
   static bool is_better(const Evaluation& a, const Evaluation& b) {
     return a.failed != b.failed ? a.failed < b.failed : a.score < b.score;
   }
 
-  /// The mean over the scenarios, a failed run counted as the penalty or infinity.
+  /// The mean over the scenarios, with the penalty or infinity for failed runs.
   void score(Evaluation& evaluation) const {
     double sum = 0;
     for (std::size_t s = 0; s < plan_.tuned_on; ++s) {
@@ -173,8 +173,8 @@ class TuningRun {
     evaluation.score = study::in_12_digits(sum / double(plan_.tuned_on));
   }
 
-  /// Gives the evaluations their runs: known ones, those of an earlier evaluation with the same
-  /// parameters, and else new ones.
+  /// Assigns runs to the evaluations: logged ones, those of an earlier evaluation with the same
+  /// parameters, otherwise new ones.
   void run_missing(std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
     wanted_.clear();
     std::vector<std::size_t> jobs;
@@ -203,7 +203,7 @@ class TuningRun {
     for (const std::string& assignment : tuning_.evaluations[evaluation].assignments) {
       text += (text.empty() ? "" : " ") + assignment;
     }
-    return text.empty() ? "the pipeline as it is" : text;
+    return text.empty() ? "the original pipeline" : text;
   }
 
   void run(const std::vector<std::size_t>& jobs) {
@@ -264,13 +264,13 @@ class TuningRun {
     return {study::name(outcome.outcome), value, ""};
   }
 
-  /// A metric that no run has would only make every evaluation a failure.
+  /// Throws Error for a metric that no run has, with which every evaluation would fail.
   void expect_values() const {
     for (std::size_t s = 0; s < plan_.tuned_on; ++s) {
       const ScoredRun& run = tuning_.as_it_is().runs[s];
       if (run.outcome == "no_value") {
         throw Error("--metric: in '" + plan_.scenarios[s].name +
-                    "' the pipeline as it is solves the problem, but " + run.message);
+                    "' the original pipeline solves the problem, but " + run.message);
       }
     }
   }
@@ -288,7 +288,7 @@ class TuningRun {
   const TunePlan& plan_;
   const TuneOptions& options_;
   const Clock::time_point began_ = Clock::now();
-  study::WorkFolder folder_;  ///< locked before the log is looked at
+  study::WorkFolder folder_;  ///< locked before the log is read
   TuneLog log_;
   const FileWatch files_;
   study::WorkerPool pool_;

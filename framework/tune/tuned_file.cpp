@@ -17,7 +17,7 @@ namespace altiplan::tune {
 namespace fs = std::filesystem;
 namespace {
 
-/// Whether two trees say the same; the order of keys says nothing.
+/// True if two trees are equal; the order of keys does not count.
 bool same(const Value& a, const Value& b) {
   if (a.kind != b.kind || a.items.size() != b.items.size() ||
       a.entries.size() != b.entries.size()) {
@@ -37,7 +37,7 @@ bool same(const Value& a, const Value& b) {
   });
 }
 
-/// The document that an edit works on.
+/// The document being edited.
 class Document {
  public:
   explicit Document(std::string text)
@@ -46,7 +46,7 @@ class Document {
   const std::string& text() const { return text_; }
   const Value& tree() const { return tree_; }
 
-  /// Sets the key within the text; false where that would change anything else.
+  /// Sets the key within the text; false if that would change anything else.
   bool set(const std::string& assignment) {
     Value wanted = tree_;
     host::apply_overrides(wanted, {assignment}, host::FileOfKey::pipeline);
@@ -68,8 +68,8 @@ class Document {
   }
 
  private:
-  /// The value at the key; null with the deepest map that the file has of it, and the keys that it
-  /// lacks, where there is none.
+  /// The value at the key; if there is none, null with the deepest existing map and the missing
+  /// keys.
   const Value* find(const std::string& key, const Value*& deepest, std::string& lacking) const {
     const Value* at = &tree_;
     std::size_t begin = 0;
@@ -129,8 +129,8 @@ class Document {
     return true;
   }
 
-  /// Puts "key: value" into a map: behind the brace of one on a line, else on a line of its own
-  /// before the first key, or behind it where that begins an item of a list.
+  /// Inserts "key: value" into a map: after the brace of a flow map, otherwise on a new line before
+  /// the first key, or after it if that begins a list item.
   static bool insert(std::string& text, const Value& map, const std::string& added) {
     if (const std::size_t at = offset(text, map.where); at < text.size() && text[at] == '{') {
       text.insert(at + 1, added + (map.entries.empty() ? "" : ", "));
@@ -171,13 +171,13 @@ class Document {
   Value tree_;
 };
 
-/// The path as it must stand in a file of the folder.
+/// The path relative to the folder.
 std::string rebased(const std::string& path, const fs::path& from, const fs::path& folder) {
   if (path.empty() || fs::path(path).is_absolute()) {
     return path;
   }
   const fs::path target = (from / path).lexically_normal();
-  // Where links are on the way, ".." does not lead where it seems to.
+  // With symbolic links in the path, ".." may lead elsewhere.
   const auto is_itself = [](const fs::path& plain) {
     std::error_code error;
     const fs::path canonical = fs::weakly_canonical(plain, error);
@@ -191,7 +191,7 @@ std::string rebased(const std::string& path, const fs::path& from, const fs::pat
   return (is_plain && !relative.empty() ? relative : target).string();
 }
 
-/// Keys of the pipeline that hold paths, with what they hold.
+/// Keys of the pipeline with paths as values, and these values.
 std::vector<std::pair<std::string, std::string>> paths_of(const host::Config& config) {
   std::vector<std::pair<std::string, std::string>> paths;
   const auto add = [&](const std::string& key, const Value* value) {

@@ -36,7 +36,7 @@ std::vector<std::string> split(std::string_view text) {
   return parts;
 }
 
-/// The keys that a{b,c}d stands for; a list of keys without braces is one too.
+/// Expands a{b,c}d to its keys; accepts a list of keys without braces too.
 std::vector<std::string> keys_of(const std::string& text, const std::string& option) {
   const std::size_t open = text.find('{');
   const std::size_t close = text.find('}');
@@ -77,7 +77,7 @@ void read_range(std::string_view text, OverEntry& entry) {
   entry.max = *high;
 }
 
-/// The step that the first words of the key name; what follows is the rest.
+/// The step named by the first words of the key; sets the rest of the key.
 const host::StepEntry* step_of(const host::Config& config, std::string_view key,
                                std::string_view& rest) {
   const auto find_in = [&](const std::vector<host::StepEntry>& steps) -> const host::StepEntry* {
@@ -127,14 +127,14 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
     const std::string low =
         std::isfinite(spec.min) ? (spec.above ? "more than " : "at least ") + text(spec.min) : "";
     const std::string high = std::isfinite(spec.max) ? "at most " + text(spec.max) : "";
-    refuse(entry, "is to be tuned from " + text(entry.min) + " to " + text(entry.max) +
-                      ", but the parameter is " + low +
+    refuse(entry, "has the range " + text(entry.min) + " to " + text(entry.max) +
+                      ", but the parameter must be " + low +
                       (low.empty() || high.empty() ? "" : " and ") + high);
   }
   constexpr double kMaxWhole = 1e15;
   if (spec.type == FieldType::integer && (std::ceil(entry.min) > std::floor(entry.max) ||
                                           entry.min < -kMaxWhole || entry.max > kMaxWhole)) {
-    refuse(entry, "takes whole numbers, of which there is none, or too many, from " +
+    refuse(entry, "takes whole numbers, of which the range has none or too many: " +
                       host::Json(entry.min).dump() + " to " + host::Json(entry.max).dump());
   }
 }
@@ -143,7 +143,7 @@ bool is_number(FieldType type) {
   return type == FieldType::number || type == FieldType::integer || type == FieldType::auto_number;
 }
 
-/// The declaration of the number that the rest of a key names, `name` or `name.0`.
+/// The declaration of the number named by the rest of a key, `name` or `name.0`.
 FieldSpec spec_of(const BoundField& field, const host::StepEntry& step, std::string_view inner,
                   const OverEntry& entry, TunedParameter& found) {
   FieldSpec spec = field.spec;
@@ -151,7 +151,7 @@ FieldSpec spec_of(const BoundField& field, const host::StepEntry& step, std::str
   if (inner.empty()) {
     if (!is_number(spec.type)) {
       refuse(entry,
-             "is no number" +
+             "is not a number" +
                  std::string(spec.type == FieldType::vec2 || spec.type == FieldType::vec3 ||
                                      spec.type == FieldType::list
                                  ? ": its numbers are tuned one by one, as " + entry.key + ".0"
@@ -162,16 +162,16 @@ FieldSpec spec_of(const BoundField& field, const host::StepEntry& step, std::str
   const bool is_vector = spec.type == FieldType::vec2 || spec.type == FieldType::vec3;
   const bool is_list = spec.type == FieldType::list && is_number(spec.children.at(0).type);
   if (!is_vector && !is_list) {
-    refuse(entry, "'" + spec.name + "' is no list of numbers");
+    refuse(entry, "'" + spec.name + "' is not a list of numbers");
   }
   const Value* written = step.with.find(spec.name);
   const Value* part = written == nullptr ? nullptr : part_of(*written, inner);
   if (written == nullptr) {
     refuse(entry, "write the list '" + spec.name +
-                      "' into the pipeline: where it is left out, no number of it can be set");
+                      "' in the pipeline: no number of an omitted list can be set");
   }
   if (part == nullptr || part->kind != Value::Kind::scalar) {
-    refuse(entry, "'" + std::string(inner) + "' is no index of this list, counted from 0");
+    refuse(entry, "'" + std::string(inner) + "' is not an index of this list, counted from 0");
   }
   found.as_it_is = part->text;
   spec.type = is_list ? spec.children[0].type : FieldType::number;
@@ -186,17 +186,17 @@ TunedParameter find_parameter(const host::Config& config, const OverEntry& entry
     for (const host::StepEntry& known : config.steps) {
       steps.push_back(known.path + ".with");
     }
-    refuse(entry, "names no parameter of a step: expected " + steps.front() +
+    refuse(entry, "does not name a parameter of a step: expected " + steps.front() +
                       ".NAME, by the steps' numbers from 0" +
                       (steps.size() > 1 ? " to " + std::to_string(steps.size() - 1) : ""));
   }
   const std::string kind = host::kind_of_step(*config.registry, *step);
   const ParamReport report =
       attributed([&] { return "describing the " + kind + " '" + step->plugin + "'"; },
-             [&] {
-               return plugin(*config.registry, kind, step->plugin)
-                   .describe(&step->with, step->path + ".with");
-             });
+                 [&] {
+                   return plugin(*config.registry, kind, step->plugin)
+                       .describe(&step->with, step->path + ".with");
+                 });
   const std::size_t dot = rest.find('.');
   const std::string name(rest.substr(0, dot));
   std::vector<std::string> names;
@@ -229,7 +229,7 @@ std::vector<OverEntry> read_over(const std::vector<std::string>& options) {
     const std::vector<std::string> keys = keys_of(option.substr(0, equals), option);
     const bool is_simplex = option.substr(equals + 1) == "simplex";
     if (is_simplex && keys.size() < 2) {
-      throw Error("--over: a simplex has two weights or more, found '" + option + "'");
+      throw Error("--over: expected two or more weights of a simplex, found '" + option + "'");
     }
     for (const std::string& key : keys) {
       OverEntry entry{option, key};

@@ -10,9 +10,9 @@
 
 namespace altiplan::tune {
 
-/// What `--over` says of one parameter.
+/// One parameter of `--over`.
 struct OverEntry {
-  std::string option;  ///< as the user gave it
+  std::string option;  ///< text on the command line
   std::string key;     ///< "steps.0.with.weight_g"
   double min = 0;
   double max = 1;
@@ -20,27 +20,27 @@ struct OverEntry {
   int group = -1;  ///< of weights that sum to 1
 };
 
-/// Reads KEY=LO..HI, KEY=log:LO..HI and 'KEY,KEY=simplex', where a part of the keys may stand in
-/// braces: steps.0.with.{weight_g,weight_h}. Groups are numbered as they come. Throws Error naming
-/// the option for what cannot be read.
+/// Reads KEY=LO..HI, KEY=log:LO..HI and 'KEY,KEY=simplex', where a part of the keys may be in
+/// braces: steps.0.with.{weight_g,weight_h}. Groups are numbered in order. Throws Error naming the
+/// option on a syntax error.
 std::vector<OverEntry> read_over(const std::vector<std::string>& options);
 
-/// A parameter of a step that is tuned, found in the pipeline.
+/// A tuned parameter of a step, found in the pipeline.
 struct TunedParameter {
   OverEntry over;
-  bool is_whole = false;  ///< the number is rounded; each whole number has the same share
+  bool is_whole = false;  ///< the number is rounded; each whole number is equally likely
   std::string as_it_is;   ///< its value in the pipeline, JSON
 
-  /// That value as tables have it: `auto` in place of `"auto"`.
+  /// That value as printed in tables: `auto` instead of `"auto"`.
   std::string shown() const;
-  /// What the tuner sees of it.
+  /// The dimension that the tuner searches.
   Dimension dimension() const;
-  /// The parameter's value at a number of that dimension, as YAML has it.
+  /// The parameter's value, as YAML, for a number of that dimension.
   std::string value(double number) const;
 };
 
 /// Finds the parameters in the pipeline's steps. Throws ConfigError naming option and key for one
-/// that is not there, is no number, or is to leave the bounds that it has.
+/// that does not exist, is not a number, or has a range beyond its bounds.
 std::vector<TunedParameter> find_parameters(const host::Config& config,
                                             const std::vector<OverEntry>& entries);
 }  // namespace altiplan::tune

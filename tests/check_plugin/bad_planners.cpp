@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planners that break a law or a promise each: routes, statuses, budgets, traits.
+// Planners that violate one clause of the contract each: routes, statuses, budgets, traits.
 #include <algorithm>
 #include <chrono>
 #include <ctime>

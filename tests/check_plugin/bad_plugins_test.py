@@ -97,7 +97,7 @@ class Bad:
             if verdict["status"] == "failed":
                 name = named(verdict["name"])[1]
                 self.failed.append(name)
-                self.laws[name] = verdict["findings"][0]["law"]
+                self.laws[name] = verdict["findings"][0]["contract"]
         if done.returncode != (4 if self.failed else 0):
             return "%s: exit code %d, failed %s" % (self.key, done.returncode, self.failed)
         return ""
@@ -152,7 +152,7 @@ def main():
         if first and first[1] in one.failed:
             one.failed.sort(key=lambda test: test != first[1])
     if UPDATE:
-        table = ["| plugin | what it does | caught by | of the law |", "|---|---|---|---|"]
+        table = ["| plugin | what it does | caught by | clause |", "|---|---|---|---|"]
         table += ["| `%s` | %s | %s |" % (one.key, one.does, one.says()) for one in bad]
         text = text[:text.index(BEGIN)] + "\n".join([BEGIN, *table, ""]) + text[text.index(END):]
         with open(DOC, "w", encoding="utf-8") as stream:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planners whose sessions break a law each.
+// Planners whose sessions violate one clause of the contract each.
 #include "sound_planner.hpp"
 
 namespace {

@@ -95,7 +95,7 @@ class CheckPlugin(unittest.TestCase):
             self.assertIn(sets + place, said)
             self.assertIn(words, said)
         sets = self.write("sets.yaml", "- plugin: other\n")
-        self.assertIn("a set of parameters is for 'other'",
+        self.assertIn("a parameter set is for 'other'",
                       self.run_it(TUNERS, "--sets", sets, code=3).stderr)
         self.run_it(TUNERS, "--sets", self.path("none.yaml"), code=3)
 
@@ -110,7 +110,7 @@ class CheckPlugin(unittest.TestCase):
         self.run_it(TUNERS, "--only", "^tuner/sound/searches")
         self.environment["TMPDIR"] = "nowhere"
         done = self.run_it(TUNERS, "--only", "^tuner/sound/searches", code=3)
-        self.assertIn("TMPDIR: no such folder: nowhere", done.stderr)
+        self.assertIn("TMPDIR: folder not found: nowhere", done.stderr)
 
     def test_input_is_left_alone(self):
         command = f"'{PROGRAM}' check-plugin '{TUNERS}' --only ^tuner/sound/ > out; cat"
@@ -211,7 +211,7 @@ class CheckPlugin(unittest.TestCase):
                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   timeout=60)
             self.assertEqual(done.returncode, 4, told[0]["again"] + done.stdout + done.stderr)
-            self.assertIn(told[0]["findings"][0]["law"], done.stdout)
+            self.assertIn(told[0]["findings"][0]["contract"], done.stdout)
 
     def processes(self):
         """Those that have this test's TMPDIR above them."""

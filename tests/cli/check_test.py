@@ -11,7 +11,7 @@ class Check(CliCase):
         around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
                             "[900,500,100]]")
         out, _ = self.call("check", "--route", around, "--scenario", "scenario.yaml")
-        self.assertTrue(out.startswith("sound: 4 waypoints"), out)
+        self.assertTrue(out.startswith("valid: 4 waypoints"), out)
         through = self.write("through.json", "[[100,500,100],[900,500,100]]")
         out, _ = self.call("check", "--route", through, "--scenario", "scenario.yaml", code=1)
         self.assertIn("'post'", out)
@@ -30,16 +30,16 @@ class Check(CliCase):
     def test_check_a_result_without_a_flight(self):
         self.call("run", self.pipeline, "-o", "result.json")
         out, _ = self.call("check", "result.json")
-        self.assertTrue(out.startswith("sound"), out)
+        self.assertTrue(out.startswith("valid"), out)
         self.assertNotIn("flight", out)
         result = json.loads(self.read("result.json"))
         result["route"] = [result["route"][0], result["route"][-1]]
         self.write("forged.json", json.dumps(result))
         out, _ = self.call("check", "forged.json", code=1)
-        self.assertTrue(out.startswith("not sound"), out)
+        self.assertTrue(out.startswith("not valid"), out)
         self.write("scenario.yaml", self.read("scenario.yaml") + "# changed\n")
         _, err = self.call("check", "result.json")
-        self.assertIn("scenario.yaml is not the file that the result was made from", err)
+        self.assertIn("scenario.yaml has changed since the result was written", err)
         for text in ("{}", "[1", "[]", '{"altiplan": 2}'):
             self.call("check", self.write("wrong.json", text), code=3)
 
@@ -49,14 +49,14 @@ class Check(CliCase):
                            "    with: {influence_m: 200}\n")
         self.call("run", flies, "--out", "result.json")
         out, _ = self.call("check", "result.json")
-        self.assertIn("\nflight sound: ", out)
+        self.assertIn("\nflight valid: ", out)
         self.assertIn("0 collisions, reached the goal", out)
 
         result = json.loads(self.read("result.json"))
         result["flight"]["track"] = [[0, 100, 500, 100], [60, 900, 500, 100]]
         self.write("forged.json", json.dumps(result))
         out, _ = self.call("check", "forged.json", code=1)
-        self.assertIn("flight not sound: 2 points", out)
+        self.assertIn("flight not valid: 2 points", out)
         self.assertIn("collision: the vehicle touches 'wall'", out)
         verdict = json.loads(self.call("check", "forged.json", "--json", code=1)[0])
         self.assertTrue(verdict["check"]["ok"], "the route is as it was")
@@ -86,7 +86,7 @@ class Check(CliCase):
                    "events:\n  - {at_s: 20, remove: post}\n")
         self.call("run", self.write("alone.yaml", PIPELINE + "  - fly: route\n"), "--out", "r.json")
         out, _ = self.call("check", "r.json")
-        self.assertIn("0 collisions, reached the goal\n  each event was applied at", out)
+        self.assertIn("0 collisions, reached the goal\n  each event is applied at", out)
 
 
 if __name__ == "__main__":

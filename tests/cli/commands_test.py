@@ -289,6 +289,11 @@ events:
             blocks += out.count(": valid\n")
         self.assertGreaterEqual(blocks, 5)
 
+    def test_a_former_option_is_refused_with_the_present_one(self):
+        for option in (["--patience", "5"], ["--patience=5"]):
+            _, err = self.call("run", self.pipeline, *option, code=2)
+            self.assertEqual(err, "altiplan: --patience is now --timeout\n")
+
     def test_numbers_of_the_call_are_finite(self):
         self.call("run", self.pipeline, "--out", "result.json")
         tune = ("tune", self.pipeline, "--over", "a=0..1", "--metric", "length_m", "--out", "folder")

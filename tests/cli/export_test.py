@@ -55,7 +55,7 @@ class Flight(unittest.TestCase):
     def export(self, to, *options):
         code, out, err = altiplan("export", self.result, "--to", to, *options)
         self.assertEqual(code, 0, err)
-        self.assertIn("read back and judged: sound", err)
+        self.assertIn("read back and judged: valid", err)
         return out
 
     def file(self, name, text):
@@ -172,7 +172,7 @@ class Export(Flight):
                 self.export(to, "--altitude", altitude, "-o", path)
                 code, out, err = altiplan("check", "--route", path, "--scenario", SCENARIO)
                 self.assertEqual(code, 0, f"{to} {altitude}: {out} {err}")
-                self.assertIn(f"sound: {len(self.route)} waypoints", out)
+                self.assertIn(f"valid: {len(self.route)} waypoints", out)
 
     def test_check_judges_what_others_wrote(self):
         rows = [line.split(",") for line in self.export("csv").splitlines()]
@@ -182,7 +182,7 @@ class Export(Flight):
         path = self.file("low.csv", "\n".join(map(",".join, rows)))
         code, out, _ = altiplan("check", "--route", path, "--scenario", SCENARIO)
         self.assertEqual(code, 1)
-        self.assertIn("not sound", out)
+        self.assertIn("not valid", out)
 
 
 @unittest.skipUnless(shutil.which("ogr2ogr"), "no ogr2ogr (Debian: gdal-bin)")
@@ -245,7 +245,7 @@ class Zones(Flight):
     def test_zones_go_out_and_come_back(self):
         code, out, err = altiplan("export", self.result, "--to", "qgc-plan")
         self.assertEqual(code, 0, err)
-        self.assertIn("zone 'mast' (ceiling 900 m) stands in the fence at every height", err)
+        self.assertIn("zone 'mast' (ceiling 900 m) is in the fence at every height", err)
         fence = ground_station.plan(out)["geoFence"]
         self.assertEqual([p["inclusion"] for p in fence["polygons"]], [False, True])
         self.assertEqual(len(fence["circles"]), 1)

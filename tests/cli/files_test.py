@@ -98,7 +98,7 @@ class Input(Folder):
         os.remove(self.path("scenario.yaml"))
         self.write("scenario.yaml", SCENARIO)
         self.call("study", "study.yaml", "--out", "out.db")
-        self.refused("holds other files", "report", "out.db", "-o", "page")
+        self.refused("contains other files", "report", "out.db", "-o", "page")
 
     def test_a_link_to_a_file_is_read(self):
         os.symlink("pipeline.yaml", self.path("link.yaml"))
@@ -157,11 +157,11 @@ class Output(Folder):
                                       stdin=subprocess.DEVNULL, cwd=self.folder, timeout=HANGS_S,
                                       **{stream: file, other: said})
                 self.assertEqual(done.returncode, 3)
-                self.assertIn(f"is the file that {stream} of this call goes to",
+                self.assertIn(f"is the file that {stream} is redirected to",
                               self.read("file") + self.read("said"))
                 self.assertNotIn("SQLite", self.read("file"))
-        self.refused("is the kernel's and holds no files", "run", "pipeline.yaml", "--out", "/proc/x")
-        self.refused("is the kernel's and holds no files", "study", "study.yaml", "--out", "/proc/x")
+        self.refused("is on a kernel file system, which holds no files", "run", "pipeline.yaml", "--out", "/proc/x")
+        self.refused("is on a kernel file system, which holds no files", "study", "study.yaml", "--out", "/proc/x")
 
     def test_a_store_that_cannot_be_begun_leaves_no_file(self):
         self.call("study", "study.yaml", "--out", "none.db", code=3,

@@ -58,13 +58,13 @@ class View(CliCase):
         whole = self.read("trace.jsonl")
         self.write("trace.jsonl", whole[:len(whole) // 2])
         _, err = self.view("result.json", "-o", "page.html")
-        self.assertRegex(err, r"^altiplan: warning: trace\.jsonl:\d+: this is not an event of a "
-                              r"search: it is shown up to here\n$")
+        self.assertRegex(err, r"^altiplan: warning: trace\.jsonl:\d+: this is not a search "
+                              r"event: the search is shown up to here\n$")
         os.remove(self.path("trace.jsonl"))
         self.write("sealed.yaml", SEALED + "# changed\n")
         _, err = self.view("result.json", "-o", "page.html")
-        self.assertEqual(err, f"altiplan: warning: {self.sealed} is not the file that result.json "
-                              "was made from\naltiplan: warning: trace.jsonl: there is no such "
+        self.assertEqual(err, f"altiplan: warning: {self.sealed} has changed since "
+                              "result.json was written\naltiplan: warning: trace.jsonl: there is no such "
                               "file: the search is not shown\n")
         os.remove(self.sealed)
         self.view("result.json", "-o", "page.html", code=3)
@@ -109,8 +109,8 @@ class View(CliCase):
                            "    with: {influence_m: 200}\n")
         self.call("run", flies, "--out", "<result> & co.json")
         out, err = self.view("<result> & co.json", "--png", "picture.png", "--svg", "other.svg")
-        self.assertEqual(err, "altiplan: warning: no Chromium was found (ALTIPLAN_CHROMIUM may name "
-                              "one): the picture is an SVG from above, picture.svg\n")
+        self.assertEqual(err, "altiplan: warning: no Chromium found (set ALTIPLAN_CHROMIUM to its "
+                              "path): writing a top view as SVG instead, picture.svg\n")
         self.assertRegex(out, r"^other\.svg: .*\npicture\.svg: 0\.\d\d MB: 1 route, 1 flight, ")
         self.assertFalse(os.path.exists(self.path("picture.png")))
         self.assertEqual(self.read("picture.svg"), self.read("other.svg"))

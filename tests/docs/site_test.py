@@ -73,7 +73,7 @@ def main():
         home = pathlib.Path(name)
         builds(home)
         refused(home, "docs/of_nothing.md", "# Of nothing\n",
-                "docs/of_nothing.md stands in no group: name it in GROUPS")
+                "docs/of_nothing.md is in no group: add it to GROUPS")
         refused(home, "docs/view.md", "\n[a picture](images/none.png)\n",
                 "docs/view.md: links to images/none.png, which is not there")
         found(home, '<a href="#top">up</a>', "")

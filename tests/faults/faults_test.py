@@ -36,7 +36,7 @@ SYNONYMS = {"EACCES": ("have changed since the runs were planned",),
             "ENOSPC": ("is full",), "ENOMEM": ("out of memory", "no memory", "bad_alloc"),
             "ENOLCK": ("another program is writing",)}
 # SQLite does not say why it could not make a journal: it tries again to open one to read alone.
-OF_SQLITE = ("disk I/O error", "malformed", "its journal cannot be made",
+OF_SQLITE = ("disk I/O error", "malformed", "its journal cannot be created",
              "or the system did not show it")
 WORDS = {"fork": ("process", "thread"), "map": ("memory", "bad_alloc"),
          "descriptor": ("pipe", "socket", "stdout", "memory", "process", "descriptor")}

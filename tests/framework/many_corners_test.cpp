@@ -284,8 +284,8 @@ TEST(ManyCorners, HolesAreHeldAgainstEachOtherAndTheOutline) {
     other.holes.push_back(hole);
     return kit::polygon_problem(other);
   };
-  EXPECT_EQ(with(square(-900, -900, 10)), "hole 401 and hole 1 lie one in the other");
-  EXPECT_EQ(with(square(-810, -900, 45)), "hole 401 and hole 2 lie one in the other");
+  EXPECT_EQ(with(square(-900, -900, 10)), "hole 401 and hole 1 lie one inside the other");
+  EXPECT_EQ(with(square(-810, -900, 45)), "hole 401 and hole 2 lie one inside the other");
   EXPECT_EQ(with(square(-765, -900, 6)), "hole 401 meets hole 2 at (-770, -906)");
   EXPECT_EQ(with(square(1100, 0, 10)), "hole 401 lies outside of the outline, at (1090, -10)");
   EXPECT_EQ(with(square(990, 0, 10)), "hole 401 meets the outline at (1000, -10)");

@@ -44,7 +44,7 @@ struct Valid {
 
 constexpr Valid kValid[] = {
     {"qgroundcontrol_sample.plan", 4, 0,
-     "2 commands that are no places on the way skipped (20, 2000)"},
+     "2 commands that are not waypoints skipped (20, 2000)"},
     {"qgroundcontrol_sample_with_survey.plan", 8, 0, "12 commands taken out of survey items"},
     {"qgroundcontrol_sample_with_structured_scan.plan", 0, 0, "1 complex items skipped"},
     {"qgc_SectionTest.plan", 4, 0, "(205)"},
@@ -52,7 +52,7 @@ constexpr Valid kValid[] = {
     {"px4_avoidance.plan", 3, 0, ""},
     {"qgc_MissionPlanner.waypoints", 5, 0, ""},
     {"qgc_MissionPlanner_full.waypoints", 11, 0,
-     "3 commands that are no places on the way skipped (177, 178, 189)"},
+     "3 commands that are not waypoints skipped (177, 178, 189)"},
     {"dronekit_mpmission.waypoints", 6, 0, ""},
     {"mavproxy_springvalley-foamy-mission-cw.txt", 9, 0, "(177, 189)"},
     {"mavproxy_springvalleybottom-foamy-fence.txt", 0, 1, "1 return points of the fence skipped"},
@@ -80,8 +80,8 @@ TEST(MissionFile, RefusesOtherVersionsAndSaysWhichOtherFormatItIs) {
       {"qgroundcontrol_sample_wrong_overall_version.plan", "version: expected version 1, found 42"},
       {"qgroundcontrol_sample_wrong_mission_version.plan",
        "mission.version: expected version 2, found 7"},
-      {"qgc_OldFileFormat.mission", "in the form from before .plan (.mission)"},
-      {"mavproxy_springvalley-foamy-fence.txt", "an ArduPilot fence in its old form"},
+      {"qgc_OldFileFormat.mission", "in the old format (.mission)"},
+      {"mavproxy_springvalley-foamy-fence.txt", "an ArduPilot fence in the old format"},
       {"mavproxy_springvalley-foamy-rally.txt", "a list of rally points (RALLY)"},
   };
   for (const auto& [name, words] : refused) {

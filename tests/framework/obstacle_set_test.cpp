@@ -54,7 +54,7 @@ double signed_distance(const std::vector<Solid>& solids, const Vec3& p) {
 }
 
 // Queries on random scenes, from 1 to 30,000 m, each against the oracle; the radii lie as close to
-// the true distance as the law allows.
+// the true distance as the contract allows.
 void compare(std::uint64_t seed, int queries) {
   Draw draw(seed);
   int asked = 0;

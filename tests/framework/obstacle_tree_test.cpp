@@ -21,7 +21,7 @@ double clearance(const std::vector<Shape>& shapes, const Vec3& p) {
   return least;
 }
 
-// As the law has it: nearer than r - 1e-6 m, or, for what is as good as a point, inside.
+// As the contract has it: nearer than r - 1e-6 m, or, for what is as good as a point, inside.
 bool blocked(const std::vector<Shape>& shapes, const Vec3& a, const Vec3& b, double r) {
   const double limit = r - kLengthTolerance;
   return std::any_of(shapes.begin(), shapes.end(), [&](const Shape& shape) {

@@ -31,7 +31,7 @@ struct Params {
   void describe(Fields& f) {
     f("on", on);
     f("count", count).range(1, 10);
-    f("share", share).range(0, 1).doc("a share");
+    f("share", share).range(0, 1).was("part").doc("a share");
     f("reach", reach).at_least(0);
     f("title", title);
     f("mode", mode, {{"slow", Mode::slow}, {"fast", Mode::fast}});
@@ -115,10 +115,10 @@ TEST(Params, SaysWhatIsWrongAndWhere) {
             "file.yaml:1:7: with.mode: expected one of slow, fast; found 'fats' (did you mean "
             "'fast'?)\n");
   EXPECT_EQ(problems("parts: [{}]"), "file.yaml:1:9: with.parts.0: the key 'width_m' is missing\n");
+  EXPECT_EQ(problems("part: 0.5"), "file.yaml:1:1: with.part: is now 'share'\n");
   EXPECT_EQ(problems("shar: 1"), "file.yaml:1:1: with.shar: unknown key; did you mean 'share'?\n");
   EXPECT_EQ(problems("at_m: [1, 2]\nat_lonlat: [3, 4]"),
-            "file.yaml:2:12: with.at_lonlat: a point is given in one way: at_m, at_lonlat or "
-            "at_cell\n");
+            "file.yaml:2:12: with.at_lonlat: a point needs only one of at_m, at_lonlat and at_cell\n");
   EXPECT_EQ(problems("at_m: [1, 2, 3]\nabove_ground_m: 4"),
             "file.yaml:2:17: with.above_ground_m: the point has a height already: give its third "
             "coordinate or above_ground_m\n");

@@ -71,9 +71,9 @@ TEST(ClaimText, UnknownNamesGetTheNearest) {
             "found 'medain(astar.length_m)'; did you mean 'median'?");
   EXPECT_EQ(against("p00(astar.length_m)").substr(0, 34), "at character 1: expected median(, ");
   EXPECT_EQ(against("median(asta.length_m)"),
-            "at character 8: there is no pipeline 'asta'; did you mean 'astar'?");
+            "at character 8: no pipeline is named 'asta'; did you mean 'astar'?");
   EXPECT_EQ(against("median(Astar.length_m)"),
-            "at character 8: there is no pipeline 'Astar'; did you mean 'astar'?");
+            "at character 8: no pipeline is named 'Astar'; did you mean 'astar'?");
 }
 
 TEST(ClaimText, AnIdOfSeveralVariantsNeedsItsBracket) {
@@ -81,7 +81,7 @@ TEST(ClaimText, AnIdOfSeveralVariantsNeedsItsBracket) {
             "at character 8: 'fusion' stands for 2 variants; expected one of "
             "fusion[weight_g=0.3], fusion[weight_g=0.7]");
   EXPECT_EQ(against("median(fusion[weight_g=0.5].length_m)"),
-            "at character 8: there is no variant 'fusion[weight_g=0.5]'; expected one of "
+            "at character 8: no variant is named 'fusion[weight_g=0.5]'; expected one of "
             "fusion[weight_g=0.3], fusion[weight_g=0.7]");
   EXPECT_EQ(against("median(fusion[weight_g=0.3.length_m)"),
             "at character 14: the '[' is not closed");

@@ -114,7 +114,7 @@ TEST(Claims, AreSaidInWords) {
   // Something over zero is infinite, of which there is no interval.
   EXPECT_EQ(
       study.judge("mean(a.length_m / (b.length_m - 50))", ">= 1").words,
-      "Undecided: mean(a.length_m / (b.length_m - 50)) is inf, claimed was >= 1; there is no "
+      "Undecided: mean(a.length_m / (b.length_m - 50)) is inf, claimed was >= 1; no "
       "interval, too many values are infinite. 4 of 7 pairs counted; b.length_m has no number "
       "in 3.");
 }
@@ -183,7 +183,7 @@ TEST(Claims, TooFewScenariosGiveNoInterval) {
   EXPECT_FALSE(judged.interval);
   EXPECT_TRUE(judged.words.starts_with("Undecided: median(b.length_m / a.length_m) is 0.5"));
   EXPECT_TRUE(judged.words.ends_with(
-      ", claimed was <= 0.95; there is no interval, too few scenarios: at least 6 for 95 %. 20 of "
+      ", claimed was <= 0.95; no interval, too few scenarios: at least 6 for 95 %. 20 of "
       "20 pairs counted."))
       << judged.words;
   const Study six(6, 4, 0.5);
@@ -210,7 +210,7 @@ TEST(Claims, OnePairGivesNoInterval) {
   EXPECT_EQ(judged.verdict, Verdict::undecided);
   EXPECT_FALSE(judged.interval);
   EXPECT_EQ(judged.words,
-            "Undecided: median(b.length_m / a.length_m) is 0.5, claimed was <= 0.95; there is no "
+            "Undecided: median(b.length_m / a.length_m) is 0.5, claimed was <= 0.95; no "
             "interval, too few repetitions: at least 6 for 95 %. 1 of 1 pair counted.");
   EXPECT_EQ(study.judge("max(b.length_m / a.length_m)", "<= 0.95").verdict, Verdict::holds);
 }
@@ -268,14 +268,13 @@ TEST(Claims, ValuesThatNoRunHas) {
       "b.lenght_m has no number in 2.");
   study.fail(0, 0);
   study.fail(1, 1);
-  EXPECT_EQ(
-      study.judge("median(b.length_m / a.length_m)", "<= 1").words,
-      "No data: no pair has all that is named. 0 of 2 pairs counted; b.length_m has no number "
-      "in 1, a.length_m has no number in 1.");
+  EXPECT_EQ(study.judge("median(b.length_m / a.length_m)", "<= 1").words,
+            "No data: no pair has all named values. 0 of 2 pairs counted; b.length_m has no number "
+            "in 1, a.length_m has no number in 1.");
   EXPECT_EQ(study.judge("median(b.lenght_m)", "<= 1").reasons.substr(0, 50),
             "No run has a value 'lenght_m'; did you mean 'lengt");
   EXPECT_EQ(study.judge("share(c.solved)", "<= 1").words,
-            "No data: the claim cannot be read: at character 7: there is no pipeline 'c'; "
+            "No data: the claim cannot be read: at character 7: no pipeline is named 'c'; "
             "did you mean 'a'?");
   study.data().rows.clear();
   EXPECT_EQ(study.judge("share(a.solved)", "<= 1").words, "No data: the study has no runs yet.");

@@ -230,10 +230,10 @@ TEST(Compare, says_which_files_and_builds_are_others) {
   EXPECT_TRUE(changed_origins(then, result("/moved/city.yaml", "a", "1")).empty());
   EXPECT_EQ(changed_origins(then, result("/moved/city.yaml", "b", "2")),
             (std::vector<std::string>{"'/moved/city.yaml' has changed since",
-                                      "planner 'astar' is of another build than then"}));
+                                      "planner 'astar' has been rebuilt since"}));
   EXPECT_EQ(changed_origins(then, result("/f/town.yaml", "a", "1")),
-            (std::vector<std::string>{"'/f/city.yaml' is not used any more",
-                                      "'/f/town.yaml' was not used then"}));
+            (std::vector<std::string>{"'/f/city.yaml' is no longer used",
+                                      "'/f/town.yaml' is newly used"}));
 }
 
 TEST(Compare, looks_for_other_origins_where_keys_differ) {
@@ -248,7 +248,7 @@ TEST(Compare, looks_for_other_origins_where_keys_differ) {
   EXPECT_EQ(comparison.other_origins.size(), 2);
   EXPECT_EQ(
       changed_origins(comparison, before, after, no_result, no_result),
-      (std::vector<std::string>{"pipeline 'astar' sets other keys", "the budget is another one"}));
+      (std::vector<std::string>{"pipeline 'astar' sets different keys", "the budget differs"}));
   int read = 0;
   const auto of_first = [&](const RunRow&) {
     ++read;

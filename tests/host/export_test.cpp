@@ -113,7 +113,7 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
       SCOPED_TRACE(std::string(file) + " " + name(frame));
       const Exported result = exported(scene, options);
       ASSERT_TRUE(result.text.has_value());
-      EXPECT_TRUE(says(result, "read back and judged: sound with 7 decimals"));
+      EXPECT_TRUE(says(result, "read back and judged: valid with 7 decimals"));
       EXPECT_TRUE(says(result, frame == AltitudeFrame::sea ? "above sea level"
                                : frame == AltitudeFrame::ground
                                    ? "above the ground"
@@ -151,7 +151,7 @@ TEST(Export, MoreDecimalsWhereFewerBreakTheRoute) {
   scene.mission.request.goal.tolerance_m = 0;
   const Exported result = exported(scene, options_of(Format::kml));
   ASSERT_TRUE(result.text.has_value());
-  EXPECT_TRUE(says(result, "sound with 13 decimals of a degree and 8 of a metre (fewer break: "));
+  EXPECT_TRUE(says(result, "valid with 13 decimals of a degree and 8 of a metre (with fewer: "));
 }
 
 TEST(Export, WritesNothingThatIsNotSound) {
@@ -159,14 +159,14 @@ TEST(Export, WritesNothingThatIsNotSound) {
   const Route through{{50, 50, 300}, {500, 500, 300}, {950, 950, 300}};
   const Exported result = exported(scene, options_of(Format::qgc_plan), through);
   EXPECT_FALSE(result.text.has_value());
-  EXPECT_TRUE(says(result, "not written: the route is not sound: point 0, clearance"));
+  EXPECT_TRUE(says(result, "not written: the route is not valid: point 0, clearance"));
 }
 
 TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
   const Scene scene;
   const Exported result = exported(scene, options_of(Format::qgc_plan));
-  EXPECT_TRUE(says(result, "zone 'site' (ceiling 400 m) stands in the fence at every height"));
-  EXPECT_TRUE(says(result, "zone 'yard' stands in the fence without its holes"));
+  EXPECT_TRUE(says(result, "zone 'site' (ceiling 400 m) is in the fence at every height"));
+  EXPECT_TRUE(says(result, "zone 'yard' is in the fence without its holes"));
   const kit::MissionFile plan = kit::read_mission("r.plan", *result.text);
   ASSERT_EQ(plan.zones.size(), 3U);
   EXPECT_EQ(std::count_if(plan.zones.begin(), plan.zones.end(),
@@ -226,9 +226,9 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
       EXPECT_EQ(read.items.back().kind, MissionItem::Kind::land);
       EXPECT_EQ(read.items.back().at.altitude_m, frame == AltitudeFrame::sea ? 120 : 0);
       EXPECT_EQ(read.items.back().at.lat, read.items[kAround.size() - 1].at.lat);
-      EXPECT_EQ(
-          read_imported_route(file, *result.text, scene.mission.truth, kAround.front()).route.size(),
-          kAround.size());
+      EXPECT_EQ(read_imported_route(file, *result.text, scene.mission.truth, kAround.front())
+                    .route.size(),
+                kAround.size());
     }
   }
 }
@@ -255,7 +255,7 @@ TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
   options.max_items = 2;  // straight through the site
   const Exported two = exported(scene, options, dense);
   EXPECT_FALSE(two.text.has_value());
-  EXPECT_TRUE(says(two, "not written: the route needs 3 items to stay sound"));
+  EXPECT_TRUE(says(two, "not written: the route needs 3 items to stay valid"));
 }
 
 TEST(Export, ThinningKeepsEndsAndViaPoints) {
@@ -361,8 +361,8 @@ TEST(ImportedRoute, RefusesTablesWithTheLine) {
   const std::string head = "z_m,x_m,y_m,note\n";
   EXPECT_EQ(refusal(head + "3,1,2,a\r\n\r\n4,1,2,b\r\n"), "");
   const std::pair<std::string, const char*> damaged[] = {
-      {"", "r.csv: there is no route in it"},
-      {head, "r.csv: there is no route in it"},
+      {"", "r.csv: it contains no route"},
+      {head, "r.csv: it contains no route"},
       {"x_m,y_m\n1,2\n", "r.csv:1: expected a first line that names the columns x_m, y_m and z_m"},
       {head + "1,2,3\n", "r.csv:2: expected 4 columns, found 3"},
       {head + "1,2,3,a\n1,2,b,a\n", "r.csv:3: expected a number of metres, found 'b'"},

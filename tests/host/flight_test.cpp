@@ -114,11 +114,11 @@ TEST(Flight, RejectionSaysWhenAndWhere) {
   EXPECT_EQ(steep.message.find("reached the goal, but at 300.0 s, near (11000, 15000, 500) m: "),
             0U)
       << steep.message;
-  // No place is to blame for a length.
+  // No place causes a length.
   scene.setup.request.limits.max_climb = kPi / 2;
   scene.setup.request.limits.max_route_length = 26000;
   EXPECT_EQ(fly(scene.setup).message,
-            "reached the goal, but the flight is longer than the route may be");
+            "reached the goal, but the flight is longer than the maximum route length");
 }
 
 TEST(Flight, EventsAddRemoveAndMove) {

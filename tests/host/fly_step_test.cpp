@@ -158,7 +158,7 @@ TEST_F(FlyStepTest, EventsThatCannotBeAreRefusedBeforeAnythingIsPlanned) {
   scenario(
       "environment: [{cylinder: {at_m: [1, 1], radius_m: 1}}]\n"
       "events: [{at_s: 3, set_cells: {layer: cylinder, cells: [[1, 2, 3]]}}]\n");
-  EXPECT_HAS(refusal(run), "the layer 'cylinder' has no cells of its own");
+  EXPECT_HAS(refusal(run), "the layer 'cylinder' has no cells");
   scenario(
       "events: [{at_s: 3, set_cells: {layer: late, cells: [[1, 2, 3]]}}, {at_s: 1, add: "
       "{cells: {}}, id: late}]\n");
@@ -171,7 +171,7 @@ TEST_F(FlyStepTest, EventsThatCannotBeAreRefusedBeforeAnythingIsPlanned) {
   scenario(
       "events: [{at_s: 3, set_cells: {layer: late, cells: [[1, 2, 3]]}}, {at_s: 9, add: "
       "{cells: {}}, id: late}]\n");
-  EXPECT_HAS(fly("fly: route").message, "event set_cells: there is no layer 'late' then");
+  EXPECT_HAS(fly("fly: route").message, "event set_cells: there is no layer 'late' at that time");
 }
 }  // namespace
 }  // namespace altiplan::host

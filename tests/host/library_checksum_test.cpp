@@ -148,7 +148,7 @@ TEST_F(LibraryChecksum, ALibraryThatHasChangedSinceItWasExaminedIsNotLoaded) {
     FAIL();
   } catch (const PluginError& error) {
     EXPECT_EQ(error.what(),
-              file_.string() + " has changed since this program began: call it again");
+              file_.string() + " has changed since this program started: run it again");
   }
   write(whole_);
   EXPECT_TRUE(is_unchanged(library));

@@ -74,7 +74,7 @@ TEST_F(Merge, reports_a_run_that_came_out_differently_and_keeps_the_first) {
   const Merged merged = merge_stores({one, other}, path("all.db"));
   EXPECT_EQ(merged.again, 0);
   ASSERT_EQ(merged.differing.size(), 2);
-  EXPECT_NE(merged.differing[0].find("'astar city[seed=1] #0' came out differently"),
+  EXPECT_NE(merged.differing[0].find("'astar city[seed=1] #0' has different results"),
             std::string::npos);
   EXPECT_NE(merged.differing[0].find("metrics.length_m is 100.0 and 101.0"), std::string::npos);
   EXPECT_NE(merged.differing[1].find("outcome is solved and crashed"), std::string::npos);
@@ -85,11 +85,12 @@ TEST_F(Merge, reports_a_run_that_came_out_differently_and_keeps_the_first) {
 TEST_F(Merge, refuses_another_study_and_says_how_it_differs) {
   const std::string one = store("one.db", {run("astar", "city[seed=1]", 0)});
   const std::string other = store("other.db", {run("jps", "city[seed=1]", 0)}, "then", "5");
-  EXPECT_EQ(refusal([&] {
-              merge_stores({one, other}, path("all.db"));
-            }),
-            "'one.db' and 'other.db' are of different studies: their files say 'repetitions: 2' "
-            "against 'repetitions: 5'");
+  EXPECT_EQ(
+      refusal([&] {
+        merge_stores({one, other}, path("all.db"));
+      }),
+      "'one.db' and 'other.db' belong to different studies: their files differ: 'repetitions: 2' "
+      "against 'repetitions: 5'");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2)
       << "nothing is left of the attempt";
 }
@@ -141,7 +142,7 @@ TEST_F(Merge, is_refused_while_another_process_is_at_work_on_the_store) {
     const WorkFolder of_a_study(work_folder_of(one));
     EXPECT_NE(refusal([&] {
                 merge_stores({one}, one);
-              }).find("another process is at work here: " + std::to_string(::getpid())),
+              }).find("in use by another process: " + std::to_string(::getpid())),
               std::string::npos);
   }
   EXPECT_EQ(merge_stores({one}, one).runs, 1);

@@ -96,7 +96,7 @@ TEST_F(MissionKey, WrongFilesAreErrorsAtTheKey) {
         "</Placemark></kml>");
   EXPECT_HAS(problem("mission: none.plan\n"), "s.yaml:3:10: mission: there is no file 'none.plan'");
   EXPECT_HAS(problem("mission: zones.plan\n"), "s.yaml:3:10: mission: zones.plan: expected a plan");
-  EXPECT_HAS(problem("mission: one.waypoints\n"), "expected two places or more, found 1");
+  EXPECT_HAS(problem("mission: one.waypoints\n"), "expected at least two points, found 1");
   EXPECT_HAS(problem("mission: homeless.waypoints\n"),
              "line 2: its altitude is relative to home, and the file has no home position");
   EXPECT_HAS(problem("mission: flat.kml\n"), "flat.kml: a route needs heights");

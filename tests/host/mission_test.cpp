@@ -29,7 +29,7 @@ TEST_F(MissionTest, PointsThatCannotBeResolved) {
   EXPECT_HAS(refused("", "start: {at_m: [1, 2], above_ground_m: 5}\ngoal: {at_m: [9, 5, 5]}\n"),
              "s.yaml:3:1: start: above_ground_m needs a layer with ground (terrain)");
   EXPECT_HAS(refused("", "start: {at_m: [1, 2, 3]}\ngoal: {at_cell: [1, 2, 3]}\n"),
-             "s.yaml:4:1: goal: at_cell needs a layer with cells of its own");
+             "s.yaml:4:1: goal: at_cell needs a layer with its own cells");
   EXPECT_HAS(refused("via: [{at_m: [1, 2, 3]}, {at_cell: [1, 2, 3]}]\n", kEnds),
              "s.yaml:5:26: via.1: at_cell needs");
 }

@@ -113,7 +113,7 @@ TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
             "its Vec3 has 32 bytes aligned to 16, this altiplan's 24 bytes aligned to 8: built "
             "with other headers or ABI flags");
   EXPECT_HAS(refusal([](Manifest& m) { m.struct_size = 400; }),
-             "400 bytes a plugin, this altiplan's");
+             "400 bytes per plugin, this altiplan's");
   EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
 }
 
@@ -135,7 +135,7 @@ TEST_F(RegistryTest, RefusesADamagedManifest) {
   const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
   EXPECT_HAS(refusal([](Manifest& m) { m.magic[3] = 'x'; }), "expected 'altiplan plugin'");
   EXPECT_HAS(refusal([](Manifest& m) { std::memset(m.name, 'a', sizeof m.name); }),
-             "a text without an end");
+             "an unterminated text");
   EXPECT_HAS(refusal([](Manifest& m) { std::strcpy(m.kind, "painter"); }),
              "the unknown kind 'painter'");
   EXPECT_HAS(refusal([](Manifest& m) { std::strcpy(m.name, "A*"); }), "named 'A*'");
@@ -268,7 +268,7 @@ TEST_F(RegistryTest, ALibraryThatCannotBeUsedIsAPluginError) {
   fs::copy(kBroken / "no_list.so", folder_ / "no_list.so");
   Registry registry({folder_});
   EXPECT_HAS(text_of<PluginError>([&] { registry.get("planner", "omega"); }),
-             "announces the planner 'omega', but does not hold it");
+             "announces the planner 'omega', but does not contain it");
   EXPECT_HAS(text_of<PluginError>([&] { registry.get("constraint", "delta"); }),
              "no_list.so does not export altiplan_plugins");
   const std::string text = text_of<PluginError>([&] { registry.get("constraint", "gamma"); });

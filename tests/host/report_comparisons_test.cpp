@@ -51,7 +51,7 @@ TEST(Report, FigureAndTableNameThePipelinesInOneOrder) {
       "pairs_both_solved,pairs\r\np1,p0,ratio,1.0009"))
       << csv;
   EXPECT_NE(csv.find(",8,scenarios,8,0.0078125,0.0078125,1,24,24"), std::string::npos) << csv;
-  EXPECT_NE(files.at("index.html").find("Left of the dashed line A, the pipeline named first"),
+  EXPECT_NE(files.at("index.html").find("Left of the dashed line A, the first pipeline"),
             std::string::npos);
 }
 
@@ -121,9 +121,9 @@ TEST(Report, AMetricIsComparedOnce) {
   const Analysis analysis = analyse(in_order(data, false), false);
   ASSERT_EQ(analysis.metrics.size(), 2u);
   EXPECT_EQ(analysis.left_out,
-            (std::vector<std::string>{"length_m is named twice.",
-                                      "no_such_m is not compared: no run has such a number.",
-                                      "plan_time_s is not compared: it differs from run to run."}));
+            (std::vector<std::string>{
+                "length_m is listed twice.", "no_such_m is not compared: no run has this value.",
+                "plan_time_s is not compared: it varies between equal runs."}));
 }
 
 TEST(Report, AScenarioCountsOnceInTests) {

@@ -138,11 +138,11 @@ TEST(ReportScenes, AreOfTheWorldOfTheRun) {
   for (Json& plugin : other.at("plugins")) {
     plugin.at("build") = "another";  // also of the planner, with which the world has nothing to do
   }
-  EXPECT_EQ(changes(other), Changes{"environment 'hills' is of another build than then"});
+  EXPECT_EQ(changes(other), Changes{"environment 'hills' has been rebuilt since"});
   temp.write("s.yaml", altiplan::testing::text_of(scenario) + "# changed\n");
   EXPECT_EQ(changes(json), Changes{scenario.string() + " has changed since"});
   std::filesystem::remove(scenario);
-  EXPECT_EQ(changes(json), Changes{scenario.string() + " is not there any more"});
+  EXPECT_EQ(changes(json), Changes{scenario.string() + " no longer exists"});
 }
 
 TEST(ReportNames, OfVariantsAreTheirValues) {

@@ -188,7 +188,7 @@ TEST(Screenshot, AProgramThatHangsOrDrawsNothingIsSaid) {
     }
     return std::string();
   };
-  EXPECT_EQ(said("/bin/true", 10'000), "'/bin/true' did not draw the page");
+  EXPECT_EQ(said("/bin/true", 10'000), "'/bin/true' did not render the page");
   EXPECT_EQ(said("/nowhere", 10'000), "cannot start '/nowhere': No such file or directory");
   const std::string sleeper = ::testing::TempDir() + "/sleeper";
   std::FILE* script = std::fopen(sleeper.c_str(), "w");
@@ -196,7 +196,7 @@ TEST(Screenshot, AProgramThatHangsOrDrawsNothingIsSaid) {
   std::fputs("#!/bin/sh\nsleep 600 & sleep 600\n", script);
   std::fclose(script);
   std::filesystem::permissions(sleeper, std::filesystem::perms::owner_all);
-  EXPECT_EQ(said(sleeper.c_str(), 100), "'" + sleeper + "' did not draw the page within 0 s");
+  EXPECT_EQ(said(sleeper.c_str(), 100), "'" + sleeper + "' did not render the page within 0 s");
 }
 
 TEST(Screenshot, TheNamedChromiumIsTheOnlyOne) {

@@ -282,7 +282,7 @@ TEST_F(SceneResult, ChangedFilesAreNamed) {
   const Scene changed = scene_of({file});
   ASSERT_EQ(changed.warnings.size(), 1U);
   EXPECT_EQ(without_folder(changed.warnings[0]),
-            "s.yaml is not the file that result.json was made from");
+            "s.yaml has changed since result.json was written");
   EXPECT_EQ(changed.json.at("notes").size(), 1U);
 }
 

@@ -137,7 +137,7 @@ TEST_F(SceneTrace, WhatIsNoTraceIsSaid) {
        {"{\"step\": \"told\", \"ki", "7", "{}", "{\"step\": 1, \"kind\": \"added\"}",
         "{\"step\": \"told\", \"kind\": \"grown\"}"}) {
     write("t.jsonl", begin + wrong);
-    EXPECT_EQ(warning(), "t.jsonl:3: this is not an event of a search: it is shown up to here");
+    EXPECT_EQ(warning(), "t.jsonl:3: this is not a search event: the search is shown up to here");
     EXPECT_EQ(shown().at("trace").at("events"), 1);
   }
   for (const char* wrong : {"", "{}\n", "[1]\n", "{\"altiplan_trace\": 2}\n"}) {

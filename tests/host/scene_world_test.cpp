@@ -116,7 +116,7 @@ TEST_F(SceneWorld, GroundWithoutPostsIsSampled) {
   const Json shown = scene(kTold);
   EXPECT_EQ(shown.at("ground").at("nx"), 401);
   EXPECT_EQ(shown.at("ground").at("ny"), 321);
-  EXPECT_EQ(shown.at("notes"), Json{"the ground is shown by its heights every 2.5 m"});
+  EXPECT_EQ(shown.at("notes"), Json{"the ground is sampled every 2.5 m"});
   expect_heights(shown.at("ground"), mission().truth, 1e-3);
 }
 

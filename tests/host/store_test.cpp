@@ -109,7 +109,7 @@ TEST_F(StoreTest, RefusesWhatIsNoStore) {
   EXPECT_NE(error_of(StoreMode::read).find("cannot be opened"), std::string::npos);
   for (const StoreMode mode : {StoreMode::read, StoreMode::write}) {
     write("out.db", "altiplan: 1\nthis is no database at all, but long enough to be one\n");
-    EXPECT_NE(error_of(mode).find("no database"), std::string::npos) << error_of(mode);
+    EXPECT_NE(error_of(mode).find("not a database"), std::string::npos) << error_of(mode);
     EXPECT_NE(error_of(mode).find(file_.string()), std::string::npos);
   }
   fs::remove(file_);
@@ -120,7 +120,7 @@ TEST_F(StoreTest, RefusesWhatIsNoStore) {
 TEST_F(StoreTest, TakesAnEmptyFileAloneForANewOne) {
   write("out.db", "x");
   for (const StoreMode mode : {StoreMode::read, StoreMode::write}) {
-    EXPECT_HAS(refusal([&] { Store(file_, mode); }), "no database");
+    EXPECT_HAS(refusal([&] { Store(file_, mode); }), "not a database");
   }
   EXPECT_EQ(fs::file_size(file_), 1U);
   write("out.db", "");
@@ -134,11 +134,11 @@ TEST_F(StoreTest, RemovesNothingButAStore) {
   write("notes.txt", "years of work");
   Sqlite(folder_ / "other.db", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE).run("CREATE TABLE t(x)");
   fs::create_symlink("notes.txt", folder_ / "link.db");
-  EXPECT_HAS(refusal([&] { remove_store(folder_ / "notes.txt"); }), "no database");
-  EXPECT_HAS(refusal([&] { remove_store(folder_ / "link.db"); }), "no database");
+  EXPECT_HAS(refusal([&] { remove_store(folder_ / "notes.txt"); }), "not a database");
+  EXPECT_HAS(refusal([&] { remove_store(folder_ / "link.db"); }), "not a database");
   EXPECT_HAS(refusal([&] { remove_store(folder_ / "other.db"); }), "not of altiplan study");
   EXPECT_HAS(refusal([&] { remove_store(folder_); }), "is a folder");
-  EXPECT_HAS(refusal([&] { expect_replaceable(folder_ / "notes.txt"); }), "no database");
+  EXPECT_HAS(refusal([&] { expect_replaceable(folder_ / "notes.txt"); }), "not a database");
   expect_replaceable(folder_ / "other.db");
   EXPECT_TRUE(fs::exists(folder_ / "notes.txt") && fs::exists(folder_ / "other.db"));
 
@@ -157,7 +157,7 @@ TEST_F(StoreTest, AJournalLeftBehindGoesAndAnotherFileOfThatNameStays) {
   EXPECT_FALSE(fs::exists(folder_ / "out.db-journal"));
   remove_store(file_);
   write("out.db-journal", "what I did today");
-  EXPECT_HAS(refusal([&] { Store(file_, StoreMode::write); }), "is in the way");
+  EXPECT_HAS(refusal([&] { Store(file_, StoreMode::write); }), "is not a journal");
   EXPECT_FALSE(fs::exists(file_));
   EXPECT_TRUE(fs::exists(folder_ / "out.db-journal"));
 }
@@ -207,7 +207,7 @@ TEST_F(StoreTest, TellsDamage) {
   EXPECT_HAS(damaged("UPDATE run_values SET value = 'abc'"), "'value' is 'abc', expected a number");
   EXPECT_HAS(damaged("UPDATE runs SET repetition = 'abc'"), "expected a whole number");
   EXPECT_HAS(damaged("UPDATE runs SET repetition = 4294967296"), "from 0 to 2147483647");
-  EXPECT_HAS(damaged("UPDATE runs SET scenario = 99"), "the run k1 is of no scenario");
+  EXPECT_HAS(damaged("UPDATE runs SET scenario = 99"), "the scenario of the run k1 is not stored");
   EXPECT_HAS(damaged("CREATE TRIGGER t AFTER INSERT ON runs BEGIN DELETE FROM runs; END"),
              "it has a trigger 't'");
   EXPECT_HAS(damaged("DELETE FROM quantities"), "a value of the run k1 has no name");

@@ -165,7 +165,7 @@ TEST_F(StudyPlanTest, TheBudgetIsThatOfEveryPlanStep) {
   EXPECT_EQ(config.steps[0].within_s, 0.25);
   EXPECT_EQ(config.steps[1].otherwise.at(0).within_s, 0.25);
   EXPECT_HAS(problems(std::string(kStudy) + "budget: {iterations: 7}\n"),
-             "budget.iterations: takes the place of 'steps.0.within_iterations', which "
+             "budget.iterations: replaces 'steps.0.within_iterations', which "
              "'two[within_iterations=10]' sets");
   const StudyPlan brought = plan(
       "scenarios: [{file: s.yaml}]\nbudget: {iterations: 7}\n"

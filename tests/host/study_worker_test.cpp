@@ -93,7 +93,7 @@ TEST_F(StudyWorker, MoreThanItsTimeIsNotSolved) {
   budget_.time_s = 0.001;
   EXPECT_EQ(run("{plan: outlaw, with: {does: takes_its_time}}").outcome, Outcome::timed_out);
   EXPECT_HAS(run("{plan: outlaw, with: {does: takes_its_time}}").message,
-             "says solved, but took more than");
+             "reports solved, but exceeded the");
   EXPECT_EQ(run("{plan: told}").outcome, Outcome::solved);
 }
 
@@ -138,14 +138,14 @@ TEST_F(StudyWorker, EveryEnding) {
   EXPECT_HAS(told(Ending::out_of_memory), "out_of_memory: the planner 'x' (steps.0) was killed by");
   EXPECT_HAS(told(Ending::process_limit), "failed: the planner 'x' (steps.0) had more than 1000");
   EXPECT_HAS(told(Ending::too_large), "bad_output: the planner 'x' (steps.0) wrote a file");
-  EXPECT_EQ(told(Ending::garbled), "bad_output: the run's record is not as it was written");
+  EXPECT_EQ(told(Ending::garbled), "bad_output: the run's record is damaged");
   ended.exit_code = 3;
   EXPECT_EQ(told(Ending::exited),
             "crashed: the planner 'x' (steps.0) ended the process with exit code 3");
   ended.signal = SIGKILL;
   ended.said = "one\n\x1b[31m\xff two\n\n";
   EXPECT_EQ(told(Ending::killed),
-            "crashed: the planner 'x' (steps.0) was killed by SIGKILL; the last that it wrote: one "
+            "crashed: the planner 'x' (steps.0) was killed by SIGKILL; last output: one "
             "[31m\xEF\xBF\xBD two");
 }
 }  // namespace

@@ -103,7 +103,7 @@ TEST_F(WorkerPoolTest, AFaultThatPassesIsToldAndTheJobIsDoneAgain) {
     return job.index == 1 && fs::file_size(tries) < 4 ? "fault of the disk" : "done";
   });
   EXPECT_EQ(all.at(1).payload, "done");
-  EXPECT_EQ(said, std::vector<std::string>{"fault of the disk; tried again"});
+  EXPECT_EQ(said, std::vector<std::string>{"fault of the disk; trying again"});
   fs::remove(tries);
 }
 
@@ -120,7 +120,7 @@ TEST_F(WorkerPoolTest, AFaultThatDoesNotPassEndsTheCallAfterTheOthers) {
     } catch (const Error& error) {
       said = error.what();
     }
-    EXPECT_EQ(said, payload + "; what was done before is kept, and the same call goes on");
+    EXPECT_EQ(said, payload + "; ended runs are kept: repeat the command to continue");
     EXPECT_EQ(all.size(), payload == "hopeless" ? 1U : 4U);
     EXPECT_FALSE(all.contains(1));
   }

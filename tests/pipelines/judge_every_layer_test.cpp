@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The judge over every kind of layer: what is thinner than any sampling is found, touching is free,
-// a little nearer is not; and the laws of environment.hpp, on random legs.
+// a little nearer is not; and the contract of environment.hpp, on random legs.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

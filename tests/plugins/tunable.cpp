@@ -95,7 +95,7 @@ struct MoodyParams {
   void describe(Fields& f) { f("does", does).doc("the fault"); }
 };
 
-/// A tuner that breaks the laws.
+/// A tuner that violates the contract.
 class Moody final : public Tuner {
  public:
   explicit Moody(const MoodyParams& params) : params_(params) {}
@@ -136,4 +136,4 @@ class Moody final : public Tuner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "tunable", Tunable, Params, "a route whose length depends on parameters")
-ALTIPLAN_PLUGIN(Tuner, "moody", Moody, MoodyParams, "breaks the laws of a tuner")
+ALTIPLAN_PLUGIN(Tuner, "moody", Moody, MoodyParams, "violates the contract of a tuner")

@@ -207,7 +207,7 @@ const std::vector<Harder> kHarder = {
      }},
 };
 
-/// Taking an obstacle away is the same law, read backward.
+/// Taking an obstacle away is the same relation, read backward.
 void hold_monotony(std::uint64_t from, std::uint64_t to) {
   int solved = 0;
   int longer = 0;

@@ -60,17 +60,17 @@ def refusals(shell, home):
     for name in ("MyPlanner", "2nd", "a-b", "../up", "''", "a/b"):
         usage("expected lower-case letters", f"planner {name}")
     usage("at most 63 letters", f"planner {'a' * 64}")
-    usage("a keyword of C++", "planner double")
-    usage("means something else", "local_planner route")
-    usage("taken for a test", "planner my_test")
+    usage("a C++ keyword", "planner double")
+    usage("has another meaning", "local_planner route")
+    usage("marks test sources", "planner my_test")
     usage("is taken by the planner of", "planner astar")
     usage("is taken by the planner of", "local_planner astar")
     usage("is taken by a built-in environment", "environment box")
     (home / "mine").write_text("a file")
     (home / "dangling").symlink_to("nowhere")
     for name in ("my_planner", "mine", "dangling"):
-        refused(shell, home, 3, "is there already", f"altiplan new planner {name}")
-    refused(shell, home, 3, "cannot make the folder", "(cd /proc && altiplan new planner other)")
+        refused(shell, home, 3, "exists and is not overwritten", f"altiplan new planner {name}")
+    refused(shell, home, 3, "cannot create the folder", "(cd /proc && altiplan new planner other)")
     # As on a full disk: nothing is left of what was begun.
     refused(shell, home, 3, "cannot write", "(ulimit -f 0; altiplan new planner other)")
 

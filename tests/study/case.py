@@ -165,5 +165,5 @@ class StudyCase(unittest.TestCase):
         self.change(newer, "PRAGMA user_version = 99")
         cut = self.store("cut.db", "--sample", "0.1")
         os.truncate(cut, os.path.getsize(cut) // 2)
-        return {"nowhere.db": "no such", "notes.db": "no database", "other.db": "not of altiplan",
+        return {"nowhere.db": "no such", "notes.db": "not a database", "other.db": "not of altiplan",
                 "newer.db": "version 99", "cut.db": "damaged"}

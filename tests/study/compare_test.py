@@ -15,7 +15,7 @@ class Compare(StudyCase):
         out, err = self.call("compare", self.store("a.db"), self.store("b.db", "--jobs", "2"),
                              "--metric", "length_m", "--metric", "expanded", "--gate")
         self.assertEqual(err, "")
-        self.assertIn(f"{RUNS} pairs of runs; 0 runs in the first alone, 0 in the second", out)
+        self.assertIn(f"{RUNS} pairs of runs; 0 runs only in the first, 0 only in the second", out)
         self.assertNotIn("differ", out)
         self.assertEqual(out.count(" same\n"), 4, out)
         self.assertIn("nothing is worse", out)
@@ -25,7 +25,7 @@ class Compare(StudyCase):
         before, after = self.store("a.db"), self.store("b.db")
         self.change(after, self.VALUE.format(by=1.08, name="length_m"))
         out, _ = self.call("compare", before, after, "--metric", "length_m", "--gate", code=1)
-        self.assertIn("values of the metrics below that no clock decides, and that differ: "
+        self.assertIn("different values of metrics that do not depend on time: "
                       f"{2 * RUNS}\n", out)
         self.assertIn(" 6 scenarios ", out)
         self.assertEqual(out.count("WORSE"), 2, out)
@@ -51,7 +51,7 @@ class Compare(StudyCase):
         self.write("astar.yaml", PIPELINE.replace("free_box", "any"))
         self.write("city.yaml", SCENARIO.replace("645, 45", "645, 46"))
         out, _ = self.call("compare", before, self.store("b.db"), "--metric", "length_m")
-        self.assertIn(f"not made from the same: {RUNS} pairs\n", out)
+        self.assertIn(f"inputs differ: {RUNS} pairs\n", out)
         for name in ("astar.yaml", "city.yaml"):
             self.assertEqual(out.count(f"  '{self.path(name)}' has changed since\n"), 1, out)
 
@@ -72,7 +72,7 @@ class Compare(StudyCase):
         self.write("study.yaml", STUDY.replace("repetitions: 2", "repetitions: 1"))
         fewer = self.store("c.db")
         out, _ = self.call("compare", before, fewer, "--gate", "--metric", "length_m", code=1)
-        self.assertIn("6 pairs of runs; 6 runs in the first alone, 0 in the second alone", out)
+        self.assertIn("6 pairs of runs; 6 runs only in the first, 0 only in the second", out)
         self.assertIn("nothing is worse; 6 runs of the first cannot be compared", out)
         self.call("compare", before, fewer, "--metric", "length_m")
         self.call("compare", fewer, before, "--gate", "--metric", "length_m")

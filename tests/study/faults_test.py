@@ -68,7 +68,7 @@ class Faults(StudyCase):
     def study_ends(self, *options):
         """The fault does not pass: what the call says; the next one has what is missing."""
         err = self.call("study", "study.yaml", "--out", "out.db", *options, code=3)[1]
-        self.assertIn("the same call goes on", err.splitlines()[-1])
+        self.assertIn("repeat the command to continue", err.splitlines()[-1])
         if os.path.exists(self.path("out.db")):
             for name, run in self.runs(self.path("out.db")).items():
                 self.assertEqual(run, self.calm[name])
@@ -125,10 +125,10 @@ class Faults(StudyCase):
         self.study_passes()
         forks = 1000 - self.left()[0]
         self.failing("fork", 3, errno.EAGAIN, well=forks - 5)
-        self.assertIn("no process for a worker: Resource temporarily unavailable; tried again",
+        self.assertIn("cannot start a worker process: Resource temporarily unavailable; trying again",
                       self.study_passes())
         self.failing("fork", -1, errno.EAGAIN, well=forks - 5)
-        self.assertIn("no process for a worker: Resource temporarily unavailable",
+        self.assertIn("cannot start a worker process: Resource temporarily unavailable",
                       self.study_ends())
 
     def test_planning_loses_nothing_that_is_stored(self):

@@ -29,19 +29,19 @@ class Merge(StudyCase):
         whole = self.store("whole.db")
         part = self.store("part.db", "--shard", "1/2")
         out, err = self.call("merge", whole, part, "-o", self.path("all.db"))
-        self.assertIn(f"{RUNS} runs of 2 stores; {len(self.runs(part))} had the same result", out)
+        self.assertIn(f"{RUNS} runs of 2 stores; {len(self.runs(part))} stored more than once", out)
         self.assertEqual(err, "")
         self.change(part, "UPDATE runs SET outcome = 'failed' WHERE id = 1")
         out, err = self.call("merge", whole, part, "-o", self.path("again.db"))
-        self.assertEqual(err.count("came out differently"), 1, err)
-        self.assertIn("outcome is solved and failed; the first is kept", err)
+        self.assertEqual(err.count("has different results"), 1, err)
+        self.assertIn("outcome is solved and failed; keeping the first", err)
         self.assertEqual(self.runs(self.path("again.db")), self.runs(whole))
 
     def test_a_store_may_be_merged_into(self):
         all_of_them = self.store("all.db", "--shard", "1/2")
         part = self.store("part.db", "--shard", "2/2")
         why = self.refused("merge", part, "-o", all_of_them)
-        self.assertIn("is there already", why)
+        self.assertIn("exists: list it", why)
         self.call("merge", all_of_them, part, "-o", all_of_them)
         self.assertEqual(len(self.runs(all_of_them)), RUNS)
 
@@ -62,7 +62,7 @@ class Merge(StudyCase):
         part = self.store("all.db.partial", "--shard", "1/2")
         self.write("all.db.partial-notes", "mine")
         self.write("all.db-journal", "what I did today")
-        self.assertIn("is in the way", self.refused("merge", part, "-o", self.path("all.db")))
+        self.assertIn("is not a journal", self.refused("merge", part, "-o", self.path("all.db")))
         os.remove(self.path("all.db-journal"))
         self.call("merge", part, "-o", self.path("all.db"))
         self.assertEqual(self.runs(self.path("all.db")), self.runs(part))
@@ -90,7 +90,7 @@ class Merge(StudyCase):
         self.write("study.yaml", STUDY.replace("repetitions: 2", "repetitions: 3"))
         second = self.store("second.db", "--sample", "0.2")
         why = self.refused("merge", first, second, "-o", self.path("all.db"))
-        self.assertTrue(why.endswith("are of different studies: their files say '\"repetitions\": 2' "
+        self.assertTrue(why.endswith("belong to different studies: their files differ: '\"repetitions\": 2' "
                                      "against '\"repetitions\": 3'\n"), why)
         # Comments and blanks say nothing.
         self.write("study.yaml", "# A study\n" + STUDY.replace("seed: 5", "seed:   5"))

@@ -19,7 +19,7 @@ PIPELINES = {"slow": "{plan: told, within_iterations: 4000, with: {does: uses_bu
              "quick": "{plan: told, with: {does: past, past_m: [500, 500, 700]}}"}
 REPETITIONS = 8
 CHANGED = "has changed since the study began"
-AGAIN = "done again"
+AGAIN = "running again"
 
 
 def children(process):
@@ -76,7 +76,7 @@ class Overwritten(unittest.TestCase):
         self.assertEqual(said.count(self.library + " " + CHANGED), 1, said)
         before = {run[4] for run in runs(self.store)}
         said = self.study.run(self.store)
-        self.assertIn("%d stored runs came of" % (2 * REPETITIONS), said)
+        self.assertIn("%d stored runs out of date" % (2 * REPETITIONS), said)
         self.assertIn(AGAIN, said)
         self.assertNotIn(CHANGED, said)
         self.assertFalse(before & {run[4] for run in runs(self.store)})

@@ -36,7 +36,7 @@ class Replay(StudyCase):
         self.assertEqual(len(said), 1)
         for name in ("octile city #0", key[:3], "999", "octile city[seed=1] #7"):
             why = self.refused("replay", store, name)
-            self.assertIn("expected its id, its key or the beginning of it", why)
+            self.assertIn("expected its id, its key or a prefix of it", why)
         self.assertIn("city[seed=", why)
 
     def test_results_are_written(self):
@@ -78,15 +78,15 @@ class Replay(StudyCase):
         self.write("city.yaml", SCENARIO.replace("645", "635"))
         out, err = self.call("replay", store, 1, code=1)
         self.assertIn("differs from the stored run at ", out)
-        self.assertIn("which may be for what has changed", out)
+        self.assertIn("possible cause: the changes reported above", out)
         self.write("city.yaml", SCENARIO)
         result = json.loads(self.stored(store, 1))
         result["plugins"][0]["build"] = "0" * 40
         result["version"] = "0.0.7"
         self.store_result(store, 1, json.dumps(result))
         out, err = self.call("replay", store, 1)
-        self.assertIn("is of another build than then", err)
-        self.assertIn("the run was made by 0.0.7", err.replace("altiplan 0.0.7", "0.0.7"))
+        self.assertIn("has been rebuilt since", err)
+        self.assertIn("the stored run was made by 0.0.7", err.replace("altiplan 0.0.7", "0.0.7"))
         os.remove(self.path("astar.yaml"))
         self.assertIn("astar.yaml", self.refused("replay", store, 1))
 
@@ -95,7 +95,7 @@ class Replay(StudyCase):
         self.change(store, "UPDATE runs SET key = '0123456789' || substr(key, 11)")
         out, err = self.call("replay", store, "0123456789")
         self.assertIn("identical to the stored run", out)
-        self.assertIn("this is another build of the program than then", err)
+        self.assertIn("the program is another build than that of the stored run", err)
 
     @unittest.skipIf(os.environ.get("ALTIPLAN_SANITIZED"), "a sanitizer ends the process its way")
     def test_a_crash_happens_again(self):

@@ -95,15 +95,15 @@ class Report(StudyCase):
         os.remove(self.path("city.yaml"))
         out, err = self.call("report", store, "-o", self.path("report"))
         self.assertIn(" 0 scenes", out)
-        self.assertIn("city.yaml is not there any more: 12 runs made before are not drawn", err)
-        self.assertTrue("is not there any more" in self.page("report"), "the page tells it too")
+        self.assertIn("city.yaml no longer exists: 12 runs made before are not shown", err)
+        self.assertTrue("no longer exists" in self.page("report"), "the page tells it too")
 
     def test_a_world_that_has_changed_is_not_drawn(self):
         store = self.store("study.db")
         self.write("astar.yaml", self.read("astar.yaml").replace("prune", "no_such"))
         out, err = self.call("report", store, "-o", self.path("report"))
         self.assertIn(" 0 scenes", out)
-        self.assertIn("astar.yaml has changed since: 12 runs made before are not drawn", err)
+        self.assertIn("astar.yaml has changed since: 12 runs made before are not shown", err)
 
     def test_an_earlier_report_stays_where_the_new_one_fails(self):
         store = self.store("study.db")
@@ -117,7 +117,7 @@ class Report(StudyCase):
         store = self.store("study.db", "--sample", "0.2")
         self.call("report", store, code=2)
         self.call("report", "-o", self.path("report"), code=2)
-        self.assertIn("holds other files", self.refused("report", store, "-o", self.folder))
+        self.assertIn("contains other files", self.refused("report", store, "-o", self.folder))
         self.assertIn("is a file", self.refused("report", store, "-o", store))
         other = self.write("other.yaml", self.read("study.yaml").replace("seed: 5", "seed: 6"))
         self.call("study", other, "--out", self.path("other.db"), "--sample", "0.2")

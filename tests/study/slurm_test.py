@@ -61,7 +61,7 @@ class Scripts(StudyCase):
         self.assertIn(f"#SBATCH --array=1-{tasks}\n", self.read("study.db.slurm/array.sbatch"))
 
     def test_errors_are_named(self):
-        self.assertIn("there is no sbatch on PATH",
+        self.assertIn("no sbatch on PATH",
                       self.refused("slurm", self.study, "--out", "study.db"))
         self.sbatch("echo 'sbatch: error: invalid account' >&2\nexit 1\n")
         os.symlink("/bin/false", self.path("bin/squeue"))
@@ -88,8 +88,8 @@ class Scripts(StudyCase):
         self.call("slurm", self.study, "--out", "study.db", "--dry-run")
         self.write("study.yaml", STUDY.replace("seed: 5", "seed: 6"))
         why = self.refused("slurm", self.study, "--out", "study.db", "--dry-run")
-        self.assertIn("sample.db' is of another study", why)
-        self.assertIn("""their files say '"seed": 5' against '"seed": 6'""", why)
+        self.assertIn("sample.db' belongs to another study", why)
+        self.assertIn("""their files differ: '"seed": 5' against '"seed": 6'""", why)
 
 
 class OnSlurm(StudyCase):
@@ -149,7 +149,7 @@ class OnSlurm(StudyCase):
         self.assertRegex(out, r"submitted: array \d+, then merge \d+; the results will be in .*\n$")
         self.assertRegex(out, r": [2-9]\d* tasks of 1 process, about ")
         why = self.refused("slurm", self.study, "--out", self.path("study.db"))
-        self.assertIn("are in the queue already", why)
+        self.assertIn("are already queued", why)
         self.expect_whole(reference)
         # A second call finds nothing to do, and loses nothing.
         self.submit()
@@ -193,7 +193,7 @@ class OnSlurm(StudyCase):
         # As Slurm does a minute before the time is over.
         CLUSTER.say("scancel", "--batch", "--signal=USR1", task)
         self.expect_whole(reference)
-        self.assertIn("out of time: queued again",
+        self.assertIn("out of time: requeued",
                       self.logs()[f"task-{task.split('_')[1]}.log"])
 
     def test_slurm_says_why_it_refuses(self):

@@ -17,8 +17,8 @@ class Stores(StudyCase):
         self.write("notes.txt", "years of work")
         os.mkfifo(self.path("pipe"))
         os.symlink("notes.txt", self.path("link"))
-        for name, words in {"study.yaml": "no database", "notes.txt": "no database",
-                            "link": "no database", "pipe": "a pipe"}.items():
+        for name, words in {"study.yaml": "not a database", "notes.txt": "not a database",
+                            "link": "not a database", "pipe": "a pipe"}.items():
             why = self.refused("study", self.study, "--out", self.path(name), "--fresh")
             self.assertIn(words, why)
             self.assertIn(name, why)
@@ -54,7 +54,7 @@ class Stores(StudyCase):
                               capture_output=True, text=True, timeout=60, user=65534, group=65534,
                               extra_groups=[])
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("was killed in the middle", done.stderr)
+        self.assertIn("was killed while writing", done.stderr)
         self.assertTrue(os.path.exists(self.path("hot.db-journal")))
 
     def test_one_store_by_two_names_is_one(self):
@@ -70,12 +70,12 @@ class Stores(StudyCase):
                 time.sleep(0.01)
             for arguments in (["study", self.study, "--out", self.path("out.db")],
                               ["study", self.study, "--out", self.path("out.db"), "--fresh"]):
-                self.assertIn(f"another process is at work here: {first.pid}",
+                self.assertIn(f"in use by another process: {first.pid}",
                               self.refused(*arguments))
             while not self.has_runs("out.db"):
                 self.assertLess(time.monotonic(), until)
                 time.sleep(0.01)
-            self.assertIn(f"another process is at work here: {first.pid}", self.refused(
+            self.assertIn(f"in use by another process: {first.pid}", self.refused(
                 "merge", self.path("out.db"), "-o", self.path("out.db")))
             self.assertIsNone(first.poll(), "it should be at work still")
         finally:
@@ -123,7 +123,7 @@ class Stores(StudyCase):
     def test_planner_arena_replaces_databases_alone(self):
         store = self.store("out.db", "--sample", "0.2")
         shutil.copy(store, self.path("precious.db"))
-        for name, words in {"study.yaml": "no database", "precious.db": "of altiplan study"}.items():
+        for name, words in {"study.yaml": "not a database", "precious.db": "of altiplan study"}.items():
             self.assertIn(words, self.refused("report", store, "--arena", self.path(name)))
         self.assertEqual(self.read("study.yaml"), STUDY)
         self.write("arena.db.partial", "mine")

@@ -89,7 +89,7 @@ class Study(StudyCase):
         self.assertIn("0 of them now", self.call())
         self.write("p.yaml", PIPELINE % "no_route")
         said = self.call()
-        self.assertIn("10 stored runs came of other files", said)
+        self.assertIn("10 stored runs out of date", said)
         self.assertIn("20 runs stored, 10 of them now", said)
         self.assertEqual({row[4] for row in self.rows()}, {"no_route"})
 
@@ -171,8 +171,8 @@ class Study(StudyCase):
     def test_bad_calls(self):
         for words, said, code in (
                 (("--jobs", 0), "--jobs", 2), (("--reuse", 0), "--reuse", 2),
-                (("--shard", "3/2"), "expected I/N", 2), (("--sample", "0"), "expected a share", 2),
-                (("--sample", "200%"), "expected a share", 2),
+                (("--shard", "3/2"), "expected I/N", 2), (("--sample", "0"), "expected a fraction", 2),
+                (("--sample", "200%"), "expected a fraction", 2),
                 (("--fresh", "--resume"), "--fresh", 2),
                 (("--filter", "("), "expected a regular expression", 3),
                 (("--shard", "4294967297/4294967298"), "expected I/N", 2),
@@ -181,7 +181,7 @@ class Study(StudyCase):
         self.assertFalse((self.folder / "out.db").exists())
         self.assertIn("--out", self.call(expect=3, store="no/folder/out.db"))
         self.write("text.db", "no database, " * 100)
-        self.assertIn("no database", self.call(expect=3, store="text.db"))
+        self.assertIn("not a database", self.call(expect=3, store="text.db"))
         self.study("claims: [{id: c, that: median(strait.length_m), is: < 1}]\n")
         self.assertIn("did you mean 'straight'", self.call(expect=3))
 

@@ -140,7 +140,7 @@ for text in '' '5' '{}' '{"altiplan": 2}' '{"altiplan": 1}' '{"altiplan": 1, "ro
   expect 3 'stored.json' check "$scratch/stored.json"
 done
 "$program" run "$pipeline" --out "$scratch/sound.json" > /dev/null
-expect 0 'sound' check "$scratch/sound.json"
+expect 0 'valid' check "$scratch/sound.json"
 # stored TEXT KEY VALUE: with this value of a key of the result, `check` refuses it.
 stored() {
   /usr/bin/python3 - "$scratch" "$2" "$3" << 'EOF'
@@ -159,7 +159,7 @@ stored "status: expected one of solved, no_route, " status null
 stored 'status: expected one of solved, no_route, ' status '"great"'
 stored 'this is a pipeline, expected a scenario' scenario "\"$pipeline\""
 stored 'nowhere.yaml: there is no such file' pipeline '"nowhere.yaml"'
-stored 'is no index of this list' overrides '{"set": {"steps.9.plan": "astar"}}'
+stored 'is not an index of this list' overrides '{"set": {"steps.9.plan": "astar"}}'
 stored "overrides.set.steps.0.plan: expected text, found '5'" overrides '{"set": {"steps.0.plan": 5}}'
 stored 'stored.json' files 5
 stored "point 0 of the route: expected [x, y, z] in metres, found a list of 2" route '[[1, 2]]'

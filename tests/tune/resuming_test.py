@@ -76,7 +76,7 @@ class Resuming(TuneCase):
         said = self.refused(*X)
         process.kill()
         process.communicate()
-        self.assertIn(f"another process is at work here: {process.pid} on ", said)
+        self.assertIn(f"in use by another process: {process.pid} on ", said)
         self.assertNotIn("study", said)
 
     def test_finished_is_finished(self):
@@ -97,7 +97,7 @@ class Resuming(TuneCase):
         spoilt = log.replace(b"solved", b"solvex", 1)
         with open(self.path("out", "runs.log"), "wb") as stream:
             stream.write(spoilt)
-        self.assertIn("1 line was damaged; its run is done again", self.tune(*X))
+        self.assertIn("1 line damaged: running its run again", self.tune(*X))
         self.assertEqual(self.results("out"), before)
 
     def test_more_evaluations(self):
@@ -123,7 +123,7 @@ class Resuming(TuneCase):
         os.mkdir(self.path("out"))
         self.write("out/thesis.txt", "years of work")
         for fresh in ((), ("--fresh",)):
-            self.assertIn("holds 'thesis.txt' and no tuning", self.refused(*X, *fresh))
+            self.assertIn("contains 'thesis.txt' and no tuning", self.refused(*X, *fresh))
         self.assertEqual(os.listdir(self.path("out")), ["thesis.txt"])
         self.assertIn("--out", self.refused(*X, out="p.yaml"))
 

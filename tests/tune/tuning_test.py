@@ -86,7 +86,7 @@ class Tune(TuneCase):
         said = self.tune(*X, metric="expanded")
         self.assertEqual(self.summary()["evaluations_on_plateau"], 20)
         self.assertIn("20 (100 %) on the plateau", said)
-        self.assertIn("nothing better than the pipeline as it is", said)
+        self.assertIn("no improvement over the original pipeline", said)
         self.assertIn("x: 0.9 ", self.read("out", "tuned.yaml"))
 
     def test_axes_are_labelled(self):
@@ -203,7 +203,7 @@ class Refusals(TuneCase):
                 (("--over", "steps.0.with.x=1..0"), "expected KEY=LO..HI"),
                 (("--over", "steps.0.with.x=0..inf"), "expected KEY=LO..HI"),
                 (("--over", "steps.0.with.whole=log:0..9"), "LO greater than 0"),
-                (("--over", "steps.0.with.x=simplex"), "two weights or more"),
+                (("--over", "steps.0.with.x=simplex"), "two or more weights"),
                 (("--over", "steps.0.with.{u,}=simplex"), "expected keys"),
                 (("--over", "steps.0.with.{u,v=simplex"), "expected keys"),
                 ((*X, *X), "given twice"),
@@ -225,15 +225,15 @@ class Refusals(TuneCase):
         for words, expected in (
                 (("--over", "steps.0.with.y=0..1"), "steps.0.with.y: 'tunable' has no parameter 'y'"),
                 (("--over", "steps.0.with.wole=1..2"), "did you mean 'whole'?"),
-                (("--over", "steps.7.with.x=0..1"), "names no parameter of a step"),
-                (("--over", "seed=0..1"), "names no parameter of a step"),
-                (("--over", "steps.0.with.word=0..1"), "is no number"),
+                (("--over", "steps.7.with.x=0..1"), "does not name a parameter of a step"),
+                (("--over", "seed=0..1"), "does not name a parameter of a step"),
+                (("--over", "steps.0.with.word=0..1"), "is not a number"),
                 (("--over", "steps.0.with.list=0..1"), "one by one, as steps.0.with.list.0"),
-                (("--over", "steps.0.with.list.2=0..1"), "is no index of this list"),
-                (("--over", "steps.0.with.x.0=0..1"), "is no list of numbers"),
-                (("--over", "steps.0.with.x=0..2"), "the parameter is at least 0.0 and at most 1.0"),
+                (("--over", "steps.0.with.list.2=0..1"), "is not an index of this list"),
+                (("--over", "steps.0.with.x.0=0..1"), "is not a list of numbers"),
+                (("--over", "steps.0.with.x=0..2"), "the parameter must be at least 0.0 and at most 1.0"),
                 (("--over", "steps.0.with.{x,whole}=simplex"), "whole numbers"),
-                (("--over", "steps.0.with.whole=1.2..1.7"), "takes whole numbers, of which there is none"),
+                (("--over", "steps.0.with.whole=1.2..1.7"), "takes whole numbers, of which the range"),
                 ((*X, "--tuner", "psso"), "did you mean 'pso'?"),
                 ((*X, "--set-tuner", "particle=3"), "did you mean 'particles'?"),
                 ((*X, "--set-tuner", "particles=0"), "--set-tuner particles=0"),

@@ -162,7 +162,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         short = scenes.ridge(20, 20)
         short["ground"]["nx"] = 21
         for page, sentence in (
-                (TEMPLATE, "This page holds no scene: make one with `altiplan view RESULT "
+                (TEMPLATE, "This page contains no scene: create one with `altiplan view RESULT "
                            "-o page.html`."),
                 (scenes.page(TEMPLATE, {"altiplan_scene": 2}),
                  "This page reads scenes of version 1, found 2."),

@@ -208,15 +208,15 @@ class Changed(Reports):
             out.write("# another line\n")
 
     def test_what_has_changed_is_not_drawn(self):
-        self.assertIn("pruned.yaml has changed since: 2 runs made before are not drawn in 3-D.",
+        self.assertIn("pruned.yaml has changed since: 2 runs made before are not shown in 3-D.",
                       self.text("#method"))
         self.click("#table-scenarios [data-open='cell 0 2']")
         frame = self.wait("return document.querySelector('#panel iframe[srcdoc]')")
-        self.assertRegex(self.text("#panel"), "This run is not drawn: .*pruned.yaml has changed since")
+        self.assertRegex(self.text("#panel"), "This run is not shown: .*pruned.yaml has changed since")
         self.browser.driver.switch_to.frame(frame)
         self.wait("return window.altiplan?.ready")
         self.assertEqual(len(self.js("return altiplan.drawn()")["routes"]), 2)
-        self.assertRegex(self.text(".choice"), "^pruned is not drawn: .* has changed since$")
+        self.assertRegex(self.text(".choice"), "^pruned is not shown: .* has changed since$")
         self.browser.driver.switch_to.default_content()
 
     def test_in_a_changed_world_nothing_is_drawn(self):
@@ -236,7 +236,7 @@ class Changed(Reports):
         self.click("#table-scenarios [data-open='cell 0 0']")
         self.wait("return document.querySelector('#panel .state')")
         self.assertRegex(self.text("#panel"),
-                         "This page holds no 3-D scene of this run: .*hills.yaml has changed since")
+                         "This page has no 3-D scene of this run: .*hills.yaml has changed since")
         self.assertIsNone(self.js("return document.querySelector('#panel iframe')"))
         report(self.store, self.report)
 

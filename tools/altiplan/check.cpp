@@ -30,7 +30,7 @@ void print_violations(const CheckResult& verdict, const char* point) {
 
 void print_route(const CheckResult& verdict, const Measures& measures) {
   std::printf("%s: %zu waypoints, %s km, clearance %s m, %s m above ground\n",
-              verdict.ok() ? "sound" : "not sound", measures.waypoints,
+              verdict.ok() ? "valid" : "not valid", measures.waypoints,
               fixed(measures.length_m / 1000, 3).c_str(),
               fixed(measures.min_clearance_m, 2).c_str(),
               fixed(measures.min_ground_clearance_m, 2).c_str());
@@ -39,23 +39,23 @@ void print_route(const CheckResult& verdict, const Measures& measures) {
 
 void print_track(const host::TrackVerdict& verdict, const host::Track& track, bool has_events) {
   std::printf("flight %s: %zu points, %s s, %d collision%s, %s\n",
-              verdict.check.ok() ? "sound" : "not sound", track.size(),
+              verdict.check.ok() ? "valid" : "not valid", track.size(),
               fixed(track.back().first, 0).c_str(), verdict.collisions,
               verdict.collisions == 1 ? "" : "s",
               verdict.reached ? "reached the goal" : "did not reach the goal");
   print_violations(verdict.check, "point");
   if (has_events) {
-    std::printf("  each event was applied at the first point at or after it\n");
+    std::printf("  each event is applied at the first point at or after its time\n");
   }
 }
 
-/// The verdicts, printed; a flight only where there is one.
+/// Prints the verdicts on the route and, if there is one, on the flight; returns the exit code.
 int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, const std::vector<host::FlightEvent>& events,
            bool as_json) {
   const CheckResult verdict = host::judge(route, mission.request, mission.via);
   const Measures measures = measure(route, mission.request);
-  bool sound = verdict.ok();
+  bool valid = verdict.ok();
   host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}};
   if (!as_json) {
     print_route(verdict, measures);
@@ -66,7 +66,7 @@ int report(const host::Mission& mission, const Route& route,
     setup.truth = mission.truth;
     setup.events = events;
     const host::TrackVerdict flown = host::judge_track(*track, setup);
-    sound = sound && flown.check.ok();
+    valid = valid && flown.check.ok();
     json["flight"] = {{"check", host::to_json(flown.check)},
                       {"collisions", flown.collisions},
                       {"reached", flown.reached}};
@@ -77,16 +77,16 @@ int report(const host::Mission& mission, const Route& route,
   if (as_json) {
     std::cout << host::file_text(json);
   }
-  return sound ? kDone : kNoRoute;
+  return valid ? kDone : kNoRoute;
 }
 
 int check_result(const Arguments& arguments) {
   const host::StoredResult stored = host::read_result(*arguments.result, arguments.overrides);
   for (const std::string& changed : stored.changed) {
-    warn(changed + " is not the file that the result was made from");
+    warn(changed + " has changed since the result was written");
   }
   if (!stored.route) {
-    std::cout << "there is no accepted route in " << stored.file << '\n';
+    std::cout << stored.file << " contains no accepted route\n";
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
@@ -98,32 +98,35 @@ int check_result(const Arguments& arguments) {
 int check_route(const Arguments& arguments) {
   const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
   const host::Mission mission = host::build_mission(config, 1);
-  const host::ImportedRoute foreign = host::read_imported_route(*arguments.route, mission);
-  for (const std::string& note : foreign.notes) {
+  const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
+  for (const std::string& note : imported.notes) {
     info(note);
   }
-  return report(mission, foreign.route, std::nullopt, {}, arguments.json);
+  return report(mission, imported.route, std::nullopt, {}, arguments.json);
 }
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("check", "judge a stored or a imported route again");
+  CLI::App* command =
+      app.add_subcommand("check", "judge the route of a result or an imported route");
   auto arguments = std::make_shared<Arguments>();
-  auto* result = command->add_option("result", arguments->result, "a result of altiplan run");
+  auto* result =
+      command->add_option("result", arguments->result, "result file of altiplan run (JSON)");
   auto* route = command
                     ->add_option("--route", arguments->route,
-                                 "a route: JSON ([[x, y, z], …] in metres, or a result), CSV, or a "
-                                 "mission (.plan, .waypoints, .kml, .gpx, .geojson)")
+                                 "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
+                                 "or a mission (.plan, .waypoints, .kml, .gpx, .geojson)")
                     ->type_name("FILE")
                     ->excludes(result);
-  auto* scenario =
-      command->add_option("--scenario", arguments->scenario, "the scenario to judge it in")
-          ->type_name("FILE")
-          ->excludes(result);
+  auto* scenario = command
+                       ->add_option("--scenario", arguments->scenario,
+                                    "scenario file to judge the route in (YAML)")
+                       ->type_name("FILE")
+                       ->excludes(result);
   route->needs(scenario);
   scenario->needs(route);
   add_plugin_path(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print JSON");
+  command->add_flag("--json", arguments->json, "print as JSON");
   set_example(*command, "altiplan check result.json");
   command->callback([&action, arguments] {
     if (!arguments->result && !arguments->route) {

@@ -11,10 +11,10 @@
 
 namespace altiplan::cli {
 
-/// What a command left to be done once the command line is parsed; its value is the exit code.
+/// The work of a subcommand, run once the command line is parsed; returns the exit code.
 using Action = std::function<int()>;
 
-// Each adds its subcommand, and sets the action when it is the one called.
+// Each adds its subcommand, which sets the action when it is called.
 void add_run(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 void add_explain(CLI::App& app, Action& action);
@@ -32,38 +32,39 @@ void add_tune(CLI::App& app, Action& action);
 void add_new(CLI::App& app, Action& action);
 void add_check_plugin(CLI::App& app, Action& action);
 
-/// --plugin-path, --seed, --set and --scenario as they are wanted.
+/// Adds --plugin-path.
 void add_plugin_path(CLI::App& command, host::Overrides& overrides);
+/// Adds --plugin-path, --scenario, --seed and --set.
 void add_overrides(CLI::App& command, host::Overrides& overrides);
 
-/// A number in the range; CLI::Range lets NaN pass.
+/// Accepts a number in the range; unlike CLI::Range, rejects NaN.
 CLI::Validator number_from(double low, double high);
-/// What is wrong with a seed, or with KEY=VALUE; "" where nothing is.
+/// The error message for a seed, or for KEY=VALUE; "" if it is valid.
 std::string seed_problem(const std::string& text);
 std::string assignment_problem(const std::string& text);
 
-/// "usage: …\nexample: …" for --help.
+/// Adds the example to the --help text.
 void set_example(CLI::App& command, const std::string& example);
 
 enum class LogLevel { quiet, warning, info };
 LogLevel& log_level();
-/// A line on stderr.
+/// Prints one line on stderr, subject to the log level.
 void warn(const std::string& message);
 void info(const std::string& message);
 
-/// A folder that is not there, and what else forbids to write the file, is said before anything is
-/// computed: throws Error naming the option.
+/// Checks before any computation that the file can be written: throws Error naming the option if
+/// its folder does not exist or the file is not writable.
 void expect_writable(const std::optional<std::string>& file, const char* option);
-/// The same of a study's database, to which a link may lead; nor may it be the file that stdout or
-/// stderr of the call goes to.
+/// The same for a study's database, following links; it must not be the file that stdout or stderr
+/// is redirected to.
 void expect_store_writable(const std::string& store, const char* option);
-/// Throws Error where the file is one of the others, which the call reads or writes.
+/// Throws Error if the file is one of the others, which the same call reads or writes.
 void expect_apart(const std::optional<std::string>& file, const char* option,
                   const std::vector<std::string>& others);
-/// The result's file, and those that it was made from.
+/// The result's file and its input files.
 std::vector<std::string> files_of(const host::StoredResult& stored);
 
-/// A fixed-point number for tables, "-" where there is none.
+/// A fixed-point number for tables, "-" if there is no value.
 std::string fixed(const std::optional<double>& value, int digits);
 /// "45 s", "12 min", "3.5 h"
 std::string duration(double seconds);

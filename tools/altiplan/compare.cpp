@@ -31,7 +31,7 @@ std::string number(double value) {
   return text;
 }
 
-/// With all digits: two numbers that differ must not look the same.
+/// With all digits, so that different numbers never print alike.
 std::string exact(double value) { return host::Json(value).dump(); }
 
 const char* name(study::MetricChange::Verdict verdict) {
@@ -77,8 +77,7 @@ void print_values(const std::vector<study::ValueChange>& changes) {
   if (changes.empty()) {
     return;
   }
-  std::printf("values of the metrics below that no clock decides, and that differ: %zu\n",
-              changes.size());
+  std::printf("different values of metrics that do not depend on time: %zu\n", changes.size());
   for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
     const study::ValueChange& change = changes[n];
     std::printf("  %s: %s was %s and is %s\n", change.run.c_str(), change.metric.c_str(),
@@ -116,7 +115,7 @@ void print_metrics(const std::vector<study::MetricChange>& changes) {
     metric = std::max(metric, int(change.metric.size()));
   }
   std::printf("%-*s  %-*s  %6s  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline, "pipeline", metric,
-              "metric", "pairs", "first", "second", "second against first [95 %]", "n", "p (Holm)",
+              "metric", "pairs", "first", "second", "second vs. first [95 % CI]", "n", "p (Holm)",
               "verdict");
   for (const study::MetricChange& change : changes) {
     std::printf("%-*s  %-*s  %6zu  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline,
@@ -146,25 +145,25 @@ void print_origins(const study::Comparison& comparison, const study::StudyData& 
       comparison, first, second, results_of(arguments.first), results_of(arguments.second));
   if (changed.empty()) {
     changed.emplace_back(
-        "no file, setting or plugin that the results name: another build of the program");
+        "no file, setting or plugin named in the results: another build of the program");
   }
-  std::printf("not made from the same: %zu pairs\n", comparison.other_origins.size());
+  std::printf("inputs differ: %zu pairs\n", comparison.other_origins.size());
   for (std::size_t n = 0; n < std::min(changed.size(), kShown); ++n) {
     std::printf("  %s\n", changed[n].c_str());
   }
   print_more(changed.size());
 }
 
-/// The last line, and whether the gate lets it pass.
+/// Prints the last line; true if the gate passes.
 bool print_verdict(const study::Comparison& comparison) {
   const std::size_t missing = comparison.only_first + comparison.other_seeds;
   std::string words = comparison.is_worse()
-                          ? "the second is worse: a success is lost, or a metric is beyond the "
+                          ? "the second is worse: a run newly fails, or a metric exceeds the "
                             "tolerance"
                           : "nothing is worse";
   if (missing > 0) {
     words += "; " + std::to_string(missing) + (missing == 1 ? " run" : " runs") +
-             " of the first cannot be compared: the second has none with that name and seed";
+             " of the first cannot be compared: the second has no run of that name and seed";
   }
   std::printf("%s\n", words.c_str());
   return !comparison.is_worse() && comparison.is_whole();
@@ -175,10 +174,10 @@ int compare(const Arguments& arguments) {
   const study::StudyData second = study::load_study_data({arguments.second});
   const study::Comparison comparison =
       study::compare_studies(first, second, {arguments.metrics, arguments.tolerance_percent / 100});
-  std::printf("%zu pairs of runs; %zu runs in the first alone, %zu in the second alone\n",
+  std::printf("%zu pairs of runs; %zu runs only in the first, %zu only in the second\n",
               comparison.pairs, comparison.only_first, comparison.only_second);
   if (comparison.other_seeds > 0) {
-    std::printf("%zu runs have other seeds and are left out\n", comparison.other_seeds);
+    std::printf("%zu runs have different seeds and are skipped\n", comparison.other_seeds);
   }
   print_origins(comparison, first, second, arguments);
   print_outcomes("newly failing", comparison.lost);
@@ -192,27 +191,27 @@ int compare(const Arguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("compare", "what has changed between two runs of a study");
+  CLI::App* command =
+      app.add_subcommand("compare", "compare the results of two executions of a study");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("first", arguments->first, "the database to compare with")
+  command->add_option("first", arguments->first, "reference study database")
       ->required()
       ->type_name("DB");
-  command->add_option("second", arguments->second, "the database of what is new")
+  command->add_option("second", arguments->second, "new study database")
       ->required()
       ->type_name("DB");
   command
       ->add_option("--metric", arguments->metrics,
-                   "value of the runs to compare, may be given again; left out: the study's")
+                   "value of the runs to compare; repeatable (default: the study's metrics)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      ->add_option("--tolerance", arguments->tolerance_percent,
-                   "per cent by which a metric may be worse")
+      ->add_option("--tolerance", arguments->tolerance_percent, "allowed worsening of a metric (%)")
       ->type_name("P")
       ->check(number_from(0, 1000))
       ->capture_default_str();
   command->add_flag("--gate", arguments->gate,
-                    "exit with 1 where a success is lost, a metric is worse, or a run of the "
+                    "exit with code 1 if a run newly fails, a metric is worse, or a run of the "
                     "first cannot be compared");
   set_example(*command, "altiplan compare before.db after.db --gate");
   command->callback([&action, arguments] { action = [arguments] { return compare(*arguments); }; });

@@ -45,7 +45,7 @@ void say(const std::string& message) {
   }
 }
 
-/// The accepted route, or the track that was flown; none where the result has not got it.
+/// The accepted route or the flown track; none if the result lacks it.
 std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bool flight) {
   host::ExportSource source;
   if (flight) {
@@ -69,13 +69,12 @@ int export_result(const Arguments& arguments) {
   expect_writable(arguments.out, "-o");
   const host::StoredResult stored = host::read_result(arguments.result, arguments.overrides);
   for (const std::string& changed : stored.changed) {
-    warn(changed + " is not the file that the result was made from");
+    warn(changed + " has changed since the result was written");
   }
   expect_apart(arguments.out, "-o", files_of(stored));
   std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
   if (!source) {
-    say("there is no " + std::string(arguments.flight ? "flight" : "accepted route") + " in " +
-        stored.file);
+    say(stored.file + " contains no " + (arguments.flight ? "flight" : "accepted route"));
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
@@ -103,32 +102,36 @@ int export_result(const Arguments& arguments) {
 
 void add_export(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("export", "write a result's route for ground stations and maps");
+      app.add_subcommand("export", "write a result's route for ground control stations and maps");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("result", arguments->result, "a result of altiplan run")->required();
-  command->add_option("--to", arguments->to, "qgc-plan, waypoints, kml, geojson, gpx or csv")
+  command->add_option("result", arguments->result, "result file of altiplan run (JSON)")
+      ->required();
+  command
+      ->add_option("--to", arguments->to, "format: qgc-plan, waypoints, kml, geojson, gpx or csv")
       ->required()
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
-  command->add_option("-o,--out", arguments->out, "file to write; left out: stdout")
+  command->add_option("-o,--out", arguments->out, "output file (default: stdout)")
       ->type_name("FILE");
   command
       ->add_option("--altitude", arguments->altitude,
-                   "what heights are counted from: sea, ground or home")
+                   "altitude reference: sea, ground or home (default sea)")
       ->type_name("FROM")
       ->check(CLI::IsMember({"sea", "ground", "home"}));
-  command->add_flag("--flight", arguments->flight, "the flown track in place of the route");
-  command->add_flag("--takeoff", arguments->options.takeoff, "the first item is a take-off");
+  command->add_flag("--flight", arguments->flight, "export the flown track instead of the route");
+  command->add_flag("--takeoff", arguments->options.takeoff,
+                    "begin the mission with a take-off item");
   command->add_flag("--land", arguments->options.land,
-                    "a landing below the last point ends the mission");
+                    "end the mission with a landing below the last waypoint");
   command
       ->add_option("--home-altitude", arguments->options.home_altitude_m,
-                   "height of home above sea level; left out: the ground below the start")
+                   "altitude of home above sea level (m, default: the ground below the start)")
       ->type_name("M")
       ->check(number_from(-1e4, 1e5));
   command
       ->add_option("--max-items", arguments->options.max_items,
-                   "at most so many items; points go while the route stays sound")
+                   "maximum number of mission items; waypoints are dropped while the route stays "
+                   "valid (default: no limit)")
       ->type_name("N")
       ->check(CLI::Range(2, 1'000'000));
   add_plugin_path(*command, arguments->overrides);

@@ -41,7 +41,7 @@ int code_of(const char* program, const std::function<int()>& action) {
     return kInternal;
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    std::cerr << program << (no_thread ? ": the system gives no thread: " : ": ") << error.what()
+    std::cerr << program << (no_thread ? ": cannot start a thread: " : ": ") << error.what()
               << '\n';
     return kInternal;
   } catch (const std::exception& error) {
@@ -50,7 +50,7 @@ int code_of(const char* program, const std::function<int()>& action) {
   }
 }
 
-/// Whether stdout is a pipe or socket that nobody reads any more.
+/// True if stdout is a pipe or socket whose reader has closed it.
 bool reader_is_gone() {
   pollfd out{STDOUT_FILENO, 0, 0};
   return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
@@ -61,7 +61,7 @@ int guarded(const char* program, const std::function<int()>& action) {
   const int code = code_of(program, action);
   std::cout.flush();
   if (!std::cout || std::ferror(stdout) != 0) {
-    if (reader_is_gone()) {  // as in `| head`: no error, and nothing to say to anybody
+    if (reader_is_gone()) {  // as in `| head`: not an error
       std::signal(SIGPIPE, SIG_DFL);
       std::raise(SIGPIPE);
     }

@@ -13,7 +13,7 @@ inline constexpr int kBadPlugin = 4;
 inline constexpr int kInternal = 5;
 inline constexpr int kInterrupted = 130;
 
-/// The action's exit code, or that of the exception that it threw, told on stderr. What cannot be
-/// written to stdout is an error too; where nobody reads it any more, SIGPIPE ends the process.
+/// The action's exit code, or that of the exception that it threw, reported on stderr. A failed
+/// write to stdout is an error too; if the reader has closed it, SIGPIPE ends the process.
 int guarded(const char* program, const std::function<int()>& action);
 }  // namespace altiplan::cli

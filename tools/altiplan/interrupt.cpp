@@ -28,20 +28,20 @@ using Clock = std::chrono::steady_clock;
 constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
 constexpr auto kPatience = std::chrono::milliseconds(500);
 
-/// A handler cannot undo anything: it wakes a thread that does.
+/// A signal handler must not clean up: it wakes a thread that does.
 struct State {
   int event = -1;
   pid_t owner = 0;
   std::mutex mutex;
-  std::stop_source* cooperative = nullptr;   ///< of the Interrupt that lives
-  std::optional<Clock::time_point> first;    ///< when it has asked for a stop
-  std::optional<Clock::time_point> ends_at;  ///< what comes after it
+  std::stop_source* cooperative = nullptr;   ///< of the current Interrupt
+  std::optional<Clock::time_point> first;    ///< time of the first stop request
+  std::optional<Clock::time_point> ends_at;  ///< deadline after finish()
 };
 State* the_state = nullptr;  // lives as long as the process
 
 void on_signal(int number) {
   const int error = errno;
-  if (::getpid() != the_state->owner) {  // a child that has not begun a program of its own
+  if (::getpid() != the_state->owner) {  // a forked child before its exec
     ::signal(number, SIG_DFL);
     ::raise(number);
     errno = error;
@@ -57,7 +57,7 @@ void on_signal(int number) {
 [[noreturn]] void end_process() {
   host::undo_unfinished();
   constexpr std::string_view kWords = "altiplan: interrupted\n";
-  // A reader of stderr that has gone to sleep is not waited for.
+  // Do not wait for a stalled reader of stderr.
   pollfd ready{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&ready, 1, 0) > 0 && (ready.revents & POLLOUT) != 0) {
     const ssize_t written = ::write(STDERR_FILENO, kWords.data(), kWords.size());
@@ -66,7 +66,7 @@ void on_signal(int number) {
   ::_exit(kInterrupted);
 }
 
-/// What a signal does: asks for a stop where that is heeded, else ends the process.
+/// Requests a stop if an Interrupt is alive, otherwise ends the process.
 void take_signal() {
   std::unique_lock lock(the_state->mutex);
   if (the_state->cooperative == nullptr) {
@@ -112,7 +112,7 @@ void catch_interrupts() {
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // none is handled on that thread
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // the thread handles none
   bool is_watched = the_state->event >= 0;
   try {
     if (is_watched) {
@@ -123,7 +123,7 @@ void catch_interrupts() {
   }
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (!is_watched) {
-    return;  // signals do what they do to any program: no reason to do nothing at all
+    return;  // signals keep their default action
   }
   struct sigaction action {};
   action.sa_handler = on_signal;

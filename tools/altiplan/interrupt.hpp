@@ -5,13 +5,13 @@
 
 namespace altiplan::cli {
 
-/// From now on SIGINT, SIGTERM and SIGHUP end the process with exit code 130, whatever it does, and
-/// what is unfinished is undone: no half file, no temporary one. To be called once, at the start.
+/// From now on SIGINT, SIGTERM and SIGHUP end the process with exit code 130 and remove partial and
+/// temporary files. Call once, at the start.
 void catch_interrupts();
 
-/// While it lives, a signal asks for a stop in place of ending the process: the step under way
-/// ends, the result is written. A second signal ends the process; not within half a second, as
-/// timeout(1) sends two. One at a time.
+/// During its lifetime a signal requests a stop instead of ending the process: the current step
+/// ends and the result is written. A second signal ends the process, unless it arrives within half
+/// a second, since timeout(1) sends two. At most one instance at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -19,8 +19,8 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// From now on a signal ends the process again. Where one has come, what is still done (printing
-  /// to a pipe that nobody reads) has half a second.
+  /// From now on a signal ends the process again. If one has arrived, the remaining work (such as
+  /// printing to a pipe that nobody reads) has half a second.
   void finish();
 
   std::stop_token token() const;

@@ -35,7 +35,7 @@ void set_example(CLI::App& command, const std::string& example) {
 void add_plugin_path(CLI::App& command, host::Overrides& overrides) {
   command
       .add_option("--plugin-path", overrides.plugin_path,
-                  "folder of plugin libraries, searched first; may be given again")
+                  "folder of plugin libraries, searched before the default ones; repeatable")
       ->expected(1)
       ->allow_extra_args(false)  // or a -- that follows is taken for the end of the list
       ->type_name("DIR")
@@ -44,14 +44,14 @@ void add_plugin_path(CLI::App& command, host::Overrides& overrides) {
 
 void add_overrides(CLI::App& command, host::Overrides& overrides) {
   add_plugin_path(command, overrides);
-  command.add_option("--scenario", overrides.scenario, "scenario in place of the pipeline's")
+  command.add_option("--scenario", overrides.scenario, "scenario file, overrides the pipeline's")
       ->type_name("FILE");
-  command.add_option("--seed", overrides.seed, "seed in place of the pipeline's")
+  command.add_option("--seed", overrides.seed, "random seed, overrides the pipeline's")
       ->type_name("N")
       ->check(seed_problem);
   command
       .add_option("--set", overrides.set,
-                  "any key of the pipeline, or of the scenario as scenario.KEY; may be given again")
+                  "override a key of the pipeline, or of the scenario as scenario.KEY; repeatable")
       ->expected(1)
       ->type_name("KEY=VALUE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -107,7 +107,7 @@ std::string duration(double seconds) {
 
 namespace {
 
-/// What the user typed, as far as a shell would take it again.
+/// The command line as typed, quoted so that a shell accepts it again.
 std::string command_line(int argc, char** argv) {
   std::string line = "altiplan";
   for (int i = 1; i < argc; ++i) {
@@ -119,21 +119,22 @@ std::string command_line(int argc, char** argv) {
 const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
 
 int main_checked(int argc, char** argv) {
-  const auto begin = [] {  // before anything else: a busy machine takes its time
+  const auto begin = [] {  // first: on a busy machine a signal may arrive early
     catch_interrupts();
     return kDone;
   };
   if (const int code = guarded("altiplan", begin); code != kDone) {
     return code;
   }
-  CLI::App app("Plans and judges routes of unmanned aircraft with plugins composed in YAML.",
+  CLI::App app("Plans and judges routes of unmanned aircraft with plugins configured in YAML.",
                "altiplan");
   app.set_version_flag("--version", ALTIPLAN_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   static const std::map<std::string, LogLevel> kLevels{
       {"quiet", LogLevel::quiet}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
-  app.add_option("--log-level", log_level(), "quiet, warning or info")
+  app.add_option("--log-level", log_level(),
+                 "messages on stderr: quiet, warning or info (default warning)")
       ->transform(CLI::Validator(
           [](std::string& text) {
             const auto level = kLevels.find(text);
@@ -166,7 +167,7 @@ int main_checked(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 would only miss a command.
+    // CLI11 would only report a missing command.
     const std::vector<std::string> rest = app.remaining();
     if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
       std::cerr << "altiplan: unknown command '" << rest.front()
@@ -189,7 +190,7 @@ int main_checked(int argc, char** argv) {
 }  // namespace altiplan::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of the stream, not of ours
-  std::signal(SIGXFSZ, SIG_IGN);  // neither is a file that may not grow (ulimit -f) the end of all
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as a write error
+  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that reaches its size limit (ulimit -f)
   return altiplan::cli::main_checked(argc, argv);
 }

@@ -14,7 +14,7 @@ struct Arguments {
   std::string out;
 };
 
-/// A store that is there already is replaced only where its runs are among those merged.
+/// Throws Error if the output exists and is not among the merged stores: its runs would be lost.
 void expect_no_loss(const Arguments& arguments) {
   std::error_code error;
   const bool merged =
@@ -23,8 +23,7 @@ void expect_no_loss(const Arguments& arguments) {
       });
   if (std::filesystem::exists(arguments.out, error) && !merged) {
     throw Error("-o: '" + arguments.out +
-                "' is there already: name it among the stores to keep its runs, or give another "
-                "name");
+                "' exists: list it among the stores to keep its runs, or give another name");
   }
 }
 
@@ -39,7 +38,7 @@ int merge(const Arguments& arguments) {
               merged.runs == 1 ? "" : "s", arguments.stores.size(),
               arguments.stores.size() == 1 ? "" : "s");
   if (merged.again > 0) {
-    std::printf("; %zu had the same result in more than one", merged.again);
+    std::printf("; %zu stored more than once with the same result", merged.again);
   }
   std::printf("\n");
   return kDone;
@@ -47,14 +46,12 @@ int merge(const Arguments& arguments) {
 }  // namespace
 
 void add_merge(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("merge", "put the parts of a study into one database");
+  CLI::App* command = app.add_subcommand("merge", "merge the shards of a study into one database");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("stores", arguments->stores, "databases of altiplan study, all of one study")
+  command->add_option("stores", arguments->stores, "study databases, all of the same study")
       ->required()
       ->type_name("DB");
-  command->add_option("-o,--out", arguments->out, "the database of all their runs")
-      ->required()
-      ->type_name("DB");
+  command->add_option("-o,--out", arguments->out, "merged database")->required()->type_name("DB");
   set_example(*command, "altiplan merge part-1.db part-2.db -o all.db");
   command->callback([&action, arguments] { action = [arguments] { return merge(*arguments); }; });
 }

@@ -26,7 +26,7 @@ struct Arguments {
 constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner",
                                        "planner",    "smoother",    "tuner"};
 
-/// The keywords of C++, each between spaces.
+/// The C++ keywords, each between spaces.
 constexpr std::string_view kKeywords =
     " alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t "
     "char32_t char8_t class co_await co_return co_yield compl concept const const_cast "
@@ -37,7 +37,7 @@ constexpr std::string_view kKeywords =
     "static_cast struct switch template this thread_local throw true try typedef typeid "
     "typename union unsigned using virtual void volatile wchar_t while xor xor_eq ";
 
-/// Words that stand for something else where a file names a plugin.
+/// Words with another meaning where a file names a plugin.
 constexpr std::string_view kOwnWords[] = {"id", "known", "null", "route"};
 
 template <class Words>
@@ -45,8 +45,8 @@ bool contains(const Words& words, std::string_view word) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
-/// The plugin that has the name; "" where none has. Kinds may share names, but files and messages
-/// are clearer where they do not.
+/// A description of the plugin with that name; "" if the name is free. Kinds may share names, but
+/// unique names keep files and messages clear.
 std::string offered_by(const std::string& name) {
   const host::Registry registry(host::Registry::search_path({}));
   for (const host::Library& library : registry.libraries()) {
@@ -64,7 +64,7 @@ std::string offered_by(const std::string& name) {
   return "";
 }
 
-/// What is wrong with the kind or the name; "" where nothing is.
+/// The error message for the kind or the name; "" if both are valid.
 std::string usage_problem(const Arguments& arguments) {
   const std::string found = ", found '" + arguments.name + "'";
   if (!contains(kKinds, arguments.kind)) {
@@ -82,13 +82,14 @@ std::string usage_problem(const Arguments& arguments) {
            found;
   }
   if (kKeywords.find(" " + arguments.name + " ") != std::string_view::npos) {
-    return "NAME: '" + arguments.name + "' is a keyword of C++";
+    return "NAME: '" + arguments.name + "' is a C++ keyword";
   }
   if (contains(kOwnWords, arguments.name)) {
-    return "NAME: '" + arguments.name + "' means something else in altiplan's files";
+    return "NAME: '" + arguments.name +
+           "' has another meaning in altiplan's files: choose another name";
   }
   if (arguments.name.ends_with("_test")) {
-    return "NAME: a source file that ends in _test is taken for a test" + found;
+    return "NAME: expected a name that does not end in _test, which marks test sources" + found;
   }
   const std::string offered = offered_by(arguments.name);
   return offered.empty() ? "" : "NAME: '" + arguments.name + "' is taken by " + offered;
@@ -96,7 +97,7 @@ std::string usage_problem(const Arguments& arguments) {
 
 using Files = std::map<fs::path, std::string>;
 
-/// The files below the folder by their paths in it; they take the place of those of the same path.
+/// Adds the files below the folder by their relative paths; replaces those of the same path.
 void add_files(const fs::path& folder, Files& files) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) {
@@ -112,8 +113,8 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
   }
 }
 
-/// The project: what all kinds share, with what the kind has of its own. `X.part` is no file of the
-/// project but stands for @X@ in the others.
+/// The project's files: the shared templates and those of the kind. `X.part` is not itself a file
+/// of the project: its text replaces @X@ in the others.
 Files project(const Arguments& arguments) {
   const fs::path templates = host::install_root() / "share/altiplan/templates";
   Files all;
@@ -126,7 +127,7 @@ Files project(const Arguments& arguments) {
     }
   }
   values.emplace_back("@kind@", arguments.kind);
-  values.emplace_back("@name@", arguments.name);  // last: parts name them too
+  values.emplace_back("@name@", arguments.name);  // last: parts contain them too
   Files files;
   for (const auto& [path, text] : all) {
     if (path.extension() == ".part") {
@@ -155,8 +156,8 @@ int new_project(const Arguments& arguments) {
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     throw Error(fs::exists(fs::symlink_status(folder))
-                    ? "'" + folder.string() + "' is there already, and nothing is written over"
-                    : "cannot make the folder '" + folder.string() + "': " + error.message());
+                    ? "'" + folder.string() + "' exists and is not overwritten: choose another name"
+                    : "cannot create the folder '" + folder.string() + "': " + error.message());
   }
   try {
     for (const auto& [path, text] : files) {
@@ -167,21 +168,22 @@ int new_project(const Arguments& arguments) {
     fs::remove_all(folder, error);
     throw;
   }
-  std::cout << arguments.name << "/README.md says how this " << arguments.kind
-            << " is built, tested, run and compared\n";
+  std::cout << arguments.name << "/README.md describes how to build, test, run and compare this "
+            << arguments.kind << "\n";
   return kDone;
 }
 }  // namespace
 
 void add_new(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("new", "a project of one plugin, complete and out of tree, in ./NAME");
+      app.add_subcommand("new", "create a complete out-of-tree plugin project in ./NAME");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("kind", arguments->kind,
-                   "constraint, environment, local_planner, planner, smoother or tuner")
+                   "kind: constraint, environment, local_planner, planner, smoother or tuner")
       ->required();
-  command->add_option("name", arguments->name, "of the plugin and of its folder, in snake_case")
+  command
+      ->add_option("name", arguments->name, "name of the plugin and of its folder, in snake_case")
       ->required();
   set_example(*command, "altiplan new planner my_planner");
   command->callback(

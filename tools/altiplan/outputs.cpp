@@ -33,9 +33,8 @@ void expect_store_writable(const std::string& store, const char* option) {
     struct stat stream {};
     if (::fstat(descriptor, &stream) == 0 && stream.st_dev == file.st_dev &&
         stream.st_ino == file.st_ino) {
-      throw Error(
-          std::string(option) + ": '" + store + "' is the file that " + name +
-          " of this call goes to, whose lines would destroy the database: give another name");
+      throw Error(std::string(option) + ": '" + store + "' is the file that " + name +
+                  " is redirected to, which would overwrite the database: give another name");
     }
   }
 }
@@ -46,7 +45,7 @@ void expect_apart(const std::optional<std::string>& file, const char* option,
   for (const std::string& other : others) {
     if (file && (*file == other || std::filesystem::equivalent(*file, other, error))) {
       throw Error(std::string(option) + ": '" + *file +
-                  "' is read, or written, by this call already: give another name");
+                  "' is already read or written by this command: give another name");
     }
   }
 }

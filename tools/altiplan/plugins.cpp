@@ -63,7 +63,7 @@ CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sente
               const std::shared_ptr<Arguments>& arguments, int (*call)(const Arguments&)) {
   CLI::App* command = app.add_subcommand(name, sentence);
   add_plugin_path(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print JSON");
+  command->add_flag("--json", arguments->json, "print as JSON");
   command->callback(
       [&action, arguments, call] { action = [arguments, call] { return call(*arguments); }; });
   return command;
@@ -72,19 +72,20 @@ CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sente
 
 void add_plugins(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = add(app, action, "plugins", "what is loaded, and what was refused and why",
-                          arguments, &plugins);
-  command->add_flag("--strict", arguments->strict, "exit with 4 when a library is refused");
+  CLI::App* command =
+      add(app, action, "plugins", "list the loaded plugins, and the refused libraries with reasons",
+          arguments, &plugins);
+  command->add_flag("--strict", arguments->strict, "exit with code 4 if a library is refused");
   set_example(*command, "altiplan plugins --plugin-path build/my_plugins");
 
   arguments = std::make_shared<Arguments>();
-  command = add(app, action, "describe", "one plugin: what it does, its parameters, its traits",
+  command = add(app, action, "describe", "print a plugin's description, parameters and traits",
                 arguments, &describe);
-  command->add_option("name", arguments->name, "plugin")->required();
+  command->add_option("name", arguments->name, "name of the plugin")->required();
   set_example(*command, "altiplan describe astar");
 
   arguments = std::make_shared<Arguments>();
-  command = add(app, action, "schema", "JSON Schema (draft-07) of pipelines and scenarios",
+  command = add(app, action, "schema", "print the JSON Schema (draft-07) of the input files",
                 arguments, &schema);
   set_example(*command, "altiplan schema > altiplan.schema.json");
 }

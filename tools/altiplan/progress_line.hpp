@@ -8,7 +8,7 @@
 
 namespace altiplan::cli {
 
-/// One line on stderr that is written over, on a terminal alone.
+/// One line on stderr, overwritten in place; shown only on a terminal.
 class ProgressLine {
  public:
   ProgressLine() : is_shown_(isatty(2) == 1) {}

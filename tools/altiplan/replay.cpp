@@ -24,7 +24,7 @@ struct Arguments {
   host::Overrides overrides;
 };
 
-/// Says how the run compares with the stored one, in the exit code too.
+/// Prints the comparison of the run with the stored one; returns the exit code.
 int report(std::FILE* to, const study::StoredRun& stored, const host::Json& result,
            const std::string& key) {
   const study::Replayed replayed = study::compare_replay(stored, result, key);
@@ -40,9 +40,9 @@ int report(std::FILE* to, const study::StoredRun& stored, const host::Json& resu
   std::fprintf(to, "%s: differs from the stored run at %s: it was %s and is %s\n", name.c_str(),
                difference.path.c_str(), difference.first.c_str(), difference.second.c_str());
   if (!replayed.changed.empty()) {
-    std::fprintf(to, "  which may be for what has changed\n");
+    std::fprintf(to, "  possible cause: the changes reported above\n");
   } else if (result.at("budget_hit") == true) {
-    std::fprintf(to, "  which may be for a budget of seconds that ran out\n");
+    std::fprintf(to, "  possible cause: a time budget ran out\n");
   }
   return kNoRoute;
 }
@@ -57,10 +57,10 @@ int hand_out(std::FILE* to, const Arguments& arguments, const study::StoredRun& 
   return code;
 }
 
-/// What is said where a plugin ends the process.
+/// Printed if a plugin ends the process.
 host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const host::Config& config,
-                                         const study::StoredRun& stored,
-                                         const host::RunResult& result) {
+                                             const study::StoredRun& stored,
+                                             const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
   const bool as_then = stored.outcome == "crashed";
   words.for_user = "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
@@ -91,7 +91,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
     process->set_crash_report(crash_report(arguments, config, stored, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
-    // The plugin still runs, and may print: what it has for stdout is not given back.
+    // The plugin is still running and may print: its stdout stays redirected.
     if (interrupt.happened()) {
       _exit(kInterrupted);
     }
@@ -105,7 +105,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
   const host::RunResult result = host::run(config, options);
   process.reset();
   if (interrupt.happened()) {
-    return kInterrupted;  // half a run has nothing to compare
+    return kInterrupted;  // an incomplete run cannot be compared
   }
   const int code = hand_out(stdout, arguments, stored, config, key, result);
   if (!result.trace_error.empty()) {
@@ -146,21 +146,21 @@ int replay(const Arguments& arguments) {
 
 void add_replay(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("replay", "run one run of a study again and compare it to the last bit");
+      app.add_subcommand("replay", "repeat one run of a study and compare the results bit by bit");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("store", arguments->store, "a database of altiplan study")
-      ->required()
-      ->type_name("DB");
+  command->add_option("store", arguments->store, "study database")->required()->type_name("DB");
   command
       ->add_option("run", arguments->run,
-                   "the run: its id, its key or the beginning of it, or its name 'PIPELINE "
-                   "SCENARIO #REPETITION'")
+                   "run: its id, its key or a prefix of the key, or its name 'PIPELINE SCENARIO "
+                   "#REPETITION'")
       ->required();
-  command->add_option("-o,--out", arguments->out, "write the result as JSON")->type_name("FILE");
-  command->add_option("--trace", arguments->trace, "write what the searches did")
+  command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
       ->type_name("FILE");
-  command->add_flag("--stored", arguments->stored,
-                    "run nothing: write what is stored (view, check and export take it)");
+  command->add_option("--trace", arguments->trace, "write a trace of the searches to this file")
+      ->type_name("FILE");
+  command->add_flag(
+      "--stored", arguments->stored,
+      "write the stored result instead of running (input for view, check and export)");
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan replay study.db 'astar city #0'");
   command->callback([&action, arguments] { action = [arguments] { return replay(*arguments); }; });

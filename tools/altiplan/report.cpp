@@ -14,15 +14,15 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> stores;
-  std::string folder;  ///< "" where no page is wanted
+  std::string folder;  ///< "" if no page is requested
   std::optional<std::string> arena;
   std::string title;
   bool no_times = false;
   host::Overrides overrides;
 };
 
-/// As it was called; without the names of files where times are left out, so that the page depends
-/// on the runs alone.
+/// The command line; with --no-times without the file names, so that the page depends only on the
+/// runs.
 std::string command_of(const Arguments& arguments) {
   std::string command = "altiplan report";
   if (arguments.no_times) {
@@ -55,11 +55,11 @@ int write_page(const Arguments& arguments) {
   }
   if (written.changed.size() > kMaxChanges) {
     warn(std::to_string(written.changed.size() - kMaxChanges) +
-         " more have changed, which the page tells");
+         " more files have changed: the page lists them");
   }
   if (!written.notes.empty()) {
     warn(std::to_string(written.notes.size()) +
-         " scenes could not be made, which the page tells; the first: " +
+         " scenes could not be built: the page lists them; the first: " +
          study::report::printable(written.notes.front()));
   }
   std::printf("%s\n%s: %s MB, %zu figures, %zu scenes\n", written.summary.c_str(),
@@ -84,21 +84,23 @@ int report(const Arguments& arguments) {
 
 void add_report(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("report", "what a study found: a page, figures and tables");
+      app.add_subcommand("report", "write a study's results as a page with figures and tables");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("stores", arguments->stores, "what altiplan study wrote; shards together")
+  command->add_option("stores", arguments->stores, "study databases; all shards of one study")
       ->required()
       ->type_name("DB");
   command
-      ->add_option("-o,--out", arguments->folder, "folder of the report, new or of an earlier one")
+      ->add_option("-o,--out", arguments->folder,
+                   "folder of the report: a new one, or an earlier report's")
       ->type_name("DIR");
-  command->add_option("--arena", arguments->arena, "a database that Planner Arena reads")
+  command->add_option("--arena", arguments->arena, "write a database for Planner Arena")
       ->type_name("FILE");
-  command->add_option("--title", arguments->title, "in place of the study's name")
+  command->add_option("--title", arguments->title, "title of the page (default: the study's name)")
       ->type_name("TEXT");
-  command->add_flag("--no-times", arguments->no_times,
-                    "leave out all that differs from run to run, so that equal results make equal "
-                    "files");
+  command->add_flag(
+      "--no-times", arguments->no_times,
+      "omit times, host and other values that vary between runs, so that equal results "
+      "give identical files");
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan report study.db -o report");
   command->callback([&action, arguments] {

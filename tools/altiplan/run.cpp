@@ -47,7 +47,7 @@ void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_s
   const bool is_inside = separation && *separation < 0;
   std::fprintf(to, "  flight: %s after %s s, %d collision%s, %s%s m%s, %zu replan%s\n",
                flight.reached ? "reached the goal"
-               : is_cut_short ? "the step's budget ended it"
+               : is_cut_short ? "ended by the step's budget"
                               : "did not reach the goal",
                fixed(flight.measures.duration_s, 0).c_str(), flight.collisions,
                flight.collisions == 1 ? "" : "s", is_inside ? "" : "nearest ",
@@ -94,7 +94,7 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
   if (arguments.out) {
     try {
       host::write_file(*arguments.out, host::file_text(json));
-    } catch (const Error& error) {  // the result is shown all the same
+    } catch (const Error& error) {  // the result is printed first
       problem = error.what();
     }
   }
@@ -111,9 +111,10 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
   }
 }
 
-/// What is said where a plugin ends the process: the result as it is before that plugin is called.
-host::ProcessGuard::CrashReport crash_report(const RunArguments& arguments, const host::Config& config,
-                                         const host::RunResult& result) {
+/// Printed if a plugin ends the process: the result as of the call of that plugin.
+host::ProcessGuard::CrashReport crash_report(const RunArguments& arguments,
+                                             const host::Config& config,
+                                             const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
   words.for_user = "altiplan: " + result.message + "\n";
   words.exit_code = result.exit_code();
@@ -150,7 +151,7 @@ int run(const RunArguments& arguments) {
     process->set_crash_report(crash_report(arguments, config, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
-    // The plugin still runs, and may print: what it has for stdout is not given back.
+    // The plugin is still running and may print: its stdout stays redirected.
     if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
       try {
         hand_out(out, arguments, config, result, interrupt);
@@ -178,21 +179,25 @@ int run(const RunArguments& arguments) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("run", "run a pipeline: plan, smooth, judge, fly");
+  CLI::App* command =
+      app.add_subcommand("run", "run a pipeline: plan, smooth, judge and fly a route");
   auto arguments = std::make_shared<RunArguments>();
-  command->add_option("pipeline", arguments->pipeline, "pipeline file")->required();
+  command->add_option("pipeline", arguments->pipeline, "pipeline file (YAML)")->required();
   add_overrides(*command, arguments->overrides);
-  command->add_option("--threads", arguments->threads, "threads that a plugin may use")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "maximum number of threads of a plugin (default 1)")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--trace", arguments->trace, "write what the searches did")
+  command->add_option("--trace", arguments->trace, "write a trace of the searches to this file")
       ->type_name("FILE");
-  command->add_option("-o,--out", arguments->out, "write the result as JSON")->type_name("FILE");
+  command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
+      ->type_name("FILE");
   command
       ->add_option("--timeout", arguments->timeout_s,
-                   "seconds for a step without within_s, and for all that has no time of its own: "
-                   "making plugins and layers, judging")
+                   "timeout for steps without `within_s`, and for creating plugins and layers and "
+                   "judging (s, default 60)")
       ->check(number_from(0.001, 1e8));
-  command->add_flag("--json", arguments->json, "print the result as JSON, and nothing else");
+  command->add_flag("--json", arguments->json, "print only the result, as JSON");
   set_example(*command,
               "altiplan run configs/pipelines/ridge_crossing.yaml --seed 3 "
               "--set steps.0.with.weight_g=0.6 --out result.json");

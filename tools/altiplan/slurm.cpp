@@ -33,11 +33,11 @@ struct Arguments {
   std::vector<std::string> sbatch;
 };
 
-/// Slurm's MaxArraySize is 1001 unless the cluster says otherwise.
+/// Slurm's default MaxArraySize is 1001.
 constexpr double kMaxShards = 1000;
-/// As many pairs of scenario and repetition are run for an estimate, where there are as many.
+/// Number of pairs of scenario and repetition that are run for an estimate, if there are as many.
 constexpr double kSamplePairs = 5;
-/// Of a task, beside what its runs may take.
+/// Memory of a task besides the limit of its runs.
 constexpr double kOwnMemoryMb = 1024;
 
 std::string decimal(double value) {
@@ -78,7 +78,7 @@ study::SlurmJob job_of(const Arguments& arguments, const study::StudyPlan& plan)
   return job;
 }
 
-/// What was said in a small file of an earlier call, a word per line.
+/// The lines of a small file that an earlier call wrote; empty if there is none.
 std::vector<std::string> lines_of(const fs::path& file) {
   std::vector<std::string> lines;
   if (!fs::exists(file)) {
@@ -91,16 +91,16 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// Two tasks on one shard would only wait for each other.
+/// Throws Error if jobs of the study are queued: two tasks on one shard would block each other.
 void expect_none_queued(const study::SlurmJob& job) {
   const std::string queued = study::still_queued(lines_of(job.folder() / "jobs"));
   if (!queued.empty()) {
-    throw Error("jobs of this study are in the queue already: " + queued +
-                "; wait for them, or end them with scancel");
+    throw Error("jobs of this study are already queued: " + queued +
+                "; wait for them or cancel them with scancel");
   }
 }
 
-/// The databases that an estimate can be made from. Throws Error where one is of another study.
+/// The databases that an estimate can be based on. Throws Error if one belongs to another study.
 std::vector<fs::path> stores_of(const study::SlurmJob& job, const study::StudyPlan& plan) {
   std::vector<fs::path> stores;
   std::error_code error;
@@ -118,14 +118,14 @@ std::vector<fs::path> stores_of(const study::SlurmJob& job, const study::StudyPl
     if (!study.empty() && study["text"] != plan.text) {
       auto now = study;
       now["text"] = plan.text;
-      throw Error("'" + file.string() + "' is of another study: " +
+      throw Error("'" + file.string() + "' belongs to another study: " +
                   study::studies_differ(study, now) + "; remove it, or give --out another name");
     }
   }
   return stores;
 }
 
-/// Runs a few of the study's runs here.
+/// Executes a few of the study's runs on this machine; returns their database.
 fs::path take_sample(const study::SlurmJob& job, const study::StudyPlan& plan) {
   const double pairs = double(plan.scenarios.size()) * plan.file.repetitions;
   const double share = std::min(1.0, kSamplePairs / pairs);
@@ -139,14 +139,14 @@ fs::path take_sample(const study::SlurmJob& job, const study::StudyPlan& plan) {
   info("no runs to estimate from: " + study::shell_text(command));
   const study::CommandResult result = study::run_command(command);
   if (result.code != 0) {
-    throw Error("the sample that the time is estimated from ended with exit code " +
+    throw Error("the sample for the time estimate ended with exit code " +
                 std::to_string(result.code) + ": " + result.err);
   }
   return file;
 }
 
-/// An earlier call's number of shards, so that its databases are gone on with, or else by the time
-/// that the runs will take.
+/// The number of shards of an earlier call, so that its databases are continued; otherwise from the
+/// estimated time of the runs (s).
 int shards_of(const Arguments& arguments, const study::SlurmJob& job, const study::StudyPlan& plan,
               double seconds) {
   const std::vector<std::string> before = lines_of(job.folder() / "shards");
@@ -165,7 +165,7 @@ int shards_of(const Arguments& arguments, const study::SlurmJob& job, const stud
 
 void print_plan(const study::SlurmJob& job, const study::StudyPlan& plan, double seconds) {
   std::printf(
-      "%zu runs, about %s minutes of computing: %d task%s of %d process%s, about %s minutes "
+      "%zu runs, about %s minutes of computing time: %d task%s of %d process%s, about %s minutes "
       "each\n",
       plan.runs.size(), fixed(seconds / 60, 1).c_str(), job.shards, job.shards == 1 ? "" : "s",
       job.jobs, job.jobs == 1 ? "" : "es", fixed(seconds / 60 / job.shards / job.jobs, 1).c_str());
@@ -183,15 +183,15 @@ void submit_jobs(const study::SlurmJob& job, const study::StudyPlan& plan, doubl
 int slurm(const Arguments& arguments) {
   if (!arguments.dry_run && !study::has_command("sbatch")) {
     throw Error(
-        "there is no sbatch on PATH: this machine cannot submit to Slurm (--dry-run writes "
-        "the scripts all the same)");
+        "no sbatch on PATH: this machine cannot submit to Slurm (--dry-run only writes the "
+        "scripts)");
   }
   expect_store_writable(arguments.out, "--out");
   const study::StudySelection selection{arguments.sample, arguments.filter, 1, 1};
   const study::StudyPlan plan =
       study::load_study(arguments.study, selection, arguments.overrides.plugin_path);
   if (plan.runs.empty()) {
-    throw Error("no run of the study is chosen: does --filter match any?");
+    throw Error("--filter and --sample select no run of the study: expected at least one");
   }
   study::SlurmJob job = job_of(arguments, plan);
   fs::create_directories(job.folder());
@@ -205,7 +205,7 @@ int slurm(const Arguments& arguments) {
     seconds = study::estimated_seconds(plan, stores);
   }
   job.shards = shards_of(arguments, job, plan, seconds);
-  // Twice the estimate, and whatever the last run may take.
+  // Twice the estimate, plus the time limit of the last run.
   const double chunk = std::max(arguments.chunk_minutes, seconds / 60 / job.shards / job.jobs);
   job.minutes = int(std::ceil(2 * chunk + plan.file.budget.wall_s / 60 + 2));
   host::write_file(job.folder() / "shards", std::to_string(job.shards) + "\n");
@@ -222,37 +222,46 @@ int slurm(const Arguments& arguments) {
 }
 
 void add_selection(CLI::App& command, Arguments& arguments) {
-  command.add_option("--jobs", arguments.jobs, "processes, and processors, of a task")
+  command
+      .add_option("--jobs", arguments.jobs, "parallel runs, and processors, per task (default 1)")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--reuse", arguments.reuse, "runs that a process does, as of altiplan study")
+  command
+      .add_option("--reuse", arguments.reuse,
+                  "runs per worker process, as for altiplan study (default 1)")
       ->check(CLI::Range(1, 1000000));
-  command.add_flag("--traces", arguments.traces, "store what the searches do");
-  command.add_option("--sample", arguments.sample, "share of the runs, as of altiplan study")
+  command.add_flag("--traces", arguments.traces, "store traces of the searches");
+  command
+      .add_option("--sample", arguments.sample,
+                  "fraction of the runs from 0 to 1, as for altiplan study")
       ->type_name("P")
       ->check(number_from(0, 1));
-  command.add_option("--filter", arguments.filter, "runs whose name matches, as of altiplan study")
+  command
+      .add_option("--filter", arguments.filter,
+                  "regular expression that run names match, as for altiplan study")
       ->type_name("E");
   add_plugin_path(command, arguments.overrides);
 }
 }  // namespace
 
 void add_slurm(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("slurm", "run a study as a job array of a Slurm cluster");
+  CLI::App* command = app.add_subcommand("slurm", "run a study as a job array on a Slurm cluster");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("study", arguments->study, "study file")->required();
-  command->add_option("-o,--out", arguments->out, "the database of all results")
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command->add_option("-o,--out", arguments->out, "results database (SQLite)")
       ->required()
       ->type_name("DB");
-  command->add_option("--chunk-minutes", arguments->chunk_minutes, "how long a task should take")
+  command
+      ->add_option("--chunk-minutes", arguments->chunk_minutes, "target duration of a task (min)")
       ->type_name("M")
       ->check(number_from(0.01, 100000))
       ->capture_default_str();
-  command->add_option("--partition", arguments->partition, "where the tasks run")->type_name("P");
+  command->add_option("--partition", arguments->partition, "Slurm partition of the tasks")
+      ->type_name("P");
   auto* dry = command->add_flag("--dry-run", arguments->dry_run,
-                                "write the scripts and print the calls of sbatch; submit nothing");
-  command->add_flag("--submit", arguments->submit, "submit the jobs (the default)")->excludes(dry);
+                                "write the scripts and print the sbatch commands; submit nothing");
+  command->add_flag("--submit", arguments->submit, "submit the jobs (default)")->excludes(dry);
   add_selection(*command, *arguments);
-  command->add_option("sbatch", arguments->sbatch, "after --, more options of sbatch");
+  command->add_option("sbatch", arguments->sbatch, "after --: further options of sbatch");
   set_example(*command,
               "altiplan slurm study.yaml --out study.db --chunk-minutes 20 -- "
               "--account=uav");

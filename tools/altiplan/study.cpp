@@ -25,10 +25,10 @@ struct Arguments {
   study::StudySelection selection;
   study::StudyOptions options;
 
-  host::Overrides overrides;  ///< of which only the plugin path is asked for
+  host::Overrides overrides;  ///< only the plugin path is used
   bool dry_run = false;
   bool gate = false;
-  bool resume = false;  ///< what happens anyway
+  bool resume = false;  ///< no effect: the default
 };
 
 std::string line_of(const study::StudyProgress& progress) {
@@ -37,7 +37,7 @@ std::string line_of(const study::StudyProgress& progress) {
   if (progress.done > 0 && ended < progress.runs) {
     line += ", " +
             duration(progress.elapsed_s / double(progress.done) * double(progress.runs - ended)) +
-            " to go";
+            " left";
   }
   for (const auto& [outcome, number] : progress.outcomes) {
     line += outcome == "solved" ? "" : ", " + std::to_string(number) + " " + outcome;
@@ -80,7 +80,7 @@ void print_outcomes(const study::StudyData& data) {
   }
 }
 
-/// Whether every claim holds.
+/// True if every claim holds.
 bool print_claims(const study::StudyData& data) {
   bool all_hold = true;
   for (const study::ClaimEntry& claim : data.file.claims) {
@@ -103,14 +103,14 @@ int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
     std::printf("  about %s with %d at a time (%s a run, from %s)\n",
                 duration(estimate.total_s).c_str(), arguments.options.jobs,
                 duration(estimate.run_s).c_str(),
-                estimate.is_probed ? "one run of each pipeline, done just now"
+                estimate.is_probed ? "one run of each pipeline made now"
                                    : (std::to_string(estimate.measured) + " stored runs").c_str());
   }
   return kDone;
 }
 
 int study(Arguments arguments) {
-  if (arguments.store.empty()) {  // a rehearsal, which needs a place for its runs only
+  if (arguments.store.empty()) {  // a dry run still needs a temporary store
     const std::string name = "altiplan-study-" + std::to_string(getpid());
     arguments.options.store = std::filesystem::temp_directory_path() / name;
   } else {
@@ -140,13 +140,13 @@ int study(Arguments arguments) {
   std::printf("%s: %zu runs stored, %zu of them now, in %s\n", arguments.store.c_str(),
               progress.before + progress.done, progress.done, duration(progress.elapsed_s).c_str());
   if (end.is_interrupted) {
-    std::printf("  interrupted with %zu runs to go: the same call goes on\n",
+    std::printf("  interrupted with %zu runs left: repeat the command to continue\n",
                 progress.runs - progress.before - progress.done);
     return kInterrupted;
   }
   const study::StudyData data = study::load_study_data({arguments.store});
   print_outcomes(data);
-  // In the report's order: resamples follow it, and both must say the same.
+  // In the report's order, which the resampling depends on, so that both give the same verdicts.
   const bool all_hold = print_claims(study::report::in_order(data, true));
   return arguments.gate && !all_hold ? kNoRoute : kDone;
 }
@@ -166,9 +166,9 @@ std::string read_share(const std::string& text, std::optional<double>& share) {
       return "";
     }
   } catch (const std::exception&) {
-    // said below
+    // reported below
   }
-  return "expected a share more than 0 and at most 1, or a percentage, found '" + text + "'";
+  return "expected a fraction above 0 and at most 1, or a percentage, found '" + text + "'";
 }
 
 /// "2/5"
@@ -192,19 +192,19 @@ std::string read_shard(const std::string& text, study::StudySelection& selection
 
 void add_study(CLI::App& app, Action& action, const std::string& command_line) {
   CLI::App* command = app.add_subcommand(
-      "study", "many runs, each in a process of its own; what has been run is not run again");
+      "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
   auto arguments = std::make_shared<Arguments>();
   arguments->options.command = command_line;
-  command->add_option("study", arguments->study, "study file")->required();
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
   command
       ->add_option("-o,--out", arguments->store,
-                   "the store of the results (SQLite); only --dry-run goes without")
+                   "results database (SQLite); optional only with --dry-run")
       ->type_name("DB");
-  command->add_option("--jobs", arguments->options.jobs, "runs at a time (default 1)")
+  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
       ->check(CLI::Range(1, 1024));
   command
       ->add_option("--reuse", arguments->options.reuse,
-                   "runs that a process does before it ends; marked in the results (default 1)")
+                   "runs per worker process, recorded in the results (default 1)")
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option_function<std::string>(
@@ -214,7 +214,7 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
               throw CLI::ValidationError("--shard", why);
             }
           },
-          "only the I-th of N parts, for N machines")
+          "run only part I of N, to divide a study among machines")
       ->type_name("I/N");
   command
       ->add_option_function<std::string>(
@@ -225,18 +225,22 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
               throw CLI::ValidationError("--sample", why);
             }
           },
-          "only this share of the scenarios and repetitions, with every pipeline")
+          "run only this fraction of the scenarios and repetitions, with every pipeline: 0.05 or "
+          "5%")
       ->type_name("P");
   command
       ->add_option("--filter", arguments->selection.filter,
-                   "only runs whose 'PIPELINE SCENARIO #REPETITION' this regular expression finds")
+                   "run only those whose name 'PIPELINE SCENARIO #REPETITION' matches this regular "
+                   "expression")
       ->type_name("E");
-  command->add_flag("--traces", arguments->options.traces, "store what the searches did");
-  auto* fresh = command->add_flag("--fresh", arguments->options.fresh, "throw away what is stored");
-  command->add_flag("--resume", arguments->resume, "do what is not stored yet: what happens anyway")
+  command->add_flag("--traces", arguments->options.traces, "store traces of the searches");
+  auto* fresh =
+      command->add_flag("--fresh", arguments->options.fresh, "delete the stored runs first");
+  command->add_flag("--resume", arguments->resume, "run only what is not stored yet (default)")
       ->excludes(fresh);
-  command->add_flag("--dry-run", arguments->dry_run, "only say how many runs, and how long");
-  command->add_flag("--gate", arguments->gate, "exit with 1 unless every claim holds");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "only print the number of runs and the estimated time");
+  command->add_flag("--gate", arguments->gate, "exit with code 1 unless every claim holds");
   host::Overrides* plugins = &arguments->overrides;
   add_plugin_path(*command, *plugins);
   set_example(*command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");

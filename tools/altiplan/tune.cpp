@@ -18,8 +18,8 @@ using study::report::readable;
 struct Arguments {
   tune::TuneRequest request;
   tune::TuneOptions options;
-  host::Overrides overrides;  ///< of which only the plugin path is asked for
-  bool resume = false;        ///< what happens anyway
+  host::Overrides overrides;  ///< only the plugin path is used
+  bool resume = false;        ///< no effect: the default
 };
 
 std::string line_of(const tune::TuneProgress& progress) {
@@ -31,12 +31,12 @@ std::string line_of(const tune::TuneProgress& progress) {
   if (progress.runs > 0 && progress.runs_left > 0) {
     line += ", " +
             duration(progress.elapsed_s / double(progress.runs) * double(progress.runs_left)) +
-            " to go";
+            " left";
   }
   return line;
 }
 
-/// "-3.5 %", by how much the second differs.
+/// Relative difference of the second value: "-3.5 %".
 std::string change(double before, double now) {
   if (!std::isfinite(before) || !std::isfinite(now) || before == 0) {
     return "-";
@@ -64,7 +64,7 @@ std::string share_of(std::size_t part, std::size_t all) {
   return std::to_string(part) + " (" + study::report::percent(double(part) / double(all)) + ")";
 }
 
-/// "altiplan run …", which repeats the score in the first scenario.
+/// "altiplan run …", which reproduces the score in the first scenario.
 std::string repeating_call(const tune::TunePlan& plan, const std::string& folder) {
   const study::Variant& scenario = plan.scenarios.front();
   std::string call = "altiplan run " + study::report::shell(folder + "/tuned.yaml");
@@ -80,7 +80,7 @@ std::string repeating_call(const tune::TunePlan& plan, const std::string& folder
 void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
                  const std::string& folder) {
   const tune::TuneSummary summary = tune::summary_of(plan, tuning);
-  print_row(plan.request.metric, "as it is", "tuned", "change");
+  print_row(plan.request.metric, "original", "tuned", "change");
   print_comparison("tuned on", summary.tuned_on);
   print_comparison("held back", summary.held_back);
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
@@ -102,8 +102,7 @@ void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
     std::printf("  held back: %s\n", summary.held_back.words.c_str());
   }
   if (tuning.best == 0) {
-    std::printf(
-        "  nothing better than the pipeline as it is was found: tuned.yaml has its values\n");
+    std::printf("  no improvement over the original pipeline: tuned.yaml contains its values\n");
   }
   std::printf("  %s\n", repeating_call(plan, folder).c_str());
 }
@@ -119,11 +118,11 @@ int tune(Arguments arguments) {
   line.clear();
   if (tuning.damaged_lines > 0) {
     warn(folder + "/runs.log: " + counted(tuning.damaged_lines, "line") +
-         (tuning.damaged_lines == 1 ? " was damaged; its run is done again"
-                                    : " were damaged; their runs are done again"));
+         (tuning.damaged_lines == 1 ? " damaged: running its run again"
+                                    : " damaged: running their runs again"));
   }
   if (tuning.is_interrupted) {
-    std::printf("%s: interrupted after %s, %s of this call: the same call goes on\n",
+    std::printf("%s: interrupted after %s, %s now: repeat the command to continue\n",
                 folder.c_str(), counted(tuning.evaluations.size() - 1, "evaluation").c_str(),
                 counted(tuning.runs_done, "run").c_str());
     return kInterrupted;
@@ -134,13 +133,13 @@ int tune(Arguments arguments) {
   print_table(plan, tuning, folder);
   const auto& all = tuning.evaluations;
   if (std::all_of(all.begin(), all.end(), [](const auto& each) { return each.failed > 0; })) {
-    warn("every evaluation failed: evaluations.csv says how");
+    warn("every evaluation failed: evaluations.csv lists the outcomes");
     return kNoRoute;
   }
   return kDone;
 }
 
-/// What Error says of a text, for the option that it stands in; "" where it is well.
+/// The message of the Error that reading an option's text throws; "" if it is valid.
 template <class Read>
 std::string problem_of(const Read& read) {
   try {
@@ -162,18 +161,18 @@ std::string metric_problem(const std::string& text) {
 }
 
 void add_what(CLI::App& command, tune::TuneRequest& request) {
-  command.add_option("pipeline", request.pipeline, "pipeline to be tuned")->required();
+  command.add_option("pipeline", request.pipeline, "pipeline file to tune (YAML)")->required();
   command
       .add_option("--over", request.over,
-                  "a parameter of a step and its range: KEY=LO..HI, KEY=log:LO..HI, or "
-                  "'KEY.{a,b}=simplex' for weights that sum to 1; may be given again")
+                  "parameter of a step and its range: KEY=LO..HI, KEY=log:LO..HI, or "
+                  "'KEY.{a,b}=simplex' for weights that sum to 1; repeatable")
       ->required()
       ->expected(1)
       ->type_name("KEY=RANGE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--metric", request.metric,
-                  "what shall be least: a value of a run, or an expression of values and numbers "
+                  "metric to minimise: a value of a run, or an expression of values and numbers "
                   "with + - * / ( )")
       ->required()
       ->type_name("EXPRESSION")
@@ -181,61 +180,59 @@ void add_what(CLI::App& command, tune::TuneRequest& request) {
   command
       .add_option("--scenarios", request.scenarios,
                   "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' for each combination of "
-                  "the values (default: the pipeline's own)")
+                  "the values (default: the pipeline's scenario)")
       ->expected(1, -1)
       ->type_name("FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--hold-out", request.hold_out,
-                  "scenarios held back, in which the result is compared with the pipeline as it is")
+                  "held-out scenarios, in which the tuned pipeline is compared with the original")
       ->expected(1, -1)
       ->type_name("FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_how(CLI::App& command, tune::TuneRequest& request) {
-  command.add_option("--tuner", request.tuner, "plugin that searches (default pso)")
-      ->type_name("NAME");
-  command
-      .add_option("--set-tuner", request.set_tuner, "a parameter of the tuner; may be given again")
+  command.add_option("--tuner", request.tuner, "tuner plugin (default pso)")->type_name("NAME");
+  command.add_option("--set-tuner", request.set_tuner, "parameter of the tuner; repeatable")
       ->expected(1)
       ->type_name("KEY=VALUE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->check(assignment_problem);
-  command.add_option("--seed", request.seed, "of the tuner (default 0)")
+  command.add_option("--seed", request.seed, "random seed of the tuner (default 0)")
       ->type_name("N")
       ->check(seed_problem);
   command
       .add_option("--evaluations", request.evaluations,
-                  "at most so many points, whatever the tuner asks for")
+                  "maximum number of evaluations (default: the tuner's)")
       ->check(CLI::Range(1, 100000000));
   command
-      .add_option("--penalty", request.penalty, "what a run that fails counts (default: infinity)")
+      .add_option("--penalty", request.penalty, "metric value of a failed run (default: infinity)")
       ->check(number_from(-1e300, 1e300));
-  command
-      .add_option("--wall-s", request.limits.wall_s, "a run is ended after that time (default 600)")
+  command.add_option("--wall-s", request.limits.wall_s, "time limit of a run (s, default 600)")
       ->check(number_from(0.001, 1e9));
   command
       .add_option("--memory-mb", request.limits.memory_mb,
-                  "a run is ended at that much memory (default 4096)")
+                  "memory limit of a run (MB, default 4096)")
       ->check(number_from(1, 1e9));
 }
 }  // namespace
 
 void add_tune(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "tune", "parameters of a pipeline by a tuner plugin; goes on where it was interrupted");
+      "tune", "optimise parameters of a pipeline with a tuner plugin; resumable");
   auto arguments = std::make_shared<Arguments>();
   add_what(*command, arguments->request);
   add_how(*command, arguments->request);
   command->add_option("-o,--out", arguments->options.out, "folder of the results")
       ->required()
       ->type_name("DIR");
-  command->add_option("--jobs", arguments->options.jobs, "runs at a time (default 1)")
+  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
       ->check(CLI::Range(1, 1024));
   auto* fresh = command->add_flag("--fresh", arguments->options.fresh,
-                                  "throw away what the folder holds of a tuning");
-  command->add_flag("--resume", arguments->resume, "go on: what happens anyway")->excludes(fresh);
+                                  "delete an earlier tuning in the folder first");
+  command->add_flag("--resume", arguments->resume, "continue an interrupted tuning (default)")
+      ->excludes(fresh);
   add_plugin_path(*command, arguments->overrides);
   set_example(*command,
               "altiplan tune configs/pipelines/fusion_paper_astar_angles.yaml --out tuned --jobs 2 "

@@ -51,7 +51,7 @@ int validate(const Arguments& arguments) {
   return code;
 }
 
-/// What the layers say of themselves, and what the user should look at, needs the world built.
+/// Builds the world too: the notes and warnings of the layers come from it.
 int explain(const Arguments& arguments) {
   const host::Config config = host::load_config(arguments.files[0], arguments.overrides);
   const std::vector<host::Explained> all = host::explain(config);
@@ -91,9 +91,11 @@ int explain(const Arguments& arguments) {
 }  // namespace
 
 void add_validate(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("validate", "check files without running them");
+  CLI::App* command = app.add_subcommand(
+      "validate", "check pipeline, scenario and study files without running them");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("files", arguments->files, "pipelines, scenarios and studies")->required();
+  command->add_option("files", arguments->files, "pipeline, scenario and study files (YAML)")
+      ->required();
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan validate configs/*/*.yaml");
   command->callback(
@@ -102,11 +104,13 @@ void add_validate(CLI::App& app, Action& action) {
 
 void add_explain(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "explain", "a pipeline with every default, and where each value came from");
+      "explain", "print a pipeline with all defaults and the source of each value");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("pipeline", arguments->files, "pipeline file")->required()->expected(1);
+  command->add_option("pipeline", arguments->files, "pipeline file (YAML)")
+      ->required()
+      ->expected(1);
   add_overrides(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print JSON");
+  command->add_flag("--json", arguments->json, "print as JSON");
   set_example(*command, "altiplan explain configs/pipelines/ridge_crossing.yaml");
   command->callback([&action, arguments] { action = [arguments] { return explain(*arguments); }; });
 }

@@ -20,14 +20,14 @@ struct Arguments {
   host::Overrides overrides;
 };
 
-/// Browsers take their time with more than that.
+/// Bytes above which browsers open a page slowly.
 constexpr double kLargePage = 64e6;
 
 std::string count(std::size_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// What there is to see: "2 routes, 1 flight, ground 403 x 344".
+/// A summary of the scene: "2 routes, 1 flight, ground 403 x 344".
 std::string contents(const host::Json& scene) {
   std::size_t routes = 0;
   std::size_t flights = 0;
@@ -60,11 +60,11 @@ void write(const std::string& file, const std::string& text, const host::Json& s
   say_written(file, text.size(), scene);
 }
 
-/// Why there is no PNG of the page; "" where it has been written.
+/// Writes the PNG of the page; returns why that failed, "" if it was written.
 std::string try_png(const Arguments& arguments, const std::string& page, const host::Json& scene) {
   const auto chromium = host::find_chromium();
   if (!chromium) {
-    return "no Chromium was found (ALTIPLAN_CHROMIUM may name one)";
+    return "no Chromium found (set ALTIPLAN_CHROMIUM to its path)";
   }
   std::string png;
   try {
@@ -101,8 +101,8 @@ int view(const Arguments& arguments) {
   if (arguments.page) {
     write(*arguments.page, page, scene.json);
     if (double(page.size()) > kLargePage) {
-      warn(*arguments.page + ": a browser will need long to open " +
-           fixed(double(page.size()) / 1e6, 0) + " MB");
+      warn(*arguments.page + ": a page of " + fixed(double(page.size()) / 1e6, 0) +
+           " MB opens slowly in a browser");
     }
   }
   if (arguments.svg) {
@@ -111,7 +111,7 @@ int view(const Arguments& arguments) {
   if (arguments.png) {
     if (const std::string why = try_png(arguments, page, scene.json); !why.empty()) {
       const auto instead = std::filesystem::path(*arguments.png).replace_extension(".svg");
-      warn(why + ": the picture is an SVG from above, " + instead.string());
+      warn(why + ": writing a top view as SVG instead, " + instead.string());
       write(instead.string(), host::picture_svg(scene.json), scene.json);
     }
   }
@@ -120,25 +120,28 @@ int view(const Arguments& arguments) {
 }  // namespace
 
 void add_view(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("view", "show results: one page that needs no network");
+  CLI::App* command = app.add_subcommand("view", "show results in a 3-D page that works offline");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("results", arguments->results,
-                   "results of altiplan run, all of one world: shown together")
+                   "result files of altiplan run, all in the same world (JSON)")
       ->required();
-  command->add_option("-o,--out", arguments->page, "the page (HTML)")->type_name("FILE");
+  command->add_option("-o,--out", arguments->page, "write the page to this file (HTML)")
+      ->type_name("FILE");
   auto* png =
       command
           ->add_option("--png", arguments->png,
-                       "a picture of the page, drawn by Chromium; without one an SVG from above")
+                       "write a picture of the page, rendered by Chromium; without Chromium a top "
+                       "view as SVG")
           ->type_name("FILE");
   command
       ->add_option("--cut", arguments->cut_m,
-                   "metres above sea level, above which the PNG leaves out all but the routes")
+                   "hide everything but routes above this altitude in the PNG (m above sea level)")
       ->type_name("M")
       ->check(number_from(-1e6, 1e6))
       ->needs(png);
-  command->add_option("--svg", arguments->svg, "a picture from above, with the routes' heights")
+  command
+      ->add_option("--svg", arguments->svg, "write a top view with the routes' altitude profiles")
       ->type_name("FILE");
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan view result.json -o page.html");

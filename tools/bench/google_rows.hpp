@@ -24,7 +24,7 @@ inline CLI::App& add_google(Subcommands& all, const std::string& name, const std
     int count = int(arguments.size());
     benchmark::Initialize(&count, arguments.data());
     if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
-      throw Error("Google Benchmark has no such option");
+      throw Error("unknown option of Google Benchmark");
     }
     add_rows(given);
     benchmark::RunSpecifiedBenchmarks();
@@ -32,7 +32,7 @@ inline CLI::App& add_google(Subcommands& all, const std::string& name, const std
     return nullptr;
   });
   command.allow_extras()->footer(
-      "Takes Google Benchmark's options too: --benchmark_filter=REGEX, --benchmark_repetitions=N.");
+      "Google Benchmark's options apply too: --benchmark_filter=REGEX, --benchmark_repetitions=N.");
   command.parse_complete_callback([&command, name] {
     for (const std::string& word : command.remaining()) {
       if (word.rfind("--benchmark_", 0) != 0) {

@@ -22,7 +22,7 @@ struct Arguments {
   std::optional<std::string> corner;
   std::vector<std::string> with;  ///< further parameters of the planner, KEY=VALUE
   std::size_t limit = ~std::size_t{0};
-  int repeat = 1;     ///< times that each scenario is planned; its time is the median
+  int repeat = 1;     ///< number of plans per scenario; its time is the median
   bool each = false;  ///< a line for each scenario on stdout
 };
 
@@ -54,7 +54,7 @@ World load_map(host::Registry& registry, const std::string& file) {
        host::plugin(registry, "environment", plugin_name).environment(&parameters, site)});
 }
 
-/// The planner under the rule by which the printed lengths were made, where it has such a rule.
+/// The planner with the corner rule of the published lengths, if it has such a parameter.
 std::unique_ptr<Planner> make_planner(host::Registry& registry, const Arguments& arguments) {
   const PluginEntry& entry = host::plugin(registry, "planner", arguments.planner);
   const std::vector<BoundField> fields = entry.describe(nullptr, "").fields;
@@ -76,12 +76,12 @@ std::unique_ptr<Planner> make_planner(host::Registry& registry, const Arguments&
   return entry.planner(&parameters);
 }
 
-/// What the scenarios came to.
+/// The results of the scenarios.
 struct Tally {
   std::size_t matched = 0;
   std::size_t unsolved = 0;
   std::size_t unsound = 0;
-  std::string first_unsolved;  ///< what the planner said
+  std::string first_unsolved;  ///< the planner's message
   double worst_error = 0;
   std::vector<double> times_us;
   double expanded = 0;
@@ -138,7 +138,7 @@ void run_scenario(const Planner& planner, Request& request, const GridScenario& 
   tally.unsound += !check(result.route, request).ok();
 }
 
-/// Plans every scenario on the map, loaded once, and compares the lengths with those printed.
+/// Plans every scenario on the map, loaded once, and compares the lengths with the published ones.
 Json plan_scenarios(host::Registry& registry, const Arguments& arguments) {
   const std::unique_ptr<Planner> planner = make_planner(registry, arguments);
   const auto world = std::make_shared<const World>(load_map(registry, arguments.map));
@@ -178,30 +178,31 @@ Json plan_scenarios(host::Registry& registry, const Arguments& arguments) {
 void add_grid(Subcommands& all) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      all.add("grid", "plan a grid map's scenarios and compare with their lengths",
+      all.add("grid", "plan a grid map's scenarios and compare with the published lengths",
               [=](const Given& given) { return plan_scenarios(*given.registry, *arguments); });
-  command.add_option("map", arguments->map, "a MovingAI .map or a Warframe .3dmap")->required();
-  command.add_option("scenarios", arguments->scenarios, "its .scen or .3dscen file")->required();
-  command.add_option("--planner", arguments->planner, "planner plugin; astar by default")
+  command.add_option("map", arguments->map, "MovingAI .map or Warframe .3dmap file")->required();
+  command.add_option("scenarios", arguments->scenarios, "the map's .scen or .3dscen file")
+      ->required();
+  command.add_option("--planner", arguments->planner, "planner plugin (default astar)")
       ->type_name("NAME");
   command
       .add_option("--corner", arguments->corner,
-                  "the planner's rule for diagonal steps; free_box by default, by which the "
-                  "printed lengths were made")
+                  "the planner's rule for diagonal steps (default free_box, that of the published "
+                  "lengths)")
       ->type_name("RULE");
   command
       .add_option("--with", arguments->with,
-                  "a further parameter of the planner: heuristic=euclidean")
+                  "further parameter of the planner, e.g. heuristic=euclidean; repeatable")
       ->type_name("KEY=VALUE");
   command
       .add_option("--repeat", arguments->repeat,
-                  "plan each scenario N times and take the median of its times")
+                  "number of plans per scenario; its time is their median (default 1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
   command.add_flag("--each", arguments->each,
-                   "first print a line for each scenario: number from 0, solved (0 or 1), length "
-                   "in cells, cells expanded, microseconds");
-  command.add_option("--limit", arguments->limit, "plan the first N scenarios only")
+                   "first print a line for each scenario: index from 0, solved (0 or 1), length "
+                   "(cells), cells expanded, time (us)");
+  command.add_option("--limit", arguments->limit, "plan only the first N scenarios")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command.footer("Example:\n  altiplan-bench grid arena.map arena.map.scen --limit 100");

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   using namespace altiplan;
   CLI::App app(
-      "Measures what altiplan's parts take, beside plain ways, libraries and published "
+      "Benchmarks altiplan's parts against plain implementations, libraries and published "
       "figures.",
       "altiplan-bench");
   app.set_version_flag("--version", ALTIPLAN_VERSION);

@@ -72,14 +72,14 @@ double judged_length(const PlanResult& result, const Request& request, const std
     return kInfinity;
   }
   if (!check(result.route, request).ok()) {
-    throw WrongAnswer(who + ": a route that the judge refuses");
+    throw WrongAnswer(who + ": the judge rejects a route");
   }
   return length(result.route);
 }
 
 double solved_length(const PlanResult& result, const Request& request, const std::string& who) {
   if (result.status != PlanStatus::solved) {
-    throw WrongAnswer(who + ": a query without a route: " + result.message);
+    throw WrongAnswer(who + ": no route for a query: " + result.message);
   }
   return judged_length(result, request, who);
 }

@@ -11,9 +11,9 @@
 
 namespace altiplan::bench {
 
-/// Exit code where answers differ that must not.
+/// Exit code if answers differ that must agree.
 inline constexpr int kWrong = 1;
-/// Answers differ that must not, or the judge refuses a route.
+/// Answers differ that must agree, or the judge rejects a route.
 struct WrongAnswer : Error {
   using Error::Error;
 };
@@ -21,13 +21,13 @@ struct WrongAnswer : Error {
 // ---- Clocks, in seconds
 
 double wall_s();
-double thread_s();   ///< processor time of this thread: what other programs do is not counted
+double thread_s();   ///< CPU time of this thread, independent of other programs
 double process_s();  ///< and of all threads
 
 /// Bytes that the program holds from the C library.
 std::size_t allocated();
 
-/// The value below which that share of the values lies, itself one of them; 0 of nothing.
+/// The quantile of the values at that share, one of the values; 0 if empty.
 double quantile(std::vector<double> values, double share);
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
@@ -47,11 +47,11 @@ std::unique_ptr<Environment> environment(host::Registry& registry, const std::st
 
 // ---- Plans
 
-/// 0 where the result has no counter of that name.
+/// 0 if the result has no counter of that name.
 double counter(const PlanResult& result, std::string_view name);
-/// Length of the route in metres, infinite where there is none. Throws WrongAnswer naming `who`
-/// where the judge refuses it.
+/// Length of the route in metres, infinite if there is none. Throws WrongAnswer naming `who` if the
+/// judge rejects it.
 double judged_length(const PlanResult& result, const Request& request, const std::string& who);
-/// The same, where there must be a route.
+/// The same; throws WrongAnswer if there is no route.
 double solved_length(const PlanResult& result, const Request& request, const std::string& who);
 }  // namespace altiplan::bench

@@ -41,7 +41,7 @@ class Row {
     return value;
   }
 
-  /// A cell whose indices begin at the column.
+  /// A cell whose indices start at the column.
   std::array<double, 3> cell(std::size_t column, const std::array<int, 3>& counts,
                              const std::string& what) const {
     std::array<double, 3> cell{0, 0, 0};

@@ -7,13 +7,13 @@
 
 namespace altiplan::bench {
 
-/// One line of a scenario file: cells as the map's file counts them, and the optimal length that is
-/// printed there, in cells.
+/// One line of a scenario file: cells in the map file's indices, and the published optimal length,
+/// in cells.
 struct GridScenario {
   std::array<double, 3> start{0, 0, 0};
   std::array<double, 3> goal{0, 0, 0};
   double length = 0;
-  int decimals = 0;  ///< that the length is printed with
+  int decimals = 0;  ///< decimals of the published length
   int line = 0;
 };
 
@@ -22,8 +22,8 @@ struct GridScenarios {
   std::vector<GridScenario> list;
 };
 
-/// The first `limit` scenarios of a MovingAI .scen or a Warframe .3dscen file, told apart by the
-/// extension, for a map of `counts` cells. Throws Error with file:line.
+/// The first `limit` scenarios of a MovingAI .scen or a Warframe .3dscen file (by extension), for a
+/// map of `counts` cells. Throws Error with file:line.
 GridScenarios read_scenarios(const std::filesystem::path& file, const std::array<int, 3>& counts,
                              std::size_t limit);
 }  // namespace altiplan::bench

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""study_overhead.py PROGRAM [RUNS [JOBS]]: what a study costs besides the planning, by a study of short
-runs (A* on a coarse lattice in a box with an obstacle), with a process each and with --reuse; and
-the memory of the program while it lasts.
+"""study_overhead.py PROGRAM [RUNS [JOBS]]: the overhead of a study beyond planning, from a study of short
+runs (A* on a coarse lattice in a box with an obstacle), with one process per run and with --reuse; and
+the program's memory during the study.
 
-The overhead of a run is JOBS * (time of the call) / RUNS less the run's own plan_time_s and
-setup_time_s. Files, keys and checks of the study before the first run are told apart."""
+The overhead of a run is JOBS * (time of the call) / RUNS minus the run's own plan_time_s and
+setup_time_s. The study's set-up before the first run (files, keys, checks) is reported separately."""
 import os
 import resource
 import sqlite3

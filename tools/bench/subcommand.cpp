@@ -11,7 +11,7 @@
 namespace altiplan::bench {
 namespace {
 
-/// Four digits, or all that a number has before its point.
+/// Four digits, or all digits before the decimal point.
 std::string text_of(const Json& value) {
   if (value.is_string()) {
     return value.get<std::string>();
@@ -42,7 +42,7 @@ void print_table(const std::string& title, const Json& rows) {
       for (const std::vector<std::string>& other : lines) {
         width = std::max(width, other[column].size());
       }
-      // What a row is called stands on the left, figures on the right.
+      // Row names left-aligned, figures right-aligned.
       std::printf(column == 0 ? "%-*s" : "  %*s", int(width), line[column].c_str());
     }
     std::printf("\n");
@@ -64,7 +64,7 @@ CLI::App& Subcommands::add(const std::string& name, const std::string& sentence,
   CLI::App* command = app_.add_subcommand(name, sentence);
   command->add_option("--plugin-path", plugin_path_, "folder of plugin libraries")
       ->type_name("DIR");
-  command->add_flag("--json", as_json_, "print one JSON object");
+  command->add_flag("--json", as_json_, "print as one JSON object");
   all_[command] = std::move(measure);
   return *command;
 }

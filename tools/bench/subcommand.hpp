@@ -16,15 +16,15 @@ namespace altiplan::bench {
 
 using Json = nlohmann::ordered_json;
 
-/// What a subcommand is given beside its own options.
+/// The arguments of a subcommand besides its own options.
 struct Given {
   std::shared_ptr<host::Registry> registry;
   bool as_json = false;
-  std::vector<std::string> others;  ///< arguments that are for Google Benchmark
+  std::vector<std::string> others;  ///< arguments for Google Benchmark
 };
 
 /// Measures, and returns an object of figures; a list in it is a table, its rows objects with the
-/// same keys. Null where all has been printed. What is infinite or NaN has no value in either form.
+/// same keys. Null if everything has been printed. Infinite and NaN figures have no value.
 using Measure = std::function<Json(const Given&)>;
 
 /// The subcommands of altiplan-bench, each with --plugin-path and --json.
@@ -32,11 +32,11 @@ class Subcommands {
  public:
   explicit Subcommands(CLI::App& app) : app_(app) { app.require_subcommand(1); }
 
-  /// Options are to be added to what it returns.
+  /// Add options to the returned command.
   CLI::App& add(const std::string& name, const std::string& sentence, Measure measure);
-  /// One that this build has not: `needs` what is missing.
+  /// Adds a subcommand that is not in this build; `needs` names what is missing.
   void leave_out(const std::string& name, const std::string& needs);
-  /// The one that was asked for; prints its figures. Throws what it throws.
+  /// Runs the selected subcommand and prints its figures. Passes on its exceptions.
   void run() const;
 
  private:

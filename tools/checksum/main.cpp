@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// altiplan-checksum LIBRARY: fills in the checksum of a plugin library that has just been linked.
-// altiplan_add_plugin calls it; so does whoever changes a library afterwards (patchelf).
+// altiplan-checksum LIBRARY: writes the checksum into a newly linked plugin library. Called by
+// altiplan_add_plugin; call it again after changing a library (patchelf).
 #include <exception>
 #include <iostream>
 

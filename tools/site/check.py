@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""check.py SITE: what a built site links to is there, to the heading; it loads nothing from the network;
-and no list or table of a page was taken for a paragraph."""
+"""check.py SITE: checks that all links of a built site lead to existing pages and headings, that it loads
+nothing from the network, and that no list or table was rendered as a paragraph."""
 import html.parser
 import pathlib
 import re
@@ -37,7 +37,7 @@ def leads_nowhere(pages, file, link):
     if not target.exists():
         return True
     anchor = urllib.parse.unquote(address.fragment)
-    # Doxygen links to headings of what it leaves out.
+    # Doxygen links to headings of omitted items.
     return (bool(anchor) and target in pages and target.parent.name != "api"
             and anchor not in pages[target].anchors)
 

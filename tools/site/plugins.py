@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A page for each plugin, of its README and what `altiplan describe` says of it."""
+"""A page for each plugin, from its README and the output of `altiplan describe`."""
 import json
 import re
 import subprocess
@@ -27,7 +27,7 @@ def asked(program, *arguments):
 
 
 def offered(program):
-    """(kind, name): sentence, of what this build has."""
+    """(kind, name): sentence, of the plugins in this build."""
     answer = asked(program, "plugins")
     entries = answer["built_in"] + [entry for library in answer["libraries"]
                                     for entry in library["plugins"]]
@@ -39,8 +39,8 @@ def promises(description):
     if traits is None:
         return ""
     kept = [f"*{name.replace('_', ' ')}* ({TRAITS[name]})" for name, held in traits.items() if held]
-    return ("\nWith its default parameters it promises: " + ", ".join(kept) + ".\n" if kept else
-            "\nIt promises nothing that the conformance suite could hold it to.\n")
+    return ("\nWith its default parameters it guarantees: " + ", ".join(kept) + ".\n" if kept else
+            "\nIt declares no guarantees that the conformance suite could check.\n")
 
 
 def head(kind, name, sentence, description):
@@ -65,7 +65,7 @@ def built_in(root, kind, name, sentence, description):
     table = re.search(f"<!-- parameters of {name} -->\n(.*?)<!-- /parameters -->",
                       (root / "docs/files.md").read_text(), re.S)[1]
     return (f"plugins/{kind}/{name}/README.md", head(kind, name, sentence, description)
-            + f"## Parameters\n\n{table}\n[Files](../../../docs/files.md) says how layers are written.\n")
+            + f"## Parameters\n\n{table}\n[Files](../../../docs/files.md) describes the format of layers.\n")
 
 
 def listed(entries, link):
@@ -74,7 +74,7 @@ def listed(entries, link):
 
 
 def pages(root, program, problems):
-    """(page, text) of all plugins, of each kind and of them together."""
+    """(page, text) of each plugin, of each kind and of the index of all."""
     here = offered(program)
     all_kinds = "# Plugins\n"
     for kind in KINDS:
@@ -88,7 +88,7 @@ def pages(root, program, problems):
                 yield built_in(root, kind, name, sentence, description)
         for folder in sorted((root / "plugins" / kind).iterdir()):
             if folder.is_dir() and folder.name not in names:
-                names[folder.name] = "not in the build that these pages were made with"
+                names[folder.name] = "not in the build of these pages"
                 yield f"plugins/{kind}/{folder.name}/README.md", (folder / "README.md").read_text()
         heading = plural(kind).capitalize()
         entries = sorted(names.items())

@@ -16,8 +16,8 @@ import plugins
 ROOT, PROGRAM, OUT = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
 SOURCE = OUT / "source"
 
-# Groups of the navigation, in the order that a newcomer needs, and their pages. What no page of the
-# repository matches is not there yet, or no longer.
+# Groups of the navigation and their pages, in the order that a newcomer needs. Entries without a matching
+# page in the repository are skipped.
 GROUPS = [
     ("Start", ["README.md", "docs/getting-started.md", "docs/packages.md", "docs/gallery.md",
                "docs/architecture.md"]),
@@ -54,7 +54,7 @@ def title(page):
 
 
 def outside_of_code(text, change):
-    """The text with what stands outside of its blocks of code changed."""
+    """The text, changed outside its code blocks."""
     parts, at = [], 0
     for block in FENCE.finditer(text):
         parts += [change(text[at:block.start()]), block[0]]
@@ -63,7 +63,7 @@ def outside_of_code(text, change):
 
 
 def write(page, text, problems):
-    """Writes a page; what it links to of the repository, if no page, comes along."""
+    """Writes a page, and copies the repository files other than pages that it links to."""
     def link(match):
         target, _, anchor = match[2].partition("#")
         if not target or re.match(r"[a-z]+:", target):
@@ -120,7 +120,7 @@ def nav(problems):
             pages += [page for page in found if page in left]
             left -= set(found)
         groups.append({heading: pages})
-    problems += [f"{page} stands in no group: name it in GROUPS of tools/site/source.py"
+    problems += [f"{page} is in no group: add it to GROUPS in tools/site/source.py"
                  for page in sorted(left)]
     return groups
 
@@ -134,7 +134,7 @@ def main():
         write(page, text, problems)
     for folder, heading in LISTED.items():
         write_list(folder, heading, problems)
-    (SOURCE / "docs/api.md").write_text(API)  # its link is Doxygen's to make
+    (SOURCE / "docs/api.md").write_text(API)  # its link is created by Doxygen
     groups = nav(problems)
     if problems:
         sys.exit("\n".join(problems))

@@ -19,7 +19,7 @@ constexpr char kPadding = '=';
 std::uint32_t digit(char letter) {
   const std::size_t at = kDigits.find(letter);
   if (at == std::string_view::npos) {
-    throw Error(std::string("'") + letter + "' is no digit of base64");
+    throw Error(std::string("'") + letter + "' is not a base64 character");
   }
   return std::uint32_t(at);
 }
@@ -43,8 +43,8 @@ std::string base64(std::span<const std::byte> bytes) {
 
 std::vector<std::byte> from_base64(std::string_view text) {
   if (text.size() % 4 != 0) {
-    throw Error("base64 comes in groups of four, found " + std::to_string(text.size()) +
-                " characters");
+    throw Error("expected base64 in groups of four characters, found " +
+                std::to_string(text.size()) + " characters");
   }
   std::size_t padding = 0;
   while (padding < 2 && text.size() > padding && text[text.size() - 1 - padding] == kPadding) {

@@ -12,7 +12,7 @@ std::string compressed(std::string_view bytes, int level) {
   std::string out(size, '\0');
   if (compress2(reinterpret_cast<Bytef*>(out.data()), &size,
                 reinterpret_cast<const Bytef*>(bytes.data()), uLong(bytes.size()), level) != Z_OK) {
-    throw Error("memory is too short to compress");
+    throw Error("out of memory while compressing");
   }
   out.resize(size);
   return out;
@@ -21,7 +21,7 @@ std::string compressed(std::string_view bytes, int level) {
 std::optional<std::string> decompressed(std::string_view bytes, std::size_t most) {
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) {
-    throw Error("memory is too short to decompress");
+    throw Error("out of memory while decompressing");
   }
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = uInt(bytes.size());
@@ -39,7 +39,7 @@ std::optional<std::string> decompressed(std::string_view bytes, std::size_t most
     return std::nullopt;
   }
   if (code != Z_STREAM_END) {
-    throw Error("what was compressed is damaged");
+    throw Error("the compressed data is damaged");
   }
   return out;
 }

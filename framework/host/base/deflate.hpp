@@ -8,8 +8,8 @@
 
 namespace altiplan::host {
 
-/// In zlib's format (RFC 1950); level 1 is the fastest, 9 the smallest.
+/// Compresses to zlib's format (RFC 1950); level 1 is the fastest, 9 the smallest.
 std::string compressed(std::string_view bytes, int level);
-/// Nothing where it would be more than `most` bytes. Throws Error where it is damaged.
+/// Empty if the result would exceed `most` bytes. Throws Error if the data is damaged.
 std::optional<std::string> decompressed(std::string_view bytes, std::size_t most);
 }  // namespace altiplan::host

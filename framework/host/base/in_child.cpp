@@ -23,8 +23,8 @@ constexpr unsigned kPatienceSeconds = 20;
 
 enum class Said { nothing, well, refused, machine_fault };
 
-/// What the child says, in memory that both have: unlike what it would write into a pipe it cannot
-/// fail to arrive, which would look as if the library had ended the process.
+/// The child's report, in shared memory: unlike a write to a pipe it cannot get lost, which would
+/// look as if the library had ended the process.
 struct Report {
   Said said = Said::nothing;
   std::array<char, 1 << 16> text{};
@@ -40,7 +40,7 @@ void say(Report& report, Said said, std::string_view text) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::signal(SIGALRM, SIG_DFL);
   ::alarm(kPatienceSeconds);
-  ::dup2(STDERR_FILENO, STDOUT_FILENO);  // results alone stand on stdout
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);  // stdout is for results only
   try {
     use();
     report.said = Said::well;
@@ -56,7 +56,7 @@ void say(Report& report, Said said, std::string_view text) {
   ::_exit(0);
 }
 
-/// How a child ended that has not reported.
+/// Describes how a child ended that left no report.
 std::string ending(int status) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) {
     return "did not load within " + std::to_string(kPatienceSeconds) + " s";
@@ -71,7 +71,7 @@ std::string ending(int status) {
   throw MachineFault(prefix + "cannot be examined: no " + what + ": " + std::strerror(errno));
 }
 
-/// Runs a child to its end.
+/// Forks a child and waits for its end.
 int status_of_child(const std::function<void()>& run, const std::string& prefix) {
   const pid_t child = ::fork();
   if (child < 0) {
@@ -96,8 +96,8 @@ void in_child(const std::string& prefix, const std::function<void()>& use) {
   const auto unmap = [](Report* report) { ::munmap(report, sizeof(Report)); };
   const std::unique_ptr<Report, decltype(unmap)> report(new (shared) Report);
   int status = 0;
-  // SIGKILL mostly comes from elsewhere, as when memory is short: a library that is killed so every
-  // time is refused. What else the machine does may pass too.
+  // SIGKILL usually comes from outside (the OOM killer), so it is retried: a library whose child is
+  // killed every time is refused. Other machine faults may pass too.
   constexpr int kTries = 3;
   const auto may_pass = [&] {
     return report->said == Said::machine_fault ||

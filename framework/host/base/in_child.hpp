@@ -6,9 +6,9 @@
 
 namespace altiplan::host {
 
-/// Does something with a library in a child process, since a damaged one can end the process inside
-/// dlopen. Throws PluginError with the text of what `use` throws; and, after `prefix`, with how the
-/// child ended where that was not well, or that it was not done within 20 s. Throws MachineFault
-/// where the machine has no child to give, or where that is what `use` met.
+/// Runs `use` in a child process, since a damaged library can end the process inside dlopen. Throws
+/// PluginError with the message of the exception that `use` throws or, after `prefix`, with how the
+/// child ended if it crashed, exited or exceeded 20 s. Throws MachineFault if the child process
+/// cannot be created, or if `use` throws one.
 void in_child(const std::string& prefix, const std::function<void()>& use);
 }  // namespace altiplan::host

@@ -7,7 +7,7 @@
 namespace altiplan::host {
 
 std::string file_problem(const std::filesystem::path& file) {
-  std::error_code error;  // why_unreadable says which
+  std::error_code error;  // why_unreadable reports it
   if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) {
     return "there is no file '" + file.string() + "'";
   }

@@ -6,8 +6,8 @@
 
 namespace altiplan::host {
 
-/// Why a file that is named in another one cannot be read, as a sentence: "there is no file 'a'",
-/// "'a' is a pipe, expected a file"; "" where it can. Throws MachineFault where it is the machine
-/// that does not give it. How files are read: altiplan/kit/formats/input_file.hpp.
+/// The reason why a file named in another one cannot be read ("there is no file 'a'", "'a' is a
+/// pipe, expected a file"); "" if it can. Throws MachineFault if the machine fails to provide it.
+/// altiplan/kit/formats/input_file.hpp describes how files are read.
 std::string file_problem(const std::filesystem::path& file);
 }  // namespace altiplan::host

@@ -62,7 +62,7 @@ int reading_error(const fs::path& file) {
     return errno;
   }
   if (!S_ISREG(found.st_mode)) {
-    return 0;  // opening a device does things, and what it gives may have no end
+    return 0;  // opening a device has side effects, and its data may be endless
   }
   const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (from < 0) {

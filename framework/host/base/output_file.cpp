@@ -26,7 +26,7 @@ std::string cannot_write(const fs::path& place, const std::string& why) {
   return "cannot write '" + place.string() + "': " + why;
 }
 
-/// What is there in place of a file; "" where it is one.
+/// The kind of a path that is not a regular file; "" for a regular file.
 const char* kind_of(mode_t mode) {
   return S_ISREG(mode)    ? ""
          : S_ISLNK(mode)  ? "a symbolic link"
@@ -36,7 +36,7 @@ const char* kind_of(mode_t mode) {
                           : "a device";
 }
 
-/// Whether the folder is in /proc or /sys.
+/// True if the folder is in /proc or /sys.
 bool is_of_the_kernel(const fs::path& folder) {
   struct statfs found {};
   return ::statfs(folder.c_str(), &found) == 0 &&
@@ -79,7 +79,7 @@ std::string output_problem(const fs::path& place) {
     return cannot_write(place, std::strerror(errno));
   }
   if (!place.has_filename()) {
-    return cannot_write(place, "it is no name of a file");
+    return cannot_write(place, "it is not a file name");
   }
   const fs::path folder = folder_of(place);
   if (::stat(folder.c_str(), &found) != 0) {
@@ -90,7 +90,7 @@ std::string output_problem(const fs::path& place) {
   }
   if (is_of_the_kernel(folder)) {  // access() would let root write there
     return "cannot write into the folder '" + folder.string() +
-           "': it is the kernel's and holds no files";
+           "': it is on a kernel file system, which holds no files";
   }
   return ::access(folder.c_str(), W_OK | X_OK) == 0
              ? ""
@@ -155,7 +155,7 @@ void OutputFile::put_in_place() {
 
 namespace {
 
-/// 0, or why not all of it is written.
+/// 0, or the errno of an incomplete write.
 int written(int to, std::string_view text) {
   while (!text.empty()) {
     const ssize_t count = ::write(to, text.data(), text.size());
@@ -167,14 +167,14 @@ int written(int to, std::string_view text) {
   return 0;
 }
 
-/// What systems say that know no files without a name, or have no /proc to give them one.
+/// The errors of systems without unnamed files (O_TMPFILE), or without /proc to link them.
 bool is_unsupported(int error) {
   return error == EOPNOTSUPP || error == EISDIR || error == EINVAL || error == ENOENT ||
          error == EPERM || error == EXDEV;
 }
 
-/// Writes a file that has no name until it is whole, so that a process that is killed meanwhile
-/// leaves nothing. 0, or why not.
+/// Writes a file that has no name until it is complete, so that a killed process leaves nothing
+/// behind. Returns 0 or the errno.
 int write_unnamed(const fs::path& place, std::string_view text) {
   struct stat before {};
   const bool is_there = ::lstat(place.c_str(), &before) == 0;

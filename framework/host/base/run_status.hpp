@@ -7,24 +7,24 @@
 
 namespace altiplan::host {
 
-/// What became of a step, a flight or a run.
+/// Outcome of a step, a flight or a run.
 enum class RunStatus {
-  solved,  ///< a route stands; a flight has arrived
+  solved,  ///< a route is accepted; a flight has arrived
   no_route,
   timed_out,
   cancelled,
   invalid_problem,
-  rejected,     ///< the judge did not agree
-  failed,       ///< a plugin threw, broke a law of its interface, or never stopped
+  rejected,     ///< the judge found violations
+  failed,       ///< a plugin threw, violated the contract of its interface, or never stopped
   collided,     ///< of a flight
   not_reached,  ///< of a flight
 };
 
 RunStatus run_status(PlanStatus status);
 
-/// What an exception says of the plugin that threw it.
+/// The reason to report for an exception of a plugin.
 Reason reason_of(const std::exception& error);
 
-/// The word of a status in results ("no_route").
+/// Name of a status in results ("no_route").
 const char* name(RunStatus status);
 }  // namespace altiplan::host

@@ -17,7 +17,7 @@
 namespace altiplan::host {
 namespace {
 
-/// "" where the file cannot be read.
+/// "" if the file cannot be read.
 std::string sum_of(const std::filesystem::path& file) {
   const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   int error = from < 0 ? errno : 0;
@@ -41,7 +41,7 @@ std::string sum_of(const std::filesystem::path& file) {
 }  // namespace
 
 std::string sha256(const std::filesystem::path& file) {
-  // A result is written down before each call of a plugin, and large files take seconds.
+  // Sums are cached: a result is written before each plugin call, and large files take seconds.
   using State = std::tuple<std::filesystem::path, std::uintmax_t, std::filesystem::file_time_type>;
   static std::mutex mutex;
   static std::map<State, std::string> known;
@@ -71,7 +71,7 @@ std::string sha256_of_present(const std::filesystem::path& file) {
     if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
       throw MachineFault(file.string() + ": " + why);
     }
-    sum = sha256(file);  // what kept it from being read is over
+    sum = sha256(file);  // the fault may have passed
     if (sum.empty()) {
       throw MachineFault(file.string() + ": cannot be read");
     }

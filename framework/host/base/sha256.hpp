@@ -7,11 +7,11 @@
 
 namespace altiplan::host {
 
-/// Hexadecimal SHA-256 of a file's bytes; "" where it is none or may not be read. Throws
-/// MachineFault where the machine does not give it: no sum would say that it is another file.
+/// Hexadecimal SHA-256 of a file's bytes; "" if it is not a file or not readable. Throws
+/// MachineFault if the machine fails to provide it: an empty sum would read as a changed file.
 std::string sha256(const std::filesystem::path& file);
 std::string sha256_of(std::string_view bytes);
-/// Of a file that is there: throws MachineFault, saying why, where it cannot be read twice. What
-/// cannot be read is not another file. Of a folder "".
+/// SHA-256 of an existing file; throws MachineFault with the reason if two attempts to read it
+/// fail, since an unreadable file is not a changed file. "" for a folder.
 std::string sha256_of_present(const std::filesystem::path& file);
 }  // namespace altiplan::host

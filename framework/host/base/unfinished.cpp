@@ -6,7 +6,7 @@
 namespace altiplan::host {
 namespace {
 
-// Never destroyed: an interruption may come while the program ends.
+// Never destroyed: an interruption may arrive while the program exits.
 std::recursive_mutex& mutex() {
   static auto* const kMutex = new std::recursive_mutex;
   return *kMutex;
@@ -41,7 +41,7 @@ void Unfinished::is_finished() {
 }
 
 void undo_unfinished() {
-  uninterrupted().release();  // for ever
+  uninterrupted().release();  // never unlocked again
   for (auto undo = undos().rbegin(); undo != undos().rend(); ++undo) {
     (*undo)();
   }

@@ -7,9 +7,9 @@
 
 namespace altiplan::host {
 
-/// What must not be left behind where the program is interrupted: a file that is half written, a
-/// temporary folder, a process. `undo` is called when this object goes before `is_finished`, or by
-/// the interruption, on another thread; it must not throw.
+/// Cleanup of something that an interruption must not leave behind: a half-written file, a
+/// temporary folder, a process. `undo` is called if this object is destroyed before `is_finished`,
+/// or by the interruption, on another thread; it must not throw.
 class Unfinished {
  public:
   explicit Unfinished(std::function<void()> undo);
@@ -17,7 +17,7 @@ class Unfinished {
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
 
-  /// There is nothing to undo any more.
+  /// Cancels the cleanup.
   void is_finished();
 
  private:
@@ -25,11 +25,11 @@ class Unfinished {
   bool finished_ = false;
 };
 
-/// While it is held no interruption ends the process: for making what must be undone together with
-/// the note that it must, and for what has to happen as a whole. May be held more than once.
+/// While this lock is held, no interruption ends the process: for creating a resource together with
+/// its Unfinished, and for actions that must complete. Recursive.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> uninterrupted();
 
-/// Undoes all that is unfinished, the latest first, and lets nobody go on: the caller ends the
+/// Undoes everything unfinished, the latest first, and keeps the lock for good: the caller ends the
 /// process.
 void undo_unfinished();
 }  // namespace altiplan::host

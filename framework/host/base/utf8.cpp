@@ -6,8 +6,8 @@
 namespace altiplan::host {
 namespace {
 
-/// Line and paragraph separators, C1 controls, and what turns the direction of writing; and the two
-/// at the end of the first plane that XML does not know.
+/// Line and paragraph separators, C1 controls, and bidirectional controls; and the two
+/// noncharacters at the end of the first plane that XML excludes.
 bool hidden_control(std::string_view character) {
   if (character.size() == 2 && character[0] == '\xC2') {
     return static_cast<unsigned char>(character[1]) < 0xA0;

@@ -9,7 +9,7 @@
 
 namespace altiplan::host {
 
-/// The number in so many significant digits.
+/// Formats a number with `digits` significant digits.
 std::string with_digits(double number, int digits);
 
 /// With a comma between groups of three digits: "-12,345.6".
@@ -21,7 +21,7 @@ std::string counted(std::size_t count, std::string_view what);
 /// "(12, 34, 56)", in whole metres, for messages.
 std::string place(const Vec3& p);
 
-/// The text with a full stop, unless it ends in a question.
+/// Appends a full stop unless the text ends in a question mark.
 std::string sentence(const std::string& text);
 
 /// "95 %", "99.9 %".

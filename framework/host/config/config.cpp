@@ -20,7 +20,7 @@ fs::path absolute_file(const fs::path& path) {
   const fs::path absolute = fs::absolute(path, error);
   if (error) {
     throw ConfigError(Location{path.string(), 0, 0, ""}, "",
-                      "cannot be found: the current folder is gone");
+                      "cannot be found: the current folder no longer exists");
   }
   return absolute.lexically_normal();
 }
@@ -37,7 +37,7 @@ std::shared_ptr<Registry> make_registry(const Config& config,
   return shared && shared->folders() == path ? shared : std::make_shared<Registry>(path);
 }
 
-/// A file of the other kind, or of none, would give one problem a key.
+/// Checked first: a file of the wrong kind would give one problem per key.
 void expect_kind(const Value& tree, FileKind expected) {
   if (tree.kind != Value::Kind::map) {
     throw ConfigError(tree.where, "",
@@ -59,7 +59,7 @@ void expect_kind(const Value& tree, FileKind expected) {
   }
 }
 
-/// False when the file cannot be read as YAML: its keys are not known then.
+/// False if the file cannot be read as YAML: its keys are unknown then.
 bool read_scenario(Config& config, Checker& checker) {
   std::vector<fs::path> mission;
   try {
@@ -77,7 +77,8 @@ bool read_scenario(Config& config, Checker& checker) {
   return true;
 }
 
-/// The scenario that the pipeline or the command line names; false, with the reason told, if none.
+/// Reads the scenario named by the pipeline or the command line; false, with the problem reported,
+/// if there is none.
 bool find_scenario(Config& config, Checker& checker) {
   if (config.overrides.scenario) {
     config.scenario_path = absolute_file(*config.overrides.scenario);
@@ -90,7 +91,7 @@ bool find_scenario(Config& config, Checker& checker) {
     return false;
   }
   if (named->text.empty()) {
-    return false;  // said already
+    return false;  // already reported
   }
   config.scenario_path = absolute_file(named->text);
   const std::string why = file_problem(config.scenario_path);

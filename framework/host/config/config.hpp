@@ -12,7 +12,7 @@
 
 namespace altiplan::host {
 
-/// What the command line adds to the files.
+/// Settings of the command line that override the files.
 struct Overrides {
   std::optional<std::filesystem::path> scenario;
   std::optional<std::int64_t> seed;
@@ -22,7 +22,7 @@ struct Overrides {
 
 /// A pipeline and its scenario, read, overridden and checked against the plugins that they name.
 struct Config {
-  std::filesystem::path pipeline_path;  ///< absolute; empty for a scenario alone
+  std::filesystem::path pipeline_path;  ///< absolute; empty if there is only a scenario
   std::filesystem::path scenario_path;
   Value pipeline_tree;  ///< as read, overrides applied
   Value scenario_tree;
@@ -31,20 +31,20 @@ struct Config {
   ScenarioFile scenario;
   std::int64_t seed = 0;
   Overrides overrides;
-  std::vector<std::filesystem::path> files;  ///< all that the run reads by name, in order
+  std::vector<std::filesystem::path> files;  ///< all files that the run reads, in order
   std::shared_ptr<Registry> registry;
-  std::vector<std::string> notes;  ///< what reading the files left out
+  std::vector<std::string> notes;  ///< what was ignored while reading the files
 };
 
-/// Reads and checks both files; throws ConfigError with every problem of both.
-/// A registry of the same folders, where given, is used again.
+/// Reads and checks both files; throws ConfigError with every problem of both. Reuses `shared` if
+/// given and of the same folders.
 Config load_config(const std::filesystem::path& pipeline, const Overrides& overrides,
                    const std::shared_ptr<Registry>& shared = nullptr);
 
 /// A scenario without a pipeline (`check --route`, `validate`).
 Config load_scenario(const std::filesystem::path& scenario, const Overrides& overrides);
 
-/// Whether the file is a pipeline, a scenario or a study, by its keys.
+/// Kind of a file, determined by its keys.
 enum class FileKind { pipeline, scenario, study };
 FileKind kind_of(const Value& tree);
 

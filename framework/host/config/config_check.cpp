@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 void Checker::check_plugin(std::string_view kind, const std::string& name, const Value& parameters,
                            const Location& where, const std::string& path, const std::string& key) {
   if (name.empty()) {
-    return;  // said already
+    return;  // already reported
   }
   const PluginEntry* entry = nullptr;
   try {
@@ -40,7 +40,7 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
     return;
   }
   check_report(attributed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },
-                      [&] { return entry->describe(&parameters, path); }),
+                          [&] { return entry->describe(&parameters, path); }),
                path);
 }
 

@@ -22,17 +22,18 @@ class Checker {
   void add(const std::vector<Problem>& problems) {
     problems_.insert(problems_.end(), problems.begin(), problems.end());
   }
-  /// Whether anything below the key is wrong.
+  /// True if there is a problem below the key.
   bool has_problem_within(const std::string& key) const {
     return std::any_of(problems_.begin(), problems_.end(),
                        [&](const Problem& problem) { return problem.key.starts_with(key + "."); });
   }
-  /// The parameters of a plugin, and the files that they name; `key` is where its name stands.
+  /// Checks the parameters of a plugin, and the files that they name; `key` holds its name.
   void check_plugin(std::string_view kind, const std::string& name, const Value& parameters,
                     const Location& where, const std::string& path, const std::string& key);
-  /// The problems of a report, and the files that its fields name.
+  /// Adds the problems of a report, and checks the files that its fields name.
   void check_report(const ParamReport& report, const std::string& path);
-  /// Throws ConfigError if there is a problem: the pipeline's first, each file's from its top.
+  /// Throws ConfigError if there are problems: the pipeline's first, each file's from top to
+  /// bottom.
   void finish();
 
  private:
@@ -42,11 +43,11 @@ class Checker {
   std::vector<Problem> problems_;
 };
 
-/// The ids of one kind that are taken.
+/// The ids in use of one kind.
 class Ids : public std::set<std::string> {
  public:
-  /// The name, then name_2, name_3 …: the first that is free. Goes on from the number it gave
-  /// last, since thousands of entries of one plugin may leave their ids out.
+  /// The first free id of name, name_2, name_3 … Continues from the last number given, since
+  /// thousands of entries of one plugin may omit their ids.
   std::string free_id(const std::string& name);
 
  private:
@@ -56,20 +57,20 @@ class Ids : public std::set<std::string> {
 /// "steps.3"
 std::string item(const std::string& list, std::size_t index);
 
-/// Where a key of a map stands; the map itself where it does not.
+/// Location of a key of a map; of the map itself if it has no such key.
 Location place_of(const Value& map, std::string_view key);
 
-/// "; did you mean 'x'?", or nothing.
+/// "; did you mean 'x'?", or "".
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& entries,
                        const Value& tree);
-/// Layers, moving obstacles, points and events; gives those without an id theirs.
+/// Checks layers, moving obstacles, points and events; assigns missing ids.
 void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree);
-/// Binds the pipeline's steps into config.steps, gives them ids and checks them.
+/// Binds the pipeline's steps into config.steps, assigns missing ids and checks them.
 void check_steps(Checker& checker, Config& config);
 
-/// The kind of plugin that the step's name stands for: `plan: NAME` looks for a planner, then for a
-/// local planner.
+/// The kind of plugin that the step names: `plan: NAME` looks for a planner, then for a local
+/// planner.
 const char* kind_of_step(Registry& registry, const StepEntry& step);
 }  // namespace altiplan::host

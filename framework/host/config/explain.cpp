@@ -9,7 +9,7 @@ std::string shown_location(const std::optional<Location>& where) {
   return where ? where->text() : "default";
 }
 
-/// Leaves of a report; fields that hold plugins are explained by those plugins.
+/// Leaves of a report; fields that hold plugins are explained by the plugins themselves.
 void add_fields(std::vector<Explained>& all, const ParamReport& report, const std::string& path) {
   for (const BoundField& field : report.fields) {
     if (field.spec.type == FieldType::plugin) {
@@ -22,7 +22,7 @@ void add_fields(std::vector<Explained>& all, const ParamReport& report, const st
   }
 }
 
-/// The host's own keys of an entry; an id that was not given is the one that the host gave.
+/// The host's own keys of an entry; a missing id is shown as the host assigned it.
 template <class Entry>
 void add_entry(std::vector<Explained>& all, const Entry& entry, const Value& tree,
                const std::string& path) {

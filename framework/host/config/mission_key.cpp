@@ -35,7 +35,7 @@ void add(Value& map, const char* key, Value value) {
   map.entries.push_back({key, where, std::move(value)});
 }
 
-/// Writes an item as a point of a scenario.
+/// Converts an item to a point of a scenario.
 class Writer {
  public:
   Writer(const kit::MissionFile& mission, std::string file)
@@ -85,7 +85,7 @@ class Writer {
   std::string file_;
 };
 
-/// Within 2 cm in the plane, as degrees of seven decimals may be.
+/// True if both are within 2 cm horizontally, the rounding of degrees to seven decimals.
 bool same_place(const MissionPoint& a, const MissionPoint& b) {
   constexpr double kDegrees = 2e-7;
   return std::abs(a.lon - b.lon) <= kDegrees && std::abs(a.lat - b.lat) <= kDegrees;
@@ -102,7 +102,7 @@ bool has_place(const Value& map) {
 void add_points(Value& scenario, const kit::MissionFile& mission, const std::string& file) {
   const std::vector<MissionItem> items = route_items(mission);
   if (items.size() < 2) {
-    throw Error(file + ": expected two places or more, found " + std::to_string(items.size()));
+    throw Error(file + ": expected at least two points, found " + std::to_string(items.size()));
   }
   const Writer writer(mission, file);
   if (scenario.find("start") == nullptr) {
@@ -134,8 +134,8 @@ std::vector<MissionItem> route_items(const kit::MissionFile& mission) {
     throw Error(mission.route_problem);
   }
   if (mission.items.empty()) {
-    throw Error("there is no route in it" +
-                std::string(mission.zones.empty() ? "" : ": it holds zones alone"));
+    throw Error("it contains no route" +
+                std::string(mission.zones.empty() ? "" : ": it contains only zones"));
   }
   std::vector<MissionItem> items = mission.items;
   if (items.size() > 1 && items.back().kind == MissionItem::Kind::land &&

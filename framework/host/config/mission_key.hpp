@@ -10,13 +10,13 @@
 
 namespace altiplan::host {
 
-/// Where a scenario has the key `mission`, adds the start, via points and goal of that file to the
-/// tree, as far as the scenario does not write them itself: what is read later cannot tell the
-/// difference, and says where each came from. The file is added to `files`. Returns what of it was
-/// left out, a line each. Throws ConfigError at the key.
+/// If the scenario has the key `mission`, adds the start, via points and goal of that file to the
+/// tree unless the scenario gives them itself: later stages treat them as if written in the
+/// scenario, with their location in the mission file. The file is added to `files`. Returns a line
+/// for each item that was ignored. Throws ConfigError at the key.
 std::vector<std::string> add_mission(Value& scenario, std::vector<std::filesystem::path>& files);
 
-/// The items as the points of a route: without a landing straight below the last of them. Throws
-/// Error where the file has none, or they are no route.
+/// The items as the points of a route, without a landing straight below the last one. Throws Error
+/// if the file has none, or if they do not form a route.
 std::vector<kit::MissionItem> route_items(const kit::MissionFile& mission);
 }  // namespace altiplan::host

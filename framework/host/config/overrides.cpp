@@ -11,7 +11,7 @@
 namespace altiplan::host {
 namespace {
 
-/// The value at a dotted path, made of empty maps where the file does not go that far.
+/// The value at a dotted path, with empty maps created for missing parents.
 Value& reach(Value& root, const std::string& path, const std::string& text) {
   const auto fail = [&](const std::string& message) -> void {
     throw ConfigError(Location{root.where.file, 0, 0, text}, path, message);
@@ -29,7 +29,7 @@ Value& reach(Value& root, const std::string& path, const std::string& text) {
       const auto [stop, error] = std::from_chars(key.data(), key.data() + key.size(), index);
       if (error != std::errc() || stop != key.data() + key.size() || index >= at->items.size()) {
         const std::size_t count = at->items.size();
-        fail("'" + key + "' is no index of this list, which " +
+        fail("'" + key + "' is not an index of this list, which " +
              (count == 0 ? "is empty"
                          : "has " + std::to_string(count) + (count == 1 ? " item" : " items") +
                                ", counted from 0"));
@@ -37,7 +37,7 @@ Value& reach(Value& root, const std::string& path, const std::string& text) {
       at = &at->items[index];
     } else {
       if (at->kind == Value::Kind::scalar) {
-        at->kind = Value::Kind::map;  // the value that was here gives way
+        at->kind = Value::Kind::map;  // replaces the former value
         at->text.clear();
       }
       const Location here{root.where.file, 0, 0, text};
@@ -50,7 +50,7 @@ Value& reach(Value& root, const std::string& path, const std::string& text) {
         entry = at->entries.insert(entry, {key, here, fresh});
       }
       if (end == path.size()) {
-        entry->where = here;  // what is wrong with it is not the file's fault
+        entry->where = here;  // its problems belong to the override, not to the file
       }
       at = &entry->value;
     }
@@ -59,7 +59,7 @@ Value& reach(Value& root, const std::string& path, const std::string& text) {
   return *at;
 }
 
-/// Gives every location of an override's value the file that its paths are relative to.
+/// Sets the file that the override's paths are relative to in every location of its value.
 void settle(Value& value, const std::string& file) {
   value.where.file = file;
   for (Value& item : value.items) {

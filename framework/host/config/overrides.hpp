@@ -10,7 +10,7 @@ namespace altiplan::host {
 
 enum class FileOfKey { pipeline, scenario };
 
-/// Puts the values of `--set KEY=VALUE` into the file's tree, written there or not; keys that begin
-/// with "scenario." are the scenario's. Throws ConfigError naming the assignment.
+/// Applies the values of `--set KEY=VALUE` to the file's tree, adding keys that are missing; keys
+/// that begin with "scenario." are the scenario's. Throws ConfigError naming the assignment.
 void apply_overrides(Value& tree, const std::vector<std::string>& set, FileOfKey file);
 }  // namespace altiplan::host

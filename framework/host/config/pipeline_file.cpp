@@ -12,21 +12,21 @@ void SmootherEntry::describe(Fields& f) {
 }
 
 void FlyKeys::describe(Fields& f) {
-  f("replan", replan).doc("id of a plan step whose session goes on, or {plan: …, with: …}");
+  f("replan", replan).doc("id of the plan step whose session continues, or {plan: …, with: …}");
   f("when", when).one_of({"unsafe", "any_change"}).doc("when to replan");
   f("smooth", smooth).doc("smoothers for replanned routes");
   f("command", command)
       .one_of({"near", "always"})
-      .doc("near: the pilot flies near what the route did not know; always: all the way");
-  f("step_s", step_s).unit("s").greater_than(0).at_most(3600).doc("simulated time of a step");
+      .doc("near: the pilot flies near obstacles unknown to the route; always: the whole way");
+  f("step_s", step_s).unit("s").greater_than(0).at_most(3600).doc("simulation time step");
   f("replan_latency_s", replan_latency_s)
       .unit("s")
       .at_least(0)
-      .doc("simulated time until a replanned route is there");
+      .doc("simulated delay of a replanned route");
   f("max_time_s", max_time_s)
       .unit("s")
       .greater_than(0)
-      .doc("the flight ends then; default: ten times the route's duration");
+      .doc("maximum flight time; default: ten times the route's duration");
 }
 
 void StepEntry::describe(Fields& f) {
@@ -35,18 +35,18 @@ void StepEntry::describe(Fields& f) {
   std::optional<std::string> pilot;
   std::optional<Value> smooth;
   f("plan", plan).doc("a planner, or a local planner that the host rolls out");
-  f("fly", pilot).doc("a local planner, or route: follow the route alone");
+  f("fly", pilot).doc("a local planner, or route: follow the route without one");
   const bool flies = pilot.has_value();
   if (!flies) {
     f("smooth", smooth).doc("a smoother");
   }
   f("id", id).doc("name of the step; default: the plugin's name");
   f("with", with).doc("the plugin's parameters");
-  f("from", from).doc("id of the step whose route this one takes; default: the last that stands");
+  f("from", from).doc("id of the step whose route is the input; default: the last accepted");
   f("within_s", within_s).unit("s").greater_than(0).at_most(1e8).doc("time budget");
   f("within_iterations", within_iterations).at_least(0).doc("budget in units of `expanded`");
   f("within_mb", within_mb).unit("MiB").greater_than(0).at_most(1e9).doc("memory budget");
-  f("else", alternatives).doc("steps tried in order when this one does not stand");
+  f("else", alternatives).doc("steps tried in order if this one is not accepted");
   if (flies || !f.reading()) {
     fly.describe(f);
   }
@@ -70,10 +70,10 @@ void StepEntry::describe(Fields& f) {
 void PipelineFile::describe(Fields& f) {
   f("altiplan", altiplan).range(kFileFormat, kFileFormat).required().doc("file format");
   f("name", name).doc("title in results");
-  f("scenario", scenario).doc("the scenario file; --scenario takes its place");
-  f("seed", seed).at_least(0).doc("seed of every random choice; --seed takes its place");
-  f("plugins", plugins).doc("further folders of plugin libraries");
-  f("constraints", constraints).doc("rules for routes and tracks");
-  f("steps", steps).min_items(1).required().doc("what is done, in order");
+  f("scenario", scenario).doc("the scenario file; --scenario overrides it");
+  f("seed", seed).at_least(0).doc("seed of all random numbers; --seed overrides it");
+  f("plugins", plugins).doc("additional folders of plugin libraries");
+  f("constraints", constraints).doc("constraints on routes and tracks");
+  f("steps", steps).min_items(1).required().doc("steps, run in order");
 }
 }  // namespace altiplan::host

@@ -16,9 +16,9 @@ struct SmootherEntry {
   void describe(Fields& f);
 };
 
-/// Keys of `fly` alone.
+/// Keys of `fly` only.
 struct FlyKeys {
-  Value replan;  ///< id of a plan step, or {plan: …, with: …}; an empty scalar where not given
+  Value replan;  ///< id of a plan step, or {plan: …, with: …}; an empty scalar if not given
   std::string when = "unsafe";
   std::vector<SmootherEntry> smooth;
   std::string command = "near";
@@ -37,7 +37,7 @@ inline Value empty_map() {
 enum class Verb { plan, smooth, fly };
 const char* name(Verb verb);
 
-/// `fly: route` has no pilot: the vehicle follows the route alone.
+/// `fly: route` has no pilot: the vehicle just follows the route.
 inline constexpr const char* kFollowRoute = "route";
 
 /// A step: one verb and a plugin's name, the plugin's parameters, and the host's keys.
@@ -51,7 +51,7 @@ struct StepEntry {
   std::optional<std::int64_t> within_iterations;
   std::optional<double> within_mb;
   std::vector<Value> alternatives;   ///< `else`: step maps, bound by the configuration
-  std::vector<StepEntry> otherwise;  ///< those, bound
+  std::vector<StepEntry> otherwise;  ///< `alternatives`, bound
   FlyKeys fly;
   Location where;
   std::string path;  ///< "steps.0.else.1"

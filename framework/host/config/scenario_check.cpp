@@ -22,7 +22,7 @@ void check_layers(Checker& checker, ScenarioFile& scenario, const Value& tree, I
       layer.id = ids.free_id(layer.plugin);
     } else if (ids.contains(layer.id)) {
       checker.problem(place_of(map, "id"), path + ".id",
-                      "the id '" + layer.id + "' names another layer already");
+                      "the id '" + layer.id + "' is already used by another layer");
     }
     ids.insert(layer.id);
   }
@@ -38,7 +38,7 @@ void check_moving(Checker& checker, ScenarioFile& scenario, const Value& tree, I
     }
     if (!ids.insert(moving.id).second) {
       checker.problem(place_of(map, "id"), path + ".id",
-                      "the id '" + moving.id + "' names another moving obstacle already");
+                      "the id '" + moving.id + "' is already used by another moving obstacle");
     }
     if (moving.shape.empty()) {
       continue;
@@ -71,13 +71,14 @@ void check_added(Checker& checker, ScenarioFile& scenario, const Value& tree, Id
       event.id = ids.free_id(event.add->plugin);
     } else if (ids.contains(event.id)) {
       checker.problem(place_of(map, "id"), item("events", i) + ".id",
-                      "the id '" + event.id + "' names another layer already");
+                      "the id '" + event.id + "' is already used by another layer");
     }
     ids.insert(event.id);
   }
 }
 
-/// Layers that an event speaks of are there at some time; moving obstacles may go and move too.
+/// Checks that the layers an event names exist at some time; moving obstacles may be removed and
+/// moved too.
 void check_references(Checker& checker, const ScenarioFile& scenario, const Value& tree,
                       const Ids& layers, const Ids& moving) {
   Ids all = layers;
@@ -98,7 +99,7 @@ void check_references(Checker& checker, const ScenarioFile& scenario, const Valu
   }
 }
 
-/// What has gone cannot go again: ids are given once.
+/// Refuses a second removal of the same id: ids are used once.
 void check_removed(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
   std::map<std::string, std::size_t> removed;  // the event, by id
   for (std::size_t i = 0; i < scenario.events.size(); ++i) {
@@ -110,7 +111,7 @@ void check_removed(Checker& checker, const ScenarioFile& scenario, const Value& 
     if (!is_new) {
       checker.problem(place_of(tree.find("events")->items[i], "remove"),
                       item("events", i) + ".remove",
-                      "'" + *id + "' is removed by " + item("events", first->second) + " already");
+                      "'" + *id + "' is already removed by " + item("events", first->second));
     }
   }
 }
@@ -118,7 +119,7 @@ void check_removed(Checker& checker, const ScenarioFile& scenario, const Value& 
 void check_points(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
   const auto check = [&](const Point& point, const Location& where, const std::string& key) {
     if (checker.has_problem_within(key)) {
-      return;  // a height that is there, but wrong
+      return;  // a height is given, but invalid
     }
     const bool plane = point.form == Point::Form::metres || point.form == Point::Form::lonlat;
     if (plane && !point.has_height && !point.above_ground_m && !scenario.level_flight_at_m) {
@@ -158,7 +159,7 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   if (scenario.start_time && !kit::parse_iso_time(*scenario.start_time)) {
     checker.problem(
         place_of(tree, "start_time"), "start_time",
-        "expected a time as 2026-05-01T10:00:00Z, found '" + *scenario.start_time + "'");
+        "expected a time such as 2026-05-01T10:00:00Z, found '" + *scenario.start_time + "'");
   }
 }
 }  // namespace altiplan::host

@@ -12,7 +12,7 @@ void LayerEntry::describe(Fields& f) {
 }
 
 void ConstraintEntry::describe(Fields& f) {
-  f.plugin("constraint", plugin, parameters).doc("a rule for routes and tracks").required();
+  f.plugin("constraint", plugin, parameters).doc("a constraint on routes and tracks").required();
 }
 
 void PointEntry::describe(Fields& f) { f.point(point).required(); }
@@ -22,12 +22,12 @@ void GoalEntry::describe(Fields& f) {
   f("tolerance_m", tolerance_m)
       .unit("m")
       .at_least(0)
-      .doc("the last point may lie this far from the goal");
+      .doc("maximum distance of the last point from the goal");
 }
 
 void VolumeEntry::describe(Fields& f) {
-  f("min_m", min_m).unit("m").doc("lower corner; default: that of the bounded layers");
-  f("max_m", max_m).unit("m").doc("upper corner; default: that of the bounded layers");
+  f("min_m", min_m).unit("m").doc("lower corner; default: that of the bounded layers' box");
+  f("max_m", max_m).unit("m").doc("upper corner; default: that of the bounded layers' box");
   f.check(!min_m || !max_m || (min_m->array() <= max_m->array()).all(),
           "expected min_m below max_m on each axis");
 }
@@ -38,18 +38,24 @@ void SpeedNearEntry::describe(Fields& f) {
       .greater_than(0)
       .required()
       .doc("distance to an obstacle's edge");
-  f("speed_mps", speed_mps).unit("m/s").greater_than(0).required().doc("speed within it");
+  f("speed_mps", speed_mps)
+      .unit("m/s")
+      .greater_than(0)
+      .required()
+      .doc("speed within this distance");
 }
 
 void VehicleEntry::describe(Fields& f) {
-  f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the sphere that must stay free");
+  f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the vehicle's safety sphere");
   f("speed_mps", speed_mps).unit("m/s").greater_than(0).doc("speed away from obstacles");
   f("sensing_m", sensing_m)
       .unit("m")
       .greater_than(0)
-      .doc("what is not known is seen within this distance; default: unlimited");
+      .doc("range at which unknown obstacles are detected; default: unlimited");
   f("turns_on_the_spot", turns_on_the_spot)
-      .doc("turns to any heading where it climbs or sinks on the spot; else it keeps its heading");
+      .doc(
+          "true: may turn to any heading while it climbs or descends vertically; false: keeps its "
+          "heading");
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");
   for (std::size_t i = 1; i < speed_near.size(); ++i) {
     f.check(speed_near[i - 1].within_m < speed_near[i].within_m,
@@ -62,7 +68,7 @@ void FrameEntry::describe(Fields& f) {
       .doc("coordinate system to plan in (EPSG:32617, …); elevation models are warped to it");
   f("origin_lonlat", origin_lonlat)
       .unit("deg")
-      .doc("longitude and latitude of the origin, where no layer brings a position");
+      .doc("longitude and latitude of the origin, if no layer is georeferenced");
   f.check(crs.empty() || !origin_lonlat, "expected crs or origin_lonlat, not both");
   f.check(!origin_lonlat ||
               (std::abs((*origin_lonlat)[0]) <= 180 && std::abs((*origin_lonlat)[1]) <= 90),
@@ -71,8 +77,8 @@ void FrameEntry::describe(Fields& f) {
 
 void MovingEntry::describe(Fields& f) {
   f("id", id).doc("name in results and events");
-  f("known", known).doc("false: met in flight");
-  f.plugin("moving", shape, parameters).doc("a solid in straight motion").required();
+  f("known", known).doc("false: not in the planners' world until it comes into sensing range");
+  f.plugin("moving", shape, parameters).doc("a solid in straight-line motion").required();
 }
 
 void NearEntry::describe(Fields& f) {
@@ -87,7 +93,7 @@ void AddEntry::describe(Fields& f) {
 void SetCellsEntry::describe(Fields& f) {
   f("layer", layer).required().doc("a layer with cells of its own");
   f("cells", cells).min_items(1).required().doc("cells as the layer's file counts them");
-  f("blocked", blocked).doc("what they become");
+  f("blocked", blocked).doc("true: the cells become blocked; false: free");
 }
 
 void MoveEntry::describe(Fields& f) {
@@ -97,40 +103,40 @@ void MoveEntry::describe(Fields& f) {
 
 void EventEntry::describe(Fields& f) {
   f("at_s", at_s).unit("s").at_least(0).doc("time since take-off");
-  f("when_near", when_near).doc("or when the vehicle comes near a point");
+  f("when_near", when_near).doc("alternatively: when the vehicle comes near a point");
   f("add", add).doc("a layer that appears");
   f("id", id).doc("name of the added layer; default: its plugin's name");
-  f("known", known).doc("of the added layer: true when its appearance is told at once");
-  f("remove", remove).doc("id of a layer that goes");
-  f("move", move).doc("a layer that moves at once");
+  f("known", known).doc("of the added layer: true if the vehicle knows of it at once");
+  f("remove", remove).doc("id of the layer or moving obstacle to remove");
+  f("move", move).doc("a layer that moves instantly");
   f("set_cells", set_cells).doc("cells that become blocked or free");
-  f("move_goal", move_goal).doc("where the goal is from now on");
+  f("move_goal", move_goal).doc("the new goal");
   f.check(at_s.has_value() != when_near.has_value(), "expected either at_s or when_near");
   const int actions = int(add.has_value()) + int(remove.has_value()) + int(move.has_value()) +
                       int(set_cells.has_value()) + int(move_goal.has_value());
   f.check(actions == 1, "expected one of add, remove, move, set_cells, move_goal");
-  f.check(add || id.empty(), "id names an added layer: it stands beside add alone");
+  f.check(add || id.empty(), "id names an added layer: it is allowed only beside add");
 }
 
 void ScenarioFile::describe(Fields& f) {
   f("altiplan", altiplan).range(kFileFormat, kFileFormat).required().doc("file format");
   f("name", name).doc("title in results");
-  f("plugins", plugins).doc("further folders of plugin libraries");
-  f("frame", frame).doc("how the world is tied to the Earth");
+  f("plugins", plugins).doc("additional folders of plugin libraries");
+  f("frame", frame).doc("georeference of the world");
   f("environment", environment).doc("layers of the world, in order");
-  f("volume", volume).doc("where routes may go; default: the bounded layers' box");
+  f("volume", volume).doc("volume that routes may use; default: the bounded layers' box");
   f("vehicle", vehicle).doc("the vehicle");
-  f("level_flight_at_m", level_flight_at_m).unit("m").doc("a problem in the plane at this height");
+  f("level_flight_at_m", level_flight_at_m).unit("m").doc("plan in the plane, at this height");
   f("start_time", start_time).doc("UTC, ISO 8601: 2026-05-01T10:00:00Z");
   f("mission", mission)
       .doc(
-          "a ground station's file (.plan, .waypoints, .kml, .gpx) whose first place is the start, "
-          "whose last is the goal and whose others are via points, where they are not given here");
-  f("start", start).required().doc("where the route begins");
+          "a ground station's file (.plan, .waypoints, .kml, .gpx): its first point is the start, "
+          "its last the goal and the others via points, unless they are given here");
+  f("start", start).required().doc("start of the route");
   f("via", via).doc("points to pass, in order");
-  f("goal", goal).required().doc("where it ends");
+  f("goal", goal).required().doc("end of the route");
   f("moving", moving).doc("moving obstacles");
   f("events", events).doc("changes during the flight");
-  f("constraints", constraints).doc("rules that hold for every pipeline");
+  f("constraints", constraints).doc("constraints that apply to every pipeline");
 }
 }  // namespace altiplan::host

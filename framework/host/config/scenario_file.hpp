@@ -9,7 +9,7 @@
 
 namespace altiplan::host {
 
-// A scenario file as written: field for field, nothing resolved yet.
+// A scenario file as written, field by field; nothing is resolved yet.
 
 /// `- terrain: {…}` with the host's keys beside it.
 struct LayerEntry {
@@ -79,14 +79,14 @@ struct NearEntry {
   void describe(Fields& f);
 };
 
-/// What is added: a layer, as under `environment`.
+/// The added layer, as under `environment`.
 struct AddEntry {
   std::string plugin;
   Value parameters;
   void describe(Fields& f);
 };
 
-/// Cells that become blocked or free; only for a layer with cells of its own.
+/// Cells that become blocked or free; only for a layer with cells.
 struct SetCellsEntry {
   std::string layer;
   std::vector<Vec3> cells;

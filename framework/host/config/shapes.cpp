@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-/// Heights of an upright solid; unlimited where not given.
+/// Vertical limits of an upright solid; unlimited if not given.
 struct Heights {
   std::optional<double> floor_m;
   std::optional<double> ceiling_m;
@@ -88,14 +88,14 @@ class OneShape final : public kit::ShapeLayer {
 };
 
 constexpr PluginEntry kEnvironments[] = {
-    detail::make_entry<Environment, OneShape<SphereParams>, SphereParams>("sphere", "a ball"),
+    detail::make_entry<Environment, OneShape<SphereParams>, SphereParams>("sphere", "a sphere"),
     detail::make_entry<Environment, OneShape<CylinderParams>, CylinderParams>(
         "cylinder", "an upright cylinder"),
-    detail::make_entry<Environment, OneShape<BoxParams>, BoxParams>("box", "a box along the axes"),
+    detail::make_entry<Environment, OneShape<BoxParams>, BoxParams>("box", "an axis-aligned box"),
     detail::make_entry<Environment, OneShape<PrismParams>, PrismParams>(
         "prism", "an upright prism over a polygon")};
 
-/// Metres a second; with more, places after a flight's time are no numbers any more.
+/// m/s; beyond this, positions at the end of a long flight overflow.
 constexpr double kMaxSpeed = 1e6;
 
 template <class Params>
@@ -106,7 +106,7 @@ struct Moving {
     params.describe(f);
     f("velocity_mps", velocity_mps).unit("m/s").required().doc("east, north, up");
     f.check((velocity_mps.array().abs() <= kMaxSpeed).all(),
-            "expected each of velocity_mps from -1e6 to 1e6 m/s");
+            "expected each component of velocity_mps from -1e6 to 1e6 m/s");
   }
 };
 
@@ -158,7 +158,7 @@ MovingShape make_moving(std::string_view name, const Value& parameters, const Si
 }
 
 void RandomMoving::describe(Fields& f) {
-  f("count", count).range(1, 100000).doc("how many");
+  f("count", count).range(1, 100000).doc("number of spheres");
   f("seed", seed).at_least(0).doc("default: the run's seed");
   f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius of each");
   f("speed_mps", speed_mps).unit("m/s").range(0, kMaxSpeed).required().doc("speed of each");

@@ -12,12 +12,12 @@
 namespace altiplan::host {
 
 // The built-in shapes sphere, cylinder, box and prism: as layers they are plugins like any other,
-// only that no library is loaded; as moving obstacles they carry a velocity too.
+// but without a library; as moving obstacles they also have a velocity.
 
 /// The shapes as environments.
 std::span<const PluginEntry> built_in_environments();
 
-/// A shape and its velocity, of an entry of `moving`.
+/// The shape and velocity of an entry of `moving`.
 struct MovingShape {
   Shape shape;
   Vec3 velocity{0, 0, 0};
@@ -25,7 +25,7 @@ struct MovingShape {
 
 /// Names under `moving`: the four shapes.
 std::vector<std::string> moving_shapes();
-/// Reads an entry's parameters; null where no shape has that name.
+/// Reads an entry's parameters; null if no shape has that name.
 using DescribeMoving = ParamReport (*)(const Value* parameters, const std::string& path);
 DescribeMoving describe_moving(std::string_view name);
 /// Throws Error as Site::resolve does.

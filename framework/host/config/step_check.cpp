@@ -24,7 +24,7 @@ StepEntry bind_step(Checker& checker, const Value& tree, const std::string& path
         step.otherwise.emplace_back(bind_step(checker, step.alternatives[i], key, true));
     if (!step.plugin.empty() && !other.plugin.empty() && other.verb != step.verb) {
       checker.problem(step.alternatives[i].where, key,
-                      std::string("expected the verb '") + name(step.verb) + "', as its step has");
+                      std::string("expected the verb '") + name(step.verb) + "' of its step");
     }
   }
   return step;
@@ -61,15 +61,15 @@ void check_replan(Checker& checker, Registry& registry, const StepEntry& step,
   check_plugins(checker, registry, planner, replan);
 }
 
-/// The step's plugin and its smoothers, with their parameters.
+/// Checks the step's plugin and smoothers, with their parameters.
 void check_plugins(Checker& checker, Registry& registry, const StepEntry& step, const Value& tree) {
   if (step.plugin.empty()) {
-    return;  // said already
+    return;  // already reported
   }
   if (step.verb == Verb::fly && step.plugin == kFollowRoute) {
     if (!step.with.entries.empty()) {
       checker.problem(place_of(tree, "with"), step.path + ".with",
-                      "following the route alone has no parameters");
+                      "fly: route takes no parameters");
     }
   } else {
     checker.check_plugin(kind_of_step(registry, step), step.plugin, step.with,
@@ -89,7 +89,7 @@ bool is_text(const Value& map, std::string_view key) {
   return value != nullptr && value->kind == Value::Kind::scalar;
 }
 
-/// Walks the steps in order, knowing the ids so far.
+/// Checks the steps in order, keeping track of the ids so far.
 class StepCheck {
  public:
   StepCheck(Checker& checker, Config& config) : checker_(checker), config_(config) {}
@@ -111,7 +111,7 @@ class StepCheck {
     for (std::size_t k = 0; k < step.otherwise.size(); ++k) {
       check_one(step.otherwise[k], step.alternatives[k]);
     }
-    earlier_ = ids_;  // what an alternative replaces is no earlier step
+    earlier_ = ids_;  // the step that an alternative replaces is not an earlier step
     if (step.verb == Verb::plan) {
       plans_.insert(step.id);
       for (const StepEntry& other : step.otherwise) {
@@ -134,7 +134,7 @@ class StepCheck {
     std::string id = given ? step.id : ids_.free_id(step.id);
     if (!ids_.insert(id).second) {
       checker_.problem(place_of(tree, "id"), step.path + ".id",
-                       "the id '" + id + "' names another step already");
+                       "the id '" + id + "' is already used by another step");
     }
     step.id = std::move(id);
   }
@@ -145,7 +145,7 @@ class StepCheck {
   std::set<std::string> earlier_;
   std::set<std::string> plans_;
   bool flown_ = false;
-  bool unknown_ = false;  ///< a step without a verb may have been meant as a plan
+  bool unknown_ = false;  ///< a step without a verb may have been meant as a plan step
 };
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
-/// yaml-cpp's message in words that tell a user what to change.
+/// Translates yaml-cpp's message into what the user has to change.
 std::string plain_words(const std::string& message) {
   using namespace YAML::ErrorMsg;
   static const std::map<std::string, std::string> kWords = {
@@ -31,28 +31,28 @@ std::string plain_words(const std::string& message) {
       {EOF_IN_SCALAR, "the text that starts with a quote is not closed"},
       {DOC_IN_SCALAR, "the text that starts with a quote is not closed before '---' or '...'"},
       {MAP_VALUE,
-       "a ':' with no key that it could belong to: quote the text if the ':' is part "
+       "a ':' without a key: quote the text if the ':' is part "
        "of it, else check the indentation, and that each ':' and each item's '-' before it has a "
        "space after it"},
-      {MAP_KEY, "a key cannot stand here: check the indentation"},
-      {BLOCK_ENTRY, "a list item ('- ') cannot stand here: check the indentation"},
+      {MAP_KEY, "a key is not allowed here: check the indentation"},
+      {BLOCK_ENTRY, "a list item ('- ') is not allowed here: check the indentation"},
       {FLOW_END, "a closing bracket that does not match the opening one"},
       {UNKNOWN_TOKEN, "a character that cannot start a value: quote the text"},
-      {UNKNOWN_ANCHOR, "an alias ('*name') whose anchor ('&name') does not stand before it"},
+      {UNKNOWN_ANCHOR, "an alias ('*name') without an anchor ('&name') before it"},
       {ALIAS_NOT_FOUND, "a '*' starts an alias: quote the text if it is part of it"},
       {ANCHOR_NOT_FOUND, "a '&' starts an anchor: quote the text if it is part of it"},
-      {TAG_WITH_NO_SUFFIX, "tags ('!…') are not taken: leave the tag out"},
+      {TAG_WITH_NO_SUFFIX, "tags ('!…') are not supported: leave the tag out"},
       {TAB_IN_INDENTATION, "a tab indents this line: indent with spaces"},
   };
   if (message.starts_with(INVALID_ESCAPE)) {
     return "'\\" + message.substr(std::string_view(INVALID_ESCAPE).size()) +
-           "' means nothing in a text in double quotes: write '\\\\', or use single quotes";
+           "' is not an escape in double quotes: write '\\\\', or use single quotes";
   }
   const auto found = kWords.find(message);
   return found != kWords.end() ? found->second : "not well-formed YAML: " + message;
 }
 
-/// Notes where a second document starts, and stops there.
+/// Records the start of a second document, and stops there.
 class Rest final : public YAML::EventHandler {
  public:
   explicit Rest(const YamlSource& source) : source_(source) {}
@@ -118,7 +118,7 @@ Value load_yaml(const std::filesystem::path& file) {
 
 Value parse_yaml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxBytes) {
-    throw ConfigError({name, 0, 0, ""}, "", "is larger than 16 MiB, the most that is read");
+    throw ConfigError({name, 0, 0, ""}, "", "is larger than 16 MiB, the maximum");
   }
   if (text.substr(0, 3) == "\xEF\xBB\xBF") {
     text.remove_prefix(3);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxProblems = 100;
 
-/// What a key without a value was perhaps meant to be; `next` is where the text goes on.
+/// A hint on what a key without a value may have been meant as; `next` is where the text continues.
 std::string hint_for_key(const std::string& key, const Location& key_at, const Location& next) {
   if (key.find(':') != key.npos) {
     return ": a space is missing after its ':'";
@@ -18,7 +18,7 @@ std::string hint_for_key(const std::string& key, const Location& key_at, const L
     return ": decimals are written with a point, not a comma";
   }
   const bool unindented = next.line > key_at.line && next.column == key_at.column;
-  return unindented ? ": it stands after the ': ', or beneath, indented further than the key" : "";
+  return unindented ? ": write it after the ': ', or below, indented further than the key" : "";
 }
 }  // namespace
 
@@ -39,8 +39,8 @@ void YamlReader::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
   if (!word.empty()) {
     problem(source_.at(mark), path(),
             "'" + word +
-                "' is not a value: leave the key out where nothing is meant, quote it "
-                "where the text is meant");
+                "' is not a value: leave the key out if nothing is meant, quote it "
+                "if the text is meant");
   } else if (!root) {
     const Open& in = open_.back();
     problem(in.is_map ? in.key_at : empty_item(mark), path(),
@@ -58,7 +58,7 @@ void YamlReader::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
   }
   const auto target = anchors_.find(anchor);
   if (target == anchors_.end()) {
-    refuse(mark, "an alias to a list or map that it is itself a part of");
+    refuse(mark, "an alias to a list or map that contains it");
   }
   const Anchor& anchored = target->second;
   if (open_.size() + anchored.height > kMaxDepth + 1) {
@@ -141,7 +141,7 @@ void YamlReader::count(const YAML::Mark& mark, std::size_t nodes) {
 void YamlReader::check_tag(const YAML::Mark& mark, const std::string& tag) {
   const std::string_view text = source_.value_from(mark);
   if ((tag != "?" && tag != "!") || (!text.empty() && text.front() == '!')) {
-    problem(source_.at(mark), path(), "tags ('!…') are not taken: leave the tag out");
+    problem(source_.at(mark), path(), "tags ('!…') are not supported: leave the tag out");
   }
 }
 
@@ -175,11 +175,11 @@ void YamlReader::take_key(const Node& node) {
   map.key = node.text;
   if (!is_new) {
     problem(map.key_at, path(),
-            "this key stands twice in one map" +
+            "this key occurs twice in one map" +
                 (known->second > 0 ? ", first in line " + std::to_string(known->second) : ""));
   }
   if (node.text == "<<" && !node.quoted) {
-    problem(map.key_at, path(), "merge keys ('<<') are not taken: write the keys out");
+    problem(map.key_at, path(), "merge keys ('<<') are not supported: write the keys out");
   }
   if (node.text.size() > 1 && node.text.front() == '-' && !node.quoted) {
     problem(map.key_at, path(),

@@ -11,8 +11,8 @@
 
 namespace altiplan::host {
 
-/// Collects a document's events as a flat list, so that an alias costs one entry however much it
-/// stands for; the tree is built at the end.
+/// Collects a document's events as a flat list, so that an alias costs one entry whatever its size;
+/// the tree is built at the end.
 class YamlReader final : public YAML::EventHandler {
  public:
   explicit YamlReader(const YamlSource& source) : source_(source) {}
@@ -49,7 +49,7 @@ class YamlReader final : public YAML::EventHandler {
     std::size_t node = 0;
     YAML::anchor_t anchor = 0;
     std::size_t counted_before = 0;
-    std::size_t height = 2;  ///< levels from here down, a scalar in it counted
+    std::size_t height = 2;  ///< levels from here down, including scalars
     bool is_map = false;
     bool expects_key = false;
     std::size_t index = 0;
@@ -57,7 +57,7 @@ class YamlReader final : public YAML::EventHandler {
     Location key_at;
     std::map<std::string, int> lines_of_keys;
   };
-  /// A finished node that aliases may name; nodes and height with its aliases counted in.
+  /// A finished node that aliases may refer to; nodes and height include its expanded aliases.
   struct Anchor {
     std::size_t node = 0;
     std::size_t nodes = 0;
@@ -67,24 +67,25 @@ class YamlReader final : public YAML::EventHandler {
   bool expects_key() const { return !open_.empty() && open_.back().expects_key; }
   std::string path() const;
   void problem(Location where, std::string key, std::string message);
-  /// Ends the reading: what follows could not be understood.
+  /// Ends the reading: what follows cannot be interpreted.
   [[noreturn]] void refuse(const YAML::Mark& mark, std::string message);
   [[noreturn]] void refuse_depth(const YAML::Mark& mark);
   void count(const YAML::Mark& mark, std::size_t nodes);
-  /// yaml-cpp gives "?" for a plain node, "!" for a quoted one, and anything for a tag; a bare '!'
-  /// shows in the text only.
+  /// yaml-cpp reports "?" for a plain node, "!" for a quoted one, and anything else for a tag; a
+  /// bare '!' shows only in the text.
   void check_tag(const YAML::Mark& mark, const std::string& tag);
-  /// The '-' of a list item without a value: its event carries the mark of whatever follows.
+  /// Location of the '-' of a list item without a value: its event has the mark of whatever
+  /// follows.
   Location empty_item(const YAML::Mark& mark) const;
   Node& push(const YAML::Mark& mark, Node::Kind kind, const std::string& text);
   void take_key(const Node& node);
   void start(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
              Node::Kind kind);
   void end();
-  /// A value is whole: names it for aliases, and moves its parent on.
+  /// Completes a value: registers its anchor and advances its parent.
   void finish(std::size_t node, std::size_t nodes, std::size_t height, YAML::anchor_t anchor);
   Location place(const Node& node) const;
-  /// The value at nodes_[at]; moves `at` past it.
+  /// Builds the value at nodes_[at]; moves `at` past it.
   Value build(std::size_t& at) const;
 
   const YamlSource& source_;

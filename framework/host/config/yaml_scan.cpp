@@ -37,10 +37,11 @@ void scan_characters(const YamlSource& source) {
     }
     if (is_control(c)) {
       refuse(i, "the control character " + hexadecimal(static_cast<unsigned char>(c)) +
-                    " does not belong in a text file");
+                    " is not allowed in a text file");
     }
     if (i == line_start && c == '%') {
-      refuse(i, "lines that start with '%' (YAML directives) are not taken: leave the line out");
+      refuse(i,
+             "lines that start with '%' (YAML directives) are not supported: leave the line out");
     }
     if (i == line_start && (c == ' ' || c == '\t')) {
       const std::string_view rest = text.substr(i);

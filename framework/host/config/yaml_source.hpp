@@ -11,11 +11,11 @@
 
 namespace altiplan::host {
 
-// The most that a document may have.
+// Limits of a document.
 constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxNodes = 1'000'000;
 
-/// A text and how places in it are named.
+/// A text, and the locations in it.
 class YamlSource {
  public:
   YamlSource(std::string_view text, std::string name, std::string override_text)
@@ -26,18 +26,18 @@ class YamlSource {
   /// `column_bytes` counts from 0 in bytes, `line` from 0; an override has no lines.
   Location at(std::size_t line, std::size_t line_start, std::size_t column_bytes) const;
   Location at(const YAML::Mark& mark) const;
-  /// The text from a mark on.
+  /// The text from the mark onward.
   std::string_view from(const YAML::Mark& mark) const {
     return text_.substr(std::min(text_.size(), static_cast<std::size_t>(mark.pos)));
   }
-  /// The same behind an anchor ('&name').
+  /// The same, after an anchor ('&name').
   std::string_view value_from(const YAML::Mark& mark) const;
-  /// "null", "~" … where one is written at the mark; "" where nothing is (the mark is then that of
-  /// whatever follows).
+  /// "null", "~" … as written at the mark; "" if nothing is (the mark is then that of whatever
+  /// follows).
   std::string null_word(const YAML::Mark& mark) const;
 
  private:
-  /// The last place asked for: places mostly come in order, so a line is counted once.
+  /// The last position requested: positions mostly come in order, so a line is counted once.
   struct Column {
     std::size_t line_start = 0;
     std::size_t bytes = 0;
@@ -54,8 +54,8 @@ inline bool is_control(char c) {
   return (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7F;
 }
 
-/// Whether the quote at the front of the text, if any, ends: yaml-cpp lets the end of the file
-/// close it.
+/// True if the quote at the start of the text, if any, is closed: yaml-cpp accepts the end of the
+/// file as its end.
 bool is_closed(std::string_view text);
 
 /// Refuses, as ConfigError, characters and nesting that yaml-cpp would accept silently, misread or

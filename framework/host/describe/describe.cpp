@@ -94,7 +94,7 @@ std::string key_text(const FieldSpec& spec) {
                                           : spec.name;
 }
 
-/// Every field and, after it, those inside it; `key` with what it stands in.
+/// Lists every field followed by the fields inside it; `key` includes the enclosing keys.
 struct Row {
   std::string key;
   const FieldSpec* spec;
@@ -152,14 +152,10 @@ Json json_of(const FieldSpec& spec) {
 }
 
 std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
-  return {{"complete", traits.complete},
-          {"optimal", traits.optimal},
-          {"any_angle", traits.any_angle},
-          {"anytime", traits.anytime},
-          {"incremental", traits.incremental},
-          {"planar", traits.planar},
-          {"spatial", traits.spatial},
-          {"avoids_obstacles", traits.avoids_obstacles}};
+  return {{"complete", traits.complete},       {"optimal", traits.optimal},
+          {"any_angle", traits.any_angle},     {"anytime", traits.anytime},
+          {"incremental", traits.incremental}, {"planar", traits.planar},
+          {"spatial", traits.spatial},         {"avoids_obstacles", traits.avoids_obstacles}};
 }
 
 std::optional<Traits> traits_of(const PluginEntry& entry) {
@@ -171,7 +167,7 @@ std::optional<Traits> traits_of(const PluginEntry& entry) {
       return entry.local_planner(nullptr)->traits();
     }
   } catch (const ConfigError&) {
-    // A parameter has no default, so there is no planner to ask.
+    // Some parameter has no default, so no planner can be made to read its traits.
   }
   return std::nullopt;
 }

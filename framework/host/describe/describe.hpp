@@ -11,28 +11,28 @@
 
 namespace altiplan::host {
 
-/// What is known of a plugin, built in or from a library.
+/// Description of a plugin, built in or from a library.
 struct Description {
   std::string kind;
   std::string name;
   std::string sentence;
-  std::string library;  ///< file; "" for what is built in
+  std::string library;  ///< file; "" if built in
   std::string build;
   std::vector<FieldSpec> parameters;
   std::optional<Traits> traits;  ///< of planners, with default parameters
 };
 
-/// The plugins of that name, one for each kind that has it. Throws Error where there is none, and
-/// PluginError where its library is refused.
+/// The plugins of that name, one for each kind that has it. Throws Error if there is none, and
+/// PluginError if its library is refused.
 std::vector<Description> describe_plugin(Registry& registry, std::string_view name);
 std::string describe_text(const Description& description);
 nlohmann::ordered_json describe_json(const Description& description);
 
-/// The parameters as a Markdown table, a row each; those of lists and maps under their key.
+/// The parameters as a Markdown table, one row each; those of lists and maps follow their key.
 std::string parameter_table(const std::vector<FieldSpec>& parameters);
 
-/// The registry's libraries, each loaded in a process of its own: one that cannot be loaded, or
-/// that ends its process, is refused with the reason.
+/// The registry's libraries, each loaded in its own process: one that cannot be loaded, or that
+/// ends its process, is refused with the reason.
 std::vector<Library> examine_all(Registry& registry);
 std::string plugins_text(const Registry& registry, const std::vector<Library>& libraries);
 nlohmann::ordered_json plugins_json(const Registry& registry,

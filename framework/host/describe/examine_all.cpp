@@ -19,7 +19,7 @@ std::vector<Library> examine_all(Registry& registry) {
     }
     if (library.refused.empty()) {
       try {
-        // Getting one tries all; this process itself is to load none.
+        // Getting one plugin tries all of its library; the parent process must load none.
         in_child("",
                  [&] { registry.get(library.plugins.front().kind, library.plugins.front().name); });
       } catch (const PluginError& error) {
@@ -52,7 +52,7 @@ std::string plugins_text(const Registry& registry, const std::vector<Library>& l
   }
   text += refused;
   for (const LibraryCopy& copy : registry.copies()) {
-    text += "passed over: " + copy.file.string() + ": the same build as " + copy.used.string() +
+    text += "skipped: " + copy.file.string() + ": the same build as " + copy.used.string() +
             ", which comes first\n";
   }
   for (const std::filesystem::path& folder : registry.folders()) {

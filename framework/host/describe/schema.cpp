@@ -16,14 +16,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
 
-/// Writes schemas; what plugins take is written once, into `definitions`.
+/// Writes schemas; the parameters of each plugin are written once, into `definitions`.
 class Writer {
  public:
   explicit Writer(const Choices& choices) : choices_(choices) {}
 
   Json& definitions() { return definitions_; }
 
-  /// A map with these keys and no others.
+  /// A map with exactly these keys.
   Json object(const std::vector<FieldSpec>& fields) {
     Json schema = {{"type", "object"}, {"properties", Json::object()}};
     Json required = Json::array();
@@ -50,13 +50,13 @@ class Writer {
     return schema;
   }
 
-  /// Names offered for a kind; their parameters stand in the definitions from then on.
+  /// Names offered for a kind; adds their parameters to the definitions.
   std::vector<Choice> named(const std::string& kind) {
     std::vector<Choice> all = choices_(kind);
     for (const Choice& choice : all) {
       const std::string key = kind + "_" + choice.name;
       if (!definitions_.contains(key)) {
-        definitions_[key] = nullptr;  // keeps the place, and ends a recursion
+        definitions_[key] = nullptr;  // reserves the entry, and ends a recursion
         Json schema = object(choice.parameters);
         definitions_[key] = std::move(schema);
       }
@@ -89,7 +89,7 @@ class Writer {
   }
 
  private:
-  /// The bounds stand at the field, also where it is a list of numbers.
+  /// The bounds belong to the field, even if it is a list of numbers.
   static Json number(const char* type, const FieldSpec& field) {
     Json schema = {{"type", type}};
     if (std::isfinite(field.min)) {
@@ -140,7 +140,7 @@ class Writer {
     }
   }
 
-  /// at_m, at_lonlat or at_cell, the height in the point or above the ground.
+  /// at_m, at_lonlat or at_cell, with the height in the point or above the ground.
   static void add_point(const FieldSpec& field, Json& properties, Json& all_of) {
     Json one_of = Json::array();
     Json none = Json::array();
@@ -162,7 +162,7 @@ class Writer {
     all_of.push_back({{"oneOf", std::move(one_of)}});
   }
 
-  /// Exactly one key that is a plugin's name, over its parameters.
+  /// Exactly one key: a plugin's name, with its parameters as value.
   void add_plugin(const FieldSpec& field, Json& properties, Json& all_of) {
     const std::string& kind = field.choices.at(0);
     Json one_of = Json::array();
@@ -173,7 +173,7 @@ class Writer {
       one_of.push_back({{"required", Json::array({choice.name})}});
     }
     if (one_of.empty()) {
-      one_of.push_back(false);  // nothing is offered, so nothing fits
+      one_of.push_back(false);  // nothing is offered, so nothing is valid
     }
     all_of.push_back({{"oneOf", std::move(one_of)}});
   }
@@ -190,7 +190,7 @@ Json names_of(const std::vector<Choice>& choices) {
   return names;
 }
 
-/// `with` holds the parameters of the plugin that the verb names.
+/// Restricts `with` to the parameters of the plugin that the verb names.
 void add_parameter_rules(const std::string& verb, const std::string& kind, Writer& writer,
                          Json& all_of, Json& names) {
   for (const Choice& choice : writer.named(kind)) {
@@ -206,7 +206,7 @@ void add_parameter_rules(const std::string& verb, const std::string& kind, Write
   }
 }
 
-/// A step: the keys that every verb has, those of its verb, and the parameters by plugin.
+/// A step: the keys common to all verbs, those of its verb, and the parameters by plugin.
 Json step_schema(Writer& writer) {
   const Json a_step = {{"$ref", "#/definitions/step"}};
   Json properties = Json::object();
@@ -266,7 +266,7 @@ Json file_schema(const char* title, const Json& body, Writer& writer) {
   return schema;
 }
 
-/// A mission may stand in for the start, and for the goal or its place.
+/// A mission may replace the start, and the goal or its position.
 Json scenario_body(Writer& writer) {
   Json body = writer.object(fields_of<ScenarioFile>());
   Json& required = body["required"];
@@ -370,7 +370,7 @@ Json study_schema(const std::vector<FieldSpec>& study) {
 
 Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study) {
   Writer writer(choices);
-  // The keys that tell a file's kind are those that kind_of looks at.
+  // The same keys as in kind_of determine a file's kind.
   const Json is_study = {{"anyOf", Json::array({{{"required", Json::array({"pipelines"})}},
                                                 {{"required", Json::array({"scenarios"})}}})}};
   const Json is_scenario = {{"anyOf", Json::array({{{"required", Json::array({"environment"})}},

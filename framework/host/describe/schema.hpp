@@ -11,20 +11,20 @@
 
 namespace altiplan::host {
 
-/// A name that a file may use, and the parameters under it.
+/// A name that a file may use, and its parameters.
 struct Choice {
   std::string name;
   std::vector<FieldSpec> parameters;
 };
 
-/// What may be named for a kind ("environment", "moving", "planner" …).
+/// The names available for a kind ("environment", "moving", "planner" …).
 using Choices = std::function<std::vector<Choice>(std::string_view kind)>;
 
-/// Built-in shapes and the plugins of the registry's libraries; those of libraries that
-/// `examine_all` refuses are left out. Use it while the registry lives.
+/// Built-in shapes and the plugins of the registry's libraries, except those that `examine_all`
+/// refuses. The registry must outlive the result.
 Choices choices_of(Registry& registry);
 
-/// The declaration of a struct's fields.
+/// The declared fields of a struct.
 template <class T>
 std::vector<FieldSpec> fields_of() {
   T target;
@@ -35,12 +35,13 @@ std::vector<FieldSpec> fields_of() {
   return specs;
 }
 
-/// JSON Schemas (draft-07) of the files that users write; `study` is the declaration of a study's.
+/// JSON Schemas (draft-07) of the files that users write; `study` declares the fields of a study.
 nlohmann::ordered_json scenario_schema(const Choices& choices);
 nlohmann::ordered_json pipeline_schema(const Choices& choices);
 nlohmann::ordered_json study_schema(const std::vector<FieldSpec>& study);
-/// One schema for all three: a file is told by its keys.
+/// One schema for all three: the keys identify the kind of file.
 nlohmann::ordered_json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study);
-/// Of a map with these fields; the parameters of plugins that it may name stand in `definitions`.
+/// Schema of a map with these fields; the parameters of plugins that it may name are in
+/// `definitions`.
 nlohmann::ordered_json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices);
 }  // namespace altiplan::host

@@ -10,7 +10,7 @@
 namespace altiplan::host {
 namespace {
 
-/// The layer with some of its cells changed, drawn as a grid of its own.
+/// The layer with some of its cells changed, as a separate grid.
 class EditedCells final : public kit::CellLayer, public Ground {
  public:
   EditedCells(std::shared_ptr<const Environment> original, const GridSpec& spec,
@@ -35,7 +35,7 @@ class EditedCells final : public kit::CellLayer, public Ground {
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return original_->cell_centre(cell);
   }
-  // A ground has no cells: it stays as it was, but is not all that the layer blocks.
+  // A ground has no cells: it stays unchanged, but the layer may block more than its ground.
   const Ground* do_ground() const override { return ground_ != nullptr ? this : nullptr; }
   std::optional<double> do_height(double x, double y) const override {
     return ground_->height(x, y);
@@ -50,12 +50,12 @@ class EditedCells final : public kit::CellLayer, public Ground {
   const Ground* ground_;  ///< of the original, or null
 };
 
-/// The cells' box; throws ConfigError where the layer has no such cells.
+/// Bounding box of the cells; throws ConfigError if the layer has no such cells.
 Box box_of_cells(const Layer& layer, const SetCellsEntry& entry, const Location& where,
                  const std::string& key) {
   const auto& spec = layer.environment->info().native_grid;
   if (!spec) {
-    throw ConfigError(where, key, "the layer '" + layer.id + "' has no cells of its own");
+    throw ConfigError(where, key, "the layer '" + layer.id + "' has no cells");
   }
   Box box = Box::empty();
   for (std::size_t i = 0; i < entry.cells.size(); ++i) {
@@ -70,11 +70,11 @@ Box box_of_cells(const Layer& layer, const SetCellsEntry& entry, const Location&
   return box;
 }
 
-/// The layer as it is when the event comes, with the cells changed.
+/// The layer as it is when the event occurs, with the cells changed.
 Layer with_cells(const Layer& layer, const std::vector<Vec3>& cells, bool blocked) {
   const auto& spec = layer.environment->info().native_grid;
   if (!spec) {
-    throw Error("event set_cells: the layer '" + layer.id + "' has no cells of its own any more");
+    throw Error("event set_cells: the layer '" + layer.id + "' no longer has cells");
   }
   Layer edited = layer;
   edited.environment = std::make_shared<EditedCells>(layer.environment, *spec, cells, blocked);
@@ -87,7 +87,7 @@ std::vector<FlightEvent> build_events(const Config& config, const Mission& missi
   Site site = mission.site;
   site.before = &mission.truth;
   const std::optional<double>& level = config.scenario.level_flight_at_m;
-  World all = mission.truth;  // with every layer that is ever added
+  World all = mission.truth;  // including every layer added later
   for (std::size_t i = 0; i < config.scenario.events.size(); ++i) {
     const EventEntry& entry = config.scenario.events[i];
     const Location where = config.scenario_tree.find("events")->items[i].where;

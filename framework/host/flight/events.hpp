@@ -8,6 +8,6 @@
 
 namespace altiplan::host {
 
-/// The scenario's events, their layers built. Throws ConfigError naming the event.
+/// Builds the scenario's events and their layers. Throws ConfigError naming the event.
 std::vector<FlightEvent> build_events(const Config& config, const Mission& mission);
 }  // namespace altiplan::host

@@ -26,15 +26,15 @@ Flight::Flight(const FlightSetup& setup)
       state_(setup.request.start),
       before_(setup.request.before_start()),
       required_(std::max(request_.limits.min_clearance, request_.vehicle.radius_m)) {
-  // Shares without owning: the truth lives, and changes, in world_.
+  // Non-owning: the true world is owned, and changed, by world_.
   truth_request_.world =
       std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
-  truth_request_.limits.min_turn_radius = 0;  // held to by the track as a whole
+  truth_request_.limits.min_turn_radius = 0;  // checked for the whole track
   result_.track.emplace_back(state_.time_s, state_.position);
 }
 
 FlightResult Flight::run() {
-  // What fails ends the flight, and keeps what was flown.
+  // A failure ends the flight, but keeps the track.
   for (const auto part : {&Flight::fly_to_the_end, &Flight::finish}) {
     try {
       (this->*part)();
@@ -68,8 +68,8 @@ void Flight::fly_to_the_end() {
     if (late || ++steps_ > kMaxSteps) {
       end_flight(RunStatus::not_reached, late ? Reason::deadline : Reason::iterations,
                  (late ? time_out()
-                       : "the most steps of a flight were used up (step_s is "
-                         "short for this flight)") +
+                       : "reached the maximum number of steps of a flight (step_s is "
+                         "too short for this flight)") +
                      " at " + place(state_.position) + ", " + away() + " from the goal");
     } else if (setup_.request.budget.stop.stop_requested()) {
       end_flight(RunStatus::cancelled, Reason::none, "stopped at " + place(state_.position));
@@ -114,7 +114,7 @@ void Flight::end_flight(RunStatus status, Reason reason, std::string message) {
   if (status == RunStatus::not_reached && pilot_commands_ && setup_.replanner == nullptr) {
     result_.message +=
         "; the fly step has no replan: with replan: ID (of a plan step) a new route "
-        "from there is sought";
+        "from there would be sought";
   }
   if (status != RunStatus::solved && !result_.replans.empty() &&
       (result_.replans.back().status == RunStatus::failed ||
@@ -134,7 +134,7 @@ void Flight::hand_over(bool to_pilot, std::string why) {
 
 FlightResult fly(const FlightSetup& setup) {
   if (setup.route.empty() || setup.route.front() != setup.request.start.position) {
-    throw Error("a flight needs a route that begins at the start");
+    throw Error("expected a route that begins at the start");
   }
   if (!(setup.step_s > 0)) {
     throw Error("step_s must be greater than 0, found " + std::to_string(setup.step_s));

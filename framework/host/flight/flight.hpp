@@ -16,7 +16,7 @@
 
 namespace altiplan::host {
 
-/// A change of the true world, or of the goal, at a time or when the vehicle is near a place
+/// A change of the true world, or of the goal, at a time or when the vehicle is near a position
 /// (whichever is given; each event happens once).
 struct FlightEvent {
   enum class Kind { add, remove, move, set_cells, move_goal };
@@ -28,15 +28,15 @@ struct FlightEvent {
   std::optional<double> at_s;
   std::optional<Near> when_near;
   std::string id;                           ///< of the layer or moving obstacle
-  std::optional<Layer> layer;               ///< add: the layer; set_cells: what takes its place
-  std::function<Layer(const Layer&)> edit;  ///< set_cells: or what makes that of the layer then
-  std::optional<MovingObstacle> moving;     ///< add, where it is a moving obstacle
-  Vec3 vector{0, 0, 0};                     ///< move: by how much; move_goal: the new goal
-  Box box;             ///< set_cells: where cells change; left out: all of the layer
-  bool known = false;  ///< told to the vehicle at once, else it is met like all that is new
+  std::optional<Layer> layer;               ///< add: the layer; set_cells: its replacement
+  std::function<Layer(const Layer&)> edit;  ///< set_cells: or makes it from the current layer
+  std::optional<MovingObstacle> moving;     ///< add: if it is a moving obstacle
+  Vec3 vector{0, 0, 0};                     ///< move: offset; move_goal: the new goal
+  Box box;             ///< set_cells: the region that changes; default: the whole layer
+  bool known = false;  ///< known to the vehicle at once, else it has to be sensed
 
-  /// Whether it happens to a vehicle that is there then, if it has not happened yet. Times and
-  /// places of a track are sums of steps, so that 56 s can read 55.99999999999998 s.
+  /// True if the event is due for a vehicle at p at that time. Times and positions of a track are
+  /// sums of steps, so that 56 s can read 55.99999999999998 s.
   bool is_due(double time_s, const Vec3& p) const {
     constexpr double kRounding = 1e-9;  // s, m
     return (at_s && time_s >= *at_s - kRounding) ||
@@ -48,20 +48,20 @@ enum class ReplanWhen { unsafe, any_change };
 
 struct FlightSetup {
   Request request;        ///< the known world at take-off; limits that apply to tracks
-  Request route_request;  ///< the same with those for routes: replanned routes are held to it
+  Request route_request;  ///< the same with limits for routes, used for replanned routes
   Route route;
-  World truth;  ///< all layers and moving obstacles, also those that are not known
+  World truth;  ///< all layers and moving obstacles, known or not
   std::vector<FlightEvent> events;
-  const LocalPlanner* pilot = nullptr;  ///< null: the route is followed alone
+  const LocalPlanner* pilot = nullptr;  ///< null: just follow the route
   std::string pilot_name = "route";
-  bool always = false;  ///< the pilot flies all the way
+  bool always = false;  ///< the pilot flies the whole way
   double step_s = 1;
   Session* replanner = nullptr;
-  std::string replan_step;  ///< id of the step whose session that is
+  std::string replan_step;  ///< id of the step that owns the session
   ReplanWhen when = ReplanWhen::unsafe;
   std::vector<const Smoother*> smoothers;  ///< for replanned routes
   double replan_latency_s = 1;             ///< of simulated time
-  std::optional<double> replan_within_s;   ///< wall time that one replan may take
+  std::optional<double> replan_within_s;   ///< wall-time limit of one replan
   std::optional<double> max_time_s;        ///< default: ten times the route's duration
 };
 
@@ -85,26 +85,25 @@ struct FlightResult {
   RunStatus status = RunStatus::failed;  ///< solved, collided, not_reached, rejected or failed
   Reason reason = Reason::none;
   std::string message;
-  std::vector<std::pair<double, Vec3>> track;  ///< seconds, place; the first is the start
+  std::vector<std::pair<double, Vec3>> track;  ///< time (s), position; the first is the start
   std::vector<Handover> handovers;
   std::vector<Replan> replans;
   int collisions = 0;                      ///< the first contact ends the flight
   std::optional<double> min_separation_m;  ///< from anything in the true world, negative inside
   bool reached = false;
   Counters counters;  ///< the pilot's, and "steps" of the simulation
-  Measures measures;  ///< of the track, in the world as it was in the end
-  CheckResult check;  ///< each leg against the true world when it was flown
+  Measures measures;  ///< of the track, in the world at the end of the flight
+  CheckResult check;  ///< each leg against the true world at the time it was flown
 };
 
-/// Flies the route in simulated time, deterministically (wall time stands in replans[].time_s
-/// alone).
+/// Flies the route in simulated time, deterministically (wall time appears only in
+/// replans[].time_s).
 ///
-/// The vehicle follows the route at its speed law. What the planner did not know becomes known when
-/// it comes within `vehicle.sensing_m`. The pilot takes over where the stretch of route ahead, as
-/// far as the pilot's reach, comes within a twentieth of that reach of something that the route was
-/// not planned around: a layer that is new or changed, or a moving obstacle as both fly. It hands
-/// back once a straight leg to the route ahead and the stretch after it keep half as far off again,
-/// without a sharp turn.
+/// The vehicle follows the route at its speed law. An obstacle unknown to the planner becomes known
+/// within `vehicle.sensing_m`. The pilot takes over if the route ahead, within the pilot's reach,
+/// comes closer than 1/20 of that reach to something the route was not planned around: a new or
+/// changed layer, or a moving obstacle at the time of passing. It hands back once a straight leg to
+/// the route ahead, and the route after it, keep 1.5 times that distance, without a sharp turn.
 /// Contacts are judged against the true world, exactly along every leg flown.
 FlightResult fly(const FlightSetup& setup);
 }  // namespace altiplan::host

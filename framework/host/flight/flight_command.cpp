@@ -10,10 +10,10 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kMargin = 0.05;         ///< of the pilot's reach: nearer than this the pilot flies
-constexpr double kClearMargin = 0.075;   ///< and beyond this the route is clear again
-constexpr double kMinWay = 1e-3;       ///< metres: the rest of a leg is flown with the step
-constexpr double kMinShare = 1e-9;     ///< of a step: what rounding leaves of it is not flown
+constexpr double kMargin = 0.05;         ///< of the pilot's reach: the pilot takes over below this
+constexpr double kClearMargin = 0.075;   ///< above this the route is clear again
+constexpr double kMinWay = 1e-3;         ///< metres: a shorter rest of a leg is flown with the step
+constexpr double kMinShare = 1e-9;       ///< of a step: a shorter rest is rounding error, not flown
 const double kGentleTurn = radians(30);  ///< of a hand-back, at both ends of its leg
 constexpr int kMaxStuck = 3;
 }  // namespace
@@ -87,7 +87,8 @@ void Flight::fly_pilot() {
   const double dt = step.next.time_s - state_.time_s;
   const double run = (step.next.position - state_.position).norm();
   if (run > top_speed(request_.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-    throw PluginError("broke a law of its interface: a step faster than the vehicle", Reason::law);
+    throw PluginError("violated the contract of its interface: a step faster than the vehicle",
+                      Reason::contract);
   }
   fly_leg(step.next);
 }

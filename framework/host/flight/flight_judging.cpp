@@ -13,7 +13,7 @@ void Flight::fly_leg(const State& next) {
   const double t0 = state_.time_s;
   const double t1 = next.time_s;
   const Vec3& b = next.position;
-  if (a != b) {  // one that hovers flies no leg, but may be met there
+  if (a != b) {  // a hovering vehicle flies no leg, but may still be hit
     for (Violation& violation :
          leg_violations(before_, a, b, truth_request_, result_.track.size() - 1)) {
       result_.check.violations.push_back(std::move(violation));
@@ -23,13 +23,13 @@ void Flight::fly_leg(const State& next) {
   result_.track.emplace_back(t1, b);
   state_ = next;
   end_on_contact(a, t0, b, t1);
-  meet_events();  // at the goal too: what comes down on it there is met
+  meet_events();  // at the goal too: an obstacle may appear there
 }
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
   world_.flown(a, t0, b, t1);
   const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
-  if (met == nullptr || ended_) {  // what happens where a flight has ended changes no verdict
+  if (met == nullptr || ended_) {  // events after the end of the flight do not count
     return;
   }
   ++result_.collisions;
@@ -58,7 +58,7 @@ void Flight::finish() {
   if (!ended_) {
     const CheckResult& check = result_.check;
     result_.status = check.ok() ? RunStatus::solved : RunStatus::rejected;
-    result_.reason = check.ok() ? Reason::none : Reason::rule;
+    result_.reason = check.ok() ? Reason::none : Reason::constraint;
     result_.message = check.ok() ? "reached the goal" : "reached the goal, but " + attribute_to();
   }
 }

@@ -8,7 +8,7 @@
 
 namespace altiplan::host {
 
-/// The route still to be flown, by metres along it.
+/// The route still to be flown, parametrised by distance along it (m).
 class FlightPath {
  public:
   explicit FlightPath(const Route& route) : points_(without_repeats(route)) { measure(); }
@@ -22,14 +22,14 @@ class FlightPath {
     const double share = (s - along_[i]) / (along_[i + 1] - along_[i]);
     return share <= 0 ? points_[i] : Vec3(points_[i] + share * (points_[i + 1] - points_[i]));
   }
-  /// The first waypoint after s, the last where there is none.
+  /// The first waypoint after s; the last if there is none.
   const Vec3& next_waypoint(double s) const { return points_[next(s)]; }
   double end_of_leg(double s) const { return along_[next(s)]; }
   void append_waypoints_after(double s, std::vector<Vec3>& to) const {
     to.insert(to.end(), points_.begin() + std::ptrdiff_t(next(s)), points_.end());
   }
 
-  /// Calls with both ends of each piece of leg between s0 and s1.
+  /// Calls `call` with both ends of each piece of leg between s0 and s1.
   template <class Call>
   void for_each_leg(double s0, double s1, const Call& call) const {
     s1 = std::min(s1, length());
@@ -40,7 +40,7 @@ class FlightPath {
     }
   }
 
-  /// Where between s0 and s1 the path comes nearest to p.
+  /// The position between s0 and s1 at which the path is nearest to p.
   double nearest(const Vec3& p, double s0, double s1) const {
     double best = s0;
     double least = kInfinity;
@@ -59,7 +59,7 @@ class FlightPath {
     return std::min(best, length());
   }
 
-  /// From p straight to the place s, and on.
+  /// Goes from p straight to position s, then along the path.
   void rejoin(const Vec3& p, double s) {
     Route route{p, at(s)};
     if (s < length()) {
@@ -68,7 +68,7 @@ class FlightPath {
     points_ = without_repeats(route);
     measure();
   }
-  /// The path from p, which stands for the place s, with another end.
+  /// Restarts the path at p, in place of position s, with another end.
   void move_end(const Vec3& p, double s, const Vec3& goal) {
     Route route{p};
     append_waypoints_after(s, route);
@@ -88,7 +88,7 @@ class FlightPath {
     const auto after = std::upper_bound(along_.begin(), along_.end(), s);
     return after == along_.end() ? points_.size() - 1 : std::size_t(after - along_.begin());
   }
-  /// Index of the waypoint that the leg at s begins with; the last beyond the end.
+  /// Index of the waypoint at which the leg at s begins; the last one beyond the end.
   std::size_t leg(double s) const {
     const auto after = std::upper_bound(along_.begin(), along_.end(), s);
     return after == along_.begin() ? 0 : std::size_t(after - along_.begin()) - 1;

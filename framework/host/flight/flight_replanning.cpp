@@ -41,7 +41,7 @@ void Flight::replan_when_due() {
   } else {
     Replan& refused = result_.replans.back();
     refused.status = RunStatus::rejected;
-    refused.reason = Reason::rule;
+    refused.reason = Reason::constraint;
     refused.message = verdict_sentence(found, found.violations.front());
   }
 }
@@ -62,7 +62,7 @@ Route Flight::replan(const Request& request) {
     if (plan.status == PlanStatus::solved) {
       route = std::move(plan.route);
     }
-  } catch (const PluginError& error) {  // the flight goes on without a new route
+  } catch (const PluginError& error) {  // the flight continues without a new route
     told.reason = error.reason();
     told.message = error.what();
   }
@@ -79,7 +79,7 @@ void Flight::take_route(Route route, const Request& request) {
       if (smooth.status == PlanStatus::solved && check(smooth.route, request).ok()) {
         route = smooth.route;
       }
-    } catch (const PluginError&) {  // the route stays as it was
+    } catch (const PluginError&) {  // the route stays unchanged
     }
   }
   path_ = FlightPath(route);

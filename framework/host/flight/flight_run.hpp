@@ -11,7 +11,7 @@
 
 namespace altiplan::host {
 
-/// One flight: fly() made into a loop of events, sensing, replanning and steps.
+/// One flight: the loop of events, sensing, replanning and steps behind fly().
 class Flight {
  public:
   explicit Flight(const FlightSetup& setup);
@@ -26,46 +26,46 @@ class Flight {
   void end_flight(RunStatus status, Reason reason, std::string message);
   void hand_over(bool to_pilot, std::string why);
 
-  // Events, sensing, and what the route ahead meets: flight_sensing.cpp.
-  /// What is due happens; something that then lies over the vehicle has met it.
+  // Events, sensing, and obstacles on the route ahead: flight_sensing.cpp.
+  /// Applies due events; anything that then covers the vehicle is a contact.
   void meet_events();
   void sense();
-  /// A layer that the route was not planned around and that comes nearer than `room` to the leg.
+  /// A layer that the route was not planned around, nearer than `room` to the leg; null if none.
   const std::string* unplanned_near(const Vec3& a, const Vec3& b, double room) const;
   bool rest_is_blocked() const;
-  /// The same with moving obstacles, for a leg begun at time t0.
+  /// The same including moving obstacles, for a leg flown from t0 to t1.
   const std::string* danger_on(const Vec3& a, double t0, const Vec3& b, double t1,
                                double room) const;
-  /// What endangers the stretch of path from `from` on, as far as the pilot reaches.
+  /// The obstacle that endangers the path from `from` onward, within the pilot's reach.
   const std::string* danger_ahead(double from, double t, double speed, double room) const;
   bool is_free(const Vec3& p, double room) const;
 
-  // Who commands, and what is commanded: flight_command.cpp.
+  // Route following, pilot and hand-over: flight_command.cpp.
   double speed() const;
   void fly_route();
   void fly_pilot();
   void stuck(const std::string& why);
-  /// A point of the path half the pilot's reach ahead, farther where that is covered.
+  /// A point of the path half the pilot's reach ahead, or farther if that point is blocked.
   Vec3 local_target() const;
-  /// Takes the nearest way back to the path that stays clear; false where there is none.
+  /// Takes the nearest clear leg back to the path; false if there is none.
   bool hand_back();
 
-  // Routes from where the vehicle is: flight_replanning.cpp.
+  // Replanning from the vehicle's position: flight_replanning.cpp.
   void ask_replan();
-  /// The new route begins where the vehicle is when it comes.
+  /// The new route begins at the vehicle's position at that time.
   void replan_when_due();
-  /// The route that the session finds; empty where it finds none.
+  /// The route that the session finds; empty if none.
   Route replan(const Request& request);
   void take_route(Route route, const Request& request);
 
-  // What was flown, judged in the true world: flight_judging.cpp.
+  // The track, judged in the true world: flight_judging.cpp.
   void fly_leg(const State& next);
-  /// The leg counts for the separation; the first contact ends the flight.
+  /// Updates the separation; the first contact ends the flight.
   void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);
   void finish();
-  /// The first rule that was broken, with time and place.
+  /// The first violated constraint, with time and position.
   std::string attribute_to() const;
-  /// What check() asks of a route as a whole; the legs were judged in the world of their time.
+  /// The checks of a whole route, as in check(); legs were judged in the world of their time.
   void judge_whole(const Route& track);
 
   const FlightSetup& setup_;
@@ -87,8 +87,8 @@ class Flight {
   int stuck_ = 0;
   std::optional<double> replan_due_;
   double next_replan_ = -kInfinity;
-  std::vector<Change> changes_;         ///< not yet told to the pilot
-  std::vector<Change> replan_changes_;  ///< not yet told to the session
+  std::vector<Change> changes_;         ///< not yet passed to the pilot
+  std::vector<Change> replan_changes_;  ///< not yet passed to the session
   std::vector<Vec3> rest_;
   FlightResult result_;
 };

@@ -80,7 +80,7 @@ const std::string* Flight::danger_on(const Vec3& a, double t0, const Vec3& b, do
 const std::string* Flight::danger_ahead(double from, double t, double speed, double room) const {
   const std::string* danger = nullptr;
   if (world_.fresh().empty() && !end_moved_ && request_.world->moving().empty()) {
-    return danger;  // the route was planned around all there is
+    return danger;  // the route was planned around everything known
   }
   path_.for_each_leg(from, from + reach_, [&](const Vec3& a, const Vec3& b) {
     const double t1 = t + (b - a).norm() / speed;

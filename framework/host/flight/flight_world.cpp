@@ -10,7 +10,7 @@
 namespace altiplan::host {
 namespace {
 
-/// A layer carried elsewhere: asks the layer as it stood, at the place carried back.
+/// A displaced layer: queries the original at the position shifted back.
 class Carried final : public Environment, public Ground {
  public:
   Carried(std::shared_ptr<const Environment> original, const Vec3& by)
@@ -58,11 +58,11 @@ class Carried final : public Environment, public Ground {
   std::shared_ptr<const Environment> original_;
   const Ground* ground_;  ///< of the original, or null
   Vec3 by_;
-  LayerInfo info_;  ///< of its threats alone
+  LayerInfo info_;  ///< only its threats
 };
 
-/// A sphere that covers the shape as far as it matters at the height of p: tall solids are taken
-/// at that height, where a sphere around the whole of them would be of any size.
+/// A sphere that covers the relevant part of the shape: tall solids are cut at the height of p,
+/// since a sphere around all of them could be of any size.
 SensedObstacle as_sphere(const MovingObstacle& obstacle, const Vec3& p, double time_s) {
   SensedObstacle seen{obstacle.id, {0, 0, 0}, 0, obstacle.velocity};
   const Shape shape = obstacle.at(time_s);
@@ -85,14 +85,14 @@ auto find(Obstacles& moving, const std::string& id) {
   return std::find_if(moving.begin(), moving.end(),
                       [&](const MovingObstacle& obstacle) { return obstacle.id == id; });
 }
-/// Least signed distance of that flight from the obstacle's surface: minus the depth inside it.
+/// Minimum signed distance of that flight from the obstacle's surface: minus the depth inside it.
 double signed_separation(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,
                          double t1) {
   const double outside = separation(obstacle, a, t0, b, t1);
   if (outside > 0) {
     return outside;
   }
-  // Seen from the obstacle, which then stands, the flight is a straight leg as well.
+  // Relative to the obstacle, the flight is a straight leg as well.
   const Shape shape = obstacle.at(t0);
   const Vec3 end = b - obstacle.velocity * (t1 - t0);
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
@@ -119,7 +119,7 @@ void FlightWorld::apply(const FlightEvent& event) {
   } else if (event.kind == Kind::set_cells) {
     const Layer* old = truth_.find(event.id);
     if (old == nullptr) {
-      throw Error("event set_cells: there is no layer '" + event.id + "' then");
+      throw Error("event set_cells: there is no layer '" + event.id + "' at that time");
     }
     const Layer layer = event.edit ? event.edit(*old) : event.layer.value();
     truth_ = truth_.with_replaced(layer);
@@ -138,7 +138,8 @@ void FlightWorld::apply(const FlightEvent& event) {
     moving.erase(found);
     truth_ = truth_.with_moving(std::move(moving));
   } else {
-    throw Error("event remove: there is no layer or moving obstacle '" + event.id + "' then");
+    throw Error("event remove: there is no layer or moving obstacle '" + event.id +
+                "' at that time");
   }
   if (event.known || (event.layer && event.layer->known && event.kind == Kind::add) ||
       (event.moving && event.moving->known)) {
@@ -152,12 +153,12 @@ void FlightWorld::move(const FlightEvent& event) {
     Layer carried = *layer;
     carried.environment = std::make_shared<Carried>(layer->environment, event.vector);
     truth_ = truth_.with_replaced(std::move(carried));
-    set_cells_.erase(event.id);  // now all of the layer differs
+    set_cells_.erase(event.id);  // now the whole layer differs
   } else if (const auto found = find(moving, event.id); found != moving.end()) {
     found->shape = moved(found->shape, event.vector);
     truth_ = truth_.with_moving(std::move(moving));
   } else {
-    throw Error("event move: there is no layer or moving obstacle '" + event.id + "' then");
+    throw Error("event move: there is no layer or moving obstacle '" + event.id + "' at that time");
   }
 }
 
@@ -218,7 +219,7 @@ void FlightWorld::sense_moving(const Vec3& p, double time_s) {
   const auto distance = [&](const MovingObstacle& obstacle) {
     return signed_distance(obstacle.at(time_s), p);
   };
-  // An obstacle is seen where it is, and so is that it is not where it was thought to be.
+  // An obstacle is seen at its position, and its absence at the expected position.
   const auto is_news = [&](const MovingObstacle& obstacle) {
     return told_.count(obstacle.id) > 0 || distance(obstacle) <= sensing_m_;
   };

@@ -13,9 +13,8 @@
 
 namespace altiplan::host {
 
-/// The true world in time, and what the vehicle knows of it. A layer is known as it is when the
-/// known world holds the same environment; where it does not, the difference becomes known when it
-/// comes within sensing range.
+/// The true world over time, and the vehicle's knowledge of it. A layer is fully known if the known
+/// world holds the same environment; otherwise the difference becomes known within sensing range.
 class FlightWorld {
  public:
   FlightWorld(const FlightSetup& setup);
@@ -23,34 +22,35 @@ class FlightWorld {
   const World& truth() const { return truth_; }
   const std::shared_ptr<const World>& known() const { return known_; }
 
-  /// An event other than a moved goal. Throws Error where it names what is not there.
+  /// Applies an event other than a moved goal. Throws Error if its layer or obstacle does not
+  /// exist.
   void apply(const FlightEvent& event);
-  /// What has become known since the last call.
+  /// The changes that became known since the last call.
   std::vector<Change> sense(const Vec3& p, double time_s);
-  /// Known moving obstacles as a pilot is shown them. Valid until the next call.
+  /// Known moving obstacles as passed to a pilot. Valid until the next call.
   const std::vector<SensedObstacle>& sensed(const Vec3& p, double time_s);
 
   /// Layers that became known, or changed, since the route was planned.
   const std::set<std::string>& fresh() const { return fresh_; }
   void route_is_new() { fresh_.clear(); }
 
-  /// What the leg touches in the true world: an id, or null.
+  /// Id of the obstacle that the leg touches in the true world, or null.
   const std::string* contact(const Vec3& a, double t0, const Vec3& b, double t1,
                              double radius) const;
-  /// Least distance between the leg and anything in the true world, if it is below `least`:
-  /// signed as leg_clearance is, and so minus the depth inside of something.
+  /// Minimum distance between the leg and anything in the true world, if below `least`; signed as
+  /// in leg_clearance: minus the depth inside an obstacle.
   double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const;
-  /// A leg that was flown, from where the one before ended.
+  /// Records a flown leg, which begins at the end of the previous one.
   void flown(const Vec3& a, double t0, const Vec3& b, double t1);
-  /// Of all that was flown, in the true world as it was then; infinite where nothing was near.
+  /// Separation over the whole track, in the true world of that time; infinite if nothing was near.
   NearestLeg separation();
 
  private:
-  /// Measures the legs flown in the layers as they are: all at once, since most need no exact
+  /// Measures the recorded legs in the current layers: all at once, since most need no exact
   /// figure.
   void measure_flown();
   void move(const FlightEvent& event);
-  // `old`: the layer as it was known, or null.
+  // `old`: the layer as known before, or null.
   bool sees_difference(const Layer& layer, const Layer* old, const Vec3& p) const;
   Change learn(Layer layer, const Layer* old);
   bool sees(const Environment& environment, const Vec3& p) const {
@@ -67,6 +67,6 @@ class FlightWorld {
   std::vector<SensedObstacle> sensed_;
   NearestLeg separation_{0, kInfinity};
   std::size_t legs_ = 0;
-  Route flown_;  ///< the last of them, in the layers as they are, not yet measured against these
+  Route flown_;  ///< the latest legs, in the current layers, not yet measured
 };
 }  // namespace altiplan::host

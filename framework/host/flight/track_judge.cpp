@@ -19,7 +19,7 @@ class Replay {
         events_(setup.events),
         min_turn_radius_(setup.request.limits.min_turn_radius),
         request_(setup.request) {
-    request_.limits.min_turn_radius = 0;  // held to by the track as a whole
+    request_.limits.min_turn_radius = 0;  // checked for the whole track
   }
 
   TrackVerdict operator()(const Track& track) {
@@ -50,7 +50,7 @@ class Replay {
  private:
   std::vector<Violation>& found() { return verdict_.check.violations; }
 
-  /// What is due happens; something that then lies over the vehicle has met it.
+  /// Applies due events; anything that then covers the vehicle is a contact.
   void meet_events(const std::pair<double, Vec3>& here, std::size_t at, bool& touching) {
     bool world_differs = false;
     for (auto event = events_.begin(); event != events_.end();) {
@@ -79,7 +79,7 @@ class Replay {
     const double fastest = top_speed(request_.vehicle);
     if (!(t1 > t0) || run > fastest * (t1 - t0) * (1 + 1e-6) + kLengthTolerance) {
       found().push_back({"speed", at, t1 > t0 ? run / (t1 - t0) : kInfinity, fastest,
-                         "the track is faster there than the vehicle"});
+                         "the track is faster than the vehicle there"});
     }
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
     if (a != b) {
@@ -90,7 +90,7 @@ class Replay {
     note_contact(from, to, at, touching);
   }
 
-  /// A contact that goes on from place to leg to place counts once.
+  /// A contact that continues from point to leg to point counts once.
   void note_contact(const std::pair<double, Vec3>& from, const std::pair<double, Vec3>& to,
                     std::size_t at, bool& touching) {
     const std::string* met =
@@ -127,7 +127,7 @@ class Replay {
   FlightWorld world_;
   std::vector<FlightEvent> events_;  ///< still to come
   double min_turn_radius_;
-  Request request_;  ///< in the true world as it is then
+  Request request_;  ///< in the true world at that time
   TrackVerdict verdict_;
 };
 }  // namespace
@@ -137,8 +137,8 @@ TrackVerdict judge_track(const Track& track, const FlightSetup& setup) {
 }
 
 namespace {
-/// Leaves out the points that lie on the straight way from the last one kept to the next; `index`
-/// gets the places in the track of those that stay.
+/// Drops the points that lie on the straight line from the last one kept to the next; `index`
+/// receives the track indices of the points kept.
 Route stretches(const Route& track, std::vector<std::size_t>& index) {
   Route kept;
   for (std::size_t i = 0; i < track.size(); ++i) {
@@ -185,7 +185,7 @@ std::vector<Violation> whole_track_violations(const Route& track, const Request&
   const double total = length(track);
   if (total > request.limits.max_route_length + kLengthTolerance) {
     found.push_back({"route_length", 0, total, request.limits.max_route_length,
-                     "the flight is longer than the route may be"});
+                     "the flight is longer than the maximum route length"});
   }
   for (const NamedConstraint& named : request.constraints) {
     for (Violation& violation : named.constraint->violations(track, request)) {

@@ -15,23 +15,23 @@ using kit::MissionItem;
 using kit::MissionPoint;
 using Format = kit::MissionFile::Format;
 
-/// The first suits autopilots, which hold degrees to seven decimals (1 cm); the last is as exact as
-/// the judge's tolerance.
+/// The first suits autopilots, which store degrees to seven decimals (1 cm); the last matches the
+/// judge's tolerance.
 constexpr Decimals kDecimals[] = {{7, 3}, {9, 5}, {13, 8}};
 
-/// Height of home above sea level, where it is known.
+/// Height of home above sea level, if known.
 std::optional<double> home_altitude(const Mission& mission, const ExportOptions& options,
                                     const Vec3& start) {
   return options.home_altitude_m ? options.home_altitude_m
                                  : mission.truth.ground(start.x(), start.y());
 }
 
-/// What the options ask for and the world has not.
+/// Throws Error if the options need something that the world does not have.
 void expect_possible(const Mission& mission, const ExportOptions& options, const Vec3& start) {
   if (options.format && !mission.truth.frame().has_position()) {
     throw Error(
-        "the scenario's world has no position on the Earth: give it a layer that brings one, or "
-        "frame: {origin_lonlat: …}; csv needs none");
+        "the scenario's world is not georeferenced: add a georeferenced layer, or "
+        "frame: {origin_lonlat: …}; csv needs neither");
   }
   if (options.altitude == AltitudeFrame::ground && !mission.truth.has_ground()) {
     throw Error("--altitude ground needs a world with ground");
@@ -39,8 +39,8 @@ void expect_possible(const Mission& mission, const ExportOptions& options, const
   const std::optional<double> home = home_altitude(mission, options, start);
   if (!home && (options.altitude == AltitudeFrame::home || options.takeoff || options.land)) {
     throw Error(
-        "--altitude home, --takeoff and --land need to know how high home is, and the world has no "
-        "ground below the start: --home-altitude M, in metres above sea level, says it");
+        "--altitude home, --takeoff and --land need the altitude of home, and the world has no "
+        "ground below the start: give --home-altitude M, in metres above sea level");
   }
   if (options.takeoff && *home >= start.z()) {
     throw Error("--takeoff: the start, " + rounded_text(start.z(), 3) +
@@ -56,7 +56,7 @@ double ground_at(const World& world, const Vec3& p) {
   return *ground;
 }
 
-/// Turns local points into those of a file; without a position, into heights alone.
+/// Converts local points to points of a file; without a georeference, only their heights.
 class Placing {
  public:
   Placing(const Mission& mission, const ExportOptions& options, const Vec3& start)
@@ -97,15 +97,15 @@ class Placing {
   MissionPoint home_;
 };
 
-/// Where the landing below the last point ends.
+/// The end point of the landing below the last point.
 Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
   Vec3 down = route.back();
   down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
   return down;
 }
 
-/// What the ways up and down, which are not part of the route, come too near to; the ground, where
-/// they begin and end, aside. "" where they are free.
+/// The problem of the vertical climb and descent, which are not part of the route: a layer that
+/// they come too near to, except the ground, where they begin and end; "" if none.
 std::string column_problem(const Mission& mission, const Route& route, const Placing& place,
                            const ExportOptions& options) {
   Vec3 home = route.front();
@@ -117,10 +117,10 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
              layer.environment->blocked(foot, top, mission.request.vehicle.radius_m);
     };
     if (options.takeoff && blocked(home, route.front())) {
-      return "the way up from home to the start comes too near to '" + layer.id + "'";
+      return "the climb from home to the start comes too near to '" + layer.id + "'";
     }
     if (options.land && blocked(down, route.back())) {
-      return "the way down from the last point comes too near to '" + layer.id + "'";
+      return "the descent from the last point comes too near to '" + layer.id + "'";
     }
   }
   return "";
@@ -168,7 +168,7 @@ std::string csv_text(const ExportSource& source, const Placing& place, bool plac
   return out;
 }
 
-/// The first violation of what was written and read back, "" where it is sound.
+/// The first violation of the route as written and read back; "" if it is valid.
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route) {
   CheckResult check;
   if (source.times.empty()) {
@@ -191,7 +191,8 @@ std::string problem_of(const Mission& mission, const ExportSource& source, const
   return "point " + std::to_string(first.at) + ", " + first.constraint + ": " + first.message;
 }
 
-/// Fewer points, and their times; what was dropped is said. False where that many are too few.
+/// Drops points, and their times, to fit max_items, and reports it. False if the route cannot be
+/// thinned that far.
 bool thin(const Mission& mission, ExportSource& source, const ExportOptions& options,
           std::vector<std::string>& messages) {
   const std::size_t extra = options.land ? 1 : 0;
@@ -205,13 +206,13 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
               flown ? std::vector<Goal>() : mission.via);
   if (kept.size() > most) {
     messages.push_back("not written: the route needs " + std::to_string(kept.size() + extra) +
-                       " items to stay sound, more than --max-items " +
+                       " items to stay valid, more than --max-items " +
                        std::to_string(*options.max_items));
     return false;
   }
   messages.push_back(std::to_string(source.route.size() - kept.size()) + " of " +
                      std::to_string(source.route.size()) +
-                     " points dropped: the route stays sound without them");
+                     " points dropped: the route stays valid without them");
   ExportSource less{source.name, {}, {}, source.events};
   for (const std::size_t n : kept) {
     less.route.push_back(source.route[n]);
@@ -223,7 +224,7 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
   return true;
 }
 
-/// The zones that go with it; formats without a place for them say so.
+/// Adds the zones; reports it if the format cannot hold them.
 void add_zones(const Mission& mission, const Route& route, kit::MissionFile& file,
                std::vector<std::string>& messages) {
   const World& world = mission.known;
@@ -235,7 +236,7 @@ void add_zones(const Mission& mission, const Route& route, kit::MissionFile& fil
   }
   const std::string count = std::to_string(fence.zones.size()) + " zones ";
   if (file.format == Format::waypoints || file.format == Format::gpx) {
-    messages.push_back(count + "are not written: the format has no place for them beside a route");
+    messages.push_back(count + "are not written: the format cannot hold them beside a route");
     return;
   }
   messages.push_back(count + (flat ? "written as the fence" : "written"));
@@ -264,21 +265,21 @@ const char* file_name(const std::optional<Format>& format) {
 
 std::string ExportOptions::problem() const {
   if (format == Format::gpx && altitude != AltitudeFrame::sea) {
-    return "gpx has heights above sea level alone: --altitude sea";
+    return "gpx only has heights above sea level: give --altitude sea";
   }
   if (format == Format::kml && altitude == AltitudeFrame::home) {
-    return "kml has heights above sea level or above ground: --altitude sea or ground";
+    return "kml only has heights above sea level or ground: give --altitude sea or ground";
   }
   if ((takeoff || land) && format != Format::qgc_plan && format != Format::waypoints) {
-    return "--takeoff and --land go with qgc-plan and waypoints: other formats have no commands";
+    return "--takeoff and --land need qgc-plan or waypoints: other formats have no commands";
   }
   return "";
 }
 
 namespace {
 
-/// Writes the route with as few decimals as keep it sound when read back: the text and what to say
-/// of it.
+/// Writes the route with as few decimals as keep it valid when read back; returns the text and its
+/// messages.
 Exported written_soundly(const Mission& mission, const ExportSource& source, const Placing& place,
                          const ExportOptions& options, MissionText text) {
   Exported result;
@@ -288,23 +289,23 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
     const std::string written =
         options.format ? mission_text(text)
                        : csv_text(source, place, mission.truth.frame().has_position(), decimals);
-    const ImportedRoute read = read_imported_route(file_name(options.format), written, mission.truth,
-                                                 mission.request.start.position);
+    const ImportedRoute read = read_imported_route(file_name(options.format), written,
+                                                   mission.truth, mission.request.start.position);
     const std::string now = problem_of(mission, source, read.route);
     if (now.empty()) {
       result.messages.push_back(std::to_string(source.route.size()) + " points" +
                                 (options.land ? " and a landing" : "") + ", " + place.in_words() +
-                                "; read back and judged: sound with " +
+                                "; read back and judged: valid with " +
                                 std::to_string(decimals.degrees) + " decimals of a degree and " +
                                 std::to_string(decimals.metres) + " of a metre" +
-                                (problem.empty() ? "" : " (fewer break: " + problem + ")"));
+                                (problem.empty() ? "" : " (with fewer: " + problem + ")"));
       result.text = written;
       return result;
     }
     problem = now;
   }
-  result.messages.push_back("not written: rounded as the format has it, the route is not sound: " +
-                            problem);
+  result.messages.push_back(
+      "not written: rounded to the format's precision, the route is not valid: " + problem);
   return result;
 }
 }  // namespace
@@ -316,7 +317,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   ExportSource source = wanted;
   std::vector<std::string> notes;
   if (const std::string problem = problem_of(mission, source, source.route); !problem.empty()) {
-    result.messages.push_back("not written: the route is not sound: " + problem);
+    result.messages.push_back("not written: the route is not valid: " + problem);
     return result;
   }
   if (!thin(mission, source, options, notes)) {
@@ -332,7 +333,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   if (options.format && !home_altitude(mission, options, source.route.front())) {
     notes.emplace_back(
         "the world has no ground below the start: home is written at the start's own height "
-        "(--home-altitude says another)");
+        "(--home-altitude overrides it)");
   }
   MissionText text;
   text.speed_mps = mission.request.vehicle.speed_mps;
@@ -346,7 +347,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     if (options.altitude == AltitudeFrame::ground) {
       result.messages.emplace_back(
           "warning: judged with straight legs; a vehicle that follows the ground between the "
-          "points flies others");
+          "points deviates from them");
     }
   }
   return result;

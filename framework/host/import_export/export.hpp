@@ -12,34 +12,34 @@
 namespace altiplan::host {
 
 struct ExportOptions {
-  /// None: CSV, which needs no position.
+  /// None: CSV, which needs no georeference.
   std::optional<kit::MissionFile::Format> format;
   kit::AltitudeFrame altitude = kit::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
-  /// Of home, above sea level; left out: the ground below the start.
+  /// Altitude of home above sea level; default: the ground below the start.
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
 
-  /// Which of them do not go together, "" where they do.
+  /// The reason why the options cannot be combined; "" if they can.
   std::string problem() const;
 };
 
-/// What is to be written: a route, or a flight with its times.
+/// The source of an export: a route, or a flight with its times.
 struct ExportSource {
   std::string name;
   Route route;
-  std::vector<double> times;        ///< of a flight, one a point
-  std::vector<FlightEvent> events;  ///< that the flight met
+  std::vector<double> times;        ///< of a flight, one per point
+  std::vector<FlightEvent> events;  ///< of the flight
 };
 
 struct Exported {
-  std::optional<std::string> text;    ///< none where what would be written is not sound
+  std::optional<std::string> text;    ///< none if the written route would not be valid
   std::vector<std::string> messages;  ///< the verdict first
 };
 
-/// Writes the route, reads back what was written and judges that: with more decimals where fewer
-/// are not enough. Throws Error for what the format or the world cannot say.
+/// Writes the route, reads it back and judges the result; uses more decimals if fewer are not
+/// enough. Throws Error if the format or the world cannot express what is asked for.
 Exported export_route(const Mission& mission, const ExportSource& source,
                       const ExportOptions& options);
 }  // namespace altiplan::host

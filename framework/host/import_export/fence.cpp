@@ -13,7 +13,7 @@ using kit::MissionZone;
 
 struct Zone {
   MissionZone zone;
-  Shape flat;  ///< without limits in height, and without a keep-out zone's holes
+  Shape flat;  ///< without vertical limits, and without a keep-out zone's holes
 };
 
 std::optional<double> finite(double value) {
@@ -28,8 +28,8 @@ kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
   return result;
 }
 
-/// The circle of true metres around the local one, or inside it where it is to be kept in: the
-/// world's frame has a scale of its own away from its origin.
+/// The true circle around the local one, or inside it for a keep-in zone: away from its origin the
+/// world's frame has a scale error.
 Zone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
   constexpr int kDirections = 64;
   Zone result;
@@ -63,7 +63,7 @@ Zone prism_of(const Frame& frame, Prism prism, bool keep_in) {
   return result;
 }
 
-/// A box is a prism; a sphere the cylinder around it.
+/// A box becomes a prism; a sphere, the cylinder around it.
 Zone zone_of(const Frame& frame, const Drawn& drawn) {
   const bool keep_in = drawn.role == Drawn::Role::keep_in;
   Zone result;
@@ -151,15 +151,15 @@ Fence flat_fence_of(const World& world, const Route& route) {
     if (!said.keep_in && crosses(zone.flat, route)) {
       fence.notes.push_back("zone '" + said.name + "' is left out of the fence: the route passes " +
                             (limits.empty() ? "through its hole" : "beyond its " + limits) +
-                            ", which a fence cannot say");
+                            ", which a fence cannot express");
       continue;
     }
     if (!limits.empty()) {
       fence.notes.push_back("zone '" + said.name + "' (" + limits +
-                            ") stands in the fence at every height: a fence has no limits");
+                            ") is in the fence at every height: a fence has no vertical limits");
     }
     if (lost_hole) {
-      fence.notes.push_back("zone '" + said.name + "' stands in the fence without its holes");
+      fence.notes.push_back("zone '" + said.name + "' is in the fence without its holes");
     }
     fence.zones.push_back(said);
   }
@@ -168,7 +168,7 @@ Fence flat_fence_of(const World& world, const Route& route) {
   if (inside > 1) {
     fence.notes.push_back(std::to_string(inside) +
                           " keep-in zones: autopilots differ on whether one of them must hold the "
-                          "vehicle, or all");
+                          "vehicle, or all of them");
   }
   return fence;
 }

@@ -13,13 +13,13 @@ namespace altiplan::host {
 /// The keep-out and keep-in zones of a world, in longitude and latitude.
 struct Fence {
   std::vector<kit::MissionZone> zones;
-  std::vector<std::string> notes;  ///< what of them the format cannot say
+  std::vector<std::string> notes;  ///< what the format cannot express
 };
 
-/// All zones as they are: for formats that hold limits in height and holes.
+/// All zones unchanged: for formats with vertical limits and holes.
 Fence zones_of(const World& world);
 
-/// The zones as a fence without limits in height, as ground stations have it. A zone that the route
-/// flies over, under or through the hole of would stop it there: it is left out, and said.
+/// The zones as a fence without vertical limits, as ground stations use it. A zone that the route
+/// passes over, under, or through a hole of would stop it there: it is left out with a note.
 Fence flat_fence_of(const World& world, const Route& route);
 }  // namespace altiplan::host

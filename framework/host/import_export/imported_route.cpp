@@ -47,7 +47,7 @@ Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home
               const World& world) {
   if (!world.frame().has_position()) {
     throw Error(
-        "longitude and latitude need a world with a position: a layer that brings one, or "
+        "longitude and latitude need a georeferenced world: add a georeferenced layer, or "
         "frame: {origin_lonlat: …}");
   }
   const auto [x, y] = world.frame().to_local(point.lon, point.lat);
@@ -71,7 +71,7 @@ Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home
 }
 
 ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
-                      const std::string& file) {
+                       const std::string& file) {
   ImportedRoute result;
   result.notes = mission.notes;
   try {
@@ -96,7 +96,7 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
 }
 
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                const World& world, const Vec3& start) {
+                                  const World& world, const Vec3& start) {
   if (!is_csv(file)) {
     return route_in(kit::read_mission(file, text), world, start, file);
   }

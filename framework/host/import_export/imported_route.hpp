@@ -11,29 +11,29 @@
 
 namespace altiplan::host {
 
-/// A route that another program wrote, or that we wrote for one.
+/// A route read from a file of altiplan or of another program.
 struct ImportedRoute {
   Route route;
-  std::vector<std::string> notes;  ///< what was left out, how heights were read
+  std::vector<std::string> notes;  ///< what was ignored, how heights were interpreted
 };
 
-/// Degrees of seven decimals are up to this far from what they stand for, in metres: a first point
-/// that is as near to the start is the start.
+/// Maximum rounding error of degrees with seven decimals, in metres: a first point this near to the
+/// start is taken as the start.
 inline constexpr double kRoundingReach = 0.02;
 
 /// The point in local metres; `home` is for heights relative to it. Throws Error in a world without
-/// a position, or ground below where it is asked for.
+/// a georeference, or without ground below the point if that is needed.
 Vec3 to_local(const kit::MissionPoint& point, const std::optional<kit::MissionPoint>& home,
               const World& world);
 
 /// A mission's route in the world; messages begin with `file`.
 ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
-                      const std::string& file);
+                       const std::string& file);
 
-/// Reads a route in any of the forms that we write: JSON ([[x, y, z], …] or a result), CSV, or a
-/// mission file. The rounding of a start is undone for all but JSON.
+/// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), CSV, or a
+/// mission file. Undoes the rounding of the start except in JSON.
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission);
-/// The same from a text that is at hand, not JSON.
+/// The same from a text in memory, not JSON.
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                const World& world, const Vec3& start);
+                                  const World& world, const Vec3& start);
 }  // namespace altiplan::host

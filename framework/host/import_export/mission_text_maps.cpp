@@ -21,7 +21,7 @@ std::string escaped(const std::string& text) {
     result += c == '&'   ? "&amp;"
               : c == '<' ? "&lt;"
               : c == '>' ? "&gt;"
-              : control  ? "?"  // XML has no way to write it
+              : control  ? "?"  // XML cannot represent it
                          : std::string(1, c);
   }
   return result;
@@ -87,7 +87,7 @@ class KmlWriter {
     out_ += std::string("      <Data name=\"") + key + "\"><value>" + value + "</value></Data>\n";
   }
 
-  /// Extruded from its ceiling down to the ground; both limits stand beside it as data.
+  /// Extruded from its ceiling down to the ground; both limits are added as data.
   void add_zone(const MissionZone& zone) {
     const char* role = zone.keep_in ? "keep_in" : "keep_out";
     out_ += "  <Placemark>\n    <name>" + escaped(zone.name.empty() ? role : zone.name) +

@@ -6,13 +6,13 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::json;  // keys in the order of the alphabet, as QGroundControl writes them
+using Json = nlohmann::json;  // keys in alphabetical order, as QGroundControl writes them
 using kit::AltitudeFrame;
 using kit::MissionItem;
 using kit::MissionPoint;
 using kit::MissionZone;
 
-/// MAV_FRAME, and QGroundControl's number for the same.
+/// MAV_FRAME, and QGroundControl's number for it.
 struct FrameNumbers {
   int mav_frame;
   int altitude_mode;
@@ -69,7 +69,7 @@ Json corners_json(const kit::Ring& ring, int decimals) {
   return corners;
 }
 
-/// Holes of a keep-in zone are zones to keep out of; those of a keep-out zone cannot be written.
+/// Holes of a keep-in zone become keep-out zones; those of a keep-out zone cannot be written.
 Json fence_json(const std::vector<MissionZone>& zones, const Decimals& decimals) {
   Json polygons = Json::array();
   Json circles = Json::array();
@@ -101,7 +101,7 @@ Json fence_json(const std::vector<MissionZone>& zones, const Decimals& decimals)
 }  // namespace
 
 std::string qgc_plan_text(const MissionText& text) {
-  constexpr int kArduPilot = 3;  // of MAV_AUTOPILOT: knows all three altitude frames
+  constexpr int kArduPilot = 3;  // of MAV_AUTOPILOT: supports all three altitude frames
   constexpr int kMultirotor = 2;
   const Decimals& decimals = text.decimals;
   const MissionPoint& home = text.mission.home.value();

@@ -23,7 +23,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// Where x_m, y_m and z_m stand.
+/// Indices of the columns x_m, y_m and z_m.
 std::array<std::size_t, 3> columns_of(const std::vector<std::string_view>& head) {
   std::array<std::size_t, 3> columns{};
   static constexpr std::array<std::string_view, 3> kNames{"x_m", "y_m", "z_m"};
@@ -46,7 +46,7 @@ double metres_of(std::string_view cell) {
   }
   return value;
 }
-/// The column that `export` writes, where there is one.
+/// Checks the column that `export` writes, if present.
 void expect_frame(const std::vector<std::string_view>& head,
                   const std::vector<std::string_view>& cells) {
   const auto found = std::find(head.begin(), head.end(), "altitude_frame");
@@ -95,7 +95,7 @@ Route read_route_csv(const std::string& file, const std::string& text) {
     throw Error(file + ":" + std::to_string(line) + ": " + error.what());
   }
   if (route.empty()) {
-    throw Error(file + ": there is no route in it");
+    throw Error(file + ": it contains no route");
   }
   return route;
 }

@@ -18,7 +18,7 @@ double off_line(const Vec3& a, const Vec3& p, const Vec3& b) {
   return (p - a - share * along).norm();
 }
 
-/// The route's points that are left, and which of them cannot go as things are.
+/// The remaining points of the route, and which of them cannot currently be dropped.
 class Thinning {
  public:
   Thinning(const Route& route, const Request& request, const std::vector<Goal>& via)
@@ -37,7 +37,7 @@ class Thinning {
       }
       if (can_go(k)) {
         left_.erase(left_.begin() + std::ptrdiff_t(k));
-        // The neighbours' legs are others now.
+        // The neighbours' legs have changed.
         for (std::size_t n = k < 3 ? 0 : k - 3; n < std::min(k + 3, left_.size()); ++n) {
           stuck_[left_[n]] = false;
         }
@@ -51,7 +51,7 @@ class Thinning {
  private:
   const Vec3& at(std::size_t k) const { return route_[left_[k]]; }
 
-  /// Place in left_ of the point to try next; 0 where there is none.
+  /// Index in left_ of the point to try next; 0 if none.
   std::size_t nearest_to_line() const {
     std::size_t best = 0;
     double least = kInfinity;
@@ -68,8 +68,8 @@ class Thinning {
     return best;
   }
 
-  /// The leg past the point and the one after it, whose turn is another one then; past a leg
-  /// without a heading those after it too.
+  /// True if the leg past the point is valid, and the next one, whose turn changes; after a leg
+  /// without a heading, the following ones too.
   bool can_go(std::size_t k) const {
     std::optional<Approach> before = request_.before_start();
     for (std::size_t i = 0; i + 1 < k; ++i) {

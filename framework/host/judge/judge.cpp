@@ -10,9 +10,9 @@ namespace {
 
 constexpr const char* kLayerRule = "layer";
 
-/// Samples of the route at which a layer says two things; law 3 of Environment.
+/// Samples of the route at which a layer contradicts itself; contract 3 of Environment.
 void check_consistency(const Layer& layer, const Route& route, std::vector<Violation>& found) {
-  constexpr int kSamples = 8;  // a leg; this looks for lies, it does not judge the route
+  constexpr int kSamples = 8;  // per leg; this checks layers, not the route
   const Environment& environment = *layer.environment;
   const double slack = environment.over_approximation();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {

@@ -15,7 +15,7 @@
 namespace altiplan::host {
 namespace {
 
-/// An optional corner of the volume, completed from the layers' box.
+/// The volume; missing corners come from the layers' box.
 Box volume_of(const Config& config, const World& truth, const std::optional<double>& level) {
   const VolumeEntry& entry = config.scenario.volume;
   Box box = truth.bounds();
@@ -134,7 +134,7 @@ std::string percent(double share) {
   return text;
 }
 
-/// A point that needs something that is not there yet is not known yet.
+/// The point, or nothing if it depends on a layer that is not built yet.
 std::optional<Vec3> maybe_point(const Point& point, const Site& site,
                                 const std::optional<double>& level) {
   try {
@@ -161,27 +161,27 @@ Vec3 resolve_point(const Point& point, const Site& site, const std::optional<dou
 namespace {
 using namespace std::string_literals;
 
-/// What every use of a layer rests on.
+/// Checks what every use of a layer relies on.
 void expect_sound(const Layer& layer) {
   if (layer.environment == nullptr) {
     throw PluginError("made no object");
   }
   const auto [slack, box] =
       attributed([] { return "when asked for its bounds, ground, cells, threats or notes"s; },
-             [&] {
-               const Environment& asked = *layer.environment;
-               // What throws at all does it here, and not to those who ask later.
-               (void)(asked.ground(), asked.info());
-               return std::pair(asked.over_approximation(), asked.bounds());
-             });
+                 [&] {
+                   const Environment& asked = *layer.environment;
+                   // Whatever can throw does so here, not in a later query.
+                   (void)(asked.ground(), asked.info());
+                   return std::pair(asked.over_approximation(), asked.bounds());
+                 });
   if (!(slack >= 0 && std::isfinite(slack))) {
-    throw PluginError("broke a law of its interface: its slack is " + std::to_string(slack) +
-                      ", expected a length of at least 0");
+    throw PluginError("violated the contract of its interface: its slack is " +
+                      std::to_string(slack) + ", expected a length of at least 0");
   }
   for (int axis = 0; axis < 3; ++axis) {
     const bool crossed = std::isfinite(box.min[axis]) && box.max[axis] < box.min[axis];
     if (crossed || std::isnan(box.min[axis]) || std::isnan(box.max[axis])) {
-      throw PluginError("broke a law of its interface: its bounds reach from " +
+      throw PluginError("violated the contract of its interface: its bounds reach from " +
                         std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]) +
                         " on an axis");
     }
@@ -210,7 +210,7 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
 }
 
 namespace {
-/// The layers in their order, each built on those before it.
+/// Builds the layers in order, each with access to those before it.
 void build_layers(const Config& config, Mission& mission, const Calling& calling) {
   const ScenarioFile& file = config.scenario;
   Site& site = mission.site;
@@ -237,35 +237,35 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
   }
 }
 
-/// The frame's error, told and, where it matters, warned of.
+/// Notes the frame's scale error, and warns if it is large.
 void note_scale(Mission& mission) {
   const Frame& frame = mission.truth.frame();
   const double error = frame.scale_error(mission.site.volume);
   if (error > 0) {
-    mission.notes.push_back("frame: " + frame.crs() + ", greatest scale error " + percent(error));
+    mission.notes.push_back("frame: " + frame.crs() + ", maximum scale error " + percent(error));
   }
   if (error > 0.005) {
     mission.warnings.push_back(
         "lengths in the local frame are off by up to " + percent(error) +
         (mission.truth.has_ground()
-             ? "; a projected system mends it: frame: {crs: …}"
-             : "; an origin near the flight mends it: frame: {origin_lonlat: [lon, lat]}"));
+             ? "; use a projected coordinate system: frame: {crs: …}"
+             : "; use an origin near the flight: frame: {origin_lonlat: [lon, lat]}"));
   }
 }
 
-/// A layer that touches nothing of the volume protects from nothing: mostly a slip, such as
-/// latitude and longitude swapped in its file.
+/// Warns of a layer that does not touch the volume, and so has no effect: usually a mistake, such
+/// as latitude and longitude swapped in its file.
 void warn_of_distant_layers(Mission& mission) {
   for (const Layer& layer : mission.truth.layers()) {
     const Box box = layer.environment->bounds();
     if (!box.is_empty() && box.intersected(mission.site.volume).is_empty()) {
       mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin +
-                                 ") touches nothing of the volume: is it where it should be?");
+                                 ") does not touch the volume: check its position");
     }
   }
 }
 
-/// What may be known at take-off.
+/// The part of the world that is known at take-off.
 World known_part(const World& truth) {
   World known = truth;
   for (const Layer& layer : truth.layers()) {
@@ -282,7 +282,7 @@ World known_part(const World& truth) {
   return known.with_moving(std::move(moving));
 }
 
-/// What the layers are built from, but for what they bring themselves.
+/// The site that the layers are built from, without what they add to it.
 Site site_of(const Config& config) {
   const ScenarioFile& file = config.scenario;
   Site site;
@@ -302,7 +302,7 @@ Site site_of(const Config& config) {
   return site;
 }
 
-/// Start, goal and the points between, in the frame that is now known.
+/// Resolves start, goal and via points, in the frame that is now known.
 void place_points(const Config& config, Mission& mission) {
   const ScenarioFile& file = config.scenario;
   const Value& tree = config.scenario_tree;
@@ -339,8 +339,8 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   World& truth = mission.truth;
   if (!file.frame.crs.empty() && !truth.has_ground()) {
     throw ConfigError(place_of(config.scenario_tree, "frame"), "frame.crs",
-                      "only an elevation model (terrain) can be brought into a coordinate system, "
-                      "and the world has none: give origin_lonlat, a place near the flight");
+                      "only an elevation model (terrain) can be warped to a coordinate system, "
+                      "and the world has none: give origin_lonlat, a point near the flight");
   }
   const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();

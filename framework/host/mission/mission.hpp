@@ -10,32 +10,32 @@
 
 namespace altiplan::host {
 
-/// A scenario made real: worlds, and the problem as every step of a pipeline gets it.
+/// A scenario as built: its worlds, and the problem passed to every step of a pipeline.
 struct Mission {
   World truth;  ///< every layer and moving obstacle
-  World known;  ///< what planners may know at take-off
-  Site site;    ///< by which late layers (events) are built; its `before` is not set
-  /// The problem in the known world; limits and constraints are those that apply to routes.
+  World known;  ///< known to planners at take-off
+  Site site;    ///< for building layers of events later; its `before` is not set
+  /// The problem in the known world, with the limits and constraints that apply to routes.
   Request request;
   /// The same with those that apply to tracks.
   Request track_request;
   std::vector<Goal> via;
-  std::vector<std::string> notes;     ///< what the layers say of themselves
-  std::vector<std::string> warnings;  ///< what the user should look at
+  std::vector<std::string> notes;     ///< notes of the layers
+  std::vector<std::string> warnings;  ///< for the user to check
   double setup_time_s = 0;            ///< wall time of building the layers
 };
 
-/// Builds layers, volume, points and limits. Throws ConfigError naming the place in the scenario
-/// for what the files got wrong, PluginError for a plugin that misbehaves.
-/// `calling` is told who is called next, "" when all are done.
+/// Builds layers, volume, points and limits. Throws ConfigError naming the location in the scenario
+/// for errors in the files, PluginError for a plugin that misbehaves. `calling` receives the name
+/// of the plugin about to be called, "" when all are done.
 Mission build_mission(const Config& config, int threads,
                       const std::function<void(const std::string&)>& calling = {});
 
-/// Makes a layer as the scenario's own are made.
+/// Builds a layer in the same way as the scenario's own.
 Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,
                   const std::string& id, bool known, Site site, const std::string& key);
 
-/// The scenario's point in local metres; `key` is its place in the file.
+/// The scenario's point in local metres; `key` is its key in the file.
 Vec3 resolve_point(const Point& point, const Site& site, const std::optional<double>& level_m,
                    const Location& where, const std::string& key);
 }  // namespace altiplan::host

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kSection = "altiplan_checksum";
 
-/// Where the room for the checksum is in the file.
+/// Location of the checksum section in the file.
 std::uint64_t room_of(const ElfFile& elf) {
   const ElfFile::Section* section = elf.find(kSection);
   if (section == nullptr || section->size < sizeof(Checksum)) {
@@ -26,7 +26,7 @@ std::uint64_t room_of(const ElfFile& elf) {
   return section->offset;
 }
 
-/// The dynamic section as the loader reads it, and where its strings are in the file.
+/// The dynamic section as the loader reads it, and the file offset of its strings.
 struct Dynamic {
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
@@ -78,7 +78,7 @@ Dynamic dynamic_of(const ElfFile& elf, const std::string& image) {
   return dynamic;
 }
 
-/// strip moves the section headers, of which the loader knows nothing.
+/// Excludes the section headers' offset: strip moves them, and the loader ignores them.
 void blank_section_headers(std::string& image) {
   const auto blank = [&](std::size_t from, std::size_t to) {
     std::fill(image.begin() + std::ptrdiff_t(from), image.begin() + std::ptrdiff_t(to), '\0');
@@ -87,8 +87,8 @@ void blank_section_headers(std::string& image) {
   blank(offsetof(Elf64_Ehdr, e_shentsize), sizeof(Elf64_Ehdr));
 }
 
-/// `cmake --install` writes another text, or takes the entry out and moves up those behind it. What
-/// is read in its place must begin where the text was linked: the loader looks at no bound.
+/// `cmake --install` writes another run path, or removes the entry and moves up the following ones.
+/// The present text must begin where the linked one did: the loader checks no bound.
 void blank_run_path(std::string& image, const Dynamic& dynamic, const Checksum& stated) {
   std::string kept;
   for (const Elf64_Dyn& entry : dynamic.entries) {
@@ -136,7 +136,7 @@ Checksum with_run_path_of(const Dynamic& dynamic, const std::string& image) {
       const std::size_t from = dynamic.strings + entry.d_un.d_val;
       const std::size_t end = image.find('\0', from);
       if (end == image.npos) {
-        throw ElfError("damaged: a run path without an end");
+        throw ElfError("damaged: an unterminated run path");
       }
       stated.run_path = std::uint32_t(entry.d_un.d_val);
       stated.run_path_size = std::uint32_t(end - from);

@@ -9,28 +9,28 @@
 
 namespace altiplan::host {
 
-/// The section `altiplan_checksum` of a library: room that cmake/plugin_checksum.cpp reserves and
+/// The section `altiplan_checksum` of a library: space that cmake/plugin_checksum.cpp reserves and
 /// the tool altiplan-checksum fills after linking. It covers every byte that the dynamic loader
-/// maps, but for what strip and `cmake --install` rewrite: where the section headers are, and the
-/// text of the run path with its entry in the dynamic section.
+/// maps, except what strip and `cmake --install` rewrite: the offset of the section headers, and
+/// the run path with its entry in the dynamic section.
 struct Checksum {
   static constexpr char kMagic[20] = "altiplan checksum";
 
   char magic[20];
-  std::uint32_t run_path;       ///< where its text is in the strings of the dynamic section
-  std::uint32_t run_path_size;  ///< of the text as it was linked; 0 where there is none
-  std::uint32_t sum;            ///< CRC-32: no change of up to four bytes in a row keeps it
+  std::uint32_t run_path;       ///< offset of its text in the strings of the dynamic section
+  std::uint32_t run_path_size;  ///< of the text as linked; 0 if there is none
+  std::uint32_t sum;            ///< CRC-32: detects any change of up to four consecutive bytes
 };
 
-/// As messages and results show it.
+/// The checksum as shown in messages and results.
 std::string hexadecimal(std::uint32_t sum);
 
-/// As the file states it. Throws ElfError where no tool has filled it.
+/// The checksum stated in the file. Throws ElfError if the section was never filled.
 Checksum stated_checksum(const ElfFile& elf);
 
-/// Reads all that is mapped; throws ElfError where it does not fit what is stated.
+/// Reads all mapped bytes; throws ElfError if they do not match the stated checksum.
 void verify_checksum(const ElfFile& elf);
 
-/// Fills the room in the file. Throws ElfError where there is none, or it cannot be written.
+/// Fills the section in the file. Throws ElfError if it is missing or cannot be written.
 void write_checksum(const std::filesystem::path& file);
 }  // namespace altiplan::host

@@ -20,7 +20,7 @@ constexpr int kMachine = EM_AARCH64;
 #error "the registry reads libraries of x86-64 and aarch64"
 #endif
 
-// A plugin library holds a few dozen sections and notes of a hundred bytes.
+// Generous: a plugin library has a few dozen sections, and notes of about a hundred bytes.
 constexpr std::uint64_t kMaxRead = std::uint64_t{1} << 20;
 
 void check_identity(const Elf64_Ehdr& header) {
@@ -45,7 +45,7 @@ void check_identity(const Elf64_Ehdr& header) {
 }  // namespace
 
 ElfFile::ElfFile(const std::filesystem::path& file) {
-  // Opening a FIFO would wait for its other end.
+  // O_NONBLOCK: opening a FIFO would wait for its other end.
   descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) {
     throw ElfError("cannot be opened", errno);
@@ -127,7 +127,7 @@ std::string ElfFile::read_all(std::uint64_t offset, std::uint64_t size) const {
       throw ElfError("cannot be read", errno);
     }
     if (got == 0) {
-      throw ElfError("cannot be read: it has become shorter");
+      throw ElfError("cannot be read: it was truncated meanwhile");
     }
     done += static_cast<std::size_t>(got);
   }

@@ -13,23 +13,23 @@
 
 namespace altiplan::host {
 
-/// Why a file cannot be a library for this machine.
+/// The reason why a file cannot be loaded as a library on this machine.
 class ElfError : public std::runtime_error {
  public:
   explicit ElfError(const std::string& why) : runtime_error(why) {}
   /// "WHAT: No such file or directory"
   ElfError(const std::string& what, int error)
       : runtime_error(what + ": " + std::strerror(error)), error_(error) {}
-  /// The errno of a file that could not be read; 0 where its content is wrong.
+  /// The errno of a file that could not be read; 0 if its content is invalid.
   int error() const { return error_; }
 
  private:
   int error_ = 0;
 };
 
-/// A shared library read as a file; none of its code runs. The constructor holds every header
-/// against the file's size: the dynamic loader does not, and a truncated library ends the process
-/// there. Reads headers and what is asked for, not the whole file. Throws ElfError.
+/// A shared library read as a file; none of its code runs. The constructor checks every header
+/// against the file's size: the dynamic loader does not, and crashes on a truncated library. Reads
+/// only headers and requested parts, not the whole file. Throws ElfError.
 class ElfFile {
  public:
   explicit ElfFile(const std::filesystem::path& file);
@@ -43,16 +43,16 @@ class ElfFile {
     std::uint64_t size = 0;
   };
 
-  /// The section; null where there is none.
+  /// The section; null if there is none.
   const Section* find(std::string_view name) const;
   bool has_section(std::string_view name) const { return find(name) != nullptr; }
-  /// Bytes of the section; "" where there is none.
+  /// Bytes of the section; "" if there is none.
   std::string section(std::string_view name) const;
-  /// The program headers; what they name of the file is there.
+  /// The program headers; their file ranges are within the file.
   const std::vector<Elf64_Phdr>& segments() const { return segments_; }
-  /// The file up to the end of the last segment that the loader maps: without what debuggers read.
+  /// The file up to the end of the last segment that the loader maps, without debug information.
   std::string loaded_bytes() const;
-  /// What the dynamic section says under a tag whose values are texts (DT_NEEDED, DT_RUNPATH).
+  /// The strings of the dynamic section with a tag (DT_NEEDED, DT_RUNPATH).
   std::vector<std::string> dynamic_texts(std::int64_t tag) const;
   /// The GNU build id in hexadecimal, or "".
   std::string build_id() const;

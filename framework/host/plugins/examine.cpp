@@ -37,7 +37,8 @@ std::string sanitizer_text(unsigned bits) {
   return text.empty() ? "no sanitizer" : "sanitizer " + text;
 }
 
-/// What keeps a plugin with this manifest out of this host, both sides named; "" where nothing.
+/// The reason why this host cannot load a plugin with this manifest, naming both sides; "" if it
+/// can.
 std::string mismatch(const Manifest& plugin) {
   const Manifest host = make_manifest<Planner>("", "", "");
   const auto version = [](const Manifest& m) {
@@ -70,11 +71,11 @@ std::string mismatch(const Manifest& plugin) {
   return "";
 }
 
-/// Adds the record to the library, or throws what is wrong with it.
+/// Adds the record to the library; throws ElfError if it is invalid.
 void take_record(const Manifest& record, Library& library) {
   if (!ends_with_nul(record.compiler) || !ends_with_nul(record.kind) ||
       !ends_with_nul(record.name) || !ends_with_nul(record.sentence)) {
-    throw ElfError("damaged manifest: a text without an end");
+    throw ElfError("damaged manifest: an unterminated text");
   }
   if (std::find(kKinds.begin(), kKinds.end(), record.kind) == kKinds.end()) {
     throw ElfError("offers '" + std::string(record.name) + "' of the unknown kind '" + record.kind +
@@ -92,7 +93,7 @@ void take_record(const Manifest& record, Library& library) {
   library.plugins.push_back(record);
 }
 
-/// The records of the manifest section; compilers may align each, so that zeros stand between.
+/// The records of the manifest section; compilers may align each, with zeros in between.
 void read_manifest(const std::string& bytes, Library& library) {
   std::size_t at = 0;
   while (at + sizeof(std::uint32_t) <= bytes.size()) {
@@ -109,7 +110,7 @@ void read_manifest(const std::string& bytes, Library& library) {
     std::memcpy(&record, bytes.data() + at, kFixed);
     if (record.struct_size != sizeof(Manifest)) {
       throw ElfError("its manifest has " + std::to_string(record.struct_size) +
-                     " bytes a plugin, this altiplan's " + std::to_string(sizeof(Manifest)) +
+                     " bytes per plugin, this altiplan's " + std::to_string(sizeof(Manifest)) +
                      ": built for another API");
     }
     if (bytes.size() - at < sizeof(Manifest)) {
@@ -125,7 +126,7 @@ void read_manifest(const std::string& bytes, Library& library) {
   if (library.plugins.empty()) {
     throw ElfError("its manifest is empty");
   }
-  // Compilers put the records in an order of their own.
+  // The order of the records depends on the compiler.
   std::sort(library.plugins.begin(), library.plugins.end(),
             [](const Manifest& a, const Manifest& b) {
               const int kinds = std::strcmp(a.kind, b.kind);

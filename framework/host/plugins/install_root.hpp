@@ -5,8 +5,8 @@
 
 namespace altiplan::host {
 
-/// The folder that this program's bin is in, in an installation as in a build; empty where the
-/// system does not tell.
+/// The folder that contains this program's bin folder, in an installation or a build; empty if
+/// unknown.
 inline std::filesystem::path install_root() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);

@@ -22,14 +22,14 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-/// Opened from now to the end of the process: objects, and exceptions, of a plugin must never
-/// outlive its code. `file` is what messages name.
+/// Stays open to the end of the process: objects and exceptions of a plugin must never outlive its
+/// code. Messages name `file`.
 boost::dll::shared_library& open_for_ever(const fs::path& path, const fs::path& file) {
   static std::vector<std::unique_ptr<boost::dll::shared_library>>& open =
       *new std::vector<std::unique_ptr<boost::dll::shared_library>>;
   auto library = std::make_unique<boost::dll::shared_library>();
   boost::dll::fs::error_code error;
-  errno = 0;  // the loader says in words alone why it fails; what failed it has left here
+  errno = 0;  // the loader reports its failure only as text; errno keeps the cause
   library->load(path, error, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   if (error) {
     const int of_system = errno;
@@ -44,7 +44,7 @@ boost::dll::shared_library& open_for_ever(const fs::path& path, const fs::path& 
   return *open.emplace_back(std::move(library));
 }
 
-/// The folders that the library finds others in by where it lies itself.
+/// The run-path folders of the library that are relative to its own ($ORIGIN).
 std::vector<fs::path> own_folders(const ElfFile& elf, const fs::path& folder) {
   std::vector<fs::path> folders;
   for (const std::int64_t tag : {DT_RPATH, DT_RUNPATH}) {
@@ -71,8 +71,8 @@ bool is_loaded(const std::string& name) {
   return handle != nullptr;
 }
 
-/// A copy has no folder: the libraries that lie where its $ORIGIN leads are opened before it, each
-/// from a copy too, and it finds them by their names (DT_SONAME).
+/// A copy has no folder: the libraries that its $ORIGIN leads to are opened before it, each from a
+/// copy too, and it finds them by their names (DT_SONAME).
 void open_neighbours(const ElfFile& elf, const fs::path& folder) {
   const std::vector<fs::path> folders = own_folders(elf, folder);
   for (const std::string& name : elf.dynamic_texts(DT_NEEDED)) {
@@ -80,14 +80,14 @@ void open_neighbours(const ElfFile& elf, const fs::path& folder) {
       return fs::is_regular_file(status_of(place / name));
     });
     if (found != folders.end() && !is_loaded(name)) {
-      auto& copy = *new PrivateCopy(*found / name);  // to the end, as what is loaded from it
+      auto& copy = *new PrivateCopy(*found / name);  // never freed, like its library
       open_neighbours(ElfFile(copy.path()), *found);
       open_for_ever(copy.path_to_load(), *found / name);
     }
   }
 }
 
-/// What reads libraries by their names in the process's map (perf, valgrind) finds no copies.
+/// Tools that look up libraries by name in the process's map (perf, valgrind) cannot find copies.
 bool is_to_be_loaded_in_place() { return std::getenv("ALTIPLAN_PLUGINS_IN_PLACE") != nullptr; }
 
 boost::dll::shared_library& open_copy(const Library& library, PrivateCopy& copy) {
@@ -115,7 +115,7 @@ bool has_maker(const PluginEntry& entry) {
           (kind == "tuner" && entry.tuner != nullptr));
 }
 
-/// Whether files can hold these parameters: names that lie in damaged data are no names.
+/// Checks that the parameters have valid names: damaged data yields invalid ones.
 void check_names(const FieldSpec& spec) {
   for (const FieldSpec& field : spec.children) {
     const bool nameless = spec.type == FieldType::list || field.type == FieldType::point ||
@@ -145,14 +145,14 @@ std::vector<const PluginEntry*> entries_of(const Library& library, PrivateCopy& 
     });
     if (found == list + count) {
       throw PluginError(library.file.string() + " announces the " + plugin.kind + " '" +
-                        plugin.name + "', but does not hold it");
+                        plugin.name + "', but does not contain it");
     }
     entries.push_back(*found);
   }
   return entries;
 }
 
-/// Uses the library as reading a file will, as far as that goes without one.
+/// Uses the library as reading a configuration file will, as far as possible without one.
 void try_out(const Library& library, PrivateCopy& copy) {
   for (const PluginEntry* entry : entries_of(library, copy)) {
     try {
@@ -163,7 +163,7 @@ void try_out(const Library& library, PrivateCopy& copy) {
       }
       check_names(all);
     } catch (const std::bad_alloc&) {
-      throw;  // which says nothing about the plugin
+      throw;  // not the plugin's fault
     } catch (const std::exception& error) {
       throw PluginError(library.file.string() + ": describing the " + entry->kind + " '" +
                         entry->name + "': " + error.what());
@@ -171,7 +171,7 @@ void try_out(const Library& library, PrivateCopy& copy) {
   }
 }
 
-/// Holds the copy to what was examined. A file may be written to while it is examined and copied.
+/// Checks that the copy is what was examined: the file may change while it is examined and copied.
 void verify(const Library& library, const PrivateCopy& copy) {
   const Library now = examine_library(copy.path());
   if (now.is_machine_fault) {
@@ -179,7 +179,7 @@ void verify(const Library& library, const PrivateCopy& copy) {
   }
   if (!now.refused.empty() || now.build != library.build || now.checksum != library.checksum) {
     throw PluginError(library.file.string() +
-                      " has changed since this program began: call it again");
+                      " has changed since this program started: run it again");
   }
   try {
     verify_checksum(ElfFile(copy.path()));
@@ -204,7 +204,7 @@ std::vector<const PluginEntry*> load_library(const Library& library) {
   if (found == loaded.end()) {
     PrivateCopy copy(library.file);
     verify(library, copy);
-    // What it runs when it is loaded may end the process: a child goes first.
+    // Code that runs on loading may end the process: a child tries it first.
     in_child(library.file.string() + ": ", [&] { try_out(library, copy); });
     std::vector<const PluginEntry*> entries = entries_of(library, copy);
     found = loaded.emplace(key, Loaded{std::move(copy), std::move(entries)}).first;

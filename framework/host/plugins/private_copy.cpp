@@ -21,14 +21,14 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-/// The process by the number that its /proc knows, which need not be that of getpid.
+/// This process's folder name in /proc, which may differ from getpid().
 fs::path path_of(int descriptor) {
   std::error_code error;
   const fs::path process = fs::read_symlink("/proc/self", error);
   return "/proc" / process / "fd" / std::to_string(descriptor);
 }
 
-/// Whether all went over; else errno says why not.
+/// True if everything was copied; otherwise errno holds the reason.
 bool copy(int from, int to) {
   constexpr std::size_t kChunk = std::size_t{1} << 30;
   ssize_t got = 0;
@@ -58,7 +58,7 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
   if (to.number() < 0 || !copy(from.number(), to.number()) ||
       ::fcntl(to.number(), F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL) !=
           0) {
-    if (errno == EFBIG) {  // RLIMIT_FSIZE counts memory too: the file itself has to do
+    if (errno == EFBIG) {  // RLIMIT_FSIZE applies to memory files too: fall back to the file itself
       descriptor_ = std::move(from);
       return;
     }
@@ -70,7 +70,7 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
 fs::path PrivateCopy::path() const { return path_of(descriptor_.number()); }
 
 fs::path PrivateCopy::path_to_load() {
-  // A plugin may have closed the descriptor of a library that was loaded before.
+  // A previously loaded plugin may have closed the descriptor.
   static std::mutex mutex;
   static std::set<fs::path>& loaded = *new std::set<fs::path>;
   const std::lock_guard lock(mutex);

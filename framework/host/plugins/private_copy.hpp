@@ -7,19 +7,18 @@
 
 namespace altiplan::host {
 
-/// A copy of a file in memory that nobody can change any more. Libraries are mapped from such
-/// copies: who writes over a library in place (`cp`) writes into each process that has it mapped.
-/// Processes that are forked from this one share the pages. (Where a file of that size may not be
-/// written, RLIMIT_FSIZE, the file itself is mapped.)
+/// An immutable copy of a file in memory. Libraries are mapped from such copies, since overwriting
+/// a library in place (`cp`) changes it in every process that has it mapped. Forked processes share
+/// the pages. (If RLIMIT_FSIZE forbids a file of that size, the file itself is mapped.)
 class PrivateCopy {
  public:
-  /// Throws Error where the file cannot be read, or there is no memory for it.
+  /// Throws Error if the file cannot be read, or there is no memory for it.
   explicit PrivateCopy(const std::filesystem::path& file);
 
-  /// Names the copy as long as this process lives, for its debugger too.
+  /// A path to the copy, valid as long as this process lives, for its debugger too.
   std::filesystem::path path() const;
-  /// One that this process has not asked for before: glibc takes a path that it knows for the
-  /// library that it has loaded from there.
+  /// A path not used before in this process: glibc identifies a known path with the library already
+  /// loaded from it.
   std::filesystem::path path_to_load();
 
  private:

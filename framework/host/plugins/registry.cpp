@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Planners and local planners answer to one key (`plan:`), so they share their names.
+/// Planners and local planners share one key (`plan:`), and so one namespace.
 bool share_names(std::string_view a, std::string_view b) {
   const auto plans = [](std::string_view kind) {
     return kind == "planner" || kind == "local_planner";
@@ -49,7 +49,7 @@ std::string with_article(std::string_view kind) {
   return (kind.starts_with('e') ? "an " : "a ") + std::string(kind);
 }
 
-/// Refuses all libraries that offer one kind and name more than once between them.
+/// Refuses all libraries that offer the same kind and name.
 void refuse_conflicts(std::vector<Library>& libraries) {
   std::vector<std::string> reasons(libraries.size());
   for (std::size_t i = 0; i < libraries.size(); ++i) {
@@ -64,7 +64,7 @@ void refuse_conflicts(std::vector<Library>& libraries) {
               std::strcmp(a.kind, b.kind) == 0 ? "it" : with_article(b.kind) + " of that name";
           reasons[i] += (reasons[i].empty() ? "" : "; ") + std::string("offers the ") + a.kind +
                         " '" + a.name + "', and " + libraries[j].file.string() + " offers " +
-                        other_kind + " too: take one of the two away";
+                        other_kind + " too: remove one of the two";
         }
       }
     }
@@ -75,8 +75,8 @@ void refuse_conflicts(std::vector<Library>& libraries) {
   }
 }
 
-/// The same build offering the same plugins. A build id outlives changes to a file's bytes, so only
-/// libraries whose manifests are read without complaint count.
+/// True for the same build offering the same plugins. A build id survives changes to a file's
+/// bytes, so only libraries with a valid manifest count.
 bool same_build(const Library& a, const Library& b) {
   return a.refused.empty() && b.refused.empty() && !a.build.empty() && a.build == b.build &&
          a.checksum == b.checksum &&
@@ -179,7 +179,7 @@ const Library* Registry::offering(std::string_view kind, std::string_view name) 
   const std::string file = "libaltiplan_" + std::string(kind) + "_" + std::string(name) + ".so";
   for (const Library& library : libraries_) {
     if (library.file.filename() == file && library.is_machine_fault) {
-      refuse(library);  // a copy of it would be another build, maybe
+      refuse(library);  // a copy in another folder may be another build
     }
   }
   for (const Library& library : libraries_) {
@@ -193,7 +193,7 @@ const Library* Registry::offering(std::string_view kind, std::string_view name) 
       return &library;
     }
   }
-  // Where a damaged library no longer says what it offers, its file's name still does.
+  // If a damaged library no longer states what it offers, its file name still does.
   for (const Library& library : libraries_) {
     if (!library.refused.empty() && library.file.filename() == file) {
       refuse(library);

@@ -20,17 +20,17 @@
 
 namespace altiplan::host {
 
-/// A plugin library as its file describes it; nothing of it has run yet.
+/// A plugin library as described by its file; none of its code has run.
 struct Library {
   std::filesystem::path file;
   std::string build;              ///< GNU build id, else a hash of the file; hexadecimal
-  std::string checksum;           ///< of what is loaded, as the file states it; hexadecimal
-  std::vector<Manifest> plugins;  ///< empty where refused before the manifest could be read
-  std::string refused;            ///< why, with both sides; "" when it may be loaded
-  bool is_machine_fault = false;  ///< it is refused because the machine did not give its bytes
+  std::string checksum;           ///< of the loaded bytes, as stated in the file; hexadecimal
+  std::vector<Manifest> plugins;  ///< empty if refused before the manifest could be read
+  std::string refused;            ///< the reason, naming both sides; "" if it may be loaded
+  bool is_machine_fault = false;  ///< refused because the machine failed to read it
 };
 
-/// By which a file that was written to, or put in another's place, is told at a glance.
+/// File metadata for a cheap test whether a file was modified or replaced.
 class FileStamp {
  public:
   explicit FileStamp(const std::filesystem::path& file);
@@ -40,18 +40,18 @@ class FileStamp {
   std::array<std::int64_t, 7> numbers_{};
 };
 
-/// A second copy of one build: the one that comes first in search order is used.
+/// A second copy of one build: the first in search order is used.
 struct LibraryCopy {
   std::filesystem::path file;
   std::filesystem::path used;
 };
 
-/// Knows which library offers which plugin, and loads one when it is first asked for. Libraries are
-/// read as ELF files first; only one whose manifest fits this host, and whose bytes fit its
-/// checksum, is ever opened (rtld_now, local), and none is unloaded.
+/// Knows which library offers which plugin, and loads it on first use. Libraries are read as ELF
+/// files first; only those whose manifest matches this host, and whose bytes match their checksum,
+/// are opened (rtld_now, local), and none is unloaded.
 class Registry {
  public:
-  /// Folders in search order; missing ones are passed over.
+  /// Folders in search order; missing ones are skipped.
   explicit Registry(std::vector<std::filesystem::path> folders);
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
@@ -63,21 +63,21 @@ class Registry {
 
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
   const std::vector<Library>& libraries() const { return libraries_; }
-  /// Files that were passed over as copies of a library found before.
+  /// Files that were skipped as copies of a library found before.
   const std::vector<LibraryCopy>& copies() const { return copies_; }
   /// Names offered for a kind, sorted.
   std::vector<std::string> names(std::string_view kind) const;
-  /// The library that offers the plugin; null where none does. Throws PluginError where a library
-  /// that offers the name, or is called libaltiplan_KIND_NAME.so, is refused. Libraries that share
-  /// a name (planners and local planners have theirs in common) are all refused.
+  /// The library that offers the plugin; null if none does. Throws PluginError if a library that
+  /// offers the name, or is called libaltiplan_KIND_NAME.so, is refused. Libraries that offer the
+  /// same name (planners and local planners share one namespace) are all refused.
   const Library* offering(std::string_view kind, std::string_view name) const;
 
-  /// Loads at the first call, in a child process before this one. Throws PluginError where the
-  /// library cannot be used, Error where no library offers the name (with the folders searched and
+  /// Loads the library at the first call, in a child process before this one. Throws PluginError if
+  /// the library cannot be used, Error if no library offers the name (with the folders searched and
   /// the nearest name).
   const PluginEntry& get(std::string_view kind, std::string_view name);
 
-  /// Files of libraries that were asked for and are no longer what was loaded; each change once.
+  /// Files of libraries in use that have changed since they were loaded; reports each change once.
   std::vector<std::filesystem::path> changed();
 
  private:
@@ -91,18 +91,19 @@ class Registry {
 };
 
 /// Reads a library's ELF headers, manifest and build id without running any of its code; never
-/// throws: what is wrong stands in `refused`.
+/// throws: errors are reported in `refused`.
 Library examine_library(const std::filesystem::path& file);
 
 /// The library's entries, in the manifest's order. At the first call it is copied, verified, tried
-/// in a child process (a damaged one can end the process) and opened in this one, for ever. Throws
-/// PluginError where it cannot be opened, has changed since it was examined, or does not hold what
-/// its manifest announces; Error where the system has no room for it.
+/// in a child process (a damaged one can end the process) and opened in this one for good. Throws
+/// PluginError if it cannot be opened, has changed since it was examined, or lacks a plugin that
+/// its manifest announces; Error if the system has no memory for it.
 std::vector<const PluginEntry*> load_library(const Library& library);
 
-/// Whether the file still holds what was examined.
+/// True if the file is unchanged since it was examined.
 bool is_unchanged(const Library& library);
 
-/// Lower-case letters, digits and '_', the first a letter: a plugin, and a parameter, are so named.
+/// True for lower-case letters, digits and '_', beginning with a letter: the form of plugin and
+/// parameter names.
 bool is_snake_case(std::string_view name);
 }  // namespace altiplan::host

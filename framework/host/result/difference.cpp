@@ -72,7 +72,7 @@ std::optional<Difference> differ_at(const std::string& path, const Json& first,
   if (first.is_array() && second.is_array()) {
     return arrays_differ(path, first, second);
   }
-  // Texts, so that 0 and -0, 1 and 1.0 are told apart.
+  // Compared as texts, to distinguish 0 from -0 and 1 from 1.0.
   const auto replace = Json::error_handler_t::replace;
   if (first.dump(-1, ' ', false, replace) == second.dump(-1, ' ', false, replace)) {
     return std::nullopt;

@@ -11,7 +11,7 @@ namespace altiplan::host {
 
 using Json = nlohmann::ordered_json;
 
-/// result.json, format 1 (docs/result.md). Wall times stand only in keys that end in time_s.
+/// result.json, format 1 (docs/result.md). Wall times appear only in keys that end in time_s.
 Json result_json(const Config& config, const RunResult& result);
 
 /// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
@@ -21,7 +21,7 @@ Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
 
-/// As files and stdout hold it, indented, with a last line end. What plugins say, damaged ones
-/// above all, need not be UTF-8: U+FFFD stands for what is not.
+/// The text for files and stdout, indented, with a final line end. Texts of plugins, above all
+/// damaged ones, may be invalid UTF-8: U+FFFD replaces invalid bytes.
 std::string file_text(const Json& json);
 }  // namespace altiplan::host

@@ -42,7 +42,7 @@ Track track_of(const Json& json, const std::string& file) {
   return track;
 }
 
-/// The overrides with which a stored run was made.
+/// The overrides of a stored run.
 Overrides stored_overrides(const Json& json, Overrides overrides) {
   overrides.scenario = json.at("scenario").get<std::string>();
   overrides.seed = json.at("seed").get<std::int64_t>();
@@ -57,7 +57,7 @@ Overrides stored_overrides(const Json& json, Overrides overrides) {
 }  // namespace
 
 namespace {
-/// Parses, and throws Error where an object has a key twice: which one counts nobody can tell.
+/// Parses; throws Error if an object has a key twice, which is ambiguous.
 Json parse_unique(std::istream& in, const std::string& file) {
   std::vector<std::set<std::string>> open;
   return Json::parse(in, [&](int, Json::parse_event_t event, const Json& parsed) {
@@ -116,7 +116,7 @@ Route route_of(const Json& json, const std::string& file) {
     throw Error(file + ": expected a route as a list of [x, y, z] in metres");
   }
   if (route.empty()) {
-    throw Error(file + ": there is no route in it");
+    throw Error(file + ": it contains no route");
   }
   expect_reachable(route, file);
   return route;

@@ -12,7 +12,7 @@
 
 namespace altiplan::host {
 
-/// A result.json read back: what was planned and flown, and what it takes to build its world again
+/// A result.json read back: its route and track, and what is needed to rebuild its world
 /// (`load_config(pipeline, overrides)`).
 struct StoredResult {
   std::string file;
@@ -21,21 +21,21 @@ struct StoredResult {
   Overrides overrides;  ///< of the run
   std::optional<Route> route;
   std::optional<Track> track;
-  std::vector<std::string> changed;  ///< files that are not those that the result was made from
+  std::vector<std::string> changed;  ///< input files that have changed since the result was written
 };
 
-/// Throws Error naming what is wrong; `overrides` may add plugin paths.
+/// Reads a result; `overrides` may add plugin paths. Throws Error naming the problem.
 StoredResult read_result(const std::string& file, const Overrides& overrides);
-/// The same of a result that a study keeps; `file` is its name in messages.
+/// The same for a result stored by a study; `file` is its name in messages.
 StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides);
 
-/// Throws Error with the line where the file is not JSON; `expected` says what it should hold.
+/// Throws Error with the line if the file is not JSON; `expected` describes the expected content.
 Json read_json(const std::string& file, const std::string& expected);
 
-/// Throws Error for a place farther away than anything that flies: queries of the world would take
-/// for ever.
+/// Throws Error for a point farther away than anything flies: queries of the world would take
+/// forever.
 void expect_reachable(const Route& route, const std::string& file);
 
-/// A list of [x, y, z]; `file` is for messages. Throws Error, for an empty list too.
+/// Reads a list of [x, y, z]; `file` is for messages. Throws Error, also for an empty list.
 Route route_of(const Json& json, const std::string& file);
 }  // namespace altiplan::host

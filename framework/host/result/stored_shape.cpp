@@ -24,7 +24,7 @@ enum Kind : unsigned {
 
 struct Key {
   const char* name;
-  unsigned kinds;  ///< those that it may be
+  unsigned kinds;  ///< the kinds allowed
 };
 
 constexpr Key kResult[] = {
@@ -145,7 +145,7 @@ void expect_each(const Json& result, const char* list, std::span<const Key> keys
 }  // namespace
 
 std::string found_text(const Json& value) {
-  if (value.is_structured()) {  // which may be too deep to be written out
+  if (value.is_structured()) {  // which may be nested too deeply to print
     return value.is_array() ? "a list of " + std::to_string(value.size()) : "an object";
   }
   return excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -7,9 +7,9 @@
 
 namespace altiplan::host {
 
-/// Throws Error naming the file and the key where what stands under a key of result.json is not
-/// what docs/result.md says. A key that is left out is for its reader to miss.
+/// Throws Error naming the file and the key if the value of a key of result.json is not of the type
+/// that docs/result.md specifies. Missing keys are reported by their readers.
 void expect_shape(const Json& result, const std::string& file);
-/// What a message says was found: "a list of 2", "'null'".
+/// The found value, for messages: "a list of 2", "'null'".
 std::string found_text(const Json& value);
 }  // namespace altiplan::host

@@ -11,7 +11,7 @@
 namespace altiplan::host {
 namespace {
 
-/// "expanded" of several calls is their sum, and so is every other counter.
+/// Sums the counters of several calls.
 void add_counters(Counters& sum, const Counters& more) {
   for (const Counter& counter : more) {
     const auto same = std::find_if(sum.begin(), sum.end(),
@@ -24,7 +24,7 @@ void add_counters(Counters& sum, const Counters& more) {
   }
 }
 
-/// What is left of a budget of iterations after a part of the whole.
+/// The iterations left of a budget after a call that counted `used`.
 std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
   if (iterations == Budget{}.max_iterations) {
     return iterations;
@@ -38,7 +38,7 @@ std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
   return iterations;
 }
 
-/// The velocity that the vehicle has at the end of a route.
+/// The vehicle's velocity at the end of a route.
 Vec3 velocity_at_end(const Route& route, double speed) {
   for (std::size_t i = route.size(); i-- > 1;) {
     const Vec3 leg = route[i] - route[i - 1];
@@ -87,7 +87,8 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
     whole.reason = part.reason;
     whole.message = part.message;
     if (part.status != PlanStatus::solved) {
-      // To the planner every end is the goal; a via point that cannot be flown is named as one.
+      // The planner calls the end of each section the goal; an invalid via point is reported as
+      // such.
       whole.message = goals.size() > 1 && part.reason == Reason::goal
                           ? to + " " + point_problem(request.goal.position, request)
                           : on_the_way(part.message);

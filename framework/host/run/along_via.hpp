@@ -9,14 +9,14 @@
 
 namespace altiplan::host {
 
-/// Plans one piece, from a request's start to its goal.
+/// Plans one section, from a request's start to its goal.
 using PlanPart = std::function<PlanResult(const Request&)>;
 
-/// start – via … – goal piece by piece, joined; each piece is held to the heading that the one
-/// before ends in.
+/// Plans start – via … – goal section by section and joins them; each section starts with the
+/// heading at the end of the previous one.
 PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanPart& plan_part);
 
-/// A session for what has none of its own: plans afresh, past the via points that are still ahead.
+/// A session for planners without one: plans from scratch, past the via points still ahead.
 class FreshVia final : public Session {
  public:
   FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part);
@@ -33,6 +33,6 @@ class FreshVia final : public Session {
   std::vector<Goal> via_;  ///< still ahead
   PlanPart plan_part_;
   PlanResult result_;
-  Route flown_;  ///< the last that was found
+  Route flown_;  ///< the last route found
 };
 }  // namespace altiplan::host

@@ -40,7 +40,7 @@ RunResult Run::operator()() {
                           mission_.warnings.end());
   if (config_.steps.back().verb == Verb::fly) {
     enter("the events of the scenario");
-    events_ = build_events(config_, mission_);  // what is wrong with them is said before planning
+    events_ = build_events(config_, mission_);  // report their errors before planning
     expect_left_alone();
   }
   for (const StepEntry& step : config_.steps) {
@@ -48,7 +48,7 @@ RunResult Run::operator()() {
       break;
     }
     if (step.verb != Verb::plan && !result_.accepted) {
-      continue;  // there is no route to work on
+      continue;  // there is no input route
     }
     if (step.verb == Verb::fly) {
       fly_step(step);
@@ -60,7 +60,7 @@ RunResult Run::operator()() {
   if (trace_) {
     try {
       trace_->close();
-    } catch (const Error& error) {  // the result is not lost with it
+    } catch (const Error& error) {  // do not lose the result
       result_.trace_error = error.what();
     }
   }
@@ -110,12 +110,12 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
     smooth(entry, step);
   }
   if (step.status == RunStatus::cancelled &&
-      !interrupted()) {  // the watchdog's stop, not the user's
+      !interrupted()) {  // stopped by the watchdog, not by the user
     step.status = RunStatus::timed_out;
     step.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     step.budget_hit = true;
     if (!watchdog_.out_of_memory()) {
-      step.message = "its time was used up (" + step.message + ")";
+      step.message = "time budget exhausted (" + step.message + ")";
     }
   }
   const std::lock_guard lock(mutex_);
@@ -184,8 +184,9 @@ std::string Run::leave() {
       result_.warnings.push_back(warning);
     }
   }
-  return changed.empty() ? ""
-                         : "broke a law of every plugin: it changed " + changed + " of the process";
+  return changed.empty()
+             ? ""
+             : "violated the contract of every plugin: it changed " + changed + " of the process";
 }
 
 void Run::expect_left_alone() {
@@ -223,7 +224,7 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);
   } catch (const MachineFault&) {
-    throw;  // which is no failure of the step
+    throw;  // not a failure of the step
   } catch (const PluginError& error) {
     step.reason = error.reason();
     step.message = error.what();
@@ -304,7 +305,7 @@ void Run::give_up(const std::string& why) {
   if (interrupted()) {
     conclude();
   }
-  if (trace_) {  // as far as it goes: the step may still write to it
+  if (trace_) {  // incomplete: the step may still write to it
     std::error_code ignored;
     std::filesystem::rename(trace_->file().beside(), trace_->file().absolute_place(), ignored);
   }

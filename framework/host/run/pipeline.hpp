@@ -15,18 +15,18 @@ namespace altiplan::host {
 struct RunOptions {
   int threads = 1;
   std::optional<std::filesystem::path> trace;
-  /// Called from the watchdog's thread with the result so far when a step never stops; must not
+  /// Called from the watchdog's thread with the result so far if a step never stops; must not
   /// return.
   std::function<void(const RunResult&)> on_stuck;
-  std::stop_token stop;  ///< interrupted
-  /// Told before each call of a plugin what the result is should that call end the process, with
-  /// CrashReport::kCause in its message.
+  std::stop_token stop;  ///< requested by an interruption
+  /// Called before each call of a plugin with the result to report if that call ends the process,
+  /// with CrashReport::kCause in its message.
   std::function<void(const RunResult&)> on_call;
-  ProcessGuard* process = nullptr;  ///< what plugins must leave alone; not watched where null
-  /// What a step without a time of its own may take, and all that has none: constructors, judging.
+  ProcessGuard* process = nullptr;  ///< guards the process state; unguarded if null
+  /// Timeout of steps without `within_s` and of work without a budget: constructors, judging.
   double timeout_s = kDefaultStepSeconds;
 };
 
-/// Runs a pipeline: every step, its alternatives, the judge after each, the flight.
+/// Runs a pipeline: every step with its alternatives, the judge after each, and the flight.
 RunResult run(const Config& config, const RunOptions& options);
 }  // namespace altiplan::host

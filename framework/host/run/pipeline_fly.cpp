@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-/// In place of a session that could not begin: each replan says why.
+/// Stands in for a session that could not begin: each replan reports the reason.
 class BrokenSession final : public Session {
  public:
   explicit BrokenSession(std::exception_ptr error) : error_(std::move(error)) {}
@@ -96,9 +96,9 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
     step.budget_hit = true;
     flight.status = RunStatus::not_reached;
     flight.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
-    flight.message = (watchdog_.out_of_memory() ? "the step's memory was used up: "
-                                                : "the step's computing time ended: ") +
-                     flight.message;
+    flight.message =
+        (watchdog_.out_of_memory() ? "memory budget exhausted: " : "time budget exhausted: ") +
+        flight.message;
   }
   step.accepted = flight.status == RunStatus::solved;
   step.status = flight.status;
@@ -132,7 +132,7 @@ void Run::find_replanner(const StepEntry& entry, const StepEntry& planner, const
   setup.replan_within_s = planner.within_s;
   set_budget(setup.route_request.budget, planner);
   std::unique_ptr<Session>& session = sessions_[session_key(entry, planner)];
-  if (made != nullptr) {  // also of an alternative that was not needed
+  if (made != nullptr) {  // also for an alternative that was not needed
     try {
       session = begin_session(*made, setup.route_request);
     } catch (const ParameterError& error) {

@@ -25,7 +25,7 @@ inline double seconds_since(Clock::time_point began) {
   return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// One run of a pipeline: the order of things is in pipeline.cpp, plan and smooth steps in
+/// One run of a pipeline: the top level is in pipeline.cpp, plan and smooth steps in
 /// pipeline_steps.cpp, the flight in pipeline_fly.cpp.
 class Run {
  public:
@@ -35,33 +35,34 @@ class Run {
  private:
   bool interrupted() const { return options_.stop.stop_requested(); }
 
-  /// The step, then its alternatives, until one stands. What it leaves is the route that `from`
-  /// finds under its id: its own, or the one that it was to work on.
+  /// Runs the step, then its alternatives, until one is accepted. Its id then refers to (`from`)
+  /// the accepted route, or else to its input route.
   void attempt(const StepEntry& step);
-  /// Notes the attempt in the result, so that the watchdog can say what was under way.
+  /// Adds the attempt to the result, so that the watchdog can report what was running.
   StepResult begin_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   bool one_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   static void set_budget(Budget& budget, const StepEntry& entry);
-  /// The mission's request with the step's budget, stream and trace.
+  /// The mission's request with the step's budget, random stream and trace.
   Request request_for(const StepEntry& entry, std::uint64_t index);
-  /// Says who is at work from now on, for the watchdog and for the crash report.
+  /// Sets the plugin now at work, for the watchdog and the crash report.
   void name_caller(std::string who);
-  /// The same for work without a budget: under the watchdog, with the patience of the options.
+  /// The same for work without a budget: under the watchdog, with the timeout of the options.
   void enter(std::string who, std::optional<double> memory_mb = std::nullopt);
-  /// The watchdog's; stopped at once where the user has interrupted.
+  /// Arms the watchdog; the token is stopped at once if the user has interrupted.
   std::stop_token arm(double seconds, std::optional<double> memory_mb);
-  /// Ends what enter or request_for began; what the plugin changed of the process, "" if nothing.
+  /// Ends the work begun by enter or request_for; returns what the plugin changed in the process,
+  /// "" if nothing.
   std::string leave();
-  /// The same; throws PluginError where there is something.
+  /// The same, but throws PluginError if the plugin changed anything.
   void expect_left_alone();
   /// "the planner 'astar' (steps.0)"
   std::string named(const StepEntry& entry) const;
-  /// Runs a plugin's work under the watchdog, timed; what it throws ends up in the step.
+  /// Runs a plugin's work under the watchdog, timed; records its exceptions in the step.
   void guarded(const StepEntry& entry, StepResult& step,
                const std::function<PlanResult(const Request&)>& work);
   static void take_answer(StepResult& step, PlanResult answer);
 
-  /// A planner, or a local planner that is rolled out, kept for the sessions that use it.
+  /// A planner, or a local planner to roll out, kept for the sessions that use it.
   struct PlanPlugin {
     std::unique_ptr<Planner> planner;
     std::unique_ptr<LocalPlanner> local_planner;
@@ -72,15 +73,15 @@ class Run {
     }
   };
   const PlanPlugin& make_plan(const StepEntry& entry);
-  /// A session from the request's start: the planner's own, where it can have one.
+  /// A session from the request's start: the planner's own if it supports sessions.
   std::unique_ptr<Session> begin_session(const PlanPlugin& made, const Request& request);
-  /// Whether a flight goes on with the session of that plan step.
+  /// True if a flight continues the session of that plan step.
   bool flown_with(const std::string& id) const;
   void plan(const StepEntry& entry, StepResult& step);
   void smooth(const StepEntry& entry, StepResult& step);
-  /// Smooths the pieces between via points, which stay.
+  /// Smooths the sections between via points, which stay.
   PlanResult between_via(const Smoother& smoother, const Route& before, const Request& request);
-  /// Index of the step whose route `entry` takes.
+  /// Index of the step whose route is the input of `entry`.
   std::size_t input_of(const StepEntry& entry) const;
   /// Judges and measures; layers and constraints that throw fail the step.
   void judge_step(StepResult& step, const Request& request);
@@ -111,25 +112,25 @@ class Run {
     }
   }
   static ConfigError at_its_key(const StepEntry& entry, const ParameterError& error);
-  /// The flight; its alternatives are flown when it fails before the goal.
+  /// Flies the route; the alternatives are flown if it fails before the goal.
   void fly_step(const StepEntry& step);
   void fly_once(const StepEntry& entry, std::optional<std::string> instead_of);
-  /// What a flight uses, kept while it lasts.
+  /// Plugins of a flight, kept while it lasts.
   struct FlightPlugins {
     std::unique_ptr<LocalPlanner> pilot;
     std::vector<std::unique_ptr<Smoother>> smoothers;
   };
   FlightSetup flight_setup(const StepEntry& entry, FlightPlugins& plugins);
-  /// The plan step that goes on in flight, or the one that `replan` writes out.
+  /// The plan step that continues in flight, or the one written out under `replan`.
   std::optional<StepEntry> replan_entry(const StepEntry& entry) const;
-  /// Its session: a plan step's, or one begun now.
+  /// Sets the session: a plan step's, or one begun now.
   void find_replanner(const StepEntry& entry, const StepEntry& planner, const PlanPlugin* made,
                       FlightSetup& setup);
   static std::string session_key(const StepEntry& entry, const StepEntry& planner);
-  /// The plan step, or alternative, of that id; the configuration has made sure that there is one.
+  /// The plan step, or alternative, of that id; the configuration check ensures that it exists.
   const StepEntry& plan_entry(const std::string& id) const;
   void conclude();
-  /// On the watchdog's thread: the step that is under way never stopped.
+  /// Called on the watchdog's thread: the running step never stopped.
   void give_up(const std::string& why);
 
   const Config& config_;
@@ -138,7 +139,7 @@ class Run {
   std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog
   std::string caller_;
   RunResult result_;
-  std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id stands for
+  std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id refers to
   std::vector<FlightEvent> events_;
   std::unique_ptr<TraceFile> trace_;
   std::vector<std::unique_ptr<PlanPlugin>> plan_plugins_;

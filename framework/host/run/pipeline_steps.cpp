@@ -67,7 +67,7 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   cuts.push_back(before.size() - 1);
   std::size_t from = 0;
   std::size_t piece = 0;
-  std::string told;  // of every piece: a smoother counts in one alone
+  std::string told;  // one message per section: a smoother sees only its own
   PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
     const Route raw(before.begin() + std::ptrdiff_t(from),
                     before.begin() + std::ptrdiff_t(cuts[piece]) + 1);
@@ -99,7 +99,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
   }
   enter("judging the route of '" + step.id + "' by layers and constraints (" + asked + ")");
   try {
-    if (step.status == RunStatus::solved) {  // first: the judge knows whom to blame
+    if (step.status == RunStatus::solved) {  // first: the judge knows the cause
       step.check = judge(step.route, request, mission_.via);
     }
     step.measures = measure(step.route, request);
@@ -131,7 +131,7 @@ void Run::take_verdict(StepResult& step) {
   }
   const Violation* worst = violated_layer(*step.check);
   step.status = worst != nullptr ? RunStatus::failed : RunStatus::rejected;
-  step.reason = worst != nullptr ? Reason::law : Reason::rule;
+  step.reason = worst != nullptr ? Reason::contract : Reason::constraint;
   if (worst == nullptr) {
     worst = &found.front();
   }

@@ -29,7 +29,7 @@ namespace altiplan::host {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCatchSignals = false;  // a sanitizer has more to say about a crash
+constexpr bool kCatchSignals = false;  // a sanitizer reports more about a crash
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 constexpr bool kCatchSignals = false;
@@ -51,13 +51,13 @@ constexpr std::array kFatal = {Fatal{SIGSEGV, "crashed (SIGSEGV)"},
 constexpr std::array kWatched = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,  SIGABRT, SIGINT,  SIGTERM,
                                  SIGPIPE, SIGCHLD, SIGHUP, SIGUSR1, SIGUSR2, SIGQUIT, SIGALRM};
 
-/// All that a handler may need; there is one, as there is one process.
+/// Everything a signal handler needs; a single instance, as the process.
 struct State {
   int out = -1;      ///< the true stdout
-  int capture = -1;  ///< what is written to stdout meanwhile
+  int capture = -1;  ///< the captured stdout
   int folder = -1;
   ino_t capture_inode = 0;
-  pid_t owner = ::getpid();  ///< a child that a plugin forks says nothing
+  pid_t owner = ::getpid();  ///< a child forked by a plugin reports nothing
   std::string locale;
   std::locale cxx_locale;
   std::fenv_t floating{};
@@ -66,12 +66,12 @@ struct State {
   std::unique_ptr<const ProcessGuard::CrashReport> kept;
   std::unique_ptr<const ProcessGuard::CrashReport> before;  ///< a handler may still read it
   std::string file_beside;
-  std::string kept_beside;  ///< a file that is still written
+  std::string kept_beside;  ///< a file that is still being written
   std::string kept_place;
 };
 State* the_state = nullptr;
 
-// What follows, up to the ProcessGuard, runs in signal handlers: system calls alone.
+// The code from here to ProcessGuard runs in signal handlers: only system calls are allowed.
 
 bool write_all(int to, std::string_view text) {
   while (!text.empty()) {
@@ -85,7 +85,7 @@ bool write_all(int to, std::string_view text) {
 }
 
 bool write_with_cause(int to, std::string_view text, std::string_view cause) {
-  // In JSON text the mark stands as an escape.
+  // In JSON text the mark is an escape sequence.
   constexpr std::string_view kEscaped = "\\u0001";
   while (!text.empty()) {
     const std::size_t escaped = text.find(kEscaped);
@@ -120,7 +120,7 @@ bool drain(State& state) {
   return any;
 }
 
-/// As OutputFile writes, which a handler cannot call.
+/// Writes as OutputFile does, which a handler cannot call.
 void write_file_with_cause(const ProcessGuard::CrashReport& words, std::string_view cause) {
   const char* beside = the_state->file_beside.c_str();
   const int file = ::open(beside, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -135,7 +135,8 @@ void write_file_with_cause(const ProcessGuard::CrashReport& words, std::string_v
   }
 }
 
-[[noreturn]] void write_crash_report(const ProcessGuard::CrashReport& words, std::string_view cause) {
+[[noreturn]] void write_crash_report(const ProcessGuard::CrashReport& words,
+                                     std::string_view cause) {
   State& state = *the_state;
   drain(state);
   write_with_cause(STDERR_FILENO, words.for_user, cause);
@@ -151,7 +152,7 @@ void write_file_with_cause(const ProcessGuard::CrashReport& words, std::string_v
   ::_exit(words.exit_code);
 }
 
-/// A copy of the process dies of the signal and leaves the core file, where one is wanted.
+/// A forked copy dies of the signal and leaves the core file, if core files are enabled.
 void leave_core(int number) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_CORE, &limit) != 0 || limit.rlim_cur == 0) {
@@ -175,11 +176,11 @@ void leave_core(int number) {
 
 void on_fatal(int number) {
   const ProcessGuard::CrashReport* words = the_state != nullptr && the_state->owner == ::getpid()
-                                             ? the_state->words.exchange(nullptr)
-                                             : nullptr;
-  if (words == nullptr) {  // no run, or the crash report themselves crash
+                                               ? the_state->words.exchange(nullptr)
+                                               : nullptr;
+  if (words == nullptr) {  // no run, or the crash report itself crashed
     ::signal(number, SIG_DFL);
-    ::raise(number);  // comes when the handler returns
+    ::raise(number);  // delivered when the handler returns
     return;
   }
   leave_core(number);
@@ -206,7 +207,7 @@ void catch_signals() {
   stack_t alternate{};
   alternate.ss_sp = stack.data();
   alternate.ss_size = stack.size();
-  ::sigaltstack(&alternate, nullptr);  // the stack may be what overflowed
+  ::sigaltstack(&alternate, nullptr);  // the stack may have overflowed
   struct sigaction action {};
   action.sa_handler = on_fatal;
   action.sa_flags = SA_ONSTACK;
@@ -222,7 +223,7 @@ void stop_catching() {
   }
 }
 
-/// How numbers are rounded, what traps, what is flushed to zero; not what happened since.
+/// Rounding mode, trap masks and flush-to-zero; not the exception flags.
 auto mode_of(const std::fenv_t& floating) {
 #if defined(__x86_64__)
   return std::pair(floating.__mxcsr & 0xFFC0U, floating.__control_word);
@@ -239,16 +240,16 @@ void add(std::string& all, const char* what) {
 ProcessGuard::ProcessGuard() {
   auto state = std::make_unique<State>();
   std::fflush(stdout);
-  state->out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);  // none where the caller has closed it
+  state->out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);  // -1 if the caller has closed it
   if (state->out < 0 && errno != EBADF) {
-    throw std::system_error(errno, std::generic_category(), "cannot set stdout apart");
+    throw std::system_error(errno, std::generic_category(), "cannot redirect stdout");
   }
   state->capture = ::memfd_create("altiplan stdout", MFD_CLOEXEC);
   state->folder = ::open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   struct stat captured {};
   if (state->capture < 0 || ::fcntl(state->capture, F_SETFL, O_APPEND) != 0 ||
       ::fstat(state->capture, &captured) != 0 || ::dup2(state->capture, STDOUT_FILENO) < 0) {
-    throw std::system_error(errno, std::generic_category(), "cannot set stdout apart");
+    throw std::system_error(errno, std::generic_category(), "cannot redirect stdout");
   }
   state->capture_inode = captured.st_ino;
   state->locale = std::setlocale(LC_ALL, nullptr);
@@ -256,7 +257,7 @@ ProcessGuard::ProcessGuard() {
   std::fegetenv(&state->floating);
   static const int kRegistered = std::atexit(on_exit);
   if (kRegistered != 0) {
-    throw Error("cannot register what to do at exit");
+    throw Error("cannot register an exit handler");
   }
   the_state = state.release();
   if (kCatchSignals) {
@@ -297,7 +298,7 @@ std::string ProcessGuard::restore() {
   struct stat here {};
   struct stat there {};
   if (state.folder >= 0 && ::fstat(state.folder, &there) == 0 &&
-      ::stat(".", &here) == 0 &&  // else the system fails, not the plugin
+      ::stat(".", &here) == 0 &&  // otherwise the system failed, not the plugin
       (here.st_ino != there.st_ino || here.st_dev != there.st_dev)) {
     if (::fchdir(state.folder) == 0) {
       add(changed, "the working folder");

@@ -11,24 +11,25 @@
 namespace altiplan::host {
 namespace {
 
-/// A pilot that neither arrives nor gives up is stopped here, budget or none.
+/// A pilot that neither arrives nor gives up is stopped after this many steps, whatever its budget.
 constexpr std::uint64_t kMaxSteps = 1'000'000;
 constexpr double kStepSeconds = 1;
 
-/// What Pilot::step does not see: a step is no faster than the vehicle, and `arrived` is at the
+/// Checks what Pilot::step cannot: a step is no faster than the vehicle, and `arrived` is at the
 /// goal.
 void expect_lawful(const PilotStep& step, const Observation& seen, const Request& request) {
   const double run = (step.next.position - seen.state.position).norm();
   const double dt = step.next.time_s - seen.state.time_s;
   if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-    throw PluginError("the pilot broke a law of its interface: a step faster than the vehicle",
-                      Reason::law);
+    throw PluginError(
+        "the pilot violated the contract of its interface: a step faster than the vehicle",
+        Reason::contract);
   }
   if (step.outcome == PilotStep::Outcome::arrived && !request.goal.reached_at(step.next.position)) {
-    throw PluginError("the pilot broke a law of its interface: it says arrived " +
+    throw PluginError("the pilot violated the contract of its interface: it says arrived " +
                           std::to_string((step.next.position - request.goal.position).norm()) +
                           " m from the goal",
-                      Reason::law);
+                      Reason::contract);
   }
 }
 }  // namespace

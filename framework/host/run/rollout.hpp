@@ -5,8 +5,8 @@
 
 namespace altiplan::host {
 
-/// Flies a local planner from start to goal in the known world, without a route: what `plan: NAME`
-/// does when NAME is a local planner. One step is one iteration; `expanded` counts steps. The route
-/// so far stays in the result when it does not arrive.
+/// Flies a local planner from start to goal in the known world, without a route: `plan: NAME` with
+/// a local planner. One step is one iteration; `expanded` counts steps. If it does not arrive, the
+/// result keeps the route so far.
 PlanResult roll_out(const LocalPlanner& planner, const Request& request);
 }  // namespace altiplan::host

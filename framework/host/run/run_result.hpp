@@ -31,23 +31,23 @@ struct StepResult {
   std::optional<CheckResult> check;
 };
 
-/// What a run gave; grows while it runs.
+/// Result of a run; grows while it runs.
 struct RunResult {
   RunStatus status = RunStatus::failed;
   Reason reason = Reason::none;
   std::string message;
   bool budget_hit = false;
   std::vector<StepResult> steps;
-  std::optional<std::size_t> accepted;  ///< index of the step whose route stands
+  std::optional<std::size_t> accepted;  ///< index of the step whose route is accepted
   std::optional<FlightResult> flight;
   Frame frame;
   double setup_time_s = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;
   std::optional<std::string> trace;
-
-  /// 0 solved; 4 no route stands and a step failed; else 1.
   std::string trace_error;  ///< why the trace could not be written
+
+  /// 0 if solved; 4 if no route is accepted and a step failed; else 1.
   int exit_code() const;
 };
 }  // namespace altiplan::host

@@ -44,7 +44,7 @@ void TraceFile::flush() {
     if (error_.empty()) {
       file_.write(lines_);
     }
-  } catch (const Error& error) {  // a search does not end for want of its trace
+  } catch (const Error& error) {  // a missing trace does not end the search
     error_ = error.what();
   }
   lines_.clear();

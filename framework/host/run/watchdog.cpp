@@ -101,7 +101,7 @@ void Watchdog::watch(const std::stop_token& done) {
         stopped_ = true;
         stopped_at_ = now;
         stop_.request_stop();
-      } else if (grown > 2 * *memory_mb_ + 64) {  // it does not stop: before the machine suffers
+      } else if (grown > 2 * *memory_mb_ + 64) {  // it does not stop: spare the machine
         crash_report_("used more memory than its within_mb and did not stop when told to");
       }
     }
@@ -111,9 +111,9 @@ void Watchdog::watch(const std::stop_token& done) {
       stop_.request_stop();
     } else if (stopped_ && now >= due()) {
       crash_report_(out_of_memory_
-                      ? "used more memory than its within_mb and did not stop when told to"
-                  : interrupted_ ? "did not stop within half a second of the interruption"
-                                 : "did not stop within two seconds of the end of its time");
+                        ? "used more memory than its within_mb and did not stop when told to"
+                    : interrupted_ ? "did not stop within half a second of the interruption"
+                                   : "did not stop within two seconds of the end of its time");
     }
   }
 }

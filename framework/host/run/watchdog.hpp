@@ -13,34 +13,33 @@
 
 namespace altiplan::host {
 
-/// Ends a step that outstays its welcome. While armed, it fires the stop token when the time is
-/// over (or the process has grown by more memory than allowed), and two seconds later, when the
-/// step has still not returned, it calls `crash_report`, which does not return. A user who interrupts
+/// Stops a step that exceeds its budget. While armed, it fires the stop token when the time is over
+/// (or the process has grown by more memory than allowed); if the step has not returned two seconds
+/// later, it calls `crash_report`, which does not return. After an interruption by the user it
 /// waits for half a second.
 class Watchdog {
  public:
-  /// `crash_report` gets the sentence that says why; `held_mb` tells of memory that does not count as
-  /// resident.
+  /// `crash_report` receives the reason; `held_mb` returns memory that does not count as resident.
   explicit Watchdog(std::function<void(const std::string&)> crash_report,
                     std::function<double()> held_mb = {});
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Watches until disarm. The token stops the step when time or memory is used up.
+  /// Watches until disarm. The token stops the step when time or memory is exhausted.
   std::stop_token arm(double seconds, std::optional<double> memory_mb);
   void disarm();
-  /// Stops the step as if its time were over: it was interrupted. What is armed again after that
-  /// has what is left of the half second.
+  /// Stops the step as if its time were over, for an interruption. Steps armed later get the rest
+  /// of the half second.
   void stop_now();
-  /// Whether the last step was stopped for its memory.
+  /// True if the last step was stopped for its memory use.
   bool out_of_memory() const { return out_of_memory_; }
 
  private:
   void watch(const std::stop_token& done);
   double memory_mb() const;
   using Clock = std::chrono::steady_clock;
-  /// When the step is stopped, or given up where it has been.
+  /// The time to stop the step or, if already stopped, to give it up.
   Clock::time_point due() const;
 
   std::function<void(const std::string&)> crash_report_;
@@ -48,7 +47,7 @@ class Watchdog {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   bool armed_ = false;
-  std::uint64_t step_ = 0;  ///< counts arm
+  std::uint64_t step_ = 0;  ///< number of arm calls
   Clock::time_point stop_at_;
   std::optional<double> memory_mb_;
   double memory_at_start_mb_ = 0;
@@ -56,15 +55,15 @@ class Watchdog {
   Clock::time_point stopped_at_;
   bool out_of_memory_ = false;
   bool interrupted_ = false;
-  std::optional<Clock::time_point> interrupted_at_;  ///< for the first time
+  std::optional<Clock::time_point> interrupted_at_;  ///< the first time
   std::stop_source stop_;
-  std::jthread thread_;  // last: starts when all else is there
+  std::jthread thread_;  // last: starts when everything else is constructed
 };
 
-/// How long a step without a time budget may take.
+/// Timeout of a step without a time budget.
 inline constexpr double kDefaultStepSeconds = 60;
-/// What a step has after its budget before the process is ended.
+/// Grace period after the budget before the process is ended.
 inline constexpr double kGraceSeconds = 2;
-/// The same after an interruption: all ends within a second.
+/// The same after an interruption: everything ends within a second.
 inline constexpr double kInterruptedSeconds = 0.5;
 }  // namespace altiplan::host

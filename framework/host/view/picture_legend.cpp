@@ -12,7 +12,7 @@ constexpr double kLine = 20;
 constexpr std::size_t kLetters = 52;  // of a line of small text
 constexpr std::size_t kLines = 4;
 
-/// The text in lines, the last with an ellipsis where it does not fit.
+/// The text in lines, the last with an ellipsis if it does not fit.
 std::vector<std::string> wrapped(const std::string& text) {
   std::vector<std::string> lines(1);
   std::istringstream words(text);
@@ -107,7 +107,7 @@ class Legend {
       y_ += 16;
     }
   }
-  /// Whether there is room for that many lines more.
+  /// True if there is space for that many more lines.
   bool has_room(double lines) const { return y_ + lines * kLine <= area_.bottom(); }
   std::string take() { return std::move(svg_); }
 
@@ -139,7 +139,7 @@ std::string legend(const Json& scene, const Area& area) {
   const Json& results = scene.at("results");
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!legend.has_room(9)) {
-      legend.small("and " + std::to_string(results.size() - i) + " results more");
+      legend.small("and " + std::to_string(results.size() - i) + " more results");
       break;
     }
     legend.result(i, results[i]);

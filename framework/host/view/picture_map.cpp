@@ -32,12 +32,12 @@ std::string circle(const Map& map, const Json& at, double radius, const std::str
          pixels(map.y(at.at(1).get<double>())) + "\" r=\"" + pixels(radius) + "\" " + more + "/>\n";
 }
 
-/// Colour by role; dashed where the planner did not know of it at the start.
+/// Colour by role; dashed if the planner did not know of it at the start.
 std::string look(const Json& thing) {
   const std::string role = thing.at("role");
   const std::string color(role_color(role));
   const bool met = !thing.at("known").get<bool>() || !thing.at("added_by").is_null();
-  // One is to stay inside of a keep-in zone: its outline is what matters.
+  // The vehicle must stay inside a keep-in zone: only its outline matters.
   return "fill=\"" + (role == "keep_in" ? "none" : color) + "\" fill-opacity=\"0.3\" stroke=\"" +
          color + "\" stroke-width=\"1.5\"" + (met ? " stroke-dasharray=\"6 4\"" : "");
 }
@@ -63,7 +63,7 @@ std::string solid(const Json& thing, const Map& map) {
   return "<path d=\"" + path + "\" fill-rule=\"evenodd\" " + look(thing) + "/>\n";
 }
 
-/// Many parts in one path, those that look the same from above once.
+/// Many parts in one path; those identical from above only once.
 std::string path_of(const std::set<std::string>& parts, const Json& thing) {
   std::string path;
   for (const std::string& part : parts) {
@@ -96,7 +96,7 @@ std::string mesh(const Json& thing, const Map& map) {
   return path_of(parts, thing);
 }
 
-/// Where the obstacle is when the flight begins, and how far it goes in a minute.
+/// The obstacle's position when the flight begins, and its motion in one minute.
 std::string moving(const Json& thing, const Map& map) {
   constexpr double kMinute = 60;
   const Json& at = thing.contains("at")    ? thing.at("at")

@@ -15,7 +15,7 @@
 #include "host/base/base64.hpp"
 #include "host/result/result_json.hpp"
 
-// The parts of the picture from above, a file each. Lengths are pixels from the top left.
+// The parts of the top view, one file each. Lengths are pixels from the top left.
 
 namespace altiplan::host::picture {
 
@@ -23,7 +23,7 @@ inline constexpr std::string_view kInk = "#1a2027";
 inline constexpr std::string_view kFaint = "#5b6672";
 inline constexpr std::string_view kPaper = "#ffffff";
 
-/// Okabe and Ito's palette, told apart with every kind of colour vision.
+/// Okabe and Ito's palette, distinguishable with every kind of colour vision.
 inline std::string_view route_color(std::size_t result) {
   constexpr std::array<std::string_view, 6> kColors{"#0072b2", "#e69f00", "#009e73",
                                                     "#56b4e9", "#f0e442", "#000000"};
@@ -36,12 +36,12 @@ inline std::string_view role_color(std::string_view role) {
                              : "#2f363d";
 }
 
-/// Unknown space would hide all else, and is not drawn.
+/// Unknown space would hide everything else, and is not drawn.
 inline bool is_drawn(const Json& thing) { return thing.at("role") != "unknown"; }
 
-/// Text and attributes as XML holds them; control characters, which it cannot hold, left out.
+/// Escapes text and attributes for XML; drops control characters, which XML cannot hold.
 std::string escaped(std::string_view text);
-/// Tenths of a pixel.
+/// Formats to tenths of a pixel.
 std::string pixels(double value);
 
 struct Area {
@@ -60,12 +60,13 @@ std::string line(double x0, double y0, double x1, double y1, std::string_view co
                  double width = 1);
 std::string rectangle(const Area& area, std::string_view more);
 
-/// The round number (1, 2 or 5 times a power of ten) for about that many steps to `length`.
+/// The round number (1, 2 or 5 times a power of ten) that divides `length` into about `steps`
+/// steps.
 double round_step(double length, double steps);
-/// With a comma each three digits: "12,500".
+/// With a comma between groups of three digits: "12,500".
 std::string grouped(double value);
 
-/// Numbers that a scene holds as base64.
+/// Decodes numbers that a scene holds as base64.
 template <class Value>
 std::vector<Value> numbers(const Json& base64_text) {
   const std::vector<std::byte> bytes = from_base64(base64_text.get_ref<const std::string&>());
@@ -74,7 +75,7 @@ std::vector<Value> numbers(const Json& base64_text) {
   return values;
 }
 
-/// The scene's box from above, fitted into an area.
+/// The scene's box seen from above, fitted into an area.
 class Map {
  public:
   Map(const Json& box, const Area& room);
@@ -90,9 +91,9 @@ class Map {
   Area area_;
 };
 
-/// Colour of a height, `share` of the way from the lowest to the highest.
+/// Colour of a height; `share` is 0 for the lowest, 1 for the highest.
 std::array<std::uint8_t, 3> height_color(double share);
-/// The lowest and the highest ground; none where the scene has no ground.
+/// The lowest and the highest ground; none if the scene has no ground.
 std::optional<std::array<double, 2>> heights_of(const Json& scene);
 
 std::string relief(const Json& scene, const Map& map);

@@ -8,7 +8,7 @@
 namespace altiplan::host::picture {
 namespace {
 
-/// Distance along the route to the right, a height or a distance upward.
+/// Distance along the route to the right, height or clearance upward.
 class Chart {
  public:
   Chart(const Json& results, const Area& area, std::initializer_list<const char*> keys)
@@ -52,7 +52,7 @@ class Chart {
     return svg + line(area_.left, area_.bottom(), area_.right(), area_.bottom(), kFaint);
   }
 
-  /// A curve; where the profile has no number it is interrupted.
+  /// A curve, interrupted where the profile has no value.
   std::string curve(const Json& profile, const char* key) const {
     std::string path;
     bool pen_down = false;
@@ -82,7 +82,7 @@ Area within(const Area& area) {
 std::string heights(const Json& scene, const Area& area) {
   const Json& results = scene.at("results");
   const Chart chart(results, within(area), {"altitude", "ground"});
-  std::string caption = "Height above the sea over the distance flown, m";
+  std::string caption = "Height above sea level over distance flown, m";
   if (!scene.at("ground").is_null()) {
     caption += results.size() > 1 ? "; ground: grey below the first route, thin below others"
                                   : "; the ground below";

@@ -9,7 +9,7 @@
 namespace altiplan::host::picture {
 namespace {
 
-constexpr int kMaxPixels = 700;  // on a side
+constexpr int kMaxPixels = 700;  // per side
 
 struct Heights {
   int nx = 0;
@@ -24,7 +24,7 @@ struct Heights {
   }
 };
 
-/// Every n-th post, so that the picture has no more pixels than are seen.
+/// Takes every n-th post, so that the picture has no more pixels than are visible.
 Heights heights_for_picture(const Json& ground) {
   const int nx = ground.at("nx").get<int>();
   const int ny = ground.at("ny").get<int>();
@@ -43,7 +43,7 @@ Heights heights_for_picture(const Json& ground) {
   return heights;
 }
 
-/// How bright the ground is in light from the north-west at 45°, 1 where it is level.
+/// Brightness of the ground in light from the north-west at 45°, 1 for level ground.
 double light(const Heights& ground, int i, int j) {
   constexpr double kShadow = 0.38;
   constexpr double kBrightest = 1.12;
@@ -57,8 +57,8 @@ double light(const Heights& ground, int i, int j) {
 }  // namespace
 
 std::array<std::uint8_t, 3> height_color(double share) {
-  // OKLCH: lightness rises evenly with the height, and the hue goes from blue-grey to sand, an axis
-  // that every kind of colour vision has. The matrices are those of Ottosson's OKLab.
+  // OKLCH: lightness rises evenly with height, and the hue goes from blue-grey to sand, an axis
+  // visible to every kind of colour vision. The matrices are those of Ottosson's OKLab.
   const double lightness = 0.54 + share * (0.95 - 0.54);
   const double chroma = 0.045 + share * (0.055 - 0.045);
   const double hue = radians(215 + share * (75 - 215));
@@ -115,7 +115,7 @@ std::string relief(const Json& scene, const Map& map) {
       rgba.push_back(255);
     }
   }
-  // A post is in the middle of its pixel.
+  // A post is at the centre of its pixel.
   const double west = json.at("x0").get<double>() - ground.dx / 2;
   const double north = json.at("y0").get<double>() + (ground.ny - 0.5) * ground.dy;
   const std::string bytes = png(ground.nx, ground.ny, rgba);

@@ -100,7 +100,7 @@ namespace {
 
 constexpr double kWidth = 1600;
 constexpr double kMaxHeight = 1000;
-constexpr double kMinMap = 300;  // leaves the legend some room
+constexpr double kMinMap = 300;  // leaves space for the legend
 constexpr double kMargin = 24;
 constexpr double kTitle = 36;
 constexpr double kLegend = 380;

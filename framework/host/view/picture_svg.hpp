@@ -7,6 +7,6 @@
 
 namespace altiplan::host {
 
-/// The scene seen from above, and its routes' heights below: one SVG that needs nothing else.
+/// The scene seen from above, with its routes' height profiles below: one self-contained SVG.
 std::string picture_svg(const Json& scene);
 }  // namespace altiplan::host

@@ -7,7 +7,7 @@
 
 namespace altiplan::host {
 
-/// A PNG of 8-bit RGBA: four bytes a pixel, rows from the top. Throws Error unless there are
-/// 4 × width × height of them.
+/// A PNG of 8-bit RGBA: four bytes per pixel, rows from the top. Throws Error unless there are 4 ×
+/// width × height bytes.
 std::string png(int width, int height, const std::vector<std::uint8_t>& rgba);
 }  // namespace altiplan::host

@@ -12,12 +12,12 @@
 namespace altiplan::host {
 namespace {
 
-/// Samples of all profiles of a scene together, so that many results do not take their time alone.
+/// Samples of all profiles of a scene together, to bound the time for many results.
 constexpr std::size_t kProfileSamples = 12'000;
 
 namespace fs = std::filesystem;
 
-/// Layers' notes that begin so name whose data they show.
+/// Prefix of layers' notes that attribute their data.
 constexpr std::string_view kAttribution = "attribution: ";
 
 Json goal_json(const Goal& goal) {
@@ -59,7 +59,7 @@ Json attribution_json(const World& truth, const std::vector<FlightEvent>& events
   return lines;
 }
 
-/// All that stands in the results' world, without the results.
+/// Everything in the results' world, without the results.
 Json world_scene(const Config& config, const Mission& mission, const Box& box, SceneNotes& notes) {
   const std::vector<FlightEvent> events = build_events(config, mission);
   Json scene;
@@ -108,7 +108,7 @@ std::string world_text(const StoredResult& stored) {
               of_b);
 }
 
-/// Names that tell the results apart: the files' stems, or the files where those are the same.
+/// Distinct names of the results: the files' stems, or the whole files if stems coincide.
 void name_apart(Json& results) {
   std::map<std::string, int> uses;
   for (const Json& result : results) {
@@ -121,7 +121,7 @@ void name_apart(Json& results) {
   }
 }
 
-/// What the mission of a result is made from, but for the plugins' folders: those of the call.
+/// Identifies the mission of a result, apart from the plugin folders: those of the call.
 std::string mission_text(const StoredResult& stored) {
   std::string text = stored.pipeline.string() + '\n' + stored.json.at("scenario").dump() + '\n' +
                      std::to_string(stored.overrides.seed.value_or(0));
@@ -136,7 +136,7 @@ class SceneBuilder {
   explicit SceneBuilder(const std::vector<StoredResult>& results) : results_(results) {}
 
   Scene operator()() {
-    // Results of one mission together, so that it is built once.
+    // Groups results by mission, so that each is built once.
     std::map<std::string, std::size_t> groups;
     std::vector<std::vector<std::size_t>> indices;
     for (std::size_t n = 0; n < results_.size(); ++n) {
@@ -174,7 +174,7 @@ class SceneBuilder {
 
   void note_changed(const StoredResult& stored) {
     for (const std::string& changed : stored.changed) {
-      notes_.warn(changed + " is not the file that " + stored.file + " was made from");
+      notes_.warn(changed + " has changed since " + stored.file + " was written");
     }
     const StoredResult& first = results_.front();
     if (world_text(stored) != world_text(first)) {
@@ -192,7 +192,7 @@ class SceneBuilder {
       seed_ = config.seed;
       scene_ = world_scene(config, mission, box_, notes_);
     } else if (config.seed != seed_) {
-      // Whether a layer asks for the run's seed is its own affair: the worlds themselves tell.
+      // Only the built worlds show whether a layer depends on the run's seed.
       SceneNotes unused;
       if (world_scene(config, mission, box_, unused) != scene_) {
         refuse(results_.front(), "with the seed " + std::to_string(seed_), of,
@@ -232,7 +232,7 @@ void SceneNotes::warn(const std::string& line) {
 
 Json rounded(double value) {
   constexpr double kPerMetre = 1000;
-  // + 0.0: a negative zero is written as one.
+  // + 0.0: turns negative zero into zero.
   return std::isfinite(value) ? Json(std::round(value * kPerMetre) / kPerMetre + 0.0)
                               : Json(nullptr);
 }

@@ -8,13 +8,13 @@
 
 namespace altiplan::host {
 
-/// What `altiplan view` shows, of the form that tools/viewer/README.md gives.
+/// The scene that `altiplan view` shows, in the format of tools/viewer/README.md.
 struct Scene {
   Json json;
-  std::vector<std::string> warnings;  ///< what the user should know before looking
+  std::vector<std::string> warnings;  ///< for the user, before viewing
 };
 
-/// The world of the results, built again from their files, and what was planned and flown in it.
-/// Throws Error where they are not of one world, and as load_config and build_mission do.
+/// The world of the results, rebuilt from their files, with their routes and flights. Throws Error
+/// if they are not of the same world, and as load_config and build_mission do.
 Scene build_scene(const std::vector<StoredResult>& results);
 }  // namespace altiplan::host

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMaxCells = 1'000'000;
 
-/// What is kept of the layer's cells: not those within its ground, which is drawn as such.
+/// Keeps the layer's cells except those within its ground, which is drawn as such.
 VoxelGrid without_ground(const Ground& ground, const VoxelGrid& cells) {
   const GridSpec& spec = cells.spec();
   VoxelGrid kept(spec);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 20'000;
 
-/// For each event the first point of the track to which it happens.
+/// For each event, the first point of the track at which it is due.
 std::vector<std::optional<std::size_t>> points_of_events(const Track& track,
                                                          const std::vector<FlightEvent>& events) {
   std::vector<std::optional<std::size_t>> points(events.size());
@@ -29,7 +29,7 @@ std::vector<std::optional<std::size_t>> points_of_events(const Track& track,
   return points;
 }
 
-/// The first point at or after that time, the last where there is none.
+/// The first point at or after that time; the last if there is none.
 std::size_t point_at(const Track& track, double time_s) {
   const auto found =
       std::lower_bound(track.begin(), track.end(), time_s,
@@ -37,8 +37,8 @@ std::size_t point_at(const Track& track, double time_s) {
   return std::min(std::size_t(found - track.begin()), track.size() - 1);
 }
 
-/// How far the point is from where the vehicle would be then, had it gone straight and evenly from
-/// the point before to the one after.
+/// Distance of the point from the vehicle's position at that time on a straight, uniform motion
+/// from the point before to the one after.
 double bend(const Track& track, std::size_t i) {
   const auto& [t0, a] = track[i - 1];
   const auto& [t, p] = track[i];
@@ -47,7 +47,7 @@ double bend(const Track& track, std::size_t i) {
   return (p - (a + share * (b - a))).norm();
 }
 
-/// Points of the track that are shown: all that `must` be, half of the rest of `most` evenly, half
+/// The track points to show: all in `must`; of the remainder up to `most`, half evenly spaced, half
 /// where the track bends most.
 std::set<std::size_t> thinned(const Track& track, std::set<std::size_t> must, std::size_t most) {
   if (track.size() <= most) {
@@ -89,7 +89,7 @@ std::set<std::size_t> happenings(const Json& flight, const Track& track,
   return points;
 }
 
-/// The true world along a flight: as it is at each point, asked for in the order of the track.
+/// The true world along a flight, as it is at each point; to be queried in track order.
 class TruthAlong {
  public:
   TruthAlong(const Mission& mission, const std::vector<FlightEvent>& events,
@@ -134,7 +134,7 @@ class TruthAlong {
   std::size_t next_ = 0;
 };
 
-/// A place of the track: a point, and the share of the way to the next.
+/// A position on the track: a point, and the fraction of the leg to the next.
 using TrackPlace = std::pair<std::size_t, double>;
 
 std::pair<double, Vec3> at(const Track& track, const TrackPlace& place) {
@@ -146,7 +146,7 @@ std::pair<double, Vec3> at(const Track& track, const TrackPlace& place) {
   return {t + place.second * (t1 - t), p + place.second * (p1 - p)};
 }
 
-/// Where the flight came nearest to anything in the true world.
+/// The position at which the flight came nearest to anything in the true world.
 TrackPlace nearest_place(const Track& track, TruthAlong truth) {
   constexpr double kFine = 1e-4;  // metres
   TruthAlong there = truth;
@@ -171,7 +171,7 @@ TrackPlace nearest_place(const Track& track, TruthAlong truth) {
   return to == 1 ? TrackPlace{leg + 1, 0} : TrackPlace{leg, from};
 }
 
-/// Those points, where the flight came nearest to anything, and where it was lowest.
+/// Those points, the nearest approach to anything, and the lowest position.
 std::set<TrackPlace> places_of(const Track& track, const std::set<std::size_t>& points,
                                TruthAlong truth) {
   std::set<TrackPlace> places{nearest_place(track, truth)};
@@ -191,8 +191,8 @@ std::set<TrackPlace> places_of(const Track& track, const std::set<std::size_t>& 
   return places;
 }
 
-/// The flight in numbers at those places: height, clearance in the true world, and the speed and
-/// turn that were flown.
+/// The flight's profile at those positions: height, clearance in the true world, and the speed and
+/// turn flown.
 Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAlong truth) {
   Json profile;
   for (const char* key : {"t", "s", "altitude", "ground", "speed", "turn"}) {
@@ -238,7 +238,7 @@ Json happenings_json(const Json& list, std::initializer_list<const char*> texts)
   return happenings;
 }
 
-/// What the judge finds of the track now.
+/// The judge's present verdict on the track.
 TrackVerdict judged(const Track& track, const Mission& mission,
                     const std::vector<FlightEvent>& events) {
   FlightSetup setup;
@@ -248,7 +248,7 @@ TrackVerdict judged(const Track& track, const Mission& mission,
   return judge_track(track, setup);
 }
 
-/// The word for what the judge found of a flight.
+/// The status of a flight with that verdict.
 std::string status_of(const TrackVerdict& verdict) {
   return name(verdict.collisions > 0 ? RunStatus::collided
               : !verdict.reached     ? RunStatus::not_reached
@@ -267,7 +267,7 @@ std::string first_found(const TrackVerdict& verdict, const Track& track) {
   return when + first.message;
 }
 
-/// The verdict, its points counted in the thinned track.
+/// The verdict, with indices into the thinned track.
 Json recounted(Json check, const std::set<std::size_t>& shown) {
   const std::vector<std::size_t> points(shown.begin(), shown.end());
   for (Json& violation : check.at("violations")) {
@@ -290,7 +290,7 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   const std::set<std::size_t> must = happenings(flight, track, points);
   const std::set<std::size_t> shown = thinned(track, must, kMaxPoints);
   if (shown.size() < track.size()) {
-    notes.add(stored.file + ": the flight is shown by " + std::to_string(shown.size()) +
+    notes.add(stored.file + ": the flight is shown with " + std::to_string(shown.size()) +
               " of its " + std::to_string(track.size()) + " points");
   }
   Json json;

@@ -10,13 +10,13 @@ namespace altiplan::host {
 namespace {
 
 constexpr double kMaxPosts = 1'000'000;
-/// A model a little above that is shown as it is: every other post would be a quarter of it.
+/// A model slightly above the limit is shown in full: every other post would be a quarter of it.
 constexpr double kMaxNativePosts = 1'050'000;
-/// Samples on the longer side of a ground that has no posts of its own.
+/// Samples on the longer side of a ground without posts.
 constexpr double kSamples = 400;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// Places at x0 + i dx, y0 + j dy.
+/// Points at x0 + i dx, y0 + j dy.
 struct Posts {
   int nx = 0;
   int ny = 0;
@@ -35,7 +35,7 @@ Json posts_json(const Posts& posts, Json before, const Height& height) {
       heights.push_back(height(i, j));
     }
   }
-  // Not rounded: posts far from the first one would be off by as many times the error.
+  // Not rounded: the error would accumulate with each post.
   return {{"nx", posts.nx},
           {"ny", posts.ny},
           {"x0", posts.x0},
@@ -46,7 +46,7 @@ Json posts_json(const Posts& posts, Json before, const Height& height) {
           {"of", std::move(before)}};
 }
 
-/// Posts along an axis that cover low to high: the first, and how many.
+/// Posts along an axis that cover low to high: the first, and their number.
 struct Window {
   int first = 0;
   int count = 0;
@@ -76,7 +76,7 @@ Json of_field(const HeightField& field, const std::string& id, const Box& box, S
                     every * dx,
                     every * dy};
   if (posts.nx < 2 || posts.ny < 2) {
-    return nullptr;  // the box lies beside the ground
+    return nullptr;  // the box is outside the ground
   }
   if (every > 1) {
     notes.add(id + ": the ground is shown at every " + ordinal(every) + " post");
@@ -98,7 +98,7 @@ Json of_samples(const World& world, const Box& area, double spacing, SceneNotes&
   const Posts posts{steps(size.x()) + 1, steps(size.y()) + 1,        area.min.x(),
                     area.min.y(),        size.x() / steps(size.x()), size.y() / steps(size.y())};
   char text[96];
-  std::snprintf(text, sizeof text, "the ground is shown by its heights every %.3g m", posts.dx);
+  std::snprintf(text, sizeof text, "the ground is sampled every %.3g m", posts.dx);
   notes.add(text);
   return posts_json(posts, nullptr, [&](int i, int j) {
     const auto height = world.ground(posts.x0 + i * posts.dx, posts.y0 + j * posts.dy);

@@ -5,15 +5,15 @@
 #include "host/judge/judge.hpp"
 #include "host/view/scene_parts.hpp"
 
-// What a picture says of a route or a flight is what the judge finds when it is drawn: the files
-// may have changed since the run, and so may the stored result.
+// A picture shows the verdict of the judge at drawing time: the input files may have changed since
+// the run, and so may the stored result.
 
 namespace altiplan::host {
 
 std::string status_of(const CheckResult& check) {
-  return name(check.ok()                       ? RunStatus::solved
+  return name(check.ok()                         ? RunStatus::solved
               : violated_layer(check) != nullptr ? RunStatus::failed
-                                               : RunStatus::rejected);
+                                                 : RunStatus::rejected);
 }
 
 std::string first_found(const CheckResult& check) {
@@ -38,7 +38,7 @@ void set_status(Json& shown, const std::string& file, const std::string& now,
 
 Json metrics_now(const Json& stored, const Json& now) {
   Json metrics = metrics_scene(stored);
-  if (!metrics.is_null()) {  // those of the search, which the judge cannot know, stay
+  if (!metrics.is_null()) {  // metrics of the search, unknown to the judge, stay
     metrics.update(now);
   }
   return metrics;

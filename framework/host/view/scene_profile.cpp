@@ -9,14 +9,14 @@
 namespace altiplan::host {
 namespace {
 
-/// A place along the route; at waypoints the angle by which it turns there.
+/// A position along the route; at waypoints with the turn angle.
 struct Sample {
   double s = 0;
   Vec3 at{0, 0, 0};
   std::optional<double> turn_deg;
 };
 
-/// The places that the route's least clearances and height are those of, as leg and share of it.
+/// The positions of the route's minimum clearances and height, as leg and fraction of it.
 std::vector<std::pair<std::size_t, double>> nearest_places(const Route& route, const World& world) {
   struct Nearest {
     NearestLeg leg;
@@ -43,7 +43,7 @@ std::vector<std::pair<std::size_t, double>> nearest_places(const Route& route, c
   return places;
 }
 
-/// The waypoints, the places, and others evenly between them as far as there is room for more.
+/// The waypoints, those positions, and evenly spaced others up to the sample limit.
 std::vector<Sample> samples_of(const Route& route,
                                const std::vector<std::pair<std::size_t, double>>& places,
                                std::size_t most, bool turns_on_the_spot) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxViolations = 1000;
 
-/// The limit that routes are held to, null where there is none.
+/// The limit on routes, null if there is none.
 Json limits_json(const Request& request) {
   const Limits& limits = request.limits;
   const double clearance = std::max(limits.min_clearance, request.vehicle.radius_m);
@@ -23,7 +23,7 @@ Json limits_json(const Request& request) {
           {"climb_deg", below(limits.max_climb, kPi / 2)}};
 }
 
-/// A route, and what the judge finds of it now.
+/// A route, and the judge's present verdict on it.
 struct Judged {
   Route route;
   CheckResult check;
@@ -61,21 +61,21 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
   const Judged now = accepted && accepted->route == places ? *accepted : judged(places, mission);
   json["route"] = to_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
-  if (!json.at("check").is_null()) {  // else the run did not get as far as a verdict
+  if (!json.at("check").is_null()) {  // else the run ended before a verdict
     json["check"] = check_scene(to_json(now.check), whose, notes);
     set_status(json, stored.file, status_of(now.check), first_found(now.check));
   }
   return json;
 }
 
-/// The status of the run: that of its route, and where that is valid of its flight.
+/// The status of the run: that of its route or, if the route is valid, of its flight.
 void conclude(Json& json, const StoredResult& stored, const std::optional<Judged>& accepted,
               SceneNotes& notes) {
   const Json& flight = json.at("flight");
   if (!accepted) {
     json["judged"] = nullptr;
     if (json.at("status") == name(RunStatus::solved)) {
-      set_status(json, stored.file, name(RunStatus::no_route), "there is no route in it");
+      set_status(json, stored.file, name(RunStatus::no_route), "it contains no route");
     }
   } else if (!accepted->check.ok() || flight.is_null()) {
     set_status(json, stored.file, status_of(accepted->check), first_found(accepted->check));
@@ -138,7 +138,7 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
   json["seed"] = result.at("seed");
   json["metrics"] =
       metrics_now(result.at("metrics"), accepted ? to_json(accepted->measures) : no_metrics());
-  result.at("check");  // or it is no result
+  result.at("check");  // throws if it is not a result
   json["check"] =
       check_scene(accepted ? to_json(accepted->check) : Json(nullptr), stored.file, notes);
   json["steps"] = Json::array();

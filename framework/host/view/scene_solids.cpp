@@ -11,7 +11,7 @@ namespace altiplan::host {
 namespace {
 
 using Role = Drawn::Role;
-/// Boxes of one layer and role beyond this number are handed over as a block of numbers.
+/// Beyond this number, the boxes of one layer and role are passed as a block of numbers.
 constexpr std::size_t kFewBoxes = 200;
 
 const char* name(Role role) {
@@ -74,11 +74,11 @@ struct ShapeWriter {
   }
 };
 
-/// A layer or moving obstacle as it stands between two events.
+/// A layer or moving obstacle as it is between two events.
 struct Stay {
   std::optional<Layer> layer;
   std::optional<MovingObstacle> moving;
-  Vec3 carried{0, 0, 0};  ///< by events, since the layer was made
+  Vec3 carried{0, 0, 0};  ///< by events, since the layer was built
   std::optional<std::size_t> added_by;
   std::optional<std::size_t> removed_by;
 
@@ -89,7 +89,7 @@ Json index_json(const std::optional<std::size_t>& index) {
   return index ? Json(*index) : Json(nullptr);
 }
 
-/// What every part of a layer has in common.
+/// The properties common to all parts of a layer.
 Json part_json(const Stay& stay, Role role, const std::string& text) {
   return {{"layer", stay.id()},
           {"role", name(role)},
@@ -99,7 +99,7 @@ Json part_json(const Stay& stay, Role role, const std::string& text) {
           {"removed_by", index_json(stay.removed_by)}};
 }
 
-/// Within `whole`, where a box has no end of its own.
+/// Clipped to `whole` where a box is unbounded.
 Json packed_boxes(Json part, const std::vector<Box>& boxes, const Box& whole) {
   std::vector<float> corners;
   corners.reserve(6 * boxes.size());
@@ -118,7 +118,7 @@ Drawing drawing_of(const Layer& layer, const Box& box, SceneNotes& notes) {
   return attributed(
       [&] {
         return "the environment '" + layer.plugin + "' (" + layer.id +
-               "), when asked what it looks like,";
+               "), when asked for its drawing,";
       },
       [&] {
         const std::optional<Drawing> drawing = layer.environment->drawing();
@@ -175,7 +175,7 @@ Json moving_json(const Stay& stay) {
   return json;
 }
 
-/// All that is ever there: each thing once, and once more for each event that changes it.
+/// Everything that ever exists: each thing once, and once more for each event that changes it.
 class Stays {
  public:
   explicit Stays(const World& truth) {
@@ -196,7 +196,7 @@ class Stays {
         return stay.id() == event.id && !stay.removed_by;
       });
       if (found == all_.end()) {
-        return;  // the flight says so
+        return;  // reported by the flight
       }
       found->removed_by = index;
       Stay next = *found;
@@ -238,7 +238,7 @@ std::string event_text(const FlightEvent& event) {
 
 void add_solids(Json& scene, const Mission& mission, const std::vector<FlightEvent>& events,
                 const Box& box, SceneNotes& notes) {
-  // By time; those that wait for the vehicle come last, as no time is known for them.
+  // By time; events triggered by the vehicle come last, as their time is unknown.
   std::vector<std::size_t> order(events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     order[i] = i;

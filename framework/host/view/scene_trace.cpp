@@ -23,7 +23,7 @@ constexpr std::uint8_t kIteration = 4;
 using Point = std::array<float, 3>;
 
 struct Event {
-  std::size_t nth = 0;  ///< of its step's events of its sort
+  std::size_t nth = 0;  ///< index among its step's events of its kind
   std::size_t line = 0;
   std::uint8_t step = 0;
   std::uint8_t kind = 0;
@@ -36,8 +36,8 @@ struct Event {
   float alive = -1;
 };
 
-/// Keeps every n-th event of each step, n the least power of two for which no more than `most` are
-/// kept; of events that go on with the one before, all or none.
+/// Keeps every n-th event of each step, n the smallest power of two that keeps at most `most`;
+/// events that continue the previous one are kept or dropped with it.
 class Thinned {
  public:
   explicit Thinned(std::size_t most) : most_(most) {}
@@ -50,7 +50,7 @@ class Thinned {
     if (event.nth % every_ == 0) {
       kept_.push_back(event);
     }
-    // Nothing but the first is left where n is above all: that stays, however long it is.
+    // If n exceeds all counts, only the first is left; it stays, however long it is.
     while (kept_.size() > most_ && every_ <= greatest_) {
       every_ *= 2;
       kept_.erase(std::remove_if(kept_.begin(), kept_.end(),
@@ -68,11 +68,10 @@ class Thinned {
   std::vector<Event> kept_;
 };
 
-/// A trace as it is read, line by line; no more of it stays in memory than is shown, and the places
-/// of the nodes.
+/// A trace, read line by line; memory holds only what is shown and the positions of the nodes.
 class Reader {
  public:
-  /// Throws a Json::exception or an Error where the line is no event.
+  /// Throws a Json::exception or an Error if the line is not an event.
   void add(const std::string& line) {
     const Json json = Json::parse(line);
     Event event;
@@ -85,14 +84,14 @@ class Reader {
     }
     event.value = number_or_none(json.at("value"));
     const auto node = json.at("node").get<std::int64_t>();
-    // Iterations are few, and they alone tell how the best length came down.
+    // Iterations are few, and only they show how the best length decreased.
     if (event.kind == kIteration) {
       event.number = float(node);
       event.alive = json.value("alive", -1.0F);
       event.mean = number_or_none(json.value("mean", Json()));
       is_population_ = event.alive >= 0;
       if (is_population_) {
-        nodes_.clear();  // its routes are over
+        nodes_.clear();  // drops its routes
       }
       event.parent = event.at;
       iterations_.add(event, false);
@@ -154,7 +153,7 @@ class Reader {
       if (step_ == steps_.size()) {
         steps_.push_back(id);
       }
-      nodes_.clear();  // a search numbers its own
+      nodes_.clear();  // each search numbers its own nodes
       is_population_ = false;
     }
     return std::uint8_t(step_);
@@ -165,7 +164,7 @@ class Reader {
   static std::uint8_t kind_number(std::string_view kind) {
     const auto found = std::find(kKinds.begin(), kKinds.end(), kind);
     if (found == kKinds.end()) {
-      throw Error("no kind of event");
+      throw Error("unknown kind of event");
     }
     return std::uint8_t(found - kKinds.begin());
   }
@@ -174,7 +173,7 @@ class Reader {
   std::size_t step_ = 0;
   std::vector<std::string> steps_;
   std::unordered_map<std::int64_t, Point> nodes_;
-  bool is_population_ = false;  // the search: what it adds is routes
+  bool is_population_ = false;  // the search adds routes, not nodes
   Thinned iterations_{kMaxIterations};
   Thinned others_{kMaxEvents - kMaxIterations};
 };
@@ -184,7 +183,7 @@ bool begins_a_trace(const std::string& line) {
   return json.is_object() && json.contains("altiplan_trace") && json["altiplan_trace"] == 1;
 }
 
-/// Where the trace is: as written, or beside the result that was moved together with it.
+/// Path of the trace: as written, or beside the result if both were moved.
 std::filesystem::path find_trace(const StoredResult& stored, const std::string& written) {
   const std::filesystem::path beside =
       std::filesystem::path(stored.file).parent_path() / std::filesystem::path(written).filename();
@@ -217,7 +216,7 @@ Json trace_scene(const StoredResult& stored, SceneNotes& notes) {
       reader.add(line);
     } catch (const std::exception&) {
       notes.warn(file.string() + ":" + std::to_string(number) +
-                 ": this is not an event of a search: it is shown up to here");
+                 ": this is not a search event: the search is shown up to here");
       break;
     }
   }

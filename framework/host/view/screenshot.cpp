@@ -26,14 +26,14 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
-/// A folder that is gone with this object.
+/// A temporary folder, removed with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
     const auto lock = uninterrupted();
     std::string path = (fs::temp_directory_path() / "altiplan_view_XXXXXX").string();
     if (::mkdtemp(path.data()) == nullptr) {
-      throw Error("cannot make a folder in '" + fs::temp_directory_path().string() +
+      throw Error("cannot create a folder in '" + fs::temp_directory_path().string() +
                   "': " + std::strerror(errno));
     }
     path_ = path;
@@ -59,11 +59,11 @@ std::vector<std::string> arguments_of(const fs::path& chromium, const fs::path& 
   std::vector<std::string> arguments{
       chromium.string(),
       "--headless",
-      // The processor in place of a graphics card: there, and the same, on every machine.
+      // Software rendering: available, and identical, on every machine.
       "--use-gl=angle",
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
-      // In one process, frames need not be handed from one to another.
+      // A single process avoids passing frames between processes.
       "--in-process-gpu",
       "--disable-gpu-compositing",
       "--hide-scrollbars",
@@ -80,12 +80,12 @@ std::vector<std::string> arguments_of(const fs::path& chromium, const fs::path& 
       "file://" + page.string() + query,
   };
   if (::geteuid() == 0) {
-    arguments.insert(arguments.begin() + 1, "--no-sandbox");  // Chromium's does not serve root
+    arguments.insert(arguments.begin() + 1, "--no-sandbox");  // its sandbox refuses root
   }
   return arguments;
 }
 
-/// A process and its children, silent.
+/// A process and its children, with their output discarded.
 class Child {
  public:
   explicit Child(std::vector<std::string> arguments) {
@@ -121,7 +121,7 @@ class Child {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < end) {
       siginfo_t info{};
-      // Not waited for yet: its number stays its own until its group has been ended.
+      // Not reaped yet, so that its id is not reused before its group has ended.
       if (::waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
           info.si_pid == pid_) {
         return true;
@@ -145,7 +145,7 @@ std::optional<fs::path> find_chromium() {
   std::istringstream folders(path != nullptr ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
     for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-      // An empty entry means the current folder: programs are not taken from there.
+      // An empty entry means the current folder: never run programs from there.
       if (!folder.empty() && is_program(fs::path(folder) / name)) {
         return fs::path(folder) / name;
       }
@@ -162,14 +162,14 @@ std::string screenshot(const fs::path& chromium, const std::string& page, const 
   {
     const Child child(arguments_of(chromium, folder.path(), file, query));
     if (!child.ends_within(patience)) {
-      throw Error("'" + chromium.string() + "' did not draw the page within " +
+      throw Error("'" + chromium.string() + "' did not render the page within " +
                   std::to_string(patience.count() / 1000) + " s");
     }
   }
   const std::string drawn = (folder.path() / "page.png").string();
   std::string png = kit::why_unreadable(drawn).empty() ? kit::read_file(drawn) : "";
   if (!png.starts_with(kPngSignature)) {
-    throw Error("'" + chromium.string() + "' did not draw the page");
+    throw Error("'" + chromium.string() + "' did not render the page");
   }
   return png;
 }

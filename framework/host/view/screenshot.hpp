@@ -8,11 +8,11 @@
 
 namespace altiplan::host {
 
-/// A Chromium: the program that ALTIPLAN_CHROMIUM names where that is set, else one on the PATH.
+/// A Chromium: the program that ALTIPLAN_CHROMIUM names if set, else one on the PATH.
 std::optional<std::filesystem::path> find_chromium();
 
-/// The bytes of a PNG of the page, drawn without a screen. `query` is added to its address. Throws
-/// Error where Chromium does not draw it in time.
+/// A PNG of the page, rendered headless. `query` is appended to its URL. Throws Error if Chromium
+/// does not render it in time.
 std::string screenshot(const std::filesystem::path& chromium, const std::string& page,
                        const std::string& query,
                        std::chrono::milliseconds patience = std::chrono::seconds(60));

@@ -8,8 +8,8 @@
 
 #include "host/base/base64.hpp"
 
-// The page is part of the program, so that it need not be looked for: the assembler copies the file
-// that ALTIPLAN_VIEWER_PAGE names in between two symbols.
+// The page is embedded in the program, so that it need not be located: the assembler copies the
+// file named by ALTIPLAN_VIEWER_PAGE between two symbols.
 asm(".pushsection .rodata\n"
     "altiplan_viewer_page:\n"
     ".incbin \"" ALTIPLAN_VIEWER_PAGE
@@ -28,12 +28,12 @@ namespace altiplan::host {
 
 namespace {
 
-/// Lists shorter than that are not worth it.
+/// Shorter lists are not worth packing.
 constexpr std::size_t kLongList = 64;
 constexpr double kPerUnit = 1000;
 constexpr double kMaxUnits = 0x1p45;
 
-/// Whether the number is one of so many thousandths, or null.
+/// True if the value is a whole number of thousandths, or null.
 bool is_packable(const Json& value) {
   if (value.is_null()) {
     return true;
@@ -46,7 +46,7 @@ bool is_packable(const Json& value) {
   return std::abs(units) < kMaxUnits && units / kPerUnit == number;
 }
 
-/// Whole numbers, seven bits a byte.
+/// Whole numbers, seven bits per byte.
 class Tokens {
  public:
   void add(std::uint64_t token) {
@@ -82,13 +82,13 @@ class Tokens {
   }
 
   std::vector<std::byte> bytes_;
-  std::uint64_t last_ = 1;  // which nothing is
+  std::uint64_t last_ = 1;  // which no number equals
   std::uint64_t repeats_ = 0;
 };
 
-/// Thousandths one after another, each as its difference from what those before it foretell: that
-/// it is as the last one (order 1), or changes as that did (order 2). Null is 0, 1 and a number
-/// repeats the last one so often, 2 and more are the differences 0, -1, 1, -2, …
+/// Consecutive thousandths, each as its difference from a prediction: equal to the last one (order
+/// 1), or continuing its change (order 2). 0 is null, 1 and a count repeat the last one that often,
+/// 2 and above are the differences 0, -1, 1, -2, …
 std::vector<std::byte> differences(const Json& list, std::size_t per, int order) {
   Tokens tokens;
   for (std::size_t axis = 0; axis < std::max<std::size_t>(per, 1); ++axis) {
@@ -110,8 +110,8 @@ std::vector<std::byte> differences(const Json& list, std::size_t per, int order)
   return tokens.bytes();
 }
 
-/// How many numbers an item of a list of points has, 0 for a list of numbers; nothing where it is
-/// neither, or short, or holds what is no number of thousandths.
+/// Number of coordinates per item of a list of points, 0 for a list of numbers; nothing if it is
+/// neither, or short, or has values that are not whole thousandths.
 std::optional<std::size_t> numbers_per_item(const Json& list) {
   if (list.size() < kLongList) {
     return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<std::size_t> numbers_per_item(const Json& list) {
   return per;
 }
 
-/// The scene with its long lists of numbers as tools/viewer/src/packed.js reads them.
+/// The scene with its long lists of numbers packed for tools/viewer/src/packed.js.
 Json packed(const Json& json) {
   if (json.is_object()) {
     Json result = Json::object();
@@ -169,7 +169,7 @@ std::string viewer_page(const Json& scene) {
   page.reserve(around.size() + text.size());
   page += around.substr(0, place);
   for (const char letter : text) {
-    // Nothing in a scene can end the script that holds it.
+    // Escaped, so that nothing in a scene can end the script element around it.
     letter == '<' ? page += "\\u003c" : page += letter;
   }
   page += around.substr(place + kScenePlace.size());

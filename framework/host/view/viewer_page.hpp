@@ -8,9 +8,9 @@
 
 namespace altiplan::host {
 
-/// tools/viewer/dist/viewer.html with the scene in it: one file that needs nothing else.
+/// tools/viewer/dist/viewer.html with the scene embedded: one self-contained file.
 std::string viewer_page(const Json& scene);
-/// That file, with kScenePlace once where a scene goes.
+/// That file, with kScenePlace once in place of the scene.
 std::string_view viewer_template();
 inline constexpr std::string_view kScenePlace = "/*SCENE*/";
 }  // namespace altiplan::host

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Marks what libaltiplan.so exports; everything else is hidden.
+/// Exports a symbol from libaltiplan.so; everything else is hidden.
 #define ALTIPLAN_API __attribute__((visibility("default")))
 
 /// Version of the plugin interface, see docs/abi.md. A library built for another major, or for a
@@ -9,6 +9,6 @@
 #define ALTIPLAN_API_MAJOR 1
 #define ALTIPLAN_API_MINOR 0
 
-/// For sources that are built against several versions: `#if ALTIPLAN_API_AT_LEAST(1, 1)`.
+/// For sources built against several versions: `#if ALTIPLAN_API_AT_LEAST(1, 1)`.
 #define ALTIPLAN_API_AT_LEAST(major, minor) \
   (ALTIPLAN_API_MAJOR > (major) || (ALTIPLAN_API_MAJOR == (major) && ALTIPLAN_API_MINOR >= (minor)))

@@ -5,7 +5,7 @@
 
 namespace altiplan {
 
-/// Runs a plugin's code; what it throws becomes an error that says whose it is. `who` is asked only
+/// Runs a plugin's code; an exception becomes an error that names its origin. `who` is called only
 /// then ("the layer 'north' (terrain)").
 template <class Who, class Call>
 auto attributed(const Who& who, const Call& call) {

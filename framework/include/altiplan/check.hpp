@@ -10,7 +10,7 @@
 namespace altiplan {
 
 /// The judge's code: exact per leg, no sampling. Smoothers and planners use the same functions, so
-/// what they accept the host accepts.
+/// the host accepts whatever they accept.
 struct CheckResult {
   std::vector<Violation> violations;
   bool ok() const { return violations.empty(); }
@@ -19,25 +19,25 @@ struct CheckResult {
 /// Judges a route: ends, volume, level, every leg, every limit and constraint of the request.
 ALTIPLAN_API CheckResult check(const Route& route, const Request& request);
 
-/// Whether the leg a–b, for a vehicle that comes to a by `before`, keeps every constraint that
-/// depends on the leg alone (all but route length and the constraints' path-dependent parts).
+/// True if the leg a–b, for a vehicle that reaches a by `before`, satisfies every constraint that
+/// depends on the leg alone (all but route length and the path-dependent parts of constraints).
 ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
                          const Request& request);
 
-/// Whether the turn from the approach into the leg a–b keeps the request's limits on turns.
+/// True if the turn from the approach into the leg a–b satisfies the request's turn limits.
 ALTIPLAN_API bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b,
                           const Request& request);
 
-/// What is wrong with the leg, a sentence each; empty if and only if leg_ok. `index` becomes `at`.
+/// Violations of the leg, one sentence each; empty if and only if leg_ok. `index` becomes `at`.
 ALTIPLAN_API std::vector<Violation> leg_violations(const std::optional<Approach>& before,
                                                    const Vec3& a, const Vec3& b,
                                                    const Request& request, std::size_t index);
 
-/// What makes a point (start, goal, via) impossible in this problem, in words with the figures;
-/// empty when nothing does.
+/// Why a point (start, goal, via) is infeasible in this problem, in words and figures; "" where it
+/// is feasible.
 ALTIPLAN_API std::string point_problem(const Vec3& p, const Request& request);
 
-/// The limits after every constraint that applies has had its say, and those constraints.
+/// Adds the constraints that apply to `to` to the request, and tightens its limits by them.
 ALTIPLAN_API void apply_constraints(Request& request, std::vector<NamedConstraint> constraints,
                                     AppliesTo to);
 }  // namespace altiplan

@@ -13,16 +13,16 @@ namespace altiplan {
 
 struct Request;
 
-/// A straight motion, with the point before it where there is one.
+/// A straight motion, with the preceding point where there is one.
 struct Leg {
   std::optional<Vec3> before;
   Vec3 from{0, 0, 0};
   Vec3 to{0, 0, 0};
 };
 
-/// A place where a route breaks a rule.
+/// A violation of a constraint at one place of a route.
 struct Violation {
-  std::string constraint;  ///< plugin name of the rule
+  std::string constraint;  ///< plugin name of the constraint
   std::size_t at = 0;      ///< index of the waypoint, or of the leg's first waypoint
   double value = 0;        ///< in the limit's unit (metres, degrees)
   double limit = 0;
@@ -31,15 +31,15 @@ struct Violation {
 
 enum class AppliesTo { route, track, both };
 
-/// A requirement on routes and tracks. (OMPL's Constraint is a manifold; ours is a rule that a
-/// motion keeps or breaks.)
+/// A requirement on routes and tracks. (OMPL's Constraint is a manifold; ours is a condition that a
+/// motion satisfies or violates.)
 ///
-/// Laws:
-///  1. Pure and const: any number of threads may ask.
+/// Contract:
+///  1. Pure and const: callable from any number of threads.
 ///  2. tighten only ever makes a limit stricter.
 ///  3. admits depends on the leg alone, and is monotone under the constraint's own parameter.
-///  4. violations is empty if and only if the route keeps the rule; it covers what tighten and
-///     admits cannot say (the path-dependent rules).
+///  4. violations is empty if and only if the route satisfies the constraint; it covers what
+///     tighten and admits cannot express (path-dependent constraints).
 class ALTIPLAN_API Constraint {
  public:
   virtual ~Constraint();
@@ -52,18 +52,18 @@ class ALTIPLAN_API Constraint {
 
  private:
   virtual AppliesTo do_applies_to() const;
-  /// The request's world, start and goal are set; its limits are those so far.
+  /// The request has its world, start and goal; its limits are those tightened so far.
   virtual void do_tighten(Limits& limits, const Request& request) const;
   virtual bool do_admits(const Leg& leg) const;
   virtual std::vector<Violation> do_violations(const Route& route, const Request& request) const;
 };
 
-/// A constraint under the name by which the user asked for it.
+/// A constraint under the name that the user gave it.
 struct ALTIPLAN_API NamedConstraint {
   std::string name;
   std::shared_ptr<const Constraint> constraint;
 
-  /// The constraint's answer; what it throws gets its name.
+  /// The constraint's admits; exceptions are attributed to `name`.
   bool admits(const Leg& leg) const;
 };
 }  // namespace altiplan

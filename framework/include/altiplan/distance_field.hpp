@@ -7,12 +7,12 @@
 
 namespace altiplan {
 
-/// Euclidean distance from each cell to the nearest blocked cell of a voxel grid (an ESDF's outside
-/// half), exact between cell centres, by the lower envelope of parabolas
+/// Euclidean distance from each cell to the nearest blocked cell of a voxel grid (the outside half
+/// of an ESDF), exact between cell centres, by the lower envelope of parabolas
 /// (Felzenszwalb and Huttenlocher, Theory of Computing 8, 2012). O(cells).
 class ALTIPLAN_API DistanceField {
  public:
-  /// Distances are cut off at `max_m`.
+  /// Distances are clamped to `max_m`.
   explicit DistanceField(const VoxelGrid& grid, double max_m = kInfinity);
 
   const GridSpec& spec() const { return spec_; }

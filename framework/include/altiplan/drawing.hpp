@@ -9,19 +9,19 @@
 
 namespace altiplan {
 
-/// A solid of a layer, as viewers show it and mission files hold it.
+/// A solid of a layer, as shown by viewers and written to mission files.
 struct Drawn {
-  /// unknown: blocked because nobody knows what is there; a page hides it until it is asked for.
+  /// unknown: unobserved space, treated as blocked; the page hides it by default.
   enum class Role { obstacle, keep_out, keep_in, threat, unknown };
   Shape shape;
   Role role = Role::obstacle;
-  std::string name;  ///< for the reader; "" where it has none
+  std::string name;  ///< display name; "" where it has none
 };
 
-/// What a layer looks like beside its ground. For the eye: the layer's queries alone say what is
-/// blocked.
+/// Appearance of a layer apart from its ground. For display only: the layer's queries alone define
+/// what is blocked.
 struct Drawing {
   std::vector<Drawn> shapes;
-  std::vector<std::array<Vec3, 3>> triangles;  ///< surfaces that are no shapes
+  std::vector<std::array<Vec3, 3>> triangles;  ///< surfaces other than shapes
 };
 }  // namespace altiplan

@@ -17,7 +17,7 @@ namespace altiplan {
 class Ground;
 class World;
 
-/// A disc that a plane planner avoids.
+/// A disc that a 2-D planner avoids.
 struct Threat {
   Vec3 centre{0, 0, 0};
   double radius = 0;
@@ -25,59 +25,59 @@ struct Threat {
   std::string id;
 };
 
-/// What a layer knows of an obstacle near a point.
+/// An obstacle of a layer near a query point.
 struct Nearby {
-  Vec3 point{0, 0, 0};   ///< of the obstacle's surface, nearest to the asking point
+  Vec3 point{0, 0, 0};   ///< nearest point on the obstacle's surface
   double distance = 0;   ///< metres, negative inside
-  Vec3 normal{0, 0, 1};  ///< unit, from the obstacle toward the asking point
+  Vec3 normal{0, 0, 1};  ///< unit, from the obstacle toward the query point
   int id = 0;            ///< of the obstacle within its layer
 };
 using NearSink = std::function<void(const Nearby&)>;
 
-/// What a layer says of itself.
+/// Self-description of a layer.
 struct LayerInfo {
-  std::optional<Frame> frame;           ///< that its files fix, for a world that has none yet
-  std::optional<GridSpec> native_grid;  ///< its cells, where it has cells of its own
-  std::vector<Threat> threats;          ///< what planners of the plane see of it
-  /// What a user should know of what was read ("403 x 344 posts, 236 to 1076 m"), a line each.
+  std::optional<Frame> frame;           ///< defined by its files, for a world without one
+  std::optional<GridSpec> native_grid;  ///< its cells, if it has its own
+  std::vector<Threat> threats;          ///< the layer as 2-D planners see it
+  /// What a user should know about the data read ("403 x 344 posts, 236 to 1076 m"), one per line.
   std::vector<std::string> notes;
 };
 
-/// What an environment is built from besides its parameters.
+/// Inputs of an environment besides its parameters.
 struct ALTIPLAN_API Site {
-  Frame frame;            ///< without a position until a layer brings one
-  std::string frame_crs;  ///< asked for by the scenario's `frame: {crs: …}`, or ""
+  Frame frame;            ///< without a position until a layer provides one
+  std::string frame_crs;  ///< from the scenario's `frame: {crs: …}`, or ""
   Box volume;             ///< infinite where the scenario leaves it to the layers
   Vehicle vehicle;
   const World* before = nullptr;  ///< the layers before this one; never null inside a constructor
-  std::optional<Vec3> start;      ///< where already known
+  std::optional<Vec3> start;      ///< if already known
   std::optional<Vec3> goal;
   double start_time_s = 0;  ///< of the scenario, seconds since 1970-01-01 UTC; 0 where not given
   bool has_start_time = false;
   RandomStream random;
 
-  /// A user's point in local metres; throws Error saying what is missing (a frame with a position,
+  /// A user's point in local metres; throws Error naming what is missing (a frame with a position,
   /// ground below it, a layer with cells).
   Vec3 resolve(const Point& point) const;
 };
 
 /// A layer of the world: terrain, buildings, zones, radars. Immutable; a solid, closed set.
-/// A place that is not finite is blocked and has a clearance of -infinity; the layer is not asked.
+/// A position that is not finite is blocked and has clearance -infinity; the layer is not asked.
 ///
-/// Laws, held by every environment and tested by the conformance suite:
-///  1. Pure: built from (parameters, Site) alone; const functions may run on many threads.
+/// Contract of every environment, tested by the conformance suite:
+///  1. Pure: built from (parameters, Site) alone; const functions are thread-safe.
 ///  2. clearance is signed (negative inside), 1-Lipschitz, and never more than the true distance.
-///  3. blocked(a, b, r) is true whenever the least distance between the leg and the layer is below
+///  3. blocked(a, b, r) is true whenever the minimum distance of the leg and the layer is below
 ///     r - 1e-6 m; it may be true up to over_approximation() metres above r; touching is free.
 ///  4. blocked is symmetric in a and b, and monotone in r.
-///  5. Its ground, if it has one, holds the laws of Ground. Beyond it the layer blocks nothing: a
-///     leg with no ground below part of it is the judge's to refuse.
-///  6. rasterize never leaves a cell free that the grid's rule blocks.
+///  5. Its ground, if any, fulfils the contract of Ground. The layer blocks nothing beyond it: the
+///     judge rejects a leg with no ground below part of it.
+///  6. rasterize never leaves a cell free that the grid's blocking rule blocks.
 class ALTIPLAN_API Environment {
  public:
   virtual ~Environment();
 
-  /// Where the layer's obstacles and ground are; unbounded directions are infinite.
+  /// Extent of the layer's obstacles and ground; unbounded directions are infinite.
   Box bounds() const { return do_bounds(); }
   double clearance(const Vec3& p) const;
   bool blocked(const Vec3& a, const Vec3& b, double r) const;
@@ -85,14 +85,14 @@ class ALTIPLAN_API Environment {
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
   double over_approximation() const { return do_over_approximation(); }
-  /// The ground that the layer brings, or null; as the layer's info, the same for its whole life.
+  /// The layer's ground, or null; like info(), constant for the layer's lifetime.
   const Ground* ground() const { return do_ground(); }
   const LayerInfo& info() const { return do_info(); }
-  /// Centre of a cell as the layer's file counts it.
+  /// Centre of a cell in the indexing of the layer's file.
   std::optional<Vec3> cell_centre(const std::array<double, 3>& cell) const {
     return do_cell_centre(cell);
   }
-  /// What to show of the layer beside its ground; none: whoever shows it asks for its cells.
+  /// How viewers show the layer apart from its ground; none: they show its cells.
   std::optional<Drawing> drawing() const { return do_drawing(); }
 
  private:
@@ -106,9 +106,9 @@ class ALTIPLAN_API Environment {
   virtual void do_rasterize(VoxelGrid& grid) const;
   /// Default 0.05 m.
   virtual double do_over_approximation() const;
-  /// Default: null. A layer with a ground is one itself, as a second base, or has one.
+  /// Default: null. A layer with ground implements Ground as a second base, or owns one.
   virtual const Ground* do_ground() const;
-  /// Default: nothing to say. A layer that says something keeps it.
+  /// Default: empty. A layer with other information stores it.
   virtual const LayerInfo& do_info() const;
   virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;
   virtual std::optional<Drawing> do_drawing() const;

@@ -11,19 +11,18 @@
 
 namespace altiplan {
 
-/// A place in a file that the user wrote, or the command-line override that took its place.
+/// A position in a user's file, or the command-line override that replaced the value there.
 struct Location {
   std::string file;
   int line = 0;  ///< from 1; 0 where only the file is known
   int column = 0;
-  std::string override_text;  ///< "--set KEY=VALUE" where the value came from the command line
+  std::string override_text;  ///< "--set KEY=VALUE" for a value from the command line
 
   /// "file:line:column", or the override.
   ALTIPLAN_API std::string text() const;
 };
 
-/// One thing that is wrong in a file: where, at which key ("steps.0.with.cell_m"), what was
-/// expected.
+/// One error in a file: where, at which key ("steps.0.with.cell_m"), what was expected.
 struct Problem {
   Location where;
   std::string key;
@@ -32,14 +31,14 @@ struct Problem {
   ALTIPLAN_API std::string text() const;
 };
 
-/// Base of everything that the framework throws.
+/// Base of all exceptions that the framework throws.
 class ALTIPLAN_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ~Error() override;
 };
 
-/// Files or parameters are wrong; holds every problem found, in file order.
+/// Invalid files or parameters; holds every problem found, in file order.
 class ALTIPLAN_API ConfigError : public Error {
  public:
   explicit ConfigError(std::vector<Problem> problems);
@@ -51,21 +50,22 @@ class ALTIPLAN_API ConfigError : public Error {
   std::vector<Problem> problems_;
 };
 
-/// A parameter does not fit the problem at hand (a lattice larger than the memory allowed): thrown
-/// by a plugin at run time, reported by the host at the parameter's place in the file, exit code 3.
+/// A parameter that does not fit the problem (a lattice larger than the allowed memory): thrown by
+/// a plugin at run time, reported by the host at the parameter's position in the file, exit code 3.
 class ALTIPLAN_API ParameterError : public Error {
  public:
   ParameterError(std::string key, const std::string& message)
       : Error(message), key_(std::move(key)) {}
   ~ParameterError() override;
-  /// Name of the parameter within the plugin's own ("cell_m").
+  /// Parameter name within the plugin ("cell_m").
   const std::string& key() const { return key_; }
 
  private:
   std::string key_;
 };
 
-/// A plugin threw, broke a law of its interface, or could not be loaded; the text names it.
+/// A plugin threw, violated the contract of its interface, or could not be loaded; the text names
+/// it.
 class ALTIPLAN_API PluginError : public Error {
  public:
   explicit PluginError(const std::string& message, Reason reason = Reason::none)
@@ -77,25 +77,25 @@ class ALTIPLAN_API PluginError : public Error {
   Reason reason_;
 };
 
-/// Within a `catch`: throws what was caught as a PluginError, "WHOthrew: …"; `who` ends with a
+/// Within a `catch`: rethrows the exception as a PluginError, "WHOthrew: …"; `who` ends with a
 /// space or is empty.
 [[noreturn]] ALTIPLAN_API void attribute_to(const std::string& who);
 
-/// The time of a budget ended, or its stop was requested, while the framework worked for a planner:
-/// whoever called the planner answers with `timed_out` or `cancelled`.
+/// The deadline passed, or a stop was requested, while the framework worked for a planner: the
+/// caller of the planner returns `timed_out` or `cancelled`.
 class ALTIPLAN_API BudgetSpent : public Error {
  public:
   BudgetSpent(const std::string& message, bool cancelled) : Error(message), cancelled_(cancelled) {}
   ~BudgetSpent() override;
-  /// Whether the stop token, not the deadline, ended it.
+  /// True if the stop token ended it, not the deadline.
   bool cancelled() const { return cancelled_; }
 
  private:
   bool cancelled_;
 };
 
-/// What a file says, as a message quotes it: in quotes, no longer than 60 characters, with '?' for
-/// what is not printable ASCII.
+/// Text of a file as a message quotes it: in quotes, at most 60 characters, with '?' for everything
+/// that is not printable ASCII.
 ALTIPLAN_API std::string excerpt(std::string_view text);
 
 /// The candidate nearest to `word` by edit distance, or "" when none is near.

@@ -10,8 +10,8 @@
 
 namespace altiplan {
 
-/// A map projection that a layer brings along (GDAL stays in the plugin that read the file).
-/// Laws: 1. to_lonlat(to_local(p)) = p within 1e-6 m. 2. May be called from many threads.
+/// A map projection provided by a layer (GDAL stays in the plugin that read the file).
+/// Contract: 1. to_lonlat(to_local(p)) = p within 1e-6 m. 2. Thread-safe.
 class ALTIPLAN_API Projection {
  public:
   virtual ~Projection();
@@ -20,7 +20,7 @@ class ALTIPLAN_API Projection {
   virtual std::array<double, 2> to_lonlat(double x, double y) const = 0;
 };
 
-/// The local east-north-up frame of a world, and how it is tied to the Earth, if at all.
+/// The local east-north-up frame of a world, and its georeference, if any.
 class ALTIPLAN_API Frame {
  public:
   Frame() = default;
@@ -31,12 +31,12 @@ class ALTIPLAN_API Frame {
   static Frame projected(std::shared_ptr<const Projection> projection, std::string crs);
 
   bool has_position() const { return projection_ != nullptr; }
-  /// Coordinate system in words, "" without a position.
+  /// Name of the coordinate system, "" without a position.
   const std::string& crs() const { return crs_; }
   /// Throws Error without a position.
   std::array<double, 2> to_local(double lon, double lat) const;
   std::array<double, 2> to_lonlat(double x, double y) const;
-  /// Greatest relative error of a horizontal length within the box, against the WGS 84 ellipsoid
+  /// Maximum relative error of a horizontal length within the box, against the WGS 84 ellipsoid
   /// (0.005 = half a per cent); 0 without a position.
   double scale_error(const Box& box) const;
 
@@ -45,8 +45,8 @@ class ALTIPLAN_API Frame {
   std::string crs_;
 };
 
-/// Origin, cell sizes (m) and counts are a grid's business; this is a point as a user writes it:
-/// `at_m`, `at_lonlat` or `at_cell`, the height given or above the ground.
+/// A point as a user writes it: `at_m`, `at_lonlat` or `at_cell`, with its own height or a height
+/// above the ground. (Origin, cell sizes (m) and counts belong to the grid.)
 struct Point {
   enum class Form { none, metres, lonlat, cell };
   Form form = Form::none;

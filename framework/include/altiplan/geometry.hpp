@@ -39,7 +39,7 @@ struct Box {
   }
   bool is_empty() const { return (min.array() > max.array()).any(); }
   bool is_bounded() const { return is_finite(min) && is_finite(max); }
-  /// Whether p lies inside or at most `tolerance` metres outside on each axis.
+  /// True if p lies inside or at most `tolerance` metres outside on each axis.
   bool contains(const Vec3& p, double tolerance = 0) const {
     return (p.array() >= min.array() - tolerance).all() &&
            (p.array() <= max.array() + tolerance).all();
@@ -55,11 +55,11 @@ struct Box {
   }
 };
 
-/// The box of the leg a–b.
+/// Bounding box of the leg a–b.
 inline Box leg_box(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
-/// Whether a leg in that direction and of that length has a heading: its horizontal length is at
-/// least kLengthTolerance.
+/// True if a leg with this displacement has a heading: its horizontal length is at least
+/// kLengthTolerance.
 inline bool has_heading(const Vec3& leg) {
   return leg.head<2>().squaredNorm() >= kLengthTolerance * kLengthTolerance;
 }
@@ -67,19 +67,19 @@ inline bool has_heading(const Vec3& leg) {
 /// Angle between the headings of two legs, in [0, pi]; 0 where one of them has none.
 ALTIPLAN_API double turn_angle_horizontal(const Vec3& before, const Vec3& after);
 
-/// Angle between two directions in space, in [0, pi]; 0 where one has no length.
+/// Angle between two directions in 3-D, in [0, pi]; 0 where one has no length.
 ALTIPLAN_API double turn_angle_in_space(const Vec3& before, const Vec3& after);
 
 /// Climb angle of a direction, atan2(|dz|, horizontal length), in [0, pi/2].
 ALTIPLAN_API double climb_angle(const Vec3& direction);
 
-/// Radius of the circle through three points; infinite where they lie on a line.
+/// Radius of the circle through three points; infinite where they are collinear.
 ALTIPLAN_API double radius_through(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Radius of the largest circular fillet between two legs that takes at most half of each; infinite
-/// where they go straight on or one has no length, 0 where they go straight back.
+/// Radius of the largest circular fillet between two legs that uses at most half of each; infinite
+/// where they continue straight or one has no length, 0 where they reverse.
 ALTIPLAN_API double fillet_radius(const Vec3& before, const Vec3& after);
 
-/// Least distance between the point p and the leg a–b.
+/// Minimum distance between the point p and the leg a–b.
 ALTIPLAN_API double point_leg_distance(const Vec3& p, const Vec3& a, const Vec3& b);
 }  // namespace altiplan

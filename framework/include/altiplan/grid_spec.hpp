@@ -11,10 +11,10 @@ namespace altiplan {
 /// Index of a cell on each axis.
 using Cell = std::array<int, 3>;
 
-/// Which cells and what blocks one.
+/// Cells of a grid, and when a cell is blocked.
 struct ALTIPLAN_API GridSpec {
   /// touched: an obstacle, grown by `inflation`, overlaps the open cell; centre: it covers the
-  /// cell's centre; native: the layer's own cells, taken as they are.
+  /// cell's centre; native: the layer's own cells, unchanged.
   enum class Rule { touched, centre, native };
 
   Vec3 origin{0, 0, 0};  ///< lower corner of cell (0, 0, 0), metres
@@ -26,7 +26,7 @@ struct ALTIPLAN_API GridSpec {
   Vec3 centre(const Cell& c) const {
     return origin + cell.cwiseProduct(Vec3(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5));
   }
-  /// The cell that holds p (on a face: the one above); may lie outside the grid.
+  /// The cell that contains p (on a face: the upper one); may lie outside the grid.
   Cell cell_of(const Vec3& p) const;
   bool holds(const Cell& c) const {
     return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < counts[0] && c[1] < counts[1] &&

@@ -9,7 +9,7 @@
 
 namespace altiplan {
 
-/// Heights that a route keeps to.
+/// Altitude limits of a route.
 struct AltitudeBand {
   enum class Datum { sea, ground };
   Datum datum = Datum::sea;
@@ -26,11 +26,12 @@ struct Limits {
   double max_leg = kInfinity;
   double max_turn_horizontal = kPi;
   double max_turn_space = kPi;
-  double min_turn_radius = 0;  ///< of a route's corners (fillet_radius), of a track's curvature
+  double min_turn_radius = 0;  ///< for the corners of a route (fillet_radius) and the curvature of
+                               ///< a track
   double max_climb = kPi / 2;
   double max_route_length = kInfinity;
 
-  /// Whether two legs that each keep the limits may break one together.
+  /// True if two legs that each satisfy the limits may violate one together.
   bool turns() const {
     return max_turn_horizontal < kPi || max_turn_space < kPi || min_turn_radius > 0;
   }

@@ -11,42 +11,42 @@
 
 namespace altiplan {
 
-/// A moving obstacle as the sensor shows it.
+/// A moving obstacle as reported by the sensor.
 struct SensedObstacle {
   std::string_view id;
   Vec3 position{0, 0, 0};        ///< centre
-  double radius = 0;             ///< of the sphere around it
-  std::optional<Vec3> velocity;  ///< where observed, m/s
+  double radius = 0;             ///< of the bounding sphere
+  std::optional<Vec3> velocity;  ///< if observed, m/s
 };
 
-/// What a pilot is told before each step.
+/// Input of a pilot before each step.
 struct Observation {
-  State state;  ///< as it is, which may not be where the last step meant to go
+  State state;  ///< actual state, which may differ from the end of the last step
   Vec3 local_target{0, 0, 0};
   Goal goal;
-  std::span<const Vec3> rest;  ///< route points still ahead, the goal's last; may be empty
+  std::span<const Vec3> rest;  ///< remaining route points, the goal's last; may be empty
   const World* world = nullptr;
   std::span<const Change> changes;  ///< since the last step
   std::span<const SensedObstacle> moving;
-  double max_dt_s = 1;  ///< the step may be shorter
+  double max_dt_s = 1;  ///< maximum duration of the step
 };
 
 struct PilotStep {
   enum class Outcome { flying, arrived, stuck };
   State next;
   Outcome outcome = Outcome::flying;
-  std::string_view why;  ///< lives until the next step
+  std::string_view why;  ///< valid until the next step
 };
 
-/// Flies from observation to observation; holds one flight's memory.
-/// Laws: 1. continues from the observed state. 2. 0 < next.time - state.time <= max_dt, and the
-/// speed kept is the vehicle's at most. 3. No allocation in a step. 4. Equal observations in equal
+/// Flies from observation to observation; holds the state of one flight.
+/// Contract: 1. continues from the observed state. 2. 0 < next.time - state.time <= max_dt, and the
+/// speed is at most the vehicle's. 3. No allocation in a step. 4. Equal observations in equal
 /// order give equal steps.
 class ALTIPLAN_API Pilot {
  public:
   virtual ~Pilot();
   PilotStep step(const Observation& seen);
-  /// Obstacles farther away than this do not move it; the host hands over within it.
+  /// Obstacles farther away than this do not influence it; the host hands over within it.
   double reach_m() const;
   Counters counters() const { return do_counters(); }
 
@@ -56,9 +56,9 @@ class ALTIPLAN_API Pilot {
   virtual Counters do_counters() const;
 };
 
-/// Makes pilots. As a `plan` step the host rolls one out until it arrives, is stuck, or the budget
-/// ends; as a `fly` step it commands near what the route did not know. One step of a pilot is one
-/// iteration.
+/// Creates pilots. In a `plan` step the host rolls one out until it arrives, is stuck, or the
+/// budget ends; in a `fly` step it commands near anything that the route did not account for. One
+/// step of a pilot is one iteration.
 class ALTIPLAN_API LocalPlanner {
  public:
   virtual ~LocalPlanner();

@@ -7,8 +7,8 @@
 
 namespace altiplan {
 
-/// A route in numbers; what does not apply is empty (a radius without a bend, clearance in an empty
-/// world). Metres, seconds; angles in degrees, smoothness in radians.
+/// Metrics of a route; those that do not apply are empty (a radius without a bend, clearance in an
+/// empty world). Metres, seconds; angles in degrees, smoothness in radians.
 struct Measures {
   double length_m = 0;
   std::size_t waypoints = 0;
@@ -18,18 +18,18 @@ struct Measures {
   std::optional<double> min_clearance_m;         ///< route to the nearest obstacle, signed
   std::optional<double> min_ground_clearance_m;  ///< vertical
   std::optional<double> smoothness_rad;  ///< sum of turn and climb changes (paper 003, eq. 9)
-  std::optional<double> duration_s;      ///< at the vehicle's speed law
+  std::optional<double> duration_s;      ///< at the vehicle's speed profile
 };
 
 ALTIPLAN_API Measures measure(const Route& route, const Request& request);
 
-/// Least clearance of the leg a–b, by bisection on `blocked` so that it agrees with the judge
-/// (within 1e-6 m and the layer's slack); signed where the leg goes into an obstacle; infinite in
-/// an empty layer; any value of at least `enough` once it is known to be that.
+/// Minimum clearance of the leg a–b, by bisection on `blocked` so that it agrees with the judge
+/// (within 1e-6 m and the layer's over-approximation); signed where the leg enters an obstacle;
+/// infinite in an empty layer; any value of at least `enough` once it is known to be that.
 ALTIPLAN_API double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b,
                                   double enough = kInfinity);
 
-/// Seconds from a to b at the vehicle's speed law.
+/// Seconds from a to b at the vehicle's speed profile.
 ALTIPLAN_API double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a,
                                  const Vec3& b);
 }  // namespace altiplan

@@ -7,7 +7,7 @@
 
 namespace altiplan {
 
-/// A solid in straight motion: the shape as it is at `since_s`, moving with `velocity`.
+/// A solid in uniform straight motion: `shape` at `since_s`, moving with `velocity`.
 struct MovingObstacle {
   std::string id;
   Shape shape;
@@ -18,11 +18,11 @@ struct MovingObstacle {
   Shape at(double time_s) const { return moved(shape, velocity * (time_s - since_s)); }
 };
 
-/// Whether a sphere of radius r that flies a–b between the times t0 and t1 comes nearer than r to
-/// the moving obstacle: exact, by its relative motion.
+/// True if a sphere of radius r that flies a–b between the times t0 and t1 comes nearer than r to
+/// the moving obstacle: exact, by relative motion.
 ALTIPLAN_API bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& b,
                        double t1, double r);
-/// Least distance between that flight and the obstacle's surface; 0 where they meet.
+/// Minimum distance between that flight and the obstacle's surface; 0 where they meet.
 ALTIPLAN_API double separation(const MovingObstacle& obstacle, const Vec3& a, double t0,
                                const Vec3& b, double t1);
 }  // namespace altiplan

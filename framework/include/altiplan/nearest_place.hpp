@@ -6,28 +6,30 @@
 #include "altiplan/route.hpp"
 #include "altiplan/world.hpp"
 
-/// \file Where a route comes nearest to what stands in its world.
+/// \file The places where a route comes nearest to the obstacles and the ground of its world.
 namespace altiplan {
 
-/// A leg, counted by the waypoint where it begins, and its clearance or its height above ground.
+/// A leg, by the index of its first waypoint, and its clearance or its height above ground.
 struct NearestLeg {
   std::size_t leg;
   double distance;
 };
 
-/// The leg with the least clearance from the layer, as leg_clearance has it; none where that is at
-/// least `enough` on all legs.
+/// The leg with the minimum clearance from the layer, as by leg_clearance; none where all legs have
+/// at least `enough`.
 ALTIPLAN_API std::optional<NearestLeg> nearest_leg(const Environment& environment,
                                                    const Route& route, double enough = kInfinity);
-/// The place of the leg a–b, as a share of it, with that clearance, the leg's own.
+/// Position along the leg a–b, as a fraction of it, at which it has the given clearance: that of
+/// the leg.
 ALTIPLAN_API double nearest_share(const Environment& environment, const Vec3& a, const Vec3& b,
                                   double clearance);
 
-/// The leg that comes lowest above the ground; none where no ground is below the route.
+/// The leg with the minimum height above ground; none where no ground is below the route.
 ALTIPLAN_API std::optional<NearestLeg> lowest_leg(const World& world, const Route& route);
-/// The place of the leg a–b, as a share of it, that is so high above the ground, the leg's least.
+/// Position along the leg a–b, as a fraction of it, at the given height above ground: the leg's
+/// minimum.
 ALTIPLAN_API double lowest_share(const World& world, const Vec3& a, const Vec3& b, double height);
 
-/// The clearance of a place, as the judge's, within 1 mm: quicker than leg_clearance.
+/// Clearance of a point as the judge computes it, within 1 mm: faster than leg_clearance.
 ALTIPLAN_API double place_clearance(const Environment& environment, const Vec3& p);
 }  // namespace altiplan

@@ -14,8 +14,8 @@
 
 namespace altiplan {
 
-/// A file named by the user; after binding it is absolute or relative to the current folder, having
-/// been written relative to the file that names it.
+/// A file named by the user; written relative to the file that names it, after binding absolute or
+/// relative to the current folder.
 struct Path {
   std::string text;
 };
@@ -35,21 +35,21 @@ enum class FieldType {
   path,
   vec2,
   vec3,
-  point,      ///< stands for the keys at_m, at_lonlat, at_cell and above_ground_m
+  point,      ///< the keys at_m, at_lonlat, at_cell and above_ground_m
   list,       ///< children[0] is the element
   structure,  ///< children are its fields
-  plugin,     ///< one key, a plugin's name, over its parameters; `choices[0]` is the kind
+  plugin,     ///< one key, a plugin's name, with its parameters as value; `choices[0]` is the kind
   any
 };
 
-/// All that is known of a parameter; feeds checks, `describe`, the JSON Schema and the reference.
+/// Declaration of a parameter; feeds checks, `describe`, the JSON Schema and the reference.
 struct FieldSpec {
   std::string name;
   FieldType type = FieldType::any;
   std::string unit;
   std::string doc;
   bool required = false;
-  bool optional = false;  ///< has no value when left out
+  bool optional = false;  ///< has no value when omitted
   double min = -kInfinity;
   double max = kInfinity;
   bool above = false;  ///< greater than min, not equal
@@ -59,7 +59,7 @@ struct FieldSpec {
   std::string default_json;  ///< "" where there is none
 };
 
-/// A field after reading: its declaration, its value as JSON, and where that was written.
+/// A field after reading: its declaration, its value as JSON, and the location of that value.
 struct BoundField {
   FieldSpec spec;
   std::string value_json;
@@ -68,20 +68,21 @@ struct BoundField {
 
 class Fields;
 
-/// What follows `f("name", target)`: unit, bounds, sentence.
+/// Qualifiers after `f("name", target)`: unit, bounds, sentence.
 class ALTIPLAN_API FieldRef {
  public:
   FieldRef(Fields& fields, std::size_t index) : fields_(&fields), index_(index) {}
   FieldRef& unit(std::string_view unit);
   FieldRef& doc(std::string_view sentence);
-  FieldRef& range(double min, double max);  ///< closed; each number of a list or vector
+  FieldRef& range(double min, double max);  ///< closed; for a list or vector, of each number
   FieldRef& at_least(double min);
   FieldRef& greater_than(double min);
   FieldRef& at_most(double max);
   FieldRef& one_of(std::initializer_list<const char*> words);
   FieldRef& min_items(std::size_t count);
   FieldRef& required();
-  FieldRef& was(std::string_view name);  ///< the former key, refused with the present one
+  FieldRef& was(std::string_view name);  ///< the former key, rejected with a pointer to the present
+                                         ///< one
 
  private:
   FieldSpec& spec();
@@ -93,8 +94,8 @@ class ALTIPLAN_API FieldRef {
 /// list feeds parsing, checking, `describe`, the schema, the docs, `--set` and the tuner.
 class ALTIPLAN_API Fields {
  public:
-  /// With a map, values are read from it; without, the fields are only listed. `path` is the map's
-  /// place in its file ("steps.0.with").
+  /// With a map, values are read from it; without, the fields are only listed. `path` is the
+  /// position of the map in its file ("steps.0.with").
   Fields(const Value* source, std::string path);
   Fields(const Fields&) = delete;
   Fields& operator=(const Fields&) = delete;
@@ -129,16 +130,17 @@ class ALTIPLAN_API Fields {
     return ref;
   }
 
-  /// The keys at_m, at_lonlat, at_cell and above_ground_m of this map, together one point.
+  /// The keys at_m, at_lonlat, at_cell and above_ground_m of this map, which form one point.
   FieldRef point(Point& target);
 
-  /// The one key that is not declared: a plugin's name of this kind, over its parameters. Last.
+  /// The only undeclared key: the name of a plugin of this kind, with its parameters as value.
+  /// Comes last.
   FieldRef plugin(std::string_view kind, std::string& name, Value& parameters);
 
-  /// A rule across fields; looked at only when every field was read without a problem.
+  /// A condition across fields; evaluated only when every field was read without a problem.
   void check(bool condition, std::string_view sentence);
 
-  /// Ends the visit: bounds, unknown and missing keys.
+  /// Ends the visit: checks bounds, unknown and missing keys.
   void finish();
 
   bool reading() const { return source_ != nullptr; }
@@ -164,7 +166,7 @@ class ALTIPLAN_API Fields {
   std::optional<double> read_number(const Value& value, const std::string& key);
   void read_point(const Value& value, const char* name, Point& target);
 
-  // What a type looks like, how it is read, and how it is written.
+  // Declaration, reading and writing of each type.
   static FieldSpec shape(const bool& t);
   static FieldSpec shape(const int& t);
   static FieldSpec shape(const std::int64_t& t);
@@ -200,7 +202,7 @@ class ALTIPLAN_API Fields {
   bool expect_list(const Value& value, const std::string& key);
   bool expect_map(const Value& value, const std::string& key);
 
-  /// A value to begin with; Eigen leaves its vectors unset.
+  /// An initial value; Eigen leaves its vectors uninitialised.
   template <class T>
   static T blank() {
     if constexpr (std::is_same_v<T, Vec3>) {
@@ -254,7 +256,7 @@ class ALTIPLAN_API Fields {
     return text + "]";
   }
 
-  // A struct with a `describe` of its own.
+  // A struct with its own `describe`.
   template <class T>
   static FieldSpec shape(const T& t) requires requires(T s, Fields& f) {
     s.describe(f);
@@ -300,20 +302,20 @@ class ALTIPLAN_API Fields {
   std::string path_;
   std::vector<BoundField> bound_;
   std::vector<std::string> known_;
-  std::vector<std::pair<std::string, std::string>> former_;  ///< keys, and what they are now
+  std::vector<std::pair<std::string, std::string>> former_;  ///< former keys and their replacements
   std::vector<std::size_t> missing_;
   std::vector<Number> numbers_;
   std::vector<Problem> problems_;
   std::vector<std::string> broken_rules_;
 };
 
-/// What reading a parameter struct gave: every field, and what is wrong.
+/// Result of reading a parameter struct: every field, and the problems found.
 struct ParamReport {
   std::vector<BoundField> fields;
   std::vector<Problem> problems;
 };
 
-/// Reads `params` from a map (or leaves the defaults, without one).
+/// Reads `params` from a map (or keeps the defaults, without one).
 template <class P>
 ParamReport bind(P& params, const Value* source, std::string path = "") {
   Fields fields(source, std::move(path));

@@ -10,16 +10,16 @@
 
 namespace altiplan {
 
-/// What a planner or a smoother answers.
+/// Outcome of a planner or a smoother.
 enum class PlanStatus {
   solved,           ///< a route is returned
-  no_route,         ///< there is none (`proved`), or the search ran dry without finding one
+  no_route,         ///< no route exists (`proved`), or the search was exhausted without finding one
   timed_out,        ///< no route within the budget
-  cancelled,        ///< the stop token fired before there was a route
-  invalid_problem,  ///< start or goal break a rule: the message says which and by how much
+  cancelled,        ///< the stop token fired before a route was found
+  invalid_problem,  ///< start or goal violate a constraint: the message names it and by how much
 };
 
-/// The word of a status in results ("no_route").
+/// Name of a status in results ("no_route").
 ALTIPLAN_API const char* name(PlanStatus status);
 
 struct Counter {
@@ -28,28 +28,29 @@ struct Counter {
 };
 using Counters = std::vector<Counter>;
 
-/// What a plan or a smoothing gave.
+/// Result of a planner or a smoother.
 struct PlanResult {
   PlanStatus status = PlanStatus::no_route;
-  Reason reason = Reason::none;  ///< for programs; set by the framework where it can be told
-  std::string message;           ///< a sentence: the place and the rule nearest to blame
+  Reason reason = Reason::none;  ///< for programs; set by the framework where it can determine it
+  std::string message;           ///< a sentence: the position and the constraint that most likely
+                                 ///< caused it
   Route route;  ///< first point = start; last within the goal's tolerance; empty unless solved
-                ///< (local planners may leave the part that they flew)
-  Counters counters;  ///< "expanded" among them
+                ///< (local planners may return the part that they flew)
+  Counters counters;  ///< including "expanded"
   bool budget_hit = false;
-  bool proved = false;  ///< of no_route: no route exists on the planner's own search space
+  bool proved = false;  ///< with no_route: no route exists in the planner's own search space
 };
 
-/// What a planner holds to for the given parameters; the conformance suite checks it.
+/// Guarantees of a planner for the given parameters; the conformance suite checks them.
 struct Traits {
-  bool complete = false;         ///< finds a route of its search space whenever there is one
-  bool optimal = false;          ///< and the shortest of them
+  bool complete = false;         ///< finds a route of its search space whenever one exists
+  bool optimal = false;          ///< complete, and finds the shortest of them
   bool any_angle = false;        ///< never longer than the grid's shortest
   bool anytime = false;          ///< more budget never gives a longer route
-  bool incremental = false;      ///< its session keeps what it searched
+  bool incremental = false;      ///< its session reuses earlier search effort
   bool planar = true;            ///< level flight
   bool spatial = true;           ///< three dimensions
-  bool avoids_obstacles = true;  ///< no leg through a known one; false: a local planner's may lead
-                                 ///< there, and the judge says so
+  bool avoids_obstacles = true;  ///< no leg through a known one; a local planner without it may
+                                 ///< cross one, and the judge reports that
 };
 }  // namespace altiplan

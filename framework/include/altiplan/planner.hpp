@@ -10,15 +10,15 @@
 
 namespace altiplan {
 
-/// A plan that goes on while the vehicle flies: knows its last result and takes changes.
-/// Laws: 1. update continues from the given state; the first point of its route is that position.
-/// 2. After an update, result() is what update returned. What breaks a law, or throws, is a
-/// PluginError, after which the session may be asked again.
+/// Replanning while the vehicle flies: keeps its last result and takes changes.
+/// Contract: 1. update continues from the given state; its route begins at that position.
+/// 2. After an update, result() is what update returned. A violation, or an exception, becomes a
+///    PluginError, after which the session can be used again.
 class ALTIPLAN_API Session {
  public:
   virtual ~Session();
   const PlanResult& result() const { return do_result(); }
-  /// The world is the known world after `changes` (since the last call).
+  /// `world` is the known world after `changes` (since the last call).
   PlanResult update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
                     std::span<const Change> changes, const Budget& budget);
 
@@ -29,24 +29,24 @@ class ALTIPLAN_API Session {
                                       std::span<const Change> changes, const Budget& budget) = 0;
 };
 
-/// Where start or goal break a rule: the answer `invalid_problem`, its reason which of them. The
-/// public functions ask before a planner is asked; a session asks at its updates.
+/// The `invalid_problem` result if start or goal violate a constraint; its reason says which. The
+/// public functions check this before they call a planner; a session checks it at its updates.
 ALTIPLAN_API std::optional<PlanResult> impossible_ends(const Request& request);
 
 /// Plans a whole route. Constructed from its parameters; const and shareable.
 ///
-/// Laws, checked by the public functions where they can be, else by the conformance suite:
+/// Contract, checked by the public functions where possible, else by the conformance suite:
 ///  1. The route starts at request.start.position exactly and ends within the goal's tolerance.
 ///  2. Every leg satisfies leg_ok of check.hpp.
-///  3. `solved` if and only if a route is returned; no route is a status, never an exception. What
-///     breaks a law, or throws, is a PluginError.
-///  4. The budget is kept, the stop token honoured within 1,024 iterations.
+///  3. `solved` if and only if a route is returned; no route is a status, never an exception. A
+///     violation of the contract, or an exception, becomes a PluginError.
+///  4. The budget is kept; the stop token is honoured within 1,024 iterations.
 ///  5. Two calls with equal requests give equal results, on any threads, in any order.
 class ALTIPLAN_API Planner {
  public:
   virtual ~Planner();
   PlanResult plan(const Request& request) const;
-  /// Plans, and keeps what it knows for updates. By default a session plans afresh.
+  /// Plans, and keeps its search state for updates. The default session replans from scratch.
   std::unique_ptr<Session> begin(const Request& request) const;
   Traits traits() const { return do_traits(); }
 

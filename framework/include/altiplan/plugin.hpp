@@ -3,8 +3,8 @@
 
 #include "altiplan/plugin_abi.hpp"
 
-/// \file What a plugin includes beside the interface that it implements (`altiplan/planner.hpp` …).
-/// At the bottom of its source file stands one line:
+/// \file The header that a plugin includes together with its interface (`altiplan/planner.hpp` …).
+/// Its source file ends with one line:
 ///
 ///     ALTIPLAN_PLUGIN(Planner, "astar", AStar, Params, "A* on a lattice …")
 ///

@@ -14,7 +14,7 @@
 
 namespace altiplan {
 
-// Declared alone: a plugin includes the interface that it implements, and no other.
+// Only declared here: a plugin includes no interface but the one that it implements.
 class Environment;
 class Constraint;
 class Planner;
@@ -33,9 +33,9 @@ struct Observation;
 struct PilotStep;
 struct Vehicle;
 
-/// What a library says of itself, read from its file before any of its code runs: plain data in the
-/// ELF section `altiplan_manifest`, one record a plugin. The host compares it with its own and
-/// refuses with both sides printed; compiler and optimisation are information.
+/// Self-description of a library, read from its file before any of its code runs: plain data in the
+/// ELF section `altiplan_manifest`, one record per plugin. The host compares it with its own and,
+/// on a mismatch, refuses the library and prints both; compiler and optimisation are informative.
 struct Manifest {
   static constexpr char kMagic[16] = "altiplan plugin";
   static constexpr std::size_t kLayouts = 21;
@@ -48,12 +48,12 @@ struct Manifest {
   std::uint8_t glibcxx_debug;
   std::uint8_t sanitizers;  ///< 1 address, 2 thread, 4 memory
   std::uint8_t optimised;
-  std::uint32_t layouts[kLayouts];  ///< layout_of the structs in kLayoutNames
+  std::uint32_t layouts[kLayouts];  ///< layout_of each struct in kLayoutNames
   char compiler[64];
   char kind[24];
   char name[64];
   char sentence[256];
-  std::uint32_t checksum;  ///< checksum_of the record; a damaged file shows before it is trusted
+  std::uint32_t checksum;  ///< checksum_of the record; detects a damaged file before it is trusted
 };
 
 inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
@@ -62,8 +62,8 @@ inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
     "VoxelGrid", "World",      "Limits",      "Request",     "PlanResult",    "Observation",
     "PilotStep", "Vehicle",    "LayerInfo"};
 
-/// Size × 64 + alignment; 0 of a struct that the plugin of this interface has not included, and so
-/// cannot rely on. Static, since two files of a plugin may differ in that.
+/// Size × 64 + alignment; 0 for a struct that the plugin of this interface does not include, and so
+/// cannot depend on. Static, since that may differ between two files of a plugin.
 template <class Interface, class T>
 static consteval std::uint32_t layout_of() {
   if constexpr (requires { sizeof(T); }) {
@@ -73,7 +73,7 @@ static consteval std::uint32_t layout_of() {
   }
 }
 
-/// FNV-1a of all that stands before the checksum.
+/// FNV-1a of the bytes before the checksum.
 constexpr std::uint32_t checksum_of(const Manifest& m) {
   const auto bytes = std::bit_cast<std::array<unsigned char, sizeof(Manifest)>>(m);
   std::uint32_t sum = 2166136261U;
@@ -83,12 +83,12 @@ constexpr std::uint32_t checksum_of(const Manifest& m) {
   return sum;
 }
 
-/// The manifest of a plugin compiled here and now.
+/// The manifest of a plugin with the settings of this compilation.
 template <class Interface>
 static consteval Manifest make_manifest(const char* kind, const char* name, const char* sentence) {
   Manifest m{};
-  const auto copy = [](char* to, std::size_t room, const char* from) {
-    for (std::size_t i = 0; i + 1 < room && from[i] != '\0'; ++i) {
+  const auto copy = [](char* to, std::size_t size, const char* from) {
+    for (std::size_t i = 0; i + 1 < size && from[i] != '\0'; ++i) {
       to[i] = from[i];
     }
   };
@@ -136,8 +136,8 @@ static consteval Manifest make_manifest(const char* kind, const char* name, cons
   return m;
 }
 
-/// How the host makes objects of a plugin; the function of its kind is set, the others are null.
-/// `describe` reads parameters (null: defaults) and never throws; the makers throw Error.
+/// Factories of a plugin; the one of its kind is set, the others are null. `describe` reads
+/// parameters (null: defaults) and never throws; the factories throw Error.
 struct PluginEntry {
   const char* kind;
   const char* name;
@@ -151,7 +151,7 @@ struct PluginEntry {
   std::unique_ptr<Tuner> (*tuner)(const Value* parameters);
 };
 
-/// The one symbol that a plugin library exports.
+/// The only symbol that a plugin library exports.
 using PluginList = const PluginEntry* const* (*)(std::size_t* count);
 inline constexpr const char* kPluginListSymbol = "altiplan_plugins";
 /// For a plugin without parameters.
@@ -161,7 +161,7 @@ struct NoParams {
 
 namespace detail {
 
-/// Makes a plugin's object; an exception that is not the framework's stops here.
+/// Constructs a plugin's object; exceptions that are not the framework's become PluginError.
 template <class Interface, class Class, class Params, class... Site>
 std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
   try {

@@ -10,7 +10,7 @@ namespace altiplan {
 
 /// A counter-based stream of random numbers: number n of a stream is a hash of (key, n), so streams
 /// are named, not shared, and results do not depend on threads. Satisfies
-/// UniformRandomBitGenerator; the distributions below are our own, equal on every platform.
+/// UniformRandomBitGenerator; the distributions below are our own, identical on every platform.
 class RandomStream {
  public:
   using result_type = std::uint64_t;
@@ -18,7 +18,7 @@ class RandomStream {
   RandomStream() = default;
   explicit RandomStream(std::uint64_t seed) : key_(mix(seed + kGolden)) {}
 
-  /// An independent stream, named by its use and an index ("sample", 3).
+  /// An independent stream, identified by its use and an index ("sample", 3).
   RandomStream sub(std::string_view use, std::uint64_t index = 0) const {
     std::uint64_t hash = key_;
     for (const char c : use) {
@@ -46,7 +46,7 @@ class RandomStream {
     const Wide wide = static_cast<Wide>((*this)()) * span;
     return low + static_cast<std::int64_t>(wide >> 64);
   }
-  /// Standard normal (Box and Muller, one of the pair).
+  /// Standard normal (Box–Muller, one of the pair).
   double normal() {
     const double u = 1.0 - uniform();
     const double v = uniform();

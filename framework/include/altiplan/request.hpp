@@ -26,7 +26,7 @@ struct Goal {
   }
 };
 
-/// What a call may use up. One iteration is one unit of the planner's `expanded` counter.
+/// Limits on what a call may use. One iteration is one unit of the planner's `expanded` counter.
 struct Budget {
   using Clock = std::chrono::steady_clock;
   std::optional<Clock::time_point> deadline;
@@ -35,9 +35,9 @@ struct Budget {
   std::stop_token stop;
 };
 
-/// Asked once an iteration. Iterations are compared every time; the stop token and the clock are
-/// asked every time while iterations take a millisecond or more, and every 512th of quick ones.
-/// What is spent stays spent.
+/// Budget check, called once per iteration. The iteration limit is checked on every call; the stop
+/// token and the clock on every call while iterations take a millisecond or more, else on down to
+/// every 512th. Once spent, a budget stays spent.
 class BudgetWatch {
  public:
   explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
@@ -56,7 +56,7 @@ class BudgetWatch {
     asked_ = now;
     return ended;
   }
-  /// Whether the stop token, not a budget, ended it.
+  /// True if the stop token ended it, not a limit.
   bool cancelled() const { return cancelled_; }
 
  private:
@@ -67,11 +67,11 @@ class BudgetWatch {
   bool cancelled_ = false;
 };
 
-/// A planning problem: all that a planner, local planner or smoother is told.
+/// A planning problem: the complete input of a planner, local planner or smoother.
 struct Request {
   std::shared_ptr<const World> world;  ///< the known world
   Vehicle vehicle;
-  State start;  ///< a velocity other than zero gives the heading that the first leg is held to
+  State start;  ///< a non-zero velocity gives the heading that the first leg must follow
   Goal goal;
   Limits limits;
   std::vector<NamedConstraint> constraints;
@@ -82,14 +82,14 @@ struct Request {
   RandomStream random;
   Trace* trace = nullptr;
 
-  /// How the vehicle comes to the start, where it has a velocity: from a point one second back.
+  /// The approach to the start, for a start with a velocity: from the point one second before.
   std::optional<Approach> before_start() const {
     if (start.velocity.squaredNorm() == 0) {
       return std::nullopt;
     }
     return Approach(start.position - start.velocity);
   }
-  /// Whether headings last through legs that have none, and some limit looks at that.
+  /// True if headings persist through legs that have none, and some limit depends on that.
   bool headings_last() const {
     return !vehicle.turns_on_the_spot &&
            (limits.max_turn_horizontal < kPi || limits.min_turn_radius > 0);

@@ -6,9 +6,9 @@
 
 namespace altiplan {
 
-/// Turns a route into a better one with the same ends.
-/// Laws: 1. First and last points stay. 2. For every constraint the worst excess does not grow; a
-/// sound route stays sound. 3. Routes of one or two points come back as they are.
+/// Improves a route and keeps its ends.
+/// Contract: 1. First and last points stay. 2. The worst excess of each constraint does not grow; a
+/// valid route stays valid. 3. Routes of one or two points are returned unchanged.
 class ALTIPLAN_API Smoother {
  public:
   virtual ~Smoother();

@@ -7,20 +7,21 @@
 
 namespace altiplan {
 
-/// One thing that a search did, for playback.
+/// One search event, for playback.
 struct TraceEvent {
   enum class Kind { expanded, added, removed, rewired, iteration };
   Kind kind = Kind::expanded;
-  std::int64_t node = -1;    ///< identity within this search
-  std::int64_t parent = -1;  ///< -1: a root
+  std::int64_t node = -1;    ///< id within this search
+  std::int64_t parent = -1;  ///< -1 for a root
   Vec3 position{0, 0, 0};
-  double value = 0;  ///< f of an expanded node, cost of an added one, best length of an iteration
-  // Of an iteration of a population; what is added after it, up to the next, is its routes.
-  double mean = 0;          ///< length of the routes that it found, metres
-  std::int64_t alive = -1;  ///< how many of it found one; -1: no population
+  double value = 0;  ///< f of an expanded node, cost of an added node, best length of an iteration
+  // Iterations of population-based planners only; the nodes added after one, up to the next, are
+  // its routes.
+  double mean = 0;          ///< mean length of the routes found, metres
+  std::int64_t alive = -1;  ///< number of individuals that found a route; -1: no population
 };
 
-/// Receives the events of one plan; a planner asks once whether there is one (a null pointer).
+/// Receives the events of one plan; null where no trace is recorded, which a planner checks once.
 class ALTIPLAN_API Trace {
  public:
   virtual ~Trace();

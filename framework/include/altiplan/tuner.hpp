@@ -18,15 +18,15 @@ struct Dimension {
   int group = -1;
 };
 
-/// One optimisation under way. Laws: 1. ask returns points inside the space, all groups summing to
-/// 1; an empty batch ends the search. 2. tell follows ask, a score a point, lower is better,
-/// infinity a failure. 3. Equal spaces, streams and scores give equal batches.
+/// One optimisation run. Contract: 1. ask returns points inside the space, all groups summing to 1;
+/// an empty batch ends the search. 2. tell follows ask, one score per point, lower is better,
+/// infinity for a failure. 3. Equal spaces, streams and scores give equal batches.
 class ALTIPLAN_API Search {
  public:
   virtual ~Search();
-  /// Throws PluginError where the batch breaks law 1.
+  /// Throws PluginError if the batch violates contract 1.
   std::vector<std::vector<double>> ask();
-  /// Throws Error where there is not a score a point, or one that is not a number.
+  /// Throws Error unless there is one score per point, each of them a number.
   void tell(std::span<const double> scores);
 
  private:
@@ -35,13 +35,13 @@ class ALTIPLAN_API Search {
   virtual void do_tell(std::span<const double> scores) = 0;
 
   std::vector<Dimension> space_;
-  std::size_t asked_ = 0;  ///< points that have no score yet
+  std::size_t asked_ = 0;  ///< points without a score
 };
 
 class ALTIPLAN_API Tuner {
  public:
   virtual ~Tuner();
-  /// Throws Error where a range is empty or not finite, or no weights of a group within their
+  /// Throws Error if a range is empty or not finite, or if no weights of a group within their
   /// bounds sum to 1.
   std::unique_ptr<Search> begin(std::vector<Dimension> space, RandomStream random) const;
 

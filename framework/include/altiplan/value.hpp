@@ -9,8 +9,8 @@
 
 namespace altiplan {
 
-/// A node of a parsed file: what the user wrote, and where. Scalars stay text: the field that takes
-/// one says what it must be.
+/// A node of a parsed file with its location. Scalars stay text: the field that reads one defines
+/// its type.
 struct ALTIPLAN_API Value {
   enum class Kind { scalar, list, map };
   struct Entry;

@@ -11,8 +11,8 @@
 
 namespace altiplan {
 
-/// Occupancy of a box of cells, a bit each, x fastest, with a border of blocked cells all around:
-/// indices from -1 to counts may be asked for.
+/// Occupancy of a box of cells, one bit each, x fastest, with a border of blocked cells all around:
+/// valid indices run from -1 to counts.
 class ALTIPLAN_API VoxelGrid {
  public:
   explicit VoxelGrid(const GridSpec& spec);
@@ -27,9 +27,9 @@ class ALTIPLAN_API VoxelGrid {
   /// Blocks, or frees, cells i0..i1 (both included, clipped to the grid) of row (j, k).
   void block_run(int i0, int i1, int j, int k) { set_run(i0, i1, j, k, true); }
   void free_run(int i0, int i1, int j, int k) { set_run(i0, i1, j, k, false); }
-  /// Blocks what `other`, of the same spec, blocks.
+  /// Blocks every cell that `other`, of the same spec, blocks.
   void merge(const VoxelGrid& other);
-  /// Takes over cells low to high (both included, clipped to the grid) of another grid of the same
+  /// Copies cells low to high (both included, clipped to the grid) from another grid of the same
   /// spec.
   void copy(const VoxelGrid& other, const Cell& low, const Cell& high);
   /// Calls visit(first, last) for the runs of blocked cells in row (j, k), both included.
@@ -41,7 +41,7 @@ class ALTIPLAN_API VoxelGrid {
       first = find(end, j, k, true);
     }
   }
-  /// Asked at every run that is set and row that is looked at, from now on; throws to end that.
+  /// Calls `asked` from now on for every run set and every row read; it throws to interrupt that.
   void watch(std::function<void()> asked) { watch_ = std::move(asked); }
   void ask_watch() const {
     if (watch_) {
@@ -54,20 +54,20 @@ class ALTIPLAN_API VoxelGrid {
   /// Bits of row (j, k), cell -1 first; `words_per_row()` words.
   const std::uint64_t* row_words(int j, int k) const { return words_.data() + row(j, k); }
   std::size_t words_per_row() const { return words_per_row_; }
-  /// All words, border rows included; the bit of a cell, and how far on the next row's and the next
-  /// level's are, in bits.
+  /// All words, border rows included; bit index of a cell, and bit strides to the next row and
+  /// level.
   const std::vector<std::uint64_t>& words() const { return words_; }
   std::size_t bit(int i, int j, int k) const { return 64 * row(j, k) + std::size_t(i + 1); }
   std::size_t bit(const Cell& c) const { return bit(c[0], c[1], c[2]); }
   std::size_t row_bits() const { return 64 * words_per_row_; }
   std::size_t level_bits() const { return row_bits() * rows_per_level_; }
 
-  /// Cells whose state differs between two grids of one spec.
+  /// Cells whose state differs between two grids of the same spec.
   static std::vector<Cell> diff(const VoxelGrid& a, const VoxelGrid& b);
 
  private:
   void set_run(int i0, int i1, int j, int k, bool is_blocked);
-  /// The first cell from i on of row (j, k) that is blocked, or free; counts[0] where none is.
+  /// First blocked (or free) cell of row (j, k) from i on; counts[0] where there is none.
   int find(int i, int j, int k, bool is_blocked) const {
     const std::uint64_t* words = row_words(j, k);
     const std::uint64_t flip = is_blocked ? 0 : ~std::uint64_t{0};

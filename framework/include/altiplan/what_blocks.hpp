@@ -7,13 +7,13 @@
 
 namespace altiplan {
 
-/// What a layer that blocks for reasons of several kinds is too: the judge asks it, and puts the
-/// answer beside the layer's name.
+/// Second interface of a layer that blocks for several kinds of reason: the judge adds its answer
+/// to the layer's name.
 class ALTIPLAN_API WhatBlocks {
  public:
   virtual ~WhatBlocks();
-  /// What of the layer comes as near as that to the leg, in a few words ("unknown space, treated as
-  /// blocked"); "" where the layer's name says enough.
+  /// What in the layer lies within `distance` metres of the leg, in a few words ("unknown space,
+  /// treated as blocked"); "" where the layer's name is enough.
   std::string what_blocks(const Vec3& a, const Vec3& b, double distance) const {
     return do_what_blocks(a, b, distance);
   }

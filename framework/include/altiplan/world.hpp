@@ -16,7 +16,7 @@ namespace altiplan {
 
 struct Budget;
 
-/// A named environment of a world. A layer that is not known is met in flight.
+/// A named environment of a world. An unknown layer is discovered in flight.
 struct Layer {
   std::string id;
   std::string plugin;
@@ -29,11 +29,11 @@ struct Change {
   enum class Kind { add, remove, move, set_cells };
   Kind kind = Kind::add;
   std::string layer;  ///< id
-  Box box;            ///< outside of it nothing differs
+  Box box;            ///< nothing differs outside it
 };
 
 /// Immutable snapshot: layers, known moving obstacles, revision. A change makes a new snapshot that
-/// shares the layers. All functions may be called from many threads.
+/// shares the layers. All functions are thread-safe.
 class ALTIPLAN_API World {
  public:
   World();
@@ -49,55 +49,55 @@ class ALTIPLAN_API World {
   std::uint64_t revision() const { return revision_; }
   const Layer* find(std::string_view id) const;
 
-  // A new snapshot, one revision on.
+  // Each returns a new snapshot with the next revision.
   World with_frame(Frame frame) const;
   World with(Layer layer) const&;
-  World with(Layer layer) &&;  ///< leaves the old snapshot empty: thousands are added one by one
+  World with(Layer layer) &&;  ///< empties the old snapshot, so that thousands of layers can be
+                               ///< added one by one
   World with_replaced(Layer layer) const;
   World without(std::string_view id) const;
   World with_moving(std::vector<MovingObstacle> moving) const;
 
-  /// Union of the layers' bounds that are finite; per axis infinite where no layer bounds it.
+  /// Union of the layers' finite bounds; infinite on an axis that no layer bounds.
   Box bounds() const;
-  /// Least clearance over the layers (moving obstacles are not part of it); infinite in an empty
-  /// world.
+  /// Minimum clearance over the layers, without moving obstacles; infinite in an empty world.
   double clearance(const Vec3& p) const;
   /// The layer that blocks the leg for a sphere of radius r, or null.
   const Layer* blocked_by(const Vec3& a, const Vec3& b, double r) const;
   bool blocked(const Vec3& a, const Vec3& b, double r) const {
     return blocked_by(a, b, r) != nullptr;
   }
-  /// Obstacles of all layers within reach of p; the sink learns the layer too.
+  /// Obstacles of all layers within reach of p; the sink also gets the layer.
   void near(const Vec3& p, double reach,
             const std::function<void(const Layer&, const Nearby&)>& sink) const {
     near(p, reach, reach, sink);
   }
-  /// The same, but of layers with ground within `ground_reach`: a search of ground takes the longer
-  /// the wider it is.
+  /// The same, with a separate reach for layers with ground: a ground search gets slower with its
+  /// radius.
   void near(const Vec3& p, double reach, double ground_reach,
             const std::function<void(const Layer&, const Nearby&)>& sink) const;
   bool has_ground() const { return !grounds_.empty(); }
-  /// Highest ground of the layers that have one there.
+  /// Highest ground of the layers that have ground there.
   std::optional<double> ground(double x, double y) const;
-  /// Least height of the leg above the ground of any layer; infinite in a world without ground,
+  /// Minimum height of the leg above the ground of any layer; infinite in a world without ground,
   /// -infinity where no layer has ground below a part of the leg.
   double ground_gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
-  /// Whether a leg may be there for all that the ground says: in a world with ground, all of it has
-  /// some below (or above: how high it is matters not). Quick. Layers with ground block nothing
-  /// beyond it, so that others may go on there; who uses the world keeps legs to this.
+  /// True unless the world has ground and part of the leg has none below (or above) it, whatever
+  /// its height. Fast. Layers with ground block nothing beyond it, so that other layers may
+  /// continue there; callers must therefore keep legs to this check.
   bool ground_below(const Vec3& a, const Vec3& b) const;
-  /// Greatest height of the leg above the ground; +infinity where there is none.
+  /// Maximum height of the leg above the ground; +infinity where there is none.
   double ground_gap_max(const Vec3& a, const Vec3& b) const;
   std::vector<Threat> threats() const;
-  /// Greatest slack of the layers.
+  /// Largest over-approximation of the layers, metres.
   double over_approximation() const;
   std::optional<GridSpec> native_grid() const;
 
-  /// Occupancy of all layers under the spec; built once per spec and revision, a change patches it
-  /// inside its box only. Ends by BudgetSpent when the time is used up.
+  /// Occupancy of all layers for the spec; built once per spec and revision, and updated only
+  /// within the box of a change. Throws BudgetSpent when the time is used up.
   std::shared_ptr<const VoxelGrid> voxels(const GridSpec& spec) const;
   std::shared_ptr<const VoxelGrid> voxels(const GridSpec& spec, const Budget& budget) const;
-  /// Distances between the cells of that grid and its blocked ones; built once per spec and
+  /// Distances between the cells of that grid and its blocked cells; built once per spec and
   /// revision.
   std::shared_ptr<const DistanceField> distances(const GridSpec& spec) const;
 
@@ -107,7 +107,7 @@ class ALTIPLAN_API World {
   void find_grounds();
   void note_ground(std::size_t layer);
   std::vector<Layer> layers_;
-  /// Of the layers that have one, in their order: the layer's index, and its ground.
+  /// Index and ground of each layer that has ground, in layer order.
   std::vector<std::pair<std::size_t, const Ground*>> grounds_;
   std::vector<MovingObstacle> moving_;
   Frame frame_;

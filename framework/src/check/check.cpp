@@ -12,7 +12,7 @@
 namespace altiplan {
 namespace {
 
-/// A number for a message; one beyond any world is not spelled out.
+/// A number for a message; absurdly large ones are abbreviated.
 std::string fixed(double value, int digits = 2) {
   char buffer[64];
   const bool spelled = std::abs(value) < 1e15;
@@ -23,7 +23,7 @@ std::string fixed(double value, int digits = 2) {
   return text;
 }
 
-/// A distance, with digits however small it is.
+/// A distance, with enough digits for any magnitude.
 std::string distance_text(double value) {
   if (value >= 1e-3) {
     return fixed(value, 6);
@@ -39,10 +39,10 @@ std::string place(const Vec3& p) {
   return "(" + fixed(p.x()) + ", " + fixed(p.y()) + ", " + fixed(p.z()) + ")";
 }
 
-/// A quantity beyond its limit, with the sentence that says so.
+/// A violation for a quantity beyond its limit, with its message.
 Violation beyond(const char* rule, std::size_t at, double value, double limit, const char* unit,
                  const std::string& what, bool too_small) {
-  int digits = 2;  // as many as tell the two apart
+  int digits = 2;  // as many as distinguish the two
   while (digits < 9 && fixed(value, digits) == fixed(limit, digits)) {
     ++digits;
   }
@@ -51,7 +51,7 @@ Violation beyond(const char* rule, std::size_t at, double value, double limit, c
               " the limit of " + fixed(limit, digits) + unit};
 }
 
-/// Where a leg with no ground below part of it comes to the first such part.
+/// Start of the first part of a leg that has no ground below it.
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
   if (!world.ground_below(a, a)) {
     return a;
@@ -69,8 +69,8 @@ double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
 
-/// Holds one leg to every rule, the cheap ones first: one call of `report` (with what makes the
-/// violation) for each broken rule, until report returns false.
+/// Checks one leg against every constraint, the cheap ones first: one call of `report` (with a
+/// function that makes the violation) per violated constraint, until report returns false.
 template <class Report>
 class LegJudge {
  public:
@@ -90,14 +90,14 @@ class LegJudge {
       report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
       return;
     }
-    // Each says whether to go on.
+    // Each returns whether to continue.
     (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_size() && keeps_bend() &&
            keeps_heights() && keeps_constraints() && keeps_off());
   }
   void judge_bend() const { (void)keeps_bend(); }
 
  private:
-  // Quantities and their limits; `scale` turns both into the unit of the message.
+  // Quantities and their limits; `scale` converts both to the unit of the message.
   bool at_least(double value, double limit, double tolerance, const char* rule, const char* what,
                 const char* unit, double scale = 1) const {
     return value >= limit - tolerance || report_([&] {
@@ -110,7 +110,7 @@ class LegJudge {
              return beyond(rule, at_, value * scale, limit * scale, unit, what, false);
            });
   }
-  /// `angle` is asked for only where the limit is below `widest`, which no angle exceeds.
+  /// `angle` is evaluated only if the limit is below `widest`, the maximum of any angle.
   template <class Angle>
   bool at_most_angle(const Angle& angle, double limit, double widest, const char* rule,
                      const char* what) const {
@@ -165,7 +165,7 @@ class LegJudge {
     if (!over_ground && !report_([&] {
           return Violation{"ground", at_, 0, 0,
                            "there is no ground of known height below " +
-                               place(ground_ends(world, a_, b_)) + ", a place of the leg"};
+                               place(ground_ends(world, a_, b_)) + ", a point of the leg"};
         })) {
       return false;
     }
@@ -210,7 +210,7 @@ class LegJudge {
     const Layer* layer = request_.world->blocked_by(a_, b_, needed);
     return layer == nullptr || report_([&] {
              double clearance = leg_clearance(*layer->environment, a_, b_);
-             // Of all that block, the one that the leg comes nearest to.
+             // Among all blocking layers, the one nearest to the leg.
              for (const Layer& other : request_.world->layers()) {
                const double its = leg_clearance(*other.environment, a_, b_);
                if (its < clearance && other.environment->blocked(a_, b_, needed)) {
@@ -218,7 +218,7 @@ class LegJudge {
                  layer = &other;
                }
              }
-             // What blocks may lie around: beyond a keep-in zone.
+             // The layer may block from around: outside a keep-in zone.
              std::string where = clearance < 0
                                      ? "lies up to " + fixed(-clearance) + " m inside what '" +
                                            layer->id + "' blocks"
@@ -271,11 +271,11 @@ std::vector<Violation> leg_violations(const std::optional<Approach>& before, con
 }
 
 namespace {
-/// The answer of a constraint; what it throws gets its name.
+/// Result of a constraint's function; exceptions are attributed to the constraint.
 template <class Ask>
 auto answer_of(const NamedConstraint& named, const Ask& ask) {
   return attributed([&] { return "the constraint '" + named.name + "'"; },
-                [&] { return ask(*named.constraint); });
+                    [&] { return ask(*named.constraint); });
 }
 }  // namespace
 
@@ -320,7 +320,7 @@ CheckResult check(const Route& route, const Request& request) {
              named, [&](const Constraint& asked) { return asked.violations(route, request); })) {
       if (violation.at >= route.size()) {
         throw PluginError("the constraint '" + named.name +
-                          "' broke a law of its interface: it blames waypoint " +
+                          "' violated the contract of its interface: it blames waypoint " +
                           std::to_string(violation.at) + " of " + std::to_string(route.size()));
       }
       violation.constraint = named.name;
@@ -331,7 +331,7 @@ CheckResult check(const Route& route, const Request& request) {
 }
 
 std::string point_problem(const Vec3& p, const Request& request) {
-  // A point has no leg: what a leg of no length cannot keep is left out.
+  // A point has no leg: violations that only a leg of zero length has are left out.
   const std::vector<Violation> found = [&] {
     if (request.limits.min_leg <= 0 && request.constraints.empty()) {
       return leg_violations(std::nullopt, p, p, request, 0);
@@ -345,7 +345,7 @@ std::string point_problem(const Vec3& p, const Request& request) {
 }
 
 namespace {
-/// Whether every limit is at least as tight as it was; false where one is not a number.
+/// True if every limit is at least as tight as it was; false if one is not a number.
 bool no_looser(const Limits& now, const Limits& was) {
   const auto ground = [](const Limits& limits) {
     return limits.min_ground_clearance.value_or(-kInfinity);
@@ -377,7 +377,7 @@ void apply_constraints(Request& request, std::vector<NamedConstraint> constraint
       if (!no_looser(request.limits, before)) {
         throw PluginError(
             "the constraint '" + named.name +
-            "' broke a law of its interface: it loosened a limit, or made it no number");
+            "' violated the contract of its interface: it loosened a limit, or made it no number");
       }
       request.constraints.push_back(std::move(named));
     }

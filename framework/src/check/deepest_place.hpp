@@ -10,7 +10,7 @@ struct DeepestPlace {
   double share;      ///< of the leg
 };
 
-/// The least signed clearance along a leg that goes into the layer, by branch and bound on the
+/// The minimum signed clearance along a leg that enters the layer, by branch and bound on the
 /// 1-Lipschitz clearance, within a ten-thousandth of the leg's length.
 DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& b);
 }  // namespace altiplan

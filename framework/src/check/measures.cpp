@@ -10,10 +10,10 @@
 namespace altiplan {
 namespace {
 
-/// Bounds the error of greatest_free_radius, as a share of what it finds.
+/// Relative error bound of greatest_free_radius.
 constexpr double kFine = 1e-9;
 
-/// The greatest r for which the leg is not blocked, so that it agrees with the judge.
+/// The largest r for which the leg is not blocked, so that it agrees with the judge.
 double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3& b) {
   constexpr double kFar = 1e7;
   if (solid.blocked(a, b, 0)) {
@@ -42,7 +42,7 @@ double greatest_free_radius(const Environment& solid, const Vec3& a, const Vec3&
 }  // namespace
 
 double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& b, double enough) {
-  // One question spares the search: a leg that is free a little above `enough` has at least that.
+  // One query may save the search: a leg that is free slightly above `enough` has at least that.
   const double above = enough > 0 ? enough * (1 + 4 * kFine) + 2 * kLengthTolerance : 0;
   if (std::isfinite(enough) && !environment.blocked(a, b, above)) {
     return enough;
@@ -55,7 +55,8 @@ double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, c
   if (vehicle.speed_near.empty()) {
     return total / vehicle.speed_mps;
   }
-  // Clearance changes by at most a metre a metre: the speed holds until a threshold can be met.
+  // Clearance changes by at most a metre per metre: the speed is constant until a threshold can be
+  // reached.
   constexpr double kMinStep = 1;
   double time = 0;
   double along = 0;

@@ -10,7 +10,8 @@
 namespace altiplan {
 namespace {
 
-/// Halves the leg down to a place within which `is_met`(from, to) holds, as it does for the whole.
+/// Bisects the leg down to a place for which `is_met`(from, to) holds, as it does for the whole
+/// leg.
 template <class IsMet>
 double share_where(const Vec3& a, const Vec3& b, const IsMet& is_met) {
   constexpr double kFine = 1e-4;  // metres
@@ -22,12 +23,12 @@ double share_where(const Vec3& a, const Vec3& b, const IsMet& is_met) {
     const Vec3 at = a + middle * (b - a);
     (is_met(Vec3(a + from * (b - a)), at) ? to : from) = middle;
   }
-  // The ends themselves, as they may be waypoints.
+  // Exactly the ends, as they may be waypoints.
   return from == 0 ? 0 : to == 1 ? 1 : (from + to) / 2;
 }
 
-/// The distance of the nearest place of the ground that smaller and smaller steps from `point`, one
-/// near it, lead to.
+/// Distance to the nearest ground found by a search with decreasing steps from `point`, which is
+/// near it.
 double nearest_about(const Ground& ground, const Vec3& p, const Vec3& point) {
   constexpr double kFine = 1e-3;  // metres
   double best = (p - point).norm();
@@ -75,8 +76,8 @@ DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& 
   return least;
 }
 
-// The legs that come nearest by the clearance of their middles are measured first, and the others
-// only where they may be nearer still.
+// The legs nearest by the clearance of their midpoints are measured first, and the others only if
+// they may be nearer.
 std::optional<NearestLeg> nearest_leg(const Environment& environment, const Route& route,
                                       double enough) {
   std::vector<NearestLeg> candidates;
@@ -107,7 +108,7 @@ double nearest_share(const Environment& environment, const Vec3& a, const Vec3& 
   if (clearance < 0) {
     return deepest_place(environment, a, b).share;
   }
-  // A little more than what leg_clearance may be off by.
+  // Slightly more than the error of leg_clearance.
   const double met = clearance * (1 + 1e-8) + 4 * kLengthTolerance;
   return share_where(
       a, b, [&](const Vec3& from, const Vec3& to) { return environment.blocked(from, to, met); });
@@ -149,7 +150,7 @@ double place_clearance(const Environment& environment, const Vec3& p) {
   free = std::max(free, 0.0);
   double met = free + kFine;
   if (!is_free(met)) {
-    // The distance itself, as with most layers, or up to the slack less.
+    // The distance itself for most layers, or less by up to the over-approximation.
     for (met = free; free > 0 && !is_free(free);) {
       met = free;
       free = std::max(0.0, free - environment.over_approximation() - kFine);

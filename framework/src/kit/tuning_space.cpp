@@ -30,17 +30,17 @@ std::vector<double> TuningSpace::point(std::span<const double> position) const {
   return point;
 }
 
-/// Finds the factor s for which the sum of clamp(s * weight, min, max) is 1. The sum grows with s
-/// in straight pieces that end where a weight meets one of its bounds.
+/// Finds the factor s for which the sum of clamp(s * weight, min, max) is 1. The sum is piecewise
+/// linear in s and increasing, with breaks where a weight meets one of its bounds.
 void TuningSpace::normalise(const std::vector<std::size_t>& group,
                             std::vector<double>& point) const {
-  double reach = 0;  // what the weights that can grow come to at most
+  double reach = 0;  // upper bound of the sum of the weights that can grow
   for (const std::size_t i : group) {
     reach += point[i] > 0 ? space_[i].max : space_[i].min;
   }
   std::vector<double> knots{0};
   for (const std::size_t i : group) {
-    // A weight of 0 stays 0, unless the others cannot do without it.
+    // A weight of 0 stays 0, unless the others alone cannot reach the sum.
     constexpr double kSeed = 1e-9;
     point[i] = reach < 1 ? std::max(point[i], kSeed) : point[i];
     if (point[i] > 0) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-// Numbers and texts as parameters are written and shown, for the files of params.cpp.
+// Numbers and texts as parameters are written and shown, for the sources of Fields.
 
 namespace altiplan {
 
@@ -16,7 +16,7 @@ bool parse_whole(std::string_view text, T& number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// "010" and "-01" read as another number elsewhere; YAML's "+1" is not for from_chars.
+/// "010" and "-01" have another value in other programs; from_chars does not accept YAML's "+1".
 inline bool is_plain_number(std::string_view text) {
   if (!text.empty() && text[0] == '-') {
     text.remove_prefix(1);

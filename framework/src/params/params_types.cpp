@@ -6,7 +6,7 @@
 #include "altiplan/params.hpp"
 #include "params_text.hpp"
 
-// What each type of parameter looks like, how it is read, and how it is shown.
+// Declaration, reading and printing of each parameter type.
 
 namespace altiplan {
 namespace {
@@ -33,7 +33,7 @@ bool is_unquoted(const Value& value) {
   return value.kind == Value::Kind::scalar && !value.quoted && !value.text.empty();
 }
 
-/// Written as a number, but none that T can hold.
+/// Written as a number, but not representable in T.
 template <class T>
 bool out_of_range(std::string_view text, T& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -83,7 +83,7 @@ bool Fields::expect_map(const Value& value, const std::string& key) {
         !value.text.empty() && std::isalpha(static_cast<unsigned char>(value.text[0]));
     problem(value, key,
             "expected a map of keys, found " + value.what() +
-                (word ? " (as a key it needs a ':' and what belongs to it)" : ""));
+                (word ? " (a key needs a ':' and a value)" : ""));
     return false;
   }
   return true;
@@ -263,7 +263,7 @@ std::string Fields::json_object(const std::vector<BoundField>& fields) {
       continue;
     }
     text += text.empty() ? "" : ", ";
-    // A point or a plugin is keys of this map, already in braces of their own.
+    // A point or a plugin is keys of this map, already in its own braces.
     text += field.spec.name.empty() ? value.substr(1, value.size() - 2)
                                     : json_text(field.spec.name) + ": " + value;
   }
@@ -323,7 +323,7 @@ FieldRef Fields::point(Point& target) {
       continue;
     }
     if (target.form != Point::Form::none) {
-      problem(*value, key_of(name), "a point is given in one way: at_m, at_lonlat or at_cell");
+      problem(*value, key_of(name), "a point needs only one of at_m, at_lonlat and at_cell");
       continue;
     }
     bound_[index].where = value->where;

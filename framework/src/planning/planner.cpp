@@ -30,8 +30,8 @@ std::vector<Violation> Constraint::do_violations(const Route&, const Request&) c
 
 namespace {
 
-/// Runs a plugin's code: what it throws becomes a PluginError, except the framework's own wrong-use
-/// errors, which are the user's to mend, and the end of a budget, which is an answer.
+/// Runs a plugin's code: exceptions become PluginError, except the framework's own misuse errors,
+/// which the user has to correct, and the end of a budget, which is a result.
 PlanResult guarded(const std::function<PlanResult()>& call) {
   try {
     return call();
@@ -62,7 +62,7 @@ bool same(const PlanResult& a, const PlanResult& b) {
                     });
 }
 
-/// Which part of its budget ended a plan, as far as that shows from outside.
+/// The part of its budget that ended a plan, as far as that is visible from outside.
 Reason spent_part(const PlanResult& result, const Budget& budget) {
   for (const Counter& counter : result.counters) {
     if (counter.name == "expanded" && std::uint64_t(counter.value) >= budget.max_iterations) {
@@ -73,32 +73,32 @@ Reason spent_part(const PlanResult& result, const Budget& budget) {
                                                                      : Reason::none;
 }
 
-/// Holds an answer to the law on a route's ends; `start` and `goal` are those asked for.
+/// Checks a result against the contract on a route's ends; `start` and `goal` are those requested.
 PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal,
                        const Budget& budget) {
   if (result.status == PlanStatus::timed_out && result.reason == Reason::none) {
     result.reason = spent_part(result, budget);
   }
   const auto broken = [](Reason law, const std::string& how) {
-    return PluginError("the planner broke a law of its interface: " + how, law);
+    return PluginError("the planner violated the contract of its interface: " + how, law);
   };
   if (result.status == PlanStatus::no_route && result.message.empty()) {
-    throw broken(Reason::law, "returns no route and does not say why");
+    throw broken(Reason::contract, "returns no route and does not say why");
   }
   if (result.status != PlanStatus::solved) {
     return result;
   }
   if (result.route.empty()) {
-    throw broken(Reason::law, "says solved but returns no route");
+    throw broken(Reason::contract, "says solved but returns no route");
   }
   if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
-    throw broken(Reason::law, "returns a route with a coordinate that is not finite");
+    throw broken(Reason::contract, "returns a route with a coordinate that is not finite");
   }
   if (result.route.front() != start) {
-    throw broken(Reason::law_of_ends, "returns a route that does not begin at the start");
+    throw broken(Reason::contract_of_ends, "returns a route that does not begin at the start");
   }
   if (!goal.reached_at(result.route.back())) {
-    throw broken(Reason::law_of_ends,
+    throw broken(Reason::contract_of_ends,
                  "returns a route that ends " +
                      std::to_string((result.route.back() - goal.position).norm()) +
                      " m from the goal, outside its tolerance");
@@ -106,7 +106,7 @@ PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal,
   return result;
 }
 
-/// What needs no planner: impossible ends, and a start that is the goal.
+/// Results that need no planner: infeasible ends, and a start within the goal's tolerance.
 std::optional<PlanResult> settled(const Request& request) {
   std::optional<PlanResult> result = impossible_ends(request);
   if (!result && request.goal.reached_at(request.start.position)) {
@@ -119,7 +119,7 @@ std::optional<PlanResult> settled(const Request& request) {
   return result;
 }
 
-/// Plans afresh at every update.
+/// Replans from scratch at every update.
 class FreshSession final : public Session {
  public:
   FreshSession(const Planner& planner, const Request& request)
@@ -143,7 +143,7 @@ class FreshSession final : public Session {
   PlanResult result_;
 };
 
-/// The session of a problem that cannot be planned, whose planner was not asked.
+/// Session of an infeasible problem, for which no planner was called.
 class HeldSession final : public Session {
  public:
   explicit HeldSession(PlanResult result) : result_(std::move(result)) {}
@@ -180,8 +180,8 @@ PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr
   const PlanResult shown = guarded([&] { return do_result(); });
   if (!same(said, shown)) {
     throw PluginError(
-        "the session broke a law of its interface: result() is not what update returned",
-        Reason::law_of_results);
+        "the session violated the contract of its interface: result() is not what update returned",
+        Reason::contract_of_results);
   }
   return said;
 }
@@ -202,7 +202,7 @@ std::unique_ptr<Session> Planner::begin(const Request& request) const {
   guarded([&] {
     session = do_begin(request);
     if (session == nullptr) {
-      throw PluginError("begin returned no session", Reason::law);
+      throw PluginError("begin returned no session", Reason::contract);
     }
     return held_to_law(session->result(), request.start.position, request.goal, request.budget);
   });
@@ -216,8 +216,9 @@ std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
 std::unique_ptr<Pilot> LocalPlanner::begin(const Request& request) const {
   std::unique_ptr<Pilot> pilot = do_begin(request);
   if (pilot == nullptr) {
-    throw PluginError("the local planner broke a law of its interface: begin returned no pilot",
-                      Reason::law);
+    throw PluginError(
+        "the local planner violated the contract of its interface: begin returned no pilot",
+        Reason::contract);
   }
   return pilot;
 }
@@ -227,9 +228,9 @@ Traits LocalPlanner::do_traits() const { return {}; }
 double Pilot::reach_m() const {
   const double reach = do_reach_m();
   if (!(reach >= 0 && std::isfinite(reach))) {
-    throw PluginError(
-        "the pilot broke a law of its interface: its reach is " + std::to_string(reach) + " m",
-        Reason::law);
+    throw PluginError("the pilot violated the contract of its interface: its reach is " +
+                          std::to_string(reach) + " m",
+                      Reason::contract);
   }
   return reach;
 }
@@ -240,9 +241,9 @@ PilotStep Pilot::step(const Observation& seen) {
     const double dt = step.next.time_s - seen.state.time_s;
     if (!is_finite(step.next.position) || !(dt > 0) || dt > seen.max_dt_s * (1 + 1e-9)) {
       throw PluginError(
-          "the pilot broke a law of its interface: a step must end at a finite place "
+          "the pilot violated the contract of its interface: a step must end at a finite place "
           "after more than 0 and at most max_dt seconds",
-          Reason::law);
+          Reason::contract);
     }
   }
   return step;
@@ -264,8 +265,9 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
        result.route.back() != route.back() ||
        !std::all_of(result.route.begin(), result.route.end(), is_finite))) {
     throw PluginError(
-        "the smoother broke a law of its interface: first and last points must stay, all finite",
-        Reason::law_of_ends);
+        "the smoother violated the contract of its interface: first and last points must stay, all "
+        "finite",
+        Reason::contract_of_ends);
   }
   return result;
 }

@@ -38,14 +38,14 @@ double corner_radius(const Approach& before, const Vec3& here, const Vec3& next,
 
 std::optional<Approach> approach(const Route& route, std::size_t to,
                                  const std::optional<Approach>& before) {
-  std::size_t last = to;  // the point before, another one
+  std::size_t last = to;  // last point that differs from point number `to`
   while (last > 0 && route[last] == route[to]) {
     --last;
   }
   if (route[last] == route[to]) {
     return before;
   }
-  std::size_t leg = last;  // where the last leg with a heading before that point begins
+  std::size_t leg = last;  // start of the last leg with a heading before that point
   while (leg > 0 && !has_heading(route[leg] - route[leg - 1])) {
     --leg;
   }

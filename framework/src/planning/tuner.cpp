@@ -9,13 +9,13 @@
 namespace altiplan {
 namespace {
 
-/// Of a sum of weights, and of a weight that was scaled to that sum.
+/// Tolerance of a sum of weights, and of a weight that was scaled to that sum.
 constexpr double kSlack = 1e-9;
 
 std::string text(double number) { return std::to_string(number); }
 
 void expect_sound(const std::vector<Dimension>& space) {
-  std::map<int, std::pair<double, double>> sums;  // of the least and the greatest weights
+  std::map<int, std::pair<double, double>> sums;  // of the minimum and the maximum weights
   for (const Dimension& d : space) {
     if (!std::isfinite(d.min) || !std::isfinite(d.max) || d.min > d.max) {
       throw Error("'" + d.name + "' cannot be tuned from " + text(d.min) + " to " + text(d.max) +
@@ -28,14 +28,15 @@ void expect_sound(const std::vector<Dimension>& space) {
   }
   for (const auto& [group, sum] : sums) {
     if (sum.first > 1 + kSlack || sum.second < 1 - kSlack) {
-      throw Error("the weights of group " + std::to_string(group) + " sum to " + text(sum.first) +
-                  " at least and " + text(sum.second) + " at most, expected 1 between the two");
+      throw Error("the weights of group " + std::to_string(group) + " can only sum to between " +
+                  text(sum.first) + " and " + text(sum.second) +
+                  ", expected a range that includes 1");
     }
   }
 }
 
 [[noreturn]] void break_law_1(const std::string& how) {
-  throw PluginError("broke a law of its interface: " + how);
+  throw PluginError("violated the contract of its interface: " + how);
 }
 
 void expect_inside(const std::vector<double>& point, const std::vector<Dimension>& space) {
@@ -77,12 +78,12 @@ std::vector<std::vector<double>> Search::ask() {
 
 void Search::tell(std::span<const double> scores) {
   if (scores.size() != asked_) {
-    throw Error("a search was told " + std::to_string(scores.size()) + " scores for " +
+    throw Error("the search got " + std::to_string(scores.size()) + " scores for " +
                 std::to_string(asked_) + " points");
   }
   for (const double score : scores) {
     if (std::isnan(score)) {
-      throw Error("a search was told a score that is not a number; a failure is infinity");
+      throw Error("a score is not a number; report a failure as infinity");
     }
   }
   asked_ = 0;
@@ -93,7 +94,7 @@ std::unique_ptr<Search> Tuner::begin(std::vector<Dimension> space, RandomStream 
   expect_sound(space);
   std::unique_ptr<Search> search = do_begin(space, random);
   if (search == nullptr) {
-    throw PluginError("broke a law of its interface: it began no search");
+    throw PluginError("violated the contract of its interface: it began no search");
   }
   search->space_ = std::move(space);
   return search;

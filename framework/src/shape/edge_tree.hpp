@@ -12,38 +12,38 @@ namespace altiplan {
 
 using Point2 = std::array<double, 2>;
 
-/// From how many corners on a polygon's edges are worth a tree.
+/// Minimum number of edges of a polygon for which a tree pays off.
 inline constexpr std::size_t kManyEdges = 48;
 
-/// A tree of boxes over the edges of rings. A node holds edges that follow each other, or whole
-/// rings, so that its ends alone tell how often, odd or even, a ray crosses it that crosses its box
-/// from side to side.
+/// A tree of boxes over the edges of rings. A node holds consecutive edges, or whole rings, so that
+/// its ends alone determine the parity of the crossings of a ray that passes through its box from
+/// side to side.
 class EdgeTree {
  public:
   struct Edge {
     Point2 from;
     Point2 to;
   };
-  /// Grown by more than the rounding of what is worked out from an edge's ends.
+  /// Grown by more than the rounding of values computed from an edge's ends.
   struct Rectangle {
     Point2 min{kInfinity, kInfinity};
     Point2 max{-kInfinity, -kInfinity};
   };
 
   EdgeTree() = default;
-  /// The edges count from 0, ring after ring.
+  /// Edges are numbered from 0, ring after ring.
   explicit EdgeTree(const std::vector<const std::vector<Point2>*>& rings);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<Edge>& edges() const { return edges_; }
-  /// Greatest of the coordinates.
+  /// Largest absolute coordinate.
   double extent() const { return extent_; }
 
-  /// Whether a ray from (x, y) to the east crosses the edges an odd number of times.
+  /// True if a ray from (x, y) to the east crosses the edges an odd number of times.
   bool covers(double x, double y) const;
 
   /// Calls visit(index, edge) for the edges of the nodes with gap(rectangle) <= limit(), nearer
-  /// nodes first. The gap must not be greater for a box than for what is in it.
+  /// nodes first. The gap of a box must not exceed that of its content.
   template <class Gap, class Limit, class Visit>
   void visit(const Gap& gap, const Limit& limit, const Visit& visit) const;
 
@@ -53,11 +53,11 @@ class EdgeTree {
 
   struct Node {
     Rectangle box;
-    double from_y;  // where the first edge starts and the last one ends; the same for whole rings
+    double from_y;  // start of the first edge and end of the last one; equal for whole rings
     double to_y;
     std::int32_t first;  // of a leaf: its edges
     std::int32_t count;
-    std::int32_t other;  // else, of its two children, the one that does not follow it at once
+    std::int32_t other;  // of an inner node: the child that does not directly follow it
 
     bool is_leaf() const { return count > 0; }
   };

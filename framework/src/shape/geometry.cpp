@@ -31,7 +31,7 @@ double radius_through(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 v = c - b;
   const double twice_area = u.cross(v).norm();
   if (twice_area == 0) {
-    return u.dot(v) < 0 ? 0 : kInfinity;  // straight back is no circle at all
+    return u.dot(v) < 0 ? 0 : kInfinity;  // a reversal has no circle
   }
   return u.norm() * v.norm() * (c - a).norm() / (2 * twice_area);
 }

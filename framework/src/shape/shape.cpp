@@ -8,8 +8,8 @@ namespace {
 
 using namespace shape_parts;
 
-// All shapes but the sphere are products of a plane region and an interval of heights: distances
-// combine by Pythagoras outside, depths by their minimum inside.
+// All shapes but the sphere are products of a plane region and a height interval: distances combine
+// by Pythagoras outside, depths by their minimum inside.
 double product_distance(double horizontal, double vertical) {
   // With one of them 0 the hypotenuse is the other.
   return horizontal <= 0 || vertical <= 0 ? std::max(horizontal, vertical)

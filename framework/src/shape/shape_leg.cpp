@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near a leg comes to a shape, and how deep it gets into it.
+// Distance between a leg and a shape, and penetration depth of the leg.
 #include "altiplan/shape.hpp"
 #include "shape_parts.hpp"
 
@@ -8,14 +8,14 @@ namespace {
 
 using namespace shape_parts;
 
-// A look at the distance along the leg: at the share t of it, and its slope there.
+// Sample of the distance along the leg: at parameter t, with its slope there.
 struct Look {
   double t;
   double distance;
   double slope;
 };
 
-// What a search for the least distance is after: the distance itself, …
+// Target of a minimum-distance search: the distance itself, …
 struct Exactly {
   static double most() { return kInfinity; }
   static bool is_below(double) { return false; }
@@ -23,16 +23,16 @@ struct Exactly {
   static bool is_beyond(const Look&, const Look&, double) { return false; }
 };
 
-// … or whether it is below a limit. The answer is the one that the distance would give: below as
-// soon as any look is, beyond only by more than rounding can be wrong.
+// … or whether it is below a limit. The answer agrees with the distance: below as soon as any
+// sample is, beyond only by more than the possible rounding error.
 struct Below {
   double limit;
   double rounding;  // of coordinates, metres
 
-  double most() const { return limit + rounding; }  // that is not beyond
+  double most() const { return limit + rounding; }  // largest distance that is not beyond
   bool is_below(double distance) const { return distance < limit; }
   bool is_beyond(double distance) const { return distance - rounding > limit; }
-  // A convex function lies above its tangents, so nowhere below where these two cross.
+  // A convex function lies above its tangents, so nowhere below the crossing of these two.
   bool is_beyond(const Look& low, const Look& high, double length) const {
     const double width = high.t - low.t;
     const double share = (high.distance - high.slope * width - low.distance) /
@@ -43,9 +43,9 @@ struct Below {
   }
 };
 
-// Least distance from the leg to a convex set, given the set's point nearest to a point: the
-// distance is a convex function along the leg, so its slope is halved down to the minimum. What is
-// left to gain is at most slope x interval.
+// Minimum distance from the leg to a convex set, given the set's point nearest to a point: the
+// distance is a convex function along the leg, so its slope is bisected down to the minimum. The
+// remaining error is at most slope x interval.
 template <class Goal, class Nearest>
 double convex_leg_distance(const Vec3& a, const Vec3& b, const Goal& goal, const Nearest& nearest) {
   const Vec3 along = b - a;
@@ -78,7 +78,7 @@ double convex_leg_distance(const Vec3& a, const Vec3& b, const Goal& goal, const
   return least;
 }
 
-// Share of the leg a–b at which its plan crosses the edge, or NaN; parallel lines do not cross.
+// Parameter of the leg a–b at which its plan crosses the edge, or NaN; parallel lines do not cross.
 double crossing(const Vec3& a, const Vec3& b, const Point2& e, const Point2& f) {
   const double dx = b.x() - a.x();
   const double dy = b.y() - a.y();
@@ -91,12 +91,13 @@ double crossing(const Vec3& a, const Vec3& b, const Point2& e, const Point2& f) 
   return meets ? t : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The least that the leg a–b can be away from what is in a rectangle, between two heights.
+// Lower bound of the distance between the leg a–b and the content of a rectangle, between two
+// heights.
 class LegGap {
  public:
   LegGap(const Vec3& a, const Vec3& b, double floor, double ceiling, double extent)
       : leg_(leg_box(a, b)), start_{a.x(), a.y()} {
-    constexpr double kRounding = 1e-13;  // of the greatest coordinate, with room to spare
+    constexpr double kRounding = 1e-13;  // of the largest coordinate, with a margin
     const double length = std::hypot(b.x() - a.x(), b.y() - a.y());
     if (length > 0) {
       across_ = {(a.y() - b.y()) / length, (b.x() - a.x()) / length};
@@ -108,7 +109,8 @@ class LegGap {
   double operator()(const EdgeTree::Rectangle& box) const {
     const double gap_x = interval_gap(box.min[0], box.max[0], leg_.min.x(), leg_.max.x());
     const double gap_y = interval_gap(box.min[1], box.max[1], leg_.min.y(), leg_.max.y());
-    // From the line through the leg, for legs whose box is much larger than themselves.
+    // From the line through the leg: tighter for diagonal legs, most of whose bounding box is
+    // empty.
     const double middle = across_[0] * ((box.min[0] + box.max[0]) / 2 - start_[0]) +
                           across_[1] * ((box.min[1] + box.max[1]) / 2 - start_[1]);
     const double reach = std::abs(across_[0]) * (box.max[0] - box.min[0]) / 2 +
@@ -126,7 +128,7 @@ class LegGap {
 };
 
 // The nearest point of a prism lies inside it, on a side (a vertical rectangle over an edge), or on
-// its floor or ceiling away from the edges; there it is below an end of the leg, or the leg goes
+// its floor or ceiling away from the edges; then it is below an end of the leg, or the leg passes
 // through.
 template <class Edges, class Goal>
 double prism_leg_distance(const Prism& prism, const Edges& edges, const Vec3& a, const Vec3& b,
@@ -203,7 +205,7 @@ double distance_of(const Indexed& solid, const Vec3& a, const Vec3& b, const Goa
       solid.shape);
 }
 
-// Greatest of the coordinates that points of the surface are worked out from.
+// Largest of the coordinates from which points of the surface are computed.
 double extent(const Indexed& solid) {
   if (const auto* c = std::get_if<Cylinder>(&solid.shape)) {
     return std::max(std::abs(c->x), std::abs(c->y)) + c->radius;
@@ -214,7 +216,7 @@ double extent(const Indexed& solid) {
   return 0;
 }
 
-// Shares of the leg where it meets a circle or sphere: |from + t along| = radius.
+// Parameters of the leg where it meets a circle or sphere: |from + t along| = radius.
 void add_roots(const Vec3& from, const Vec3& along, double radius, std::vector<double>& shares) {
   const double length2 = along.squaredNorm();
   const double middle = length2 > 0 ? -from.dot(along) / length2 : 0;
@@ -225,7 +227,7 @@ void add_roots(const Vec3& from, const Vec3& along, double radius, std::vector<d
   }
 }
 
-// Shares of the leg between which it stays on one side of the shape's surface.
+// Parameters of the leg between which it stays on one side of the shape's surface.
 struct Breaks {
   const Vec3& a;
   const Vec3& b;
@@ -263,14 +265,14 @@ struct Breaks {
       shares.push_back(share_beside(corner));
     }
   }
-  // Share of the leg at which it passes the point.
+  // Parameter of the leg at which it passes the point.
   double share_beside(const Point2& p) const {
     const double dx = b.x() - a.x();
     const double dy = b.y() - a.y();
     const double length2 = dx * dx + dy * dy;
     return length2 > 0 ? ((p[0] - a.x()) * dx + (p[1] - a.y()) * dy) / length2 : 0;
   }
-  // In order, within the leg.
+  // In ascending order, within the leg.
   std::vector<double> sorted() {
     for (double& share : shares) {
       share = std::clamp(share, 0.0, 1.0);
@@ -281,13 +283,14 @@ struct Breaks {
   }
 };
 
-// Between its breaks the leg is inside or outside. Distance to an edge is a convex function, so the
-// depth between two breaks is at most the greater of what their distances to the edge nearest to
-// their middle are. Where that is more than twice the depth in the middle, the leg passes an end of
-// the edge, and the part is cut there.
+// Between two breaks the leg is entirely inside or outside. Distance to an edge is a convex
+// function, so the depth between two breaks is at most the larger of their distances to the edge
+// nearest to their midpoint. Where that exceeds twice the depth at the midpoint, the leg passes an
+// end of the edge, and the part is split there.
 template <class Edges>
 double prism_leg_depth(const Prism& prism, const Edges& edges, const Vec3& a, const Vec3& b) {
-  constexpr double kBeside = 1e-9;  // of the greatest coordinate: what may touch the leg
+  constexpr double kBeside = 1e-9;  // of the largest coordinate: margin within which an edge may
+                                    // touch the leg
   const double extent = edges.extent() + std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
   Breaks breaks{a, b};
   breaks(prism);
@@ -340,7 +343,7 @@ double shape_parts::leg_distance(const Indexed& solid, const Vec3& a, const Vec3
 }
 
 bool shape_parts::comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit) {
-  constexpr double kRounding = 1e-14;  // of the greatest coordinate, with room to spare
+  constexpr double kRounding = 1e-14;  // of the largest coordinate, with a margin
   const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(solid);
   return distance_of(solid, a, b, Below{limit, kRounding * most}) < limit;
 }

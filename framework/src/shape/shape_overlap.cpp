@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a shape overlaps a box, as voxel grids ask.
+// Overlap of a shape and a box, for voxel grids.
 #include "altiplan/shape.hpp"
 #include "shape_parts.hpp"
 
@@ -8,11 +8,11 @@ namespace {
 
 using namespace shape_parts;
 
-// Overlaps of a box by less than this are touches, metres: well above the rounding of coordinates
-// of 100 km, well below anything that flies.
+// Overlaps of a box by less than this count as touching, metres: well above the rounding of
+// coordinates of 100 km, well below the size of any aircraft.
 constexpr double kTouch = 1e-9;
 
-// Least distance between the plan of a prism and a rectangle.
+// Minimum distance between the plan of a prism and a rectangle.
 template <class Edges>
 double plan_gap(const Edges& edges, const Box& box) {
   const Vec3 centre = (box.min + box.max) / 2;
@@ -68,7 +68,7 @@ struct BoxGap {
 }  // namespace
 
 bool shape_parts::overlaps(const Indexed& solid, const Box& box, double by) {
-  // The open box is taken as the closed one, smaller by what still counts as touching.
+  // The open box is treated as the closed one, shrunk by the margin that still counts as touching.
   const Vec3 shrink = Vec3::Constant(kTouch).cwiseMin((box.max - box.min) / 4);
   const Box inner{box.min + shrink, box.max - shrink};
   return std::visit(BoxGap{inner, solid.tree}, solid.shape) <= by;

@@ -7,7 +7,7 @@
 
 #include "edge_tree.hpp"
 
-/// What the files on shapes share: visiting, intervals of heights, and the plan of a prism.
+/// Common parts of the shape sources: visiting, height intervals, and the plan view of a prism.
 namespace altiplan::shape_parts {
 
 template <class... Cases>
@@ -43,8 +43,8 @@ void for_each_edge(const Prism& prism, const Visit& visit) {
   }
 }
 
-// Whether a ray from (x, y) to the east crosses the edge; without branches, as nothing foretells
-// it.
+// True if a ray from (x, y) to the east crosses the edge; branch-free, as the outcome is
+// unpredictable.
 inline bool crosses(const Point2& e, const Point2& f, double x, double y) {
   const double side = (f[0] - e[0]) * (y - e[1]) - (x - e[0]) * (f[1] - e[1]);
   const bool spans = (e[1] > y) != (f[1] > y);
@@ -72,18 +72,18 @@ struct Indexed {
   const EdgeTree* tree;
 };
 
-/// What the outline is to a place: its point nearest to it, and whether it holds the place.
+/// The outline seen from a point: its nearest point, and whether it contains the point.
 struct Plan {
   Point2 nearest{kInfinity, kInfinity};
   bool is_inside = false;
 };
 
-/// The edges of a prism, each looked at in turn.
+/// The edges of a prism, tested one by one.
 class PlainEdges {
  public:
   explicit PlainEdges(const Prism& prism) : prism_(prism) {}
 
-  /// Whether (x, y) lies in the polygon: the ray crosses its edges an odd number of times.
+  /// True if (x, y) lies in the polygon: the ray crosses its edges an odd number of times.
   bool covers(double x, double y) const {
     bool inside = false;
     for_each_edge(prism_, [&](const Point2& e, const Point2& f) { inside ^= crosses(e, f, x, y); });
@@ -121,7 +121,7 @@ class PlainEdges {
     });
     return most;
   }
-  /// Calls visit(from, to) for the edges that may be as near as limit(), and maybe for others.
+  /// Calls visit(from, to) for the edges that may be as near as limit(), and possibly for others.
   template <class Gap, class Limit, class Visit>
   void visit(const Gap&, const Limit&, const Visit& visit) const {
     for_each_edge(prism_, visit);
@@ -154,7 +154,7 @@ class TreeEdges {
         [&](std::size_t index, const EdgeTree::Edge& edge) {
           const Point2 q = nearest_on_edge(edge.from, edge.to, x, y);
           const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
-          // Of edges that are as near the first, as in a plain loop.
+          // Among edges at the same distance the first, as in a plain loop.
           if (distance2 < least2 || (distance2 == least2 && index < nearest)) {
             least2 = distance2;
             nearest = index;
@@ -173,13 +173,13 @@ class TreeEdges {
   const EdgeTree& tree_;
 };
 
-/// Calls work(edges) with those of the prism, by its tree where there is one.
+/// Calls work(edges) with the edges of the prism, by its tree where there is one.
 template <class Work>
 auto with_edges(const Prism& prism, const EdgeTree* tree, const Work& work) {
   return tree != nullptr ? work(TreeEdges(*tree)) : work(PlainEdges(prism));
 }
 
-// The questions of altiplan/shape.hpp, with the same answers.
+// The functions of altiplan/shape.hpp, with the same results.
 double signed_distance(const Indexed& solid, const Vec3& p);
 double leg_distance(const Indexed& solid, const Vec3& a, const Vec3& b);
 bool comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit);

@@ -48,7 +48,7 @@ class Envelope {
   }
 
  private:
-  // Where the parabola of q comes below that of p < q.
+  // Position from which the parabola of q lies below that of p < q.
   static double crossing(int p, double fp, int q, double fq, double step) {
     return (fq - fp) / (2 * (q - p) * step) + (q + p) * step / 2;
   }
@@ -116,8 +116,8 @@ double DistanceField::clearance(const Vec3& p) const {
   if (!spec_.holds(c)) {
     return 0;
   }
-  // Between p and a blocked cell: the way between the centres, less p's way to its own centre and
-  // the blocked cell's half diagonal.
+  // Between p and a blocked cell: the distance of the centres, minus p's distance to its own centre
+  // and the blocked cell's half diagonal.
   const double away = (p - spec_.centre(c)).norm() + spec_.cell.norm() / 2;
   return std::max(0.0, centre_distance(c) - away);
 }

@@ -40,7 +40,7 @@ Vec3 Site::resolve(const Point& point) const {
         }
       }
       if (!centre) {
-        throw Error("at_cell needs a layer with cells of its own (a grid or voxel map) before it");
+        throw Error("at_cell needs a layer with its own cells (a grid or voxel map) before it");
       }
       p = *centre;
       break;
@@ -61,7 +61,7 @@ Environment::~Environment() = default;
 Ground::~Ground() = default;
 WhatBlocks::~WhatBlocks() = default;
 
-// Layers are asked about places only: of what is none, nothing good is said.
+// Layers are queried at finite positions only; any other position counts as blocked.
 double Environment::clearance(const Vec3& p) const {
   return is_finite(p) ? do_clearance(p) : -kInfinity;
 }
@@ -70,7 +70,7 @@ bool Environment::blocked(const Vec3& a, const Vec3& b, double r) const {
   if (!std::isfinite((b - a).squaredNorm()) || !std::isfinite(r)) {
     return r != -kInfinity;
   }
-  // One order of the ends for both, so that the answer is symmetric to the last bit.
+  // Fixed order of the ends, so that the answer is symmetric to the last bit.
   const bool swap = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
   return swap ? do_blocked(b, a, r) : do_blocked(a, b, r);
 }
@@ -99,7 +99,7 @@ double Ground::gap_max(const Vec3& a, const Vec3& b) const {
 
 bool Environment::do_blocked(const Vec3& a, const Vec3& b, double r) const {
   // Clearance is 1-Lipschitz: the ball of radius (clearance - r) around a point is free. With the
-  // slack added to the threshold no step is shorter than the slack.
+  // over-approximation added to the threshold no step is shorter than it.
   const double slack = std::max(do_over_approximation(), kLengthTolerance);
   const double total = (b - a).norm();
   double along = 0;

@@ -34,7 +34,7 @@ class AffineProjection final : public Projection {
 
   std::array<double, 2> to_local(double lon, double lat) const override {
     double east = lon - lon_;
-    east -= 360 * std::round(east / 360);  // the short way across the antimeridian
+    east -= 360 * std::round(east / 360);  // the shorter direction across the antimeridian
     return {radians(east) * radii_.east, radians(lat - lat_) * radii_.north};
   }
 

@@ -9,8 +9,9 @@
 namespace altiplan {
 namespace {
 
-// Least height above the patch of a straight piece from (s0, w0, z0) to (s1, w1, z1): a quadratic
-// in the share of the piece, so the least of the ends and, where convex, of the stationary point.
+// Minimum height above the patch of a straight piece from (s0, w0, z0) to (s1, w1, z1): a quadratic
+// in the fraction of the piece, so the smallest of its ends and, where convex, of its stationary
+// point.
 double piece_gap(const Patch& p, double s0, double w0, double z0, double s1, double w1, double z1) {
   const double gap = std::min(z0 - p.at(s0, w0), z1 - p.at(s1, w1));
   const double ds = s1 - s0;
@@ -36,8 +37,8 @@ struct Walk {
   double v(double t) const { return v0 + t * dv; }
 
   // Calls visit(t0, t1) for the pieces of [from, to] between the lines u, v = multiples of step,
-  // until it returns false. Pieces too short to matter (under 1e-14 of the leg) are left out: they
-  // are what rounding leaves where the leg runs through a post.
+  // until it returns false. Pieces too short to matter (under 1e-14 of the leg) are skipped: they
+  // are rounding residues where the leg passes through a post.
   template <class Visit>
   void pieces(double from, double to, int step, const Visit& visit) const {
     const double start[2] = {u0, v0};
@@ -80,7 +81,7 @@ Patch patch(const HeightField& field, int i, int j) {
   return {field.post(i, j), field.post(i + 1, j), field.post(i, j + 1), field.post(i + 1, j + 1)};
 }
 
-// Places and cells are counted in the whole grid, so that a part rounds as the whole does.
+// Positions and cells count in the whole grid, so that a part rounds as the whole does.
 struct Extent {
   explicit Extent(const HeightField& field)
       : origin(field.whole_origin()),
@@ -106,7 +107,7 @@ struct Extent {
 
 bool is_whole(double value) { return value == std::floor(value); }
 
-// Least of sign * (height of a leg above the ground), piece by piece; -infinity where ground is
+// Minimum of sign * (height of a leg above the ground), piece by piece; -infinity where ground is
 // missing.
 struct GapSearch {
   const HeightField& field;
@@ -117,13 +118,13 @@ struct GapSearch {
   double z0, dz;  ///< sign * height of the leg
   double gap = kInfinity;
 
-  /// Of the part of the leg over one cell; false ends the search.
+  /// Processes the part of the leg over one cell; false ends the search.
   bool visit_cell(double t0, double t1) {
     const double middle = (t0 + t1) / 2;
     int i = extent.column(walk.u(middle));
     int j = extent.row(walk.v(middle));
     Patch p = patch(field, i, j);
-    if (!p.has_ground()) {  // along a line of posts either side will do
+    if (!p.has_ground()) {  // along a line of posts either side is valid
       i -= walk.du == 0 && walk.u0 == i && i > extent.first[0];
       j -= walk.dv == 0 && walk.v0 == j && j > extent.first[1];
       p = patch(field, i, j);
@@ -135,7 +136,7 @@ struct GapSearch {
     p = p.scaled(sign);
     const double z_from = z0 + t0 * dz;
     const double z_to = z0 + t1 * dz;
-    // High above a cell nothing is least, rounding included.
+    // A cell far below the leg cannot hold the minimum, rounding included.
     const double top = p.max();
     const double rounding = 1e-12 * (std::abs(z_from) + std::abs(z_to) + std::abs(top));
     if (std::min(z_from, z_to) - top <= std::min(gap, enough) + rounding) {
@@ -146,12 +147,11 @@ struct GapSearch {
   }
 };
 
-// roof(block column, block row) is the highest ground of a block of cells, above which they are
-// skipped.
+// roof(block column, block row) is the highest ground of a block of cells; legs above it skip them.
 template <class Roof>
 double min_gap(const HeightField& field, double sign, const Vec3& a_in, const Vec3& b_in,
-                 double enough, int block, const Roof& roof) {
-  // One sense for both, so that the answer is symmetric to the last bit.
+               double enough, int block, const Roof& roof) {
+  // Fixed order of the ends, so that the answer is symmetric to the last bit.
   const bool swapped =
       std::lexicographical_compare(b_in.data(), b_in.data() + 3, a_in.data(), a_in.data() + 3);
   const Vec3& a = swapped ? b_in : a_in;
@@ -263,7 +263,7 @@ std::optional<double> HeightField::at(double x, double y) const {
   }
   const double u = extent.u_within(x);
   const double v = extent.v_within(y);
-  // A point on a border has the ground of whichever of its cells has one.
+  // A point on a border has the ground of any of its cells that has one.
   const int i1 = extent.column(u);
   const int j1 = extent.row(v);
   for (int j = j1; j >= (is_whole(v) ? std::max(j1 - 1, extent.first[1]) : j1); --j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a height field knows of its posts as a whole, and of blocks of them.
+// Bounds of a height field as a whole, and of blocks of its posts.
 #include <algorithm>
 
 #include "altiplan/error.hpp"
@@ -9,9 +9,9 @@
 namespace altiplan {
 namespace {
 
-constexpr int kLanes = 16;  ///< side by side, so that the compiler may work on several at once
+constexpr int kLanes = 16;  ///< side by side, so that the compiler can vectorise
 
-/// Lowest and highest of many heights, and how many of them are voids.
+/// Minimum and maximum of many heights, and the number of voids among them.
 struct Range {
   std::array<float, kLanes> low;
   std::array<float, kLanes> high;
@@ -66,7 +66,7 @@ HeightField::HeightField(std::array<double, 2> whole_origin, std::array<double, 
     }
   }
   if (part.column < 0 || part.row < 0) {
-    throw Error("a part of a height field begins within the whole, found column " +
+    throw Error("a part of a height field must begin inside the whole, found column " +
                 std::to_string(part.column) + ", row " + std::to_string(part.row));
   }
   if (heights_.size() != std::size_t(part.columns) * std::size_t(part.rows)) {
@@ -114,7 +114,7 @@ void HeightField::measure_blocks() {
 }
 
 /// Highest ground of a block of cells, infinite where a cell has none: such a block is never
-/// skipped; and the greatest squared slope.
+/// skipped; and the maximum squared slope.
 void HeightField::measure_block(int block_column, int block_row, float& top,
                                 double& squared) const {
   static_assert(kBlock == kLanes);

@@ -17,8 +17,8 @@ struct Patch {
   double at(double s, double w) const {
     return (1 - w) * ((1 - s) * sw + s * se) + w * ((1 - s) * nw + s * ne);
   }
-  // Each component of the gradient runs between the slopes of two opposite edges, independently of
-  // the other one: this is the steepest point exactly.
+  // Each component of the gradient varies between the slopes of two opposite edges, independently
+  // of the other one: this is exactly the maximum.
   double squared_slope(const std::array<double, 2>& per_m) const {
     const double east = std::max(std::abs(se - sw), std::abs(ne - nw)) * per_m[0];
     const double north = std::max(std::abs(nw - sw), std::abs(ne - se)) * per_m[1];

@@ -5,7 +5,7 @@
 
 namespace altiplan {
 namespace {
-/// The flight's ends as the obstacle sees them, standing still as it is at since_s.
+/// The flight's ends relative to the obstacle, which stays as it is at since_s.
 std::pair<Vec3, Vec3> relative(const MovingObstacle& obstacle, const Vec3& a, double t0,
                                const Vec3& b, double t1) {
   return {a - obstacle.velocity * (t0 - obstacle.since_s),
@@ -18,8 +18,8 @@ bool hits(const MovingObstacle& obstacle, const Vec3& a, double t0, const Vec3& 
   const auto [from, to] = relative(obstacle, a, t0, b, t1);
   const double limit = r - kLengthTolerance;
   const double distance = leg_distance(obstacle.shape, from, to);
-  // A point (r below the tolerance) hits where it gets inside, as touching is free; leg_depth may
-  // be half of what the leg's deepest place is.
+  // A point (r below the tolerance) hits if it is inside, as touching is free; leg_depth may be
+  // half of the leg's maximum depth.
   return distance < limit || (limit <= 0 && distance <= kLengthTolerance &&
                               -leg_depth(obstacle.shape, from, to) < r - kLengthTolerance / 2);
 }

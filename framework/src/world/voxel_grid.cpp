@@ -34,7 +34,7 @@ Cell GridSpec::cell_of(const Vec3& p) const {
   Cell c{};
   for (int axis = 0; axis < 3; ++axis) {
     double index = std::floor((p[axis] - origin[axis]) / cell[axis]);
-    // The quotient's rounding must not contradict the cells' faces as cell_box gives them.
+    // The quotient's rounding must not contradict the cell faces of cell_box.
     if (origin[axis] + cell[axis] * (index + 1) <= p[axis]) {
       ++index;
     } else if (origin[axis] + cell[axis] * index > p[axis]) {
@@ -57,7 +57,7 @@ VoxelGrid::VoxelGrid(const GridSpec& spec) : spec_(spec) {
   }
   words_per_row_ = (std::size_t(spec.counts[0]) + 2 + 63) / 64;
   rows_per_level_ = std::size_t(spec.counts[1]) + 2;
-  // One word to spare: readers of a few bits may load a few bytes beyond them.
+  // One spare word: reading a few bits may load a few bytes beyond them.
   words_.assign(words_per_row_ * rows_per_level_ * (std::size_t(spec.counts[2]) + 2) + 1, kAll);
   for (int k = 0; k < spec.counts[2]; ++k) {
     for (int j = 0; j < spec.counts[1]; ++j) {
@@ -94,7 +94,7 @@ void VoxelGrid::merge(const VoxelGrid& other) {
 
 void VoxelGrid::copy(const VoxelGrid& other, const Cell& low, const Cell& high) {
   if (!(spec_ == other.spec_)) {
-    throw Error("cells cannot be taken over from a voxel grid of another spec");
+    throw Error("cells cannot be copied from a voxel grid of another spec");
   }
   const int i0 = std::max(low[0], 0);
   const int i1 = std::min(high[0], spec_.counts[0] - 1);

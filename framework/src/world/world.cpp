@@ -12,14 +12,14 @@
 
 namespace altiplan {
 namespace {
-/// The answer of a layer; what it throws gets its name.
+/// Result of a layer's function; exceptions are attributed to the layer.
 template <class Ask>
 auto answer_of(const Layer& layer, const Ask& ask) {
   return attributed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
-                [&] { return ask(*layer.environment); });
+                    [&] { return ask(*layer.environment); });
 }
 
-/// The same of the ground that one of the layers brings.
+/// The same for the ground of a layer.
 template <class Ask>
 auto answer_of(const std::vector<Layer>& layers,
                const std::pair<std::size_t, const Ground*>& its_ground, const Ask& ask) {
@@ -28,7 +28,7 @@ auto answer_of(const std::vector<Layer>& layers,
 }
 }  // namespace
 
-/// Grids of this snapshot, and those of an earlier one with the layers that they show.
+/// Grids of this snapshot, and those of an earlier one with the layers that they contain.
 struct World::Cache {
   struct Earlier {
     std::shared_ptr<const VoxelGrid> grid;
@@ -126,7 +126,7 @@ World World::without(std::string_view id) const {
 }
 
 World World::with_moving(std::vector<MovingObstacle> moving) const {
-  World world(*this);  // moving obstacles are never rasterized: the grids stay
+  World world(*this);  // moving obstacles are never rasterized: the grids stay valid
   world.revision_ = revision_ + 1;
   world.moving_ = std::move(moving);
   return world;
@@ -212,7 +212,8 @@ std::pair<double, double> part_over(const Box& box, const Vec3& a, const Vec3& b
   return {t0, t1};
 }
 
-/// The place at t of the leg; rounding does not carry it out of the box, where there is no ground.
+/// The point at t of the leg; clamped, as rounding could move it out of the box, where there is no
+/// ground.
 Vec3 on_leg(const Vec3& a, const Vec3& b, double t, const Box& box) {
   const Vec3 p = t <= 0 ? a : t >= 1 ? b : Vec3(a + t * (b - a));
   return {std::clamp(p.x(), box.min.x(), box.max.x()), std::clamp(p.y(), box.min.y(), box.max.y()),
@@ -256,7 +257,7 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
 }
 
 bool World::ground_below(const Vec3& a, const Vec3& b) const {
-  // Any finite height will do.
+  // Any finite height is sufficient.
   return ground_gap(a, b, std::numeric_limits<double>::lowest()) > -kInfinity;
 }
 
@@ -311,8 +312,8 @@ bool shows(const std::vector<Layer>& layers, const Layer& layer) {
                      [&](const Layer& other) { return other.environment == layer.environment; });
 }
 
-/// The earlier grid brought up to date: added layers are drawn over it; where a layer went, the box
-/// that it filled is drawn anew from all layers.
+/// The earlier grid brought up to date: added layers are merged into it; the box of a removed layer
+/// is rasterized again from all layers.
 std::shared_ptr<VoxelGrid> patched(const VoxelGrid& earlier, const std::vector<Layer>& then,
                                    const std::vector<Layer>& now,
                                    const std::function<void()>& watch) {

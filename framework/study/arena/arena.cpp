@@ -76,7 +76,7 @@ class ArenaWriter {
         "FOREIGN KEY(plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);"
         "CREATE TABLE progress(runid INTEGER, time REAL, PRIMARY KEY(runid, time), FOREIGN "
         "KEY(runid) REFERENCES runs(id) ON DELETE CASCADE);"
-        // OMPL's: of each planner the settings that solve most, then the fastest.
+        // OMPL's: for each planner the settings that solve most, then the fastest.
         "CREATE VIEW bestPlannerConfigsPerExperiment AS SELECT plannerid, experimentid, "
         "MAX(avg_solved) AS avg_solved, avg_total_time FROM (SELECT plannerid, "
         "plannerConfigs.name AS planner, experimentid, AVG(solved) AS avg_solved, AVG(time) AS "
@@ -124,7 +124,7 @@ class ArenaWriter {
       insert.bind(12, settings(data_.scenarios[n]));
       for (std::size_t p = 0; p < experiments_.parameters.size(); ++p) {
         const std::string& set = experiments_.experiments[n].parameters[p];
-        // The column's type makes a number of a text that is one.
+        // The column's type converts a numeric text to a number.
         set.empty() ? insert.bind_null(int(13 + p)) : insert.bind(int(13 + p), set);
       }
       insert.run();
@@ -155,7 +155,7 @@ class ArenaWriter {
   void add_planners() const {
     Statement insert = database_.prepare("INSERT INTO plannerConfigs VALUES(?, ?, ?)");
     for (std::size_t n = 0; n < data_.pipelines.size(); ++n) {
-      // Planner Arena takes these words of OMPL's out of names, which could make two of ours one.
+      // Planner Arena removes these words of OMPL from names, which could merge two of ours.
       std::string name = data_.pipelines[n].name;
       for (const char* word : {"geometric_", "control_"}) {
         const std::size_t at = name.find(word);
@@ -198,7 +198,7 @@ class ArenaWriter {
       return arena_status(row.outcome);
     }
     if (column.name == "approximate_solution") {
-      return 0;  // a route ends within the goal's tolerance, or there is none
+      return 0;  // a route, if there is one, ends within the goal's tolerance
     }
     if (column.name == "correct_solution" || column.name == "solved") {
       return row.solved() ? 1 : 0;

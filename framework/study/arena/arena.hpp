@@ -7,8 +7,8 @@
 
 namespace altiplan::study {
 
-/// Writes the study as a database of OMPL's benchmarks, which Planner Arena reads
-/// (docs/study-machines.md says what becomes what). A file of that name is replaced once the new
-/// one is whole; one that is no database, or a store, is not. Throws Error naming the file.
+/// Writes the study as an OMPL benchmark database for Planner Arena (docs/study-machines.md has the
+/// mapping). An existing file is replaced once the new one is complete, unless it is a store or not
+/// a database. Throws Error naming the file.
 void write_arena(const StudyData& data, const std::filesystem::path& file);
 }  // namespace altiplan::study

@@ -43,7 +43,7 @@ Settings settings_of(const StoredVariant& variant) {
   return settings;
 }
 
-/// The scenario files of which every variant sets the same keys: these tell them apart.
+/// The scenario files whose variants all set the same keys, which distinguish them.
 std::set<std::string> told_apart(const StudyData& data) {
   std::map<std::string, std::set<std::vector<std::string>>> keys;
   for (const StoredVariant& scenario : data.scenarios) {

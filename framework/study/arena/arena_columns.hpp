@@ -9,13 +9,13 @@
 
 namespace altiplan::study {
 
-/// Names of columns as SQL and Planner Arena can take them: small letters, digits and underscores,
-/// and no two alike, with underscores read as blanks, over all tables that Planner Arena joins.
+/// Column names that SQL and Planner Arena accept: lower-case letters, digits and underscores,
+/// unique over all tables that Planner Arena joins, with underscores read as blanks.
 class ColumnNames {
  public:
-  /// With the columns that every such database has.
+  /// Reserves the columns that every such database has.
   ColumnNames();
-  /// "flight.min_separation_m" gives "flight_min_separation_m"; a name that is taken already gets a
+  /// "flight.min_separation_m" gives "flight_min_separation_m"; a name already in use gets a
   /// number.
   std::string add(std::string_view name);
 
@@ -23,25 +23,26 @@ class ColumnNames {
   std::vector<std::string> taken_;
 };
 
-/// A column of the table of runs: one of OMPL's where it means the same, or a value of ours.
+/// A column of the table of runs: OMPL's if it means the same, otherwise a value of ours.
 struct ArenaColumn {
   std::string name;
   const char* type;       ///< as OMPL declares it
-  std::size_t value = 0;  ///< index into StudyData::columns; their number where no run has it
+  std::size_t value = 0;  ///< index into StudyData::columns; columns.size() if no run has it
 };
 /// OMPL's first, then all other values of the study.
 std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names);
 
-/// What sets a scenario apart from others of one file: Planner Arena groups and filters by it.
+/// A parameter that distinguishes the scenarios of one file: Planner Arena groups and filters by
+/// it.
 struct ArenaParameter {
   std::string key;  ///< "scenario.environment.0.city.seed"
   std::string column;
-  bool numbers = true;  ///< whether every scenario has a number there
+  bool numbers = true;  ///< true if its value is a number in every scenario
 };
 
 struct ArenaExperiment {
-  std::string name;  ///< that of the file where parameters tell its variants apart
-  std::vector<std::string> parameters;  ///< one per ArenaParameter, "" where it is not set
+  std::string name;                     ///< the file's if parameters distinguish its variants
+  std::vector<std::string> parameters;  ///< one per ArenaParameter, "" if not set
 };
 
 struct ArenaExperiments {
@@ -58,6 +59,6 @@ struct ArenaStatus {
   const char* outcome;
   const char* description;
 };
-/// OMPL's number and words where it has them, else ours from 16.
+/// OMPL's number and description if it has them, otherwise ours, numbered from 16.
 const std::vector<ArenaStatus>& arena_statuses();
 }  // namespace altiplan::study

@@ -11,10 +11,10 @@ namespace altiplan::study {
 namespace {
 using Kind = ClaimExpression::Kind;
 
-/// A name before its bracket.
+/// The part of a name before its bracket.
 std::string id_of(const std::string& variant) { return variant.substr(0, variant.find('[')); }
 
-/// Reads the expression by recursive descent, a function for each precedence.
+/// Recursive-descent parser of expressions, one function per precedence.
 class Expression {
  public:
   Expression(ClaimReader& reader, const std::vector<std::string>& pipelines,
@@ -48,7 +48,7 @@ class Expression {
 
   ClaimExpression comparison() {
     ClaimExpression left = sum();
-    // The longer sign is tried first.
+    // Longer operators first.
     static constexpr std::pair<std::string_view, Kind> kSigns[] = {{"<=", Kind::less_or_equal},
                                                                    {">=", Kind::greater_or_equal},
                                                                    {"==", Kind::equal},
@@ -114,7 +114,7 @@ class Expression {
     return found;
   }
 
-  /// PIPELINE.value, or value where there are no pipelines: its index in the quantity's.
+  /// PIPELINE.value, or value if there are no pipelines: its index in the quantity's values.
   std::size_t value() {
     ClaimValue named;
     if (pipelines_.empty()) {
@@ -168,7 +168,7 @@ class Expression {
       }
     }
     if (variants.empty()) {
-      ClaimReader::fail(at, "there is no pipeline '" + id + "'" + host::did_you_mean(id, ids));
+      ClaimReader::fail(at, "no pipeline is named '" + id + "'" + host::did_you_mean(id, ids));
     }
     reader_.skip(id.size());
     const std::string name = id + std::string(bracket(id, variants));
@@ -180,13 +180,13 @@ class Expression {
           at, name == id
                   ? "'" + id + "' stands for " + std::to_string(variants.size()) +
                         " variants; expected one of " + first_of(variants)
-                  : "there is no variant '" + name + "'; expected one of " + first_of(variants));
+                  : "no variant is named '" + name + "'; expected one of " + first_of(variants));
     }
     return index_of(name);
   }
 
-  /// "[weight_g=0.3]", or "" where no bracket follows. What is in it may be anything, so the
-  /// longest variant that the text goes on with is taken.
+  /// "[weight_g=0.3]", or "" if no bracket follows. It may contain any characters, so the longest
+  /// variant name that matches the text is taken.
   std::string_view bracket(const std::string& id, const std::vector<std::string>& variants) {
     const std::string_view rest = reader_.rest();
     if (!rest.starts_with('[')) {

@@ -16,7 +16,7 @@ using Kind = ClaimExpression::Kind;
 /// The runs of a pair, by pipeline.
 using Runs = std::map<std::size_t, const RunRow*>;
 
-/// NaN where the run does not have it, or has it but did not solve the problem.
+/// NaN if the run lacks the value or did not solve the problem.
 double value_of(const RunRow& run, const std::string& name, std::size_t column) {
   if (name == "solved") {
     return run.solved() ? 1 : 0;
@@ -76,7 +76,7 @@ double evaluate(const ClaimExpression& expression, const std::vector<double>& va
 }
 
 namespace {
-/// Pipelines of which `solved` stands alone in the outermost chain of `and`.
+/// Pipelines whose `solved` is an operand of the outermost chain of `and`.
 void find_guards(const ClaimExpression& expression, const ClaimQuantity& quantity,
                  std::set<std::size_t>& guards) {
   if (expression.kind == Kind::both) {
@@ -87,7 +87,7 @@ void find_guards(const ClaimExpression& expression, const ClaimQuantity& quantit
   }
 }
 
-/// The quantity's expression in one pair after the other.
+/// Evaluates the quantity's expression pair by pair.
 class Evaluation {
  public:
   Evaluation(const StudyData& data, const ClaimQuantity& quantity) : quantity_(quantity) {
@@ -101,7 +101,7 @@ class Evaluation {
   void add(std::size_t scenario, const Runs& runs) {
     ++pairs_.all;
     std::vector<double> values;
-    bool is_false = false;  // by a guard
+    bool is_false = false;  // because of a guard
     bool is_missing = false;
     for (std::size_t i = 0; i < quantity_.values.size(); ++i) {
       const ClaimValue& named = quantity_.values[i];
@@ -147,7 +147,7 @@ ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
     named.insert(value.pipeline);
   }
   Evaluation evaluation(data, quantity);
-  // Rows are sorted by scenario: the pairs of one after those of the other.
+  // Rows are sorted by scenario, so the pairs of a scenario are contiguous.
   for (auto row = data.rows.begin(); row != data.rows.end();) {
     const std::size_t scenario = row->scenario;
     std::map<int, Runs> pairs;  // by repetition

@@ -10,18 +10,18 @@ namespace altiplan::study {
 
 /// The expression of a claim over the pairs of a study.
 struct ClaimPairs {
-  std::vector<double> results;         ///< one per pair that counts
+  std::vector<double> results;         ///< one per counted pair
   std::vector<std::size_t> scenarios;  ///< the scenario of each
-  std::size_t all = 0;                 ///< pairs of which there is any run
+  std::size_t all = 0;                 ///< pairs with at least one run
   std::vector<std::size_t> missing;    ///< pairs without it, one per value of the quantity
-  std::size_t undefined = 0;           ///< pairs that have all values, and give 0 / 0 or the like
+  std::size_t undefined = 0;  ///< pairs with all values whose result is undefined, such as 0 / 0
 };
 
-/// The expression's value; `values` has one entry per value of the quantity. What compares NaN, or
-/// comes of it, is NaN.
+/// The expression's value; `values` has one entry per value of the quantity. NaN operands give NaN,
+/// in comparisons too.
 double evaluate(const ClaimExpression& expression, const std::vector<double>& values);
 
-/// A pair counts where every value named has a number. `p.solved and …` is false where p did not
-/// solve: other values of p are then not asked for.
+/// A pair counts if every named value is a number. `p.solved and …` is false if p did not solve:
+/// other values of p are then not needed.
 ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity);
 }  // namespace altiplan::study

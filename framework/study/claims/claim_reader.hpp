@@ -19,18 +19,18 @@ class ClaimReader {
   std::string_view rest() const { return text_.substr(at_); }
   void skip(std::size_t characters) { at_ += characters; }
   void skip_spaces();
-  /// Whether the sign comes next; if so it is read.
+  /// True if the sign comes next; consumes it.
   bool takes(std::string_view sign);
-  /// Likewise, for a word that ends there.
+  /// Likewise for a whole word.
   bool takes_word(std::string_view word);
-  /// The letters, digits and '_' that come next.
+  /// Reads the letters, digits and '_' that come next.
   std::string_view peek_word() const;
-  /// A number without a sign, if one comes next.
+  /// Reads a number without sign, if one comes next.
   std::optional<double> takes_number();
 
-  /// Throws that this was expected here, and what was found.
+  /// Throws an Error with what was expected here and what was found.
   [[noreturn]] void expected(const std::string& what, const std::string& hint = "");
-  /// Throws the message, for the text from character `at` on (from 0).
+  /// Throws an Error with the message for position `at` (from 0).
   [[noreturn]] static void fail(std::size_t at, const std::string& message);
 
  private:
@@ -38,8 +38,8 @@ class ClaimReader {
   std::size_t at_ = 0;
 };
 
-/// Reads an expression, and adds the values that it names to the quantity; without pipelines,
-/// values are named by themselves.
+/// Reads an expression and adds the values that it names to the quantity; without pipelines,
+/// values are named alone.
 ClaimExpression read_expression(ClaimReader& reader, const std::vector<std::string>& pipelines,
                                 ClaimQuantity& quantity);
 /// Throws unless it is a comparison, several of them, or a value that is always 0 or 1.

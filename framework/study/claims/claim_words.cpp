@@ -13,8 +13,8 @@
 namespace altiplan::study {
 namespace {
 
-/// The number with as many digits as it takes to see on which side of the range's ends it lies: an
-/// end of 0.95004 is not shown as 0.95 where 0.95 would do.
+/// The number with enough digits to show on which side of the range's ends it lies: 0.95004 is not
+/// printed as 0.95 if the end of the range is 0.95.
 std::string shown(double number, const ClaimRange& range) {
   constexpr int kAll = 17;
   const bool is_large = std::abs(number) >= 1e4 && std::abs(number) < 1e15;
@@ -36,7 +36,7 @@ std::string name_of(const ClaimValue& value, const StudyData& data) {
   return data.pipelines[value.pipeline].name + "." + value.name;
 }
 
-/// Which values no run has, or how many each pipeline has.
+/// Why no pair counts: the values that no run has, or how many runs of each pipeline have them.
 std::string why_no_data(const ClaimQuantity& quantity, const ClaimPairs& pairs,
                         const StudyData& data) {
   if (pairs.all == 0) {
@@ -52,12 +52,12 @@ std::string why_no_data(const ClaimQuantity& quantity, const ClaimPairs& pairs,
     }
   }
   if (words.empty()) {
-    words = "no pair has all that is named";
+    words = "no pair has all named values";
   }
   return words;
 }
 
-/// What was found and what it says of the claim, from the estimate on.
+/// The estimate, its interval and their relation to the claim.
 std::string result(const JudgedClaim& judged, const ClaimRange& range) {
   const std::string estimate = shown(judged.estimate, range);
   const std::string is = wanted(judged.claim);
@@ -66,8 +66,7 @@ std::string result(const JudgedClaim& judged, const ClaimRange& range) {
     return judged.why_no_interval.empty()
                ? estimate + ", which is " + (satisfies ? "" : "not ") + is +
                      " (an extreme: of these runs only, without an interval)"
-               : estimate + ", claimed was " + is + "; there is no interval, " +
-                     judged.why_no_interval;
+               : estimate + ", claimed was " + is + "; no interval, " + judged.why_no_interval;
   }
   const auto [low, high] = *judged.interval;
   const std::string interval = estimate + ", " + host::per_cent(judged.claim.confidence) +
@@ -85,7 +84,7 @@ std::string result(const JudgedClaim& judged, const ClaimRange& range) {
   }
 }
 
-/// How many pairs the claim rests on, and why not all.
+/// The number of pairs that the claim is based on, and why others are missing.
 std::string basis(const JudgedClaim& judged, const ClaimQuantity& quantity, const ClaimPairs& pairs,
                   const StudyData& data) {
   std::string words;

@@ -9,7 +9,7 @@
 
 namespace altiplan::study {
 
-/// Fills in the verdict with all that it rests on, in sentences: `words` and `reasons`.
+/// Fills in the sentences of the verdict and its basis: `words` and `reasons`.
 void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quantity,
          const ClaimPairs& pairs, const StudyData& data);
 }  // namespace altiplan::study

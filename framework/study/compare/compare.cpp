@@ -25,7 +25,7 @@ struct Pair {
 
 using Cell = std::tuple<std::string, std::string, int>;
 
-/// Later rows of one cell, made from other files or builds, take the place of earlier ones.
+/// Later rows of the same cell, made with other files or builds, replace earlier ones.
 std::map<Cell, const RunRow*> cells_of(const StudyData& data) {
   std::map<Cell, const RunRow*> cells;
   for (const RunRow& row : data.rows) {
@@ -92,7 +92,7 @@ class Comparer {
           std::to_string(of_first.size()) + " runs in '" + first_.stores.front() + "', " +
           std::to_string(of_second.size()) + " in '" + second_.stores.front() + "')");
     }
-    // In the order of the study, not of the names.
+    // In the order of the study, not by name.
     std::stable_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
       return std::tie(a.pipeline, a.scenario, a.first->repetition) <
              std::tie(b.pipeline, b.scenario, b.first->repetition);
@@ -128,7 +128,7 @@ class Comparer {
     }
   }
 
-  /// Over the pairs that both solved and have it; the groups are scenarios.
+  /// Over the pairs that both solved with the metric; the groups are scenarios.
   PairedSample sample(const std::string& metric, std::size_t pipeline) const {
     PairedSample sample;
     for (const Pair& pair : pairs_) {
@@ -202,7 +202,7 @@ class Comparer {
     return change;
   }
 
-  /// The least and the greatest change of a pair.
+  /// The minimum and maximum change of a pair.
   static Interval range_of(const PairedSample& pairs, bool is_ratio) {
     Interval range{std::numeric_limits<double>::infinity(),
                    -std::numeric_limits<double>::infinity()};
@@ -214,8 +214,8 @@ class Comparer {
     return range;
   }
 
-  /// By the interval alone where the value depends on nothing but files and program: any difference
-  /// is one of these. Times and memory must differ significantly as well.
+  /// By the interval alone if the value depends only on files and program. Times and memory must
+  /// also differ significantly.
   void judge(MetricChange& change) const {
     using Verdict = MetricChange::Verdict;
     if (change.pairs == 0 || change.verdict == Verdict::same) {

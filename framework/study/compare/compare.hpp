@@ -10,14 +10,14 @@
 
 namespace altiplan::study {
 
-/// What a metric came to with one pipeline, over the pairs of runs that both solved.
+/// The change of a metric of one pipeline, over the pairs of runs that both solved.
 struct MetricChange {
   enum class Verdict {
     same,     ///< every pair has the same value
     within,   ///< the interval lies within the tolerance
-    better,   ///< the whole interval lies beyond the tolerance, on the good side
-    worse,    ///< likewise, on the bad one
-    unclear,  ///< the interval says neither, or there is none
+    better,   ///< the whole interval is beyond the tolerance, for the better
+    worse,    ///< likewise, for the worse
+    unclear,  ///< the interval decides neither, or there is none
     none      ///< no pair has the metric
   };
   std::string pipeline;
@@ -25,19 +25,19 @@ struct MetricChange {
   std::size_t pairs = 0;
   double before = kNone;  ///< median of the first
   double after = kNone;
-  /// The change is a ratio of the second to the first: all values that the metric has with any
-  /// pipeline are positive. Else the difference.
+  /// True if the change is the ratio of the second to the first, which requires all values of the
+  /// metric to be positive; otherwise it is the difference.
   bool is_ratio = true;
   PairedEffect effect;          ///< interval of 95 %
   std::string why_no_interval;  ///< "too few scenarios: at least 6 for 95 %"
-  /// Of too few scenarios for an interval, where no clock decides: from the least change of a pair
-  /// to the greatest, which then decides.
+  /// If there are too few scenarios for an interval and the metric does not depend on time: the
+  /// minimum and maximum change of a pair, which then decide.
   std::optional<Interval> range;
   double p = kNone;  ///< Wilcoxon, adjusted after Holm over the pipelines
   Verdict verdict = Verdict::none;
 };
 
-/// Two results of what should be one run.
+/// Two outcomes of the same run.
 struct OutcomeChange {
   std::string run;  ///< "PIPELINE SCENARIO #REPETITION"
   std::string before;
@@ -52,7 +52,7 @@ struct ValueChange {
   double after = 0;
 };
 
-/// A pair of runs that were not made from the same files, settings and builds: their keys differ.
+/// A pair of runs with different inputs (files, settings or builds): their keys differ.
 struct OtherOrigin {
   const RunRow* first = nullptr;  ///< rows of the studies compared
   const RunRow* second = nullptr;
@@ -60,19 +60,21 @@ struct OtherOrigin {
 
 struct Comparison {
   std::size_t pairs = 0;
-  std::size_t only_first = 0;  ///< runs that the other store has not
+  std::size_t only_first = 0;  ///< runs missing in the other store
   std::size_t only_second = 0;
-  std::size_t other_seeds = 0;  ///< runs of one name with two seeds: two problems, not compared
+  std::size_t other_seeds =
+      0;  ///< runs of the same name with different seeds: different problems, not compared
   std::vector<OtherOrigin> other_origins;
-  std::vector<OutcomeChange> lost;     ///< solved in the first alone
-  std::vector<OutcomeChange> won;      ///< in the second alone
-  std::vector<OutcomeChange> others;   ///< another reason not to solve
-  std::vector<ValueChange> differing;  ///< of the compared metrics that depend on no machine
+  std::vector<OutcomeChange> lost;    ///< solved only in the first
+  std::vector<OutcomeChange> won;     ///< solved only in the second
+  std::vector<OutcomeChange> others;  ///< unsolved for different reasons
+  std::vector<ValueChange>
+      differing;  ///< of the compared metrics that do not depend on the machine
   std::vector<MetricChange> metrics;
 
-  /// Whether a success was lost, or a metric is worse.
+  /// True if a run newly fails, or a metric is worse.
   bool is_worse() const;
-  /// Whether each run of the first has one of the second that it can be compared with.
+  /// True if each run of the first can be compared with one of the second.
   bool is_whole() const { return only_first == 0 && other_seeds == 0; }
 };
 
@@ -81,8 +83,8 @@ struct CompareOptions {
   double tolerance = 0.05;
 };
 
-/// Pairs runs by pipeline, scenario and repetition. Throws Error where no run pairs, or a metric
-/// is one that no run has.
+/// Pairs runs by pipeline, scenario and repetition. Throws Error if no runs pair, or if no run has
+/// a metric.
 Comparison compare_studies(const StudyData& first, const StudyData& second,
                            const CompareOptions& options);
 }  // namespace altiplan::study

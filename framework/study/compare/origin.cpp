@@ -31,7 +31,7 @@ Origins plugins_of(const host::Json& result) {
   return plugins;
 }
 
-/// Calls `differ` for what both have with other contents; leaves what only one of them has.
+/// Calls `differ` for entries with different contents; keeps those that only one of them has.
 template <class Differ>
 void take_common(Origins& then, Origins& now, const Differ& differ) {
   for (auto was = then.begin(); was != then.end();) {
@@ -48,7 +48,7 @@ void take_common(Origins& then, Origins& now, const Differ& differ) {
   }
 }
 
-/// Likewise of files of one name in other folders, where only one of each has it: a study may have
+/// Likewise for files of the same name in different folders, if each has only one: a study may have
 /// been moved.
 template <class Differ>
 void take_moved(Origins& then, Origins& now, const Differ& differ) {
@@ -77,21 +77,21 @@ void take_moved(Origins& then, Origins& now, const Differ& differ) {
 void say_left(const Origins& then, const Origins& now, const char* quote,
               std::vector<std::string>& changed) {
   for (const auto& [what, was] : then) {
-    changed.push_back(quote + what + quote + " is not used any more");
+    changed.push_back(quote + what + quote + " is no longer used");
   }
   for (const auto& [what, is] : now) {
-    changed.push_back(quote + what + quote + " was not used then");
+    changed.push_back(quote + what + quote + " is newly used");
   }
 }
 
-/// Keys that a variant sets, of one in each study by that name.
+/// Compares the keys that the variants of the same name in both studies set.
 void compare_sets(const char* kind, const StoredVariant& then,
                   const std::vector<StoredVariant>& now, std::vector<std::string>& changed) {
   const auto found = std::find_if(now.begin(), now.end(), [&](const StoredVariant& variant) {
     return variant.name == then.name;
   });
   if (found != now.end() && found->set != then.set) {
-    changed.push_back(std::string(kind) + " '" + then.name + "' sets other keys");
+    changed.push_back(std::string(kind) + " '" + then.name + "' sets different keys");
   }
 }
 
@@ -110,11 +110,11 @@ std::vector<std::string> changed_results(const std::string& then, const std::str
     const std::string was = before.at("version").get<std::string>();
     const std::string is = after.at("version").get<std::string>();
     if (was != is) {
-      changed.push_back("the first is of altiplan " + was + ", the second of " + is);
+      changed.push_back("the first was made by altiplan " + was + ", the second by " + is);
     }
     return changed;
   } catch (const host::Json::exception&) {
-    return {};  // a result that is none says nothing of its origin
+    return {};  // a damaged result has no information on its inputs
   }
 }
 }  // namespace
@@ -132,7 +132,7 @@ std::vector<std::string> changed_origins(const host::Json& then, const host::Jso
   before = plugins_of(then);
   after = plugins_of(now);
   take_common(before, after, [&](const std::string& plugin) {
-    changed.push_back(plugin + " is of another build than then");
+    changed.push_back(plugin + " has been rebuilt since");
   });
   say_left(before, after, "", changed);
   return changed;
@@ -171,7 +171,7 @@ std::vector<std::string> changed_origins(const Comparison& comparison, const Stu
     }
   }
   if (!same_budget(first.file.budget, second.file.budget)) {
-    add({"the budget is another one"});
+    add({"the budget differs"});
   }
   return all;
 }

@@ -10,17 +10,17 @@
 
 namespace altiplan::study {
 
-/// A sentence for each file and plugin's build of two results, as result.json names them, that are
-/// not the same: "'city.yaml' has changed since". A file that was moved alone is the same. Throws
-/// Json::exception for what is no result.
+/// A sentence for each file and plugin build that differs between two result.json: "'city.yaml' has
+/// changed since". A file that was only moved is the same. Throws Json::exception if either is not
+/// a result.
 std::vector<std::string> changed_origins(const host::Json& then, const host::Json& now);
 
-/// The text of a run's result.json, "" where it left none.
+/// The text of a run's result.json, "" if it left none.
 using ResultOf = std::function<std::string(const RunRow&)>;
 
-/// What the runs of two studies with other keys were made from that is not the same: the above, the
-/// version of the program, the keys that the studies set, the budget; each once. Results are read
-/// of one pair of runs for each pipeline and scenario file.
+/// The different inputs of two studies' runs with different keys: the above, the version of the
+/// program, the keys that the studies set, the budget; each once. Reads the results of one pair of
+/// runs for each pipeline and scenario file.
 std::vector<std::string> changed_origins(const Comparison& comparison, const StudyData& first,
                                          const StudyData& second, const ResultOf& of_first,
                                          const ResultOf& of_second);

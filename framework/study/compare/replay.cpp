@@ -31,12 +31,12 @@ std::vector<std::string> what_changed(const host::Json& stored, const host::Json
   const std::string then = stored.at("version").get<std::string>();
   if (stored.at("version") != now.at("version")) {
     changed.insert(changed.begin(), "this is altiplan " + now.at("version").get<std::string>() +
-                                        ", the run was made by " + then);
+                                        ", the stored run was made by " + then);
   }
   return changed;
 }
 
-/// What came of the run, without what it was made from.
+/// The result of the run without its inputs.
 host::Json outcome_of(host::Json result) {
   for (const char* key : {"version", "files", "plugins"}) {
     result.erase(key);
@@ -65,7 +65,7 @@ Replayed compare_replay(const StoredRun& stored, const host::Json& result, const
     const std::string status = result.at("status").get<std::string>();
     std::vector<std::string> changed;
     if (key != stored.key) {
-      changed.push_back("a file, a plugin or the program is not the one of then");
+      changed.push_back("a file, a plugin or the program has changed since the stored run");
     }
     return {changed, status == stored.outcome
                          ? std::nullopt
@@ -73,15 +73,15 @@ Replayed compare_replay(const StoredRun& stored, const host::Json& result, const
   }
   const host::Json before = host::Json::parse(stored.result, nullptr, false);
   try {
-    // As the file has it: what is no UTF-8 in a plugin's message has been replaced.
+    // As stored: invalid UTF-8 in a plugin's message has been replaced.
     const host::Json now = host::Json::parse(host::file_text(result));
     std::vector<std::string> changed = what_changed(before, now);
     if (changed.empty() && key != stored.key) {
-      changed.push_back("this is another build of the program than then");
+      changed.push_back("the program is another build than that of the stored run");
     }
     return {changed, host::first_difference(outcome_of(before), outcome_of(now))};
   } catch (const host::Json::exception&) {
-    throw Error("the stored result of " + run_name(stored) + " is no result of altiplan run");
+    throw Error("the stored result of " + run_name(stored) + " is not a result of altiplan run");
   }
 }
 }  // namespace altiplan::study

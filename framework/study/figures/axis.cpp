@@ -8,14 +8,14 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLogarithmicFrom = 30;  // times between the least and the greatest
+constexpr double kLogarithmicFrom = 30;  // ratio of maximum to minimum
 constexpr double kCharacter = 7.4;       // width in units of a figure
 constexpr std::size_t kMaxTicks = 12;
 
 constexpr double kMin = std::numeric_limits<double>::min();
 constexpr double kGreatest = std::numeric_limits<double>::max();
 
-/// 1, 2 or 5 times a power of ten, at least so long.
+/// 1, 2 or 5 times a power of ten, at least that long.
 double round_step(double wanted) {
   const double power = std::pow(10, std::floor(std::log10(wanted)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -70,7 +70,7 @@ std::vector<Axis::Tick> Axis::even_ticks() const {
   const double first = std::ceil(low_ / step);
   for (double n = first; n * step <= high_ && ticks.size() < 2 * kMaxTicks; ++n) {
     const double value = n * step;
-    // As many digits as it takes to tell two ticks apart.
+    // As many digits as neighbouring ticks need to differ.
     const double size = std::max(std::abs(low_), std::abs(high_));
     const int digits = std::clamp(1 + int(std::ceil(std::log10(size / step))), 1, 12);
     std::string label = readable(value, digits + 1);

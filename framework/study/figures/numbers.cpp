@@ -23,7 +23,7 @@ const std::map<std::string_view, std::string_view>& units() {
       {"m", "m"}, {"s", "s"}, {"deg", "°"}, {"rad", "rad"}, {"mb", "MB"}, {"mps", "m/s"}};
   return kUnits;
 }
-/// Of "steps.route.counters.opened" the step's id and "opened"; nothing for others.
+/// The step id and "opened" of "steps.route.counters.opened"; nothing for other names.
 std::optional<std::pair<std::string_view, std::string_view>> step_value(std::string_view metric) {
   constexpr std::string_view kSteps = "steps.";
   constexpr std::string_view kCounters = "counters.";

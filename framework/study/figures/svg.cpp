@@ -12,7 +12,7 @@
 namespace altiplan::study::report {
 namespace {
 
-/// Okabe and Ito's colours, but for yellow, which is too pale on paper; the second is for dark.
+/// Okabe and Ito's colours except yellow, which is too pale on paper; the second is for dark.
 struct Color {
   const char* light;
   const char* dark;
@@ -62,7 +62,7 @@ std::string tipped(const std::string& open, const std::string& close, const std:
   return tip.empty() ? open + "/>\n" : open + "><title>" + html(tip) + "</title>" + close + "\n";
 }
 
-/// The outline of the mark that goes with a series.
+/// The outline of the mark of a series.
 std::string mark_path(std::size_t series, double x, double y, double r) {
   const auto at = [&](double dx, double dy) {
     return pixels(x + dx * r) + " " + pixels(y + dy * r);

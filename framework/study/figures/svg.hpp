@@ -10,24 +10,24 @@
 
 namespace altiplan::study::report {
 
-/// A figure of the report. Its colours stand in the elements, for programs that know no style
-/// sheets, and are overruled by the classes' where there is one (light and dark).
+/// A figure of the report. Colours are attributes of the elements, for programs without style
+/// sheets; classes override them where there is one (light and dark).
 struct Figure {
-  std::string name;     ///< of its files
-  std::string title;    ///< what is shown
-  std::string caption;  ///< of how many runs, and what the marks mean
+  std::string name;     ///< stem of its files
+  std::string title;    ///< what it shows
+  std::string caption;  ///< number of runs and meaning of the marks
   double width = 0;
   double height = 0;
-  std::string body;  ///< elements of SVG
-  Grid numbers;      ///< what is drawn
+  std::string body;  ///< SVG elements
+  Grid numbers;      ///< the data drawn
 };
 
-/// All figures are that wide, in units that are pixels on a small screen.
+/// Width of all figures, in units that are pixels on a small screen.
 constexpr double kFigureWidth = 420;
 
 enum class Anchor { start, middle, end };
 
-/// Elements one after the other; text is escaped.
+/// Appends SVG elements; text is escaped.
 class Canvas {
  public:
   /// `kind` is a class of the style sheet: "ink", "quiet", "strong".
@@ -37,7 +37,7 @@ class Canvas {
   void rectangle(double x, double y, double width, double height, const std::string& paint,
                  const std::string& tip = "");
   void path(const std::string& d, const std::string& paint);
-  /// A mark of the shape that goes with the series, filled where `solid`.
+  /// A mark in the shape of the series, filled if `solid`.
   void mark(double x, double y, std::size_t series, double size, const std::string& tip = "");
   /// A point that opens the run when it is clicked.
   void point(double x, double y, std::size_t series, std::size_t run, const std::string& tip);
@@ -48,23 +48,23 @@ class Canvas {
   std::string body_;
 };
 
-/// One decimal, which a screen can show.
+/// One decimal, enough for a screen.
 std::string pixels(double value);
 
-// Paints: attributes of an element. Series have colours for those who see them differently, and
-// dashes and marks besides.
+// Paints: attributes of an element. Series have colour-blind-safe colours, and dashes and marks as
+// well.
 std::string series_line(std::size_t series, double width = 1.8);
 std::string series_fill(std::size_t series);
 std::string series_fill_pale(std::size_t series);
 std::string ink_line(double width);
-/// Colour and pattern of an outcome; `outcome_patterns` must stand in the figure.
+/// Colour and pattern of an outcome; the figure must contain `outcome_patterns`.
 std::string outcome_fill(std::string_view outcome);
 std::string outcome_patterns(const std::vector<std::string>& outcomes);
 
-/// Maps numbers to places, evenly or by their logarithms.
+/// Maps numbers to coordinates, linearly or logarithmically.
 class Axis {
  public:
-  /// Logarithmic where all are positive and spread over more than 30 times.
+  /// Logarithmic if all are positive and span more than a factor of 30.
   static Axis around(const std::vector<double>& values, double from, double to);
   Axis(double low, double high, bool logarithmic, double from, double to);
 
@@ -75,7 +75,7 @@ class Axis {
 
   struct Tick {
     double value = 0;
-    std::string label;  ///< "" where there is no room
+    std::string label;  ///< "" if it does not fit
   };
   std::vector<Tick> ticks() const;          ///< of a horizontal axis
   std::vector<Tick> ticks_upwards() const;  ///< of a vertical one
@@ -91,16 +91,17 @@ class Axis {
   double to_;
 };
 
-/// A horizontal axis with lines up through the plot, its numbers and its label: from y down 34.
+/// A horizontal axis with grid lines up through the plot, its numbers and its label: from y
+/// down 34.
 constexpr double kAxisHeight = 36;
 void draw_bottom(Canvas& canvas, const Axis& axis, double top, double y, const std::string& label);
-/// A vertical axis with lines across the plot, and its label above.
+/// A vertical axis with grid lines across the plot, and its label above.
 void draw_left(Canvas& canvas, const Axis& axis, double left, double right, double top,
                const std::string& label);
-/// A line through points, broken where one is not finite.
+/// A line through points, interrupted at non-finite ones.
 void draw_curve(Canvas& canvas, const std::vector<double>& x, const std::vector<double>& y,
                 const Axis& along, const Axis& up, const std::string& paint);
-/// What the line of a series stands for; where the next such line goes.
+/// A key entry for the line of a series; returns the y of the next entry.
 double draw_key(Canvas& canvas, double x, double y, std::size_t series, std::string_view words);
 /// Shares from 0 to 100 % as a vertical axis.
 void draw_shares(Canvas& canvas, double left, double right, double top, double bottom);
@@ -109,6 +110,6 @@ std::string axis_label(const std::string& label, const Axis& axis);
 
 /// The style sheet of figures, light and dark, each rule under `scope`.
 std::string figure_style();
-/// A file of its own, or (`inlined`) an element of a page that has figure_style().
+/// A separate file, or (`inlined`) an element of a page that contains figure_style().
 std::string svg_text(const Figure& figure, bool inlined);
 }  // namespace altiplan::study::report

@@ -7,18 +7,18 @@
 
 namespace altiplan::study::report {
 
-/// Numbers as a CSV file has them: cells are raw text.
+/// The content of a CSV file: cells are raw text.
 struct Grid {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
 };
 
-/// A cell of a table that people read.
+/// A cell of a table of the report.
 struct Cell {
-  std::string text;                                        ///< raw; escaped for each form
-  double sort = std::numeric_limits<double>::quiet_NaN();  ///< in place of the text
+  std::string text;                                        ///< raw; escaped for each format
+  double sort = std::numeric_limits<double>::quiet_NaN();  ///< sort key instead of the text
   std::string kind;                                        ///< class of the page's style sheet
-  std::string open;  ///< what a click shows: "run 17", "cell 3 1"; "" for nothing
+  std::string open;  ///< target of a click: "run 17", "cell 3 1"; "" for none
 
   Cell(std::string shown) : text(std::move(shown)) {}  // NOLINT(google-explicit-constructor)
   Cell(const char* shown) : text(shown) {}             // NOLINT(google-explicit-constructor)
@@ -27,7 +27,7 @@ struct Cell {
 
 struct Column {
   std::string title;
-  bool number = false;  ///< to the right, digits below digits
+  bool number = false;  ///< right-aligned, digits below digits
   bool operator==(const Column&) const = default;
 };
 
@@ -37,14 +37,14 @@ struct Table {
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
-  std::string note = {};  ///< a sentence that goes with the caption
+  std::string note = {};  ///< a sentence added to the caption
 };
 
 std::string csv_text(const Grid& grid);
 std::string markdown_text(const Table& table);
 /// For LaTeX with the packages booktabs and textcomp.
 std::string latex_text(const Table& table);
-/// `most` rows, the others left to the script.
+/// At most `most` rows; the script adds the others.
 std::string html_text(const Table& table, std::size_t most = std::size_t(-1));
 /// The cells of one row, <td>… .
 std::string html_row(const Table& table, std::size_t row);

@@ -8,8 +8,8 @@
 
 namespace altiplan::study {
 
-/// What became of a run of a study: what a run says of itself (host::RunStatus), or what its
-/// process came to.
+/// The outcome of a run of a study: the status that the run reports (host::RunStatus), or the end
+/// of its process.
 enum class Outcome {
   solved,
   no_route,
@@ -20,15 +20,15 @@ enum class Outcome {
   failed,
   collided,
   not_reached,
-  crashed,         ///< its process ended before its time
-  out_of_memory,   ///< it used more than was allowed, or than there was
+  crashed,         ///< its process ended prematurely
+  out_of_memory,   ///< it exceeded the memory limit or the machine's memory
   bad_output,      ///< its result cannot be read, or is too large
   refused,         ///< a plugin library cannot be used
-  bad_parameters,  ///< of a tuning: a configuration on trial is wrong, which says nothing of files
-  /// The machine did not let the run be done as planned, which says nothing about its pipeline: a
-  /// file cannot be read, the system gives no thread. Never stored.
+  bad_parameters,  ///< tuning only: a configuration on trial is invalid, not a file
+  /// The machine prevented the run, so the pipeline is not at fault: a file cannot be read, no
+  /// thread can be started. Never stored.
   not_done,
-  /// Its files are others than those that were planned with. Never stored.
+  /// Its files have changed since it was planned. Never stored.
   changed,
 };
 

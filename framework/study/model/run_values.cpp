@@ -21,7 +21,7 @@ class Values {
       add(prefix + name, value);
     }
   }
-  /// Sums over all replans: what they took, and each of their counters.
+  /// Sums over all replans: their time (s), and each of their counters.
   void add_replans(const host::Json& replans) {
     add("flight.replans", replans.size());
     for (const host::Json& replan : replans) {
@@ -93,7 +93,7 @@ std::string why_no_value(const std::string& name) {
   const bool is_of_step = before.starts_with("steps.") && before.size() > 6;
   if (before == "flight.counters" || before == "flight.replan_counters" ||
       (is_of_step && before.ends_with(".counters"))) {
-    return "";  // a plugin names its counters as it likes
+    return "";  // plugins choose the names of their counters
   }
   if (!before.empty() && !is_of_flight && !is_of_step) {
     return "no run has a value '" + name +

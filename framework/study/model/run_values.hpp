@@ -13,11 +13,11 @@ namespace altiplan::study {
 using RunValues = std::vector<std::pair<std::string, double>>;
 
 /// The numbers of a result.json, by the names that claims and tables use: "length_m",
-/// "flight.collisions", "steps.ID.counters.expanded". Sorted by name; what is null is left out.
-/// Throws nlohmann's exceptions where it is no result.
+/// "flight.collisions", "steps.ID.counters.expanded". Sorted by name, without nulls. Throws
+/// nlohmann's exceptions if the JSON is not a result.
 RunValues values_of(const host::Json& result);
 
-/// What is wrong with a name that no run can have a value of: a sentence, with the nearest that
-/// could be. "" where a run may have it.
+/// The error message for a name that no run can have a value of, with the nearest valid name; ""
+/// if a run may have it.
 std::string why_no_value(const std::string& name);
 }  // namespace altiplan::study

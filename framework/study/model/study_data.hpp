@@ -10,12 +10,12 @@
 
 namespace altiplan::study {
 
-/// A run in a table: what statistics and figures read.
+/// A run in a table, the input of statistics and figures.
 struct RunRow : RunFacts {
-  std::size_t store = 0;     ///< index into StudyData::stores; `id` is that in this store
+  std::size_t store = 0;     ///< index into StudyData::stores; `id` is the run's in this store
   std::size_t scenario = 0;  ///< index into StudyData::scenarios
   std::size_t pipeline = 0;
-  /// One per StudyData::columns, to 12 significant digits; NaN where it does not apply.
+  /// One per StudyData::columns, to 12 significant digits; NaN if it does not apply.
   std::vector<double> values;
 
   bool solved() const { return outcome == "solved"; }
@@ -24,7 +24,7 @@ struct RunRow : RunFacts {
 /// All runs of a study in memory, from one store or several shards of it.
 struct StudyData {
   StudyFile file;           ///< the study as written
-  std::size_t planned = 0;  ///< how many runs there are to it; 0 where that is not known
+  std::size_t planned = 0;  ///< number of runs in the study; 0 if unknown
   std::vector<std::string> stores;
   std::vector<StoredVariant> scenarios;
   std::vector<StoredVariant> pipelines;
@@ -32,11 +32,11 @@ struct StudyData {
   std::vector<std::string> columns;  ///< names of values, sorted
   std::vector<RunRow> rows;          ///< sorted by scenario, pipeline, repetition; keys unique
 
-  /// Index of the column; columns.size() where there is none.
+  /// Index of the column; columns.size() if there is none.
   std::size_t column(std::string_view name) const;
 };
 
-/// Whether less is better, by the metric's name where the study does not say.
+/// True if lower is better; by the metric's name if the study does not specify it.
 Better better(const StudyData& data, std::string_view metric);
 /// The metrics that the report compares: those of the study file, or else length_m, plan_time_s
 /// and expanded.

@@ -6,7 +6,7 @@
 namespace altiplan::study {
 
 void ScenarioChoice::describe(Fields& f) {
-  f("id", id).doc("name in reports; left out: the file's, without .yaml");
+  f("id", id).doc("name in reports (default: the file's name without .yaml)");
   f("file", file).required().doc("a scenario");
   f("set", set).doc("keys of the scenario over their values: one, a list of them, or FROM..TO");
 }
@@ -18,38 +18,52 @@ void PipelineChoice::describe(Fields& f) {
 }
 
 void StudyBudget::describe(Fields& f) {
-  f("time_s", time_s).unit("s").greater_than(0).doc("of each plan step, in place of its within_s");
+  f("time_s", time_s)
+      .unit("s")
+      .greater_than(0)
+      .doc("time budget of each plan step, replaces its within_s");
   f("iterations", iterations)
       .at_least(0)
-      .doc("of each plan step in units of `expanded`, in place of its within_iterations");
-  f("wall_s", wall_s).unit("s").greater_than(0).doc("of a run, by the clock; then it is ended");
-  f("cpu_s", cpu_s).unit("s").greater_than(0).doc("of a run, computing time of all its threads");
-  f("memory_mb", memory_mb).unit("MB").greater_than(0).doc("of a run; beyond, it is ended");
+      .doc("budget of each plan step in units of `expanded`, replaces its within_iterations");
+  f("wall_s", wall_s)
+      .unit("s")
+      .greater_than(0)
+      .doc("wall-clock limit of a run, which is ended after it");
+  f("cpu_s", cpu_s).unit("s").greater_than(0).doc("CPU time limit of a run, all its threads");
+  f("memory_mb", memory_mb)
+      .unit("MB")
+      .greater_than(0)
+      .doc("memory limit of a run, which is ended beyond it");
 }
 
 void MetricChoice::describe(Fields& f) {
-  f("name", name).required().doc("a value of the runs: length_m, flight.length_m …");
-  f("better", better).one_of({"lower", "higher"}).doc("left out: by the name, mostly lower");
+  f("name", name).required().doc("value of the runs: length_m, flight.length_m …");
+  f("better", better)
+      .one_of({"lower", "higher"})
+      .doc("which values are better (default: by the name, mostly lower)");
 }
 
 void ClaimEntry::describe(Fields& f) {
   f("id", id).required().doc("name in reports");
-  f("that", that).required().doc("a statistic: median(fusion.flight.length_m / astar.length_m)");
-  f("is", is).required().doc("a comparison: <= 0.95");
-  f("confidence", confidence).range(0.5, 0.9999).doc("of the interval that must satisfy it");
+  f("that", that).required().doc("statistic: median(fusion.flight.length_m / astar.length_m)");
+  f("is", is).required().doc("comparison: <= 0.95");
+  f("confidence", confidence)
+      .range(0.5, 0.9999)
+      .doc("confidence level of the interval that must satisfy the comparison");
 }
 
 void StudyFile::describe(Fields& f) {
   f("altiplan", altiplan).range(host::kFileFormat, host::kFileFormat).required().doc("file format");
   f("name", name).doc("title in reports");
-  f("scenarios", scenarios).min_items(1).required().doc("what is flown through");
-  f("pipelines", pipelines).min_items(1).required().doc("what is compared");
+  f("scenarios", scenarios).min_items(1).required().doc("scenarios of the study");
+  f("pipelines", pipelines).min_items(1).required().doc("pipelines to compare");
   f("repetitions", repetitions)
       .range(1, 1e6)
-      .doc("runs of each pipeline in each scenario, each with a seed of its own");
-  f("seed", seed).at_least(0).doc("of the study: those of the runs derive from it");
-  f("budget", budget).doc("what a run may take");
-  f("metrics", metrics).doc("what the report compares; left out: length_m, plan_time_s, expanded");
-  f("claims", claims).doc("what is to be shown");
+      .doc("runs of each pipeline in each scenario, each with its own seed");
+  f("seed", seed).at_least(0).doc("random seed of the study; the seeds of the runs derive from it");
+  f("budget", budget).doc("limits of a run");
+  f("metrics", metrics)
+      .doc("metrics that the report compares (default: length_m, plan_time_s, expanded)");
+  f("claims", claims).doc("claims that the study tests");
 }
 }  // namespace altiplan::study

@@ -14,7 +14,7 @@ namespace altiplan::study {
 // A study file as written: field for field, nothing resolved yet.
 
 struct ScenarioChoice {
-  std::string id;  ///< left out: the file's stem
+  std::string id;  ///< default: the file's stem
   Path file;
   Value set;  ///< keys of the scenario over their values: one, a list, or FROM..TO
   void describe(Fields& f);
@@ -27,7 +27,7 @@ struct PipelineChoice {
   void describe(Fields& f);
 };
 
-/// What a run may take. The first two are given to each plan step, the others end the run.
+/// Limits of a run. The first two apply to each plan step, the others end the run.
 struct StudyBudget {
   std::optional<double> time_s;
   std::optional<std::int64_t> iterations;

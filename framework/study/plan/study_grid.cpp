@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxCells = 1000000;
 
-/// FROM..TO, both within.
+/// FROM..TO, both included.
 using Range = std::pair<std::int64_t, std::int64_t>;
 
 std::optional<Range> range_of(const Value& value, const std::string& key) {
@@ -38,9 +38,9 @@ std::optional<Range> range_of(const Value& value, const std::string& key) {
   if (!from || !to || *from > *to) {
     throw ConfigError(
         value.where, key,
-        "expected FROM..TO, two whole numbers, the first not greater, found " + value.what());
+        "expected FROM..TO, two whole numbers with FROM at most TO, found " + value.what());
   }
-  // Unsigned, as the difference may exceed what is signed.
+  // Unsigned, since the difference may overflow a signed type.
   if (std::uint64_t(*to) - std::uint64_t(*from) >= kMaxCells) {
     throw ConfigError(value.where, key,
                       "expected at most 1000000 values, found the range " + value.text);
@@ -48,7 +48,7 @@ std::optional<Range> range_of(const Value& value, const std::string& key) {
   return Range{*from, *to};
 }
 
-/// A value in a name: 125x125x25 for a list of numbers.
+/// A value as part of a name: 125x125x25 for a list of numbers.
 std::string short_value(const Value& value) {
   if (value.kind != Value::Kind::list) {
     return flow_text(value);
@@ -82,7 +82,7 @@ std::vector<Assignment> values_of(const Value::Entry& entry, const std::string& 
   return all;
 }
 
-/// The shortest end of the key, at dots, that no other key has: weight_g of steps.0.with.weight_g.
+/// The shortest unique suffix of the key, split at dots: weight_g of steps.0.with.weight_g.
 std::string short_name(const std::string& key, const Value& set) {
   std::size_t begin = key.size();
   while (begin > 0) {
@@ -100,7 +100,7 @@ std::string short_name(const std::string& key, const Value& set) {
   return key;
 }
 
-/// Whether YAML would read this plain text, within a flow list, as something else.
+/// True if YAML would read this plain text, in a flow list, as something else.
 bool needs_quotes(const std::string& text) {
   return text.empty() || text.find_first_of(",[]{}:#&*!|>'\"%@`?\\\n\t") != std::string::npos ||
          text.front() == ' ' || text.back() == ' ' || text == "-";
@@ -139,7 +139,7 @@ std::vector<GridCell> grid_of(const Value& set, const std::string& path) {
   for (const Value::Entry& entry : set.entries) {
     const std::vector<Assignment> values = values_of(entry, path + "." + entry.key);
     if (cells.size() * values.size() > kMaxCells) {
-      throw ConfigError(entry.where, path, "makes more than 1000000 combinations");
+      throw ConfigError(entry.where, path, "expected at most 1000000 combinations, found more");
     }
     std::vector<GridCell> finer;
     for (const GridCell& cell : cells) {

@@ -26,12 +26,12 @@ std::string build_of(const fs::path& file) {
   return library.build;
 }
 
-/// What the result of a pair depends on, but for the seed.
+/// Everything that the result of a pair depends on, except the seed.
 std::string pair_text(const host::Config& config, const StudyBudget& budget) {
   std::string text = std::string(ALTIPLAN_VERSION) + "\n" + host_build() + "\n";
   text += flow_text(config.pipeline_tree) + "\n" + flow_text(config.scenario_tree) + "\n";
   for (const fs::path& file : config.files) {
-    // Comments of the two files change nothing, and their trees stand above.
+    // Comments do not count: the trees of the two files are included above.
     if (file != config.pipeline_path && file != config.scenario_path) {
       text += host::sha256_of_present(file) + "\n";
     }
@@ -92,7 +92,7 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
         }
         text = pair_text(config, plan.file.budget);
       } catch (const PluginError& error) {
-        text = error.what();  // its runs are refused, one by one; the others need not wait for it
+        text = error.what();  // only its own runs are refused, one by one
       } catch (const ConfigError& error) {
         for (const Problem& problem : error.problems()) {
           problems.add(variants.placed(problem));

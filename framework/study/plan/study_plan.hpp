@@ -17,7 +17,7 @@ struct Variant {
   std::string name;  ///< unique in the study: "fusion[weight_g=0.3]", "hills[seed=17]"
   std::string of;    ///< the entry's id, or the scenario file's stem
   std::filesystem::path file;
-  std::vector<std::string> set;  ///< as for --set, those of scenarios with "scenario." before
+  std::vector<std::string> set;  ///< as for --set, those of scenarios prefixed with "scenario."
 };
 
 /// One run of the study.
@@ -26,23 +26,23 @@ struct PlannedRun {
   std::size_t pipeline = 0;
   int repetition = 0;     ///< from 0
   std::int64_t seed = 0;  ///< of (study seed, scenario, repetition): the same for every pipeline
-  /// Hash of its name and of all that the result depends on: both files as resolved, the files that
-  /// they name, the seed, the budget, the host's and the plugins' builds.
+  /// Hash of its name and of everything the result depends on: both files as resolved, the files
+  /// that they name, the seed, the budget, the builds of the host and the plugins.
   std::string key;
 };
 
 struct StudyPlan {
   std::filesystem::path path;  ///< absolute
-  std::string text;            ///< of the file, without its comments and spaces
-  std::string source;          ///< the file as it is
+  std::string text;            ///< content of the file without comments and blanks
+  std::string source;          ///< content of the file, unchanged
   StudyFile file;
   std::vector<Variant> scenarios;
   std::vector<Variant> pipelines;
-  std::vector<PlannedRun> runs;  ///< those selected, as they are run: interleaved at random
-  std::size_t planned = 0;       ///< how many there are in all
-  std::shared_ptr<host::Registry> registry;  ///< of the run planned last
+  std::vector<PlannedRun> runs;              ///< those selected, in execution order: shuffled
+  std::size_t planned = 0;                   ///< number of all runs of the study
+  std::shared_ptr<host::Registry> registry;  ///< of the last run planned
   std::vector<std::shared_ptr<host::Registry>>
-      registries;  ///< all: files may name folders of plugins
+      registries;  ///< all of them: files may name plugin folders
 };
 
 /// "PIPELINE SCENARIO #REPETITION"
@@ -56,15 +56,15 @@ struct StudySelection {
 };
 
 /// Reads and checks the study, and every pair of pipeline and scenario in it; throws ConfigError
-/// with all that is wrong.
+/// with all problems.
 StudyPlan load_study(const std::filesystem::path& study, const StudySelection& selection,
                      const std::vector<std::filesystem::path>& plugin_path);
 
-/// What `altiplan run` would be given to do the run by itself.
+/// The arguments of `altiplan run` that repeat the run.
 host::Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
                              const std::vector<std::filesystem::path>& plugin_path);
 
-/// Builds of the program and of the library that it shares with its plugins.
+/// Build ids of the program and of the library that it shares with its plugins.
 const std::string& host_build();
 
 /// PlannedRun::key of the run of that name with this configuration.

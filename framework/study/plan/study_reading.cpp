@@ -32,7 +32,7 @@ class Budget {
     try {
       host::apply_overrides(tree, variant.set, host::FileOfKey::pipeline);
     } catch (const ConfigError&) {
-      return;  // said when the pipeline is read
+      return;  // reported when the pipeline is read
     }
     give_all(variant, tree.find("steps"), "steps");
   }
@@ -56,9 +56,9 @@ class Budget {
            const std::string& from) const {
     for (const std::string& other : variant.set) {
       if (other.starts_with(key + "=")) {
-        problems_.add(where_, from,
-                      "takes the place of '" + key + "', which '" + variant.name +
-                          "' sets: leave one of the two out");
+        problems_.add(
+            where_, from,
+            "replaces '" + key + "', which '" + variant.name + "' sets: remove one of the two");
         return;
       }
     }
@@ -72,7 +72,7 @@ class Budget {
   StudyVariants& variants_;
 };
 
-/// A key that is set both by itself and within another; "" where there is none.
+/// The error message for a key that is set both directly and within another; "" if there is none.
 std::string set_twice(const Value& set) {
   for (const Value::Entry& inner : set.entries) {
     for (const Value::Entry& outer : set.entries) {
@@ -84,7 +84,7 @@ std::string set_twice(const Value& set) {
   return "";
 }
 
-/// Whether there is such a file; if not, it is said.
+/// True if the file exists; reports a problem if not.
 bool is_file(StudyProblems& problems, const Path& file, const Location& where,
              const std::string& key) {
   const std::string why = host::file_problem(file.text);
@@ -197,7 +197,7 @@ void StudyVariants::add(std::vector<Variant>& all, const std::string& of, const 
       if (!names_.insert(prefix + variant.name).second) {
         problems_.add(where, path,
                       "there are two variants called '" + variant.name +
-                          "': a value stands twice, or another entry has that name");
+                          "': a value is listed twice, or another entry has that name");
         return;
       }
       all.push_back(std::move(variant));

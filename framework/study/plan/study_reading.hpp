@@ -11,7 +11,7 @@
 
 namespace altiplan::study {
 
-/// Collects what is wrong, each thing once however many runs it spoils.
+/// Collects problems, each reported once however many runs it affects.
 class StudyProblems {
  public:
   void add(Location where, std::string key, std::string message) {
@@ -33,22 +33,22 @@ class StudyProblems {
   std::set<std::string> said_;
 };
 
-/// Makes variants of the study's entries, and remembers which line of the study each value of
-/// theirs is from.
+/// Expands the study's entries to variants, and keeps the line of the study that each value is
+/// from.
 class StudyVariants {
  public:
   explicit StudyVariants(StudyProblems& problems) : problems_(problems) {}
 
-  /// `prefix` goes before each key: "scenario." for scenarios.
+  /// `prefix` is prepended to each key: "scenario." for scenarios.
   void add(std::vector<Variant>& all, const std::string& of, const Path& file, const Value& set,
            const std::string& prefix, const std::string& path, const Location& where);
 
-  /// Remembers where an assignment of the study's own is from.
+  /// Keeps the location of an assignment made by the study itself.
   void remember(const std::string& assignment, const Location& where, const std::string& key) {
     said_at_["--set " + assignment] = {where, key};
   }
 
-  /// The problem at the place in the study where its value was given.
+  /// The problem with the location in the study where its value is set.
   Problem placed(const Problem& problem) const;
 
  private:
@@ -58,7 +58,7 @@ class StudyVariants {
   std::set<std::string> names_;
 };
 
-/// The study with its variants, and no runs yet.
+/// The study with its variants, without runs.
 StudyPlan read_study(const std::filesystem::path& study, StudyProblems& problems,
                      StudyVariants& variants);
 }  // namespace altiplan::study

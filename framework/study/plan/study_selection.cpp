@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 10000000;
 
-/// 53 bits of a hash: whole in JSON too.
+/// 53 bits of a hash: exact in JSON too.
 std::int64_t number_of(const std::string& text) {
   return std::int64_t(std::stoull(host::sha256_of(text).substr(0, 16), nullptr, 16) >> 11);
 }
 
-/// A POSIX extended regular expression: those of the standard library overflow the stack on long
-/// names, and take for ever on some short ones.
+/// A POSIX extended regular expression: std::regex overflows the stack on long names and needs
+/// exponential time on some short ones.
 class Filter {
  public:
   explicit Filter(const std::string& text) {
@@ -72,7 +72,7 @@ std::vector<PlannedRun> selected_runs(const StudyPlan& plan, const StudySelectio
   const std::string study = std::to_string(plan.file.seed) + "\n";
   std::vector<std::pair<std::int64_t, std::size_t>> order;
   const Filter filter(selection.filter);
-  // Pairs are sampled whole, the least hashes first, so that a larger sample holds a smaller one.
+  // Whole pairs are sampled, lowest hashes first, so that a larger sample contains a smaller one.
   std::map<std::int64_t, bool> pairs;
   const auto pair_hash = [&](const PlannedRun& run) {
     return number_of("pair\n" + study + std::to_string(run.seed));

@@ -7,12 +7,11 @@
 
 namespace altiplan::study {
 
-/// Every run that there is to the study, in the order of the file, without keys. Throws ConfigError
-/// for more than ten millions.
+/// Every run of the study, in the order of the file, without keys. Throws ConfigError for more than
+/// ten million.
 std::vector<PlannedRun> all_runs(const StudyPlan& plan);
 
-/// What is asked for, in the order in which it is run: that of a hash, so that nothing that drifts
-/// on the machine favours a pipeline. Whether a run is chosen, and its place among the others, do
-/// not depend on the machine. Keys are not set yet.
+/// The selected runs in execution order: by a hash, so that drift of the machine favours no
+/// pipeline. Selection and order do not depend on the machine. Keys are not set yet.
 std::vector<PlannedRun> selected_runs(const StudyPlan& plan, const StudySelection& selection);
 }  // namespace altiplan::study

@@ -75,7 +75,7 @@ std::vector<SuccessComparison> compare_success(const StudyData& data,
   return all;
 }
 
-/// A metric's values on pairs, and what is made of them.
+/// A metric's values on pairs, and their statistics.
 class MetricAnalyser {
  public:
   MetricAnalyser(const StudyData& data, const std::vector<Pair>& pairs, const std::string& metric)
@@ -103,8 +103,8 @@ class MetricAnalyser {
   }
 
  private:
-  /// NaN for a run that is not there, did not solve (but for values that say how it went wrong), or
-  /// has no such number.
+  /// NaN for a run that is missing, did not solve (except for values that describe failures), or
+  /// lacks the number.
   double value(std::size_t row) const {
     if (row == kNoRow || !(is_of_every_run_ || data_.rows[row].solved())) {
       return kNone;
@@ -130,8 +130,8 @@ class MetricAnalyser {
     }
   }
 
-  /// On all cores: the resamples take long. Each comparison has its own stream of random numbers,
-  /// so that nothing depends on their number.
+  /// On all cores, since resampling is slow. Each comparison has its own random stream, so that
+  /// results do not depend on the number of cores.
   void compare_all() {
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (std::size_t a = 0; a < data_.pipelines.size(); ++a) {
@@ -248,13 +248,13 @@ Analysis analyse(const StudyData& data, bool times) {
   std::set<std::string> files;  // of figures, named by their metric
   for (const std::string& metric : compared_metrics(data)) {
     if (!files.insert(slug(metric)).second) {
-      made.left_out.push_back(metric + " is named twice.");
+      made.left_out.push_back(metric + " is listed twice.");
     } else if (data.column(metric) < data.columns.size()) {
       made.metrics.push_back(MetricAnalyser(data, pairs, metric)());
     } else {
       made.left_out.push_back(metric + (!times && varies(metric)
-                                            ? " is not compared: it differs from run to run."
-                                            : " is not compared: no run has such a number."));
+                                            ? " is not compared: it varies between equal runs."
+                                            : " is not compared: no run has this value."));
     }
   }
   return made;

@@ -13,11 +13,11 @@ namespace altiplan::study::report {
 constexpr double kConfidence = 0.95;
 constexpr double kAlpha = 0.05;
 
-/// The study with pipelines in the order of its file and scenarios by name, whatever the order in
-/// which the stores hold them; without what differs from run to run where `times` is false.
+/// The study with pipelines in the order of its file and scenarios by name, whatever their order in
+/// the stores; without values that vary between equal runs if `times` is false.
 StudyData in_order(StudyData data, bool times);
 
-/// How the runs of a pipeline ended.
+/// The outcomes of a pipeline's runs.
 struct Success {
   std::size_t runs = 0;
   std::size_t solved = 0;
@@ -25,19 +25,19 @@ struct Success {
   std::vector<std::pair<std::string, std::size_t>> outcomes;  ///< those that occur, solved first
 };
 
-/// A pipeline against another, which comes before it in the study, on the pairs (scenario,
-/// repetition) that both have run.
+/// A pipeline compared with an earlier one of the study, on the pairs (scenario, repetition) that
+/// both have run.
 struct SuccessComparison {
   std::size_t pipeline = 0;
   std::size_t against = 0;
   std::size_t pairs = 0;
   std::size_t only_pipeline = 0;  ///< pairs that only this one solved
   std::size_t only_against = 0;
-  SuccessTest test;  ///< its first is the one that is compared against
+  SuccessTest test;  ///< its first is the pipeline compared against
   double p_holm = kNone;
 };
 
-/// Likewise on the pairs that both have solved with a number.
+/// Likewise on the pairs that both have solved with a finite value.
 struct Comparison {
   std::size_t pipeline = 0;
   std::size_t against = 0;
@@ -53,7 +53,7 @@ struct Comparison {
 /// Average ranks of all pipelines over the blocks that all of them solved.
 struct Ranking {
   std::size_t blocks = 0;
-  bool of_scenarios = false;  ///< a block is a scenario, else a pair
+  bool of_scenarios = false;  ///< a block is a scenario, otherwise a pair
   Friedman test;
   double critical = kNone;
   std::vector<std::vector<std::size_t>> joined;
@@ -70,7 +70,7 @@ struct MetricAnalysis {
   std::string metric;
   Better better = Better::lower;
   std::vector<Sample> samples;  ///< one per pipeline
-  bool is_ratio = false;        ///< effects are ratios: every value is positive; else differences
+  bool is_ratio = false;        ///< effects are ratios (all values positive), otherwise differences
   std::vector<Comparison> comparisons;
   std::optional<Ranking> ranking;
   std::string why_no_ranking;
@@ -83,29 +83,29 @@ struct Analysis {
   std::vector<std::string> left_out;  ///< sentences on metrics that no run has
 };
 
-/// `data` and `times` as of in_order.
+/// `data` and `times` as for in_order.
 Analysis analyse(const StudyData& data, bool times);
 
-/// Resamples of a comparison's interval: kResamples, or where so many pipelines are compared on so
-/// many pairs that a metric would take a minute, fewer, but 1,000 at least.
+/// Resamples of a comparison's interval: kResamples, or fewer (at least 1,000) if a metric would
+/// take a minute for the number of pipelines and pairs.
 std::size_t resamples(std::size_t pairs, std::size_t pipelines);
 
-/// What calls for an explanation: the plugin or its build is at fault, not the problem.
+/// True for outcomes caused by the plugin or its build, not by the problem.
 bool unexplained(std::string_view outcome);
 /// All outcomes, in the order of figures; `solved` first.
 const std::vector<std::string>& outcome_order();
 /// "out_of_memory" → "out of memory".
 std::string outcome_text(std::string_view outcome);
 
-/// Names of pipelines for figures and tables: of variants the values alone, "weighted[0.3,0.7]" for
-/// "weighted[weight_g=0.3,weight_h=0.7]", where that is as clear.
+/// Names of pipelines for figures and tables: of variants only the values, "weighted[0.3,0.7]" for
+/// "weighted[weight_g=0.3,weight_h=0.7]", if unambiguous.
 std::vector<std::string> short_names(const StudyData& data);
-/// What the values stand for: "weighted[weight_g,weight_h]", one for each entry that is shortened.
+/// The keys of the values: "weighted[weight_g,weight_h]", one for each shortened entry.
 std::vector<std::string> short_name_keys(const StudyData& data);
 
-/// How people name a run, on this command line too: "PIPELINE SCENARIO #REPETITION".
+/// The name of a run, on the command line too: "PIPELINE SCENARIO #REPETITION".
 std::string run_name(const StudyData& data, const RunRow& row);
-/// The rows of each (scenario, repetition), one place per pipeline; kNoRow where it has not run.
+/// The rows of each (scenario, repetition), one entry per pipeline; kNoRow if it has not run.
 constexpr std::size_t kNoRow = std::size_t(-1);
 struct Pair {
   std::size_t scenario = 0;

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxPoints = 150;  // of a figure
 constexpr double kBestWithin = 1.01;
 constexpr double kMeanWithin = 1.03;
 
-/// Of one run in one scenario.
+/// The convergence of one run in one scenario.
 using Run = std::vector<Iteration>;
 
 Spread spread_of(std::vector<double> values) {
@@ -25,14 +25,14 @@ Spread spread_of(std::vector<double> values) {
   return {quantile(values, 0.1), median(values), quantile(values, 0.9)};
 }
 
-/// The iteration that was the last when `number` had been reached; null before the first.
+/// The last iteration up to `number`; null before the first.
 const Iteration* reached(const Run& run, double number) {
   const auto after = std::upper_bound(run.begin(), run.end(), number,
                                       [](double n, const Iteration& i) { return n < i.number; });
   return after == run.begin() ? nullptr : &*(after - 1);
 }
 
-/// Numbers of iterations of any of the runs, evenly thinned.
+/// Iteration numbers of all runs, evenly thinned.
 std::vector<double> numbers_of(const std::vector<Run>& runs) {
   std::set<double> all;
   for (const Run& run : runs) {
@@ -51,7 +51,7 @@ std::vector<double> numbers_of(const std::vector<Run>& runs) {
   return kept;
 }
 
-/// The first iteration of a run for which `is_there` holds; infinite where none is.
+/// The first iteration of a run for which `is_there` holds; infinite if none does.
 template <typename Test>
 double first(const Run& run, const Test& is_there) {
   const auto found = std::find_if(run.begin(), run.end(), is_there);
@@ -112,7 +112,7 @@ double number_or(const host::Json& json, const char* key, double otherwise) {
 }  // namespace
 
 std::vector<Progress> progress_of(std::string_view trace) {
-  // Few lines of a trace are iterations: those alone are parsed.
+  // Few lines of a trace are iterations: only those are parsed.
   constexpr std::string_view kWord = "iteration\"";
   std::vector<Progress> all;
   std::set<std::string> over;  // steps whose first search has ended

@@ -10,14 +10,14 @@
 
 namespace altiplan::study::report {
 
-/// The trace of a run, "" where there is none.
+/// The trace of a run, "" if there is none.
 using TraceSource = std::function<std::string(const RunRow&)>;
 
-/// What an iteration of a search told (TraceEvent).
+/// An iteration of a search in the trace (TraceEvent).
 struct Iteration {
   double number = 0;
   double best = 0;    ///< infinite while there is no route
-  double mean = 0;    ///< NaN where it found none
+  double mean = 0;    ///< NaN if it found none
   double alive = -1;  ///< -1: no population
 };
 
@@ -28,32 +28,32 @@ struct Progress {
 };
 std::vector<Progress> progress_of(std::string_view trace);
 
-/// The 10th percentile, the median and the 90th over runs; NaN of none, and infinite where as many
-/// runs have no route.
+/// The 10th percentile, the median and the 90th percentile over runs; NaN without runs, infinite if
+/// that share of the runs has no route.
 struct Spread {
   double low = 0;
   double median = 0;
   double high = 0;
 };
 
-/// How the searches of a step of a pipeline came to their routes.
+/// The convergence of the searches of a pipeline's step.
 struct Convergence {
   std::size_t pipeline = 0;
   std::string step;
-  bool is_only_step = true;  ///< of the pipeline's
+  bool is_only_step = true;  ///< of the pipeline
   std::size_t runs = 0;
   bool is_population = false;
-  /// Lengths are times the last best of their run: lengths of several scenarios are not alike.
+  /// True if lengths are relative to the final best of their run, since scenarios differ in length.
   bool is_ratio = false;
   std::vector<double> iterations;
   std::vector<Spread> best;  ///< one per iteration; so far
-  std::vector<Spread> mean;  ///< of the runs that still went on, as is `alive`
+  std::vector<Spread> mean;  ///< of the runs still going, as is `alive`
   std::vector<Spread> alive;
-  Spread best_from;     ///< the first iteration with a best within 1 % of the last
+  Spread best_from;     ///< the first iteration with a best within 1 % of the final best
   Spread mean_from;     ///< the first one with a mean within 3 % of that best
   Spread alive_at_end;  ///< in the last iteration
 };
 
-/// Of all runs that have a trace with iterations, by pipeline and step.
+/// The convergence of all runs with iterations in their trace, by pipeline and step.
 std::vector<Convergence> convergence_of(const StudyData& data, const TraceSource& traces);
 }  // namespace altiplan::study::report

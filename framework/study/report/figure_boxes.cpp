@@ -12,12 +12,12 @@ constexpr double kLeft = 12;
 constexpr double kRight = kFigureWidth - 16;
 constexpr double kRow = 44;
 constexpr double kFirst = 16;
-/// So few runs are all shown, each as a point.
+/// Up to that many runs are all shown as points.
 constexpr std::size_t kFew = 40;
-/// Points of a box beyond that would be a smear.
+/// Maximum number of points of a box; more would smear.
 constexpr std::size_t kMaxPoints = 150;
 
-/// The sample's indices that are shown as points: all of a few, else outliers, those farthest out.
+/// The sample's indices shown as points: all of a small sample, otherwise the farthest outliers.
 std::vector<std::size_t> shown_points(const Sample& sample) {
   std::vector<std::size_t> shown;
   if (sample.values.size() <= kFew) {
@@ -58,13 +58,13 @@ std::string with_unit(const MetricAnalysis& metric, double value, int digits) {
   return readable_value(metric.metric, value, digits) + (bare ? "" : " " + unit);
 }
 
-/// One pipeline's row; how many outliers have no point.
+/// Draws one pipeline's row; returns the number of outliers without a point.
 std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis& metric,
                      std::size_t p, const Axis& axis, double y) {
   const Sample& sample = metric.samples[p];
   const std::string right = sample.box ? "median " + with_unit(metric, sample.box->median, 4) +
                                              "  ·  n = " + grouped(sample.values.size())
-                                       : "no solved run has it";
+                                       : "no solved run has a value";
   canvas.text(kLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
   canvas.text(kRight, y, right, "quiet", Anchor::end);
   if (!sample.box) {
@@ -73,7 +73,7 @@ std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis
   draw_box(canvas, *sample.box, axis, y + 15, p);
   const std::vector<std::size_t> shown = shown_points(sample);
   for (const std::size_t at : shown) {
-    // Spread over the height of the box by the run's place, so that equal ones are seen.
+    // Spread over the height of the box by the run's index, so that equal values stay visible.
     const double shift = double(at * 7 % 11) - 5;
     const RunRow& row = data.rows[sample.rows[at]];
     canvas.point(axis(sample.values[at]), y + 15 + shift, p, sample.rows[at],
@@ -115,7 +115,8 @@ Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
   std::size_t runs = 0;
   for (const Sample& sample : metric.samples) {
     for (const double value : sample.values) {
-      values.push_back(without_noise(metric.metric, value));  // else an axis of 1e-13 degrees
+      values.push_back(
+          without_noise(metric.metric, value));  // otherwise the axis spans 1e-13 degrees
     }
     runs += sample.values.size();
   }

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxRows = 16;
 
 using Rows = std::vector<const Comparison*>;
 
-/// Those that are drawn: all, or those with the least p.
+/// The comparisons to draw: all, or those with the lowest p.
 Rows drawn(const MetricAnalysis& metric) {
   Rows all;
   for (const Comparison& comparison : metric.comparisons) {
@@ -50,7 +50,7 @@ std::string effect_text(const Comparison& row) {
   return interval_text(row.effect.median, row.effect.interval);
 }
 
-/// Whether the names of one of them do not go together into a line.
+/// True if the names of some comparison do not fit into one line.
 bool need_two_lines(const StudyData& data, const Rows& rows) {
   return std::any_of(rows.begin(), rows.end(), [&](const Comparison* row) {
     return characters(pipeline_label(data, row->pipeline)) +
@@ -104,8 +104,8 @@ std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
   const bool less_is_better = metric.better == Better::lower;
   std::string caption = std::string("Median over the pairs that both solved of ") +
                         (metric.is_ratio ? "A / B" : "A − B") +
-                        ", with its 95 % bootstrap interval. Left of the dashed line A, the "
-                        "pipeline named first, has "
+                        ", with its 95 % bootstrap interval. Left of the dashed line A, the first "
+                        "pipeline, has "
                         "less" +
                         (less_is_better ? " (is better)" : "") + ", right of it more" +
                         (less_is_better ? "." : " (is better).");
@@ -117,7 +117,7 @@ std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
   if (rows.size() < metric.comparisons.size()) {
     caption += " " + std::to_string(rows.size()) + " of " +
                counted(metric.comparisons.size(), "comparison") +
-               ", those with the least p; the table has all.";
+               ", those with the lowest p; the table has all.";
   }
   return caption;
 }
@@ -138,7 +138,8 @@ Figure comparison_figure(const StudyData& data, const MetricAnalysis& metric) {
   for (const Comparison* row : rows) {
     draw_names(canvas, data, *row, ratio, y, more > 0);
     const double none = axis(ratio ? 1 : 0);
-    canvas.line(none, y + more + 5, none, y + more + 26, "reference");  // not through the texts
+    canvas.line(none, y + more + 5, none, y + more + 26,
+                "reference");  // without crossing the texts
     draw_effect(canvas, row->effect, axis, y + more + 15);
     y += kRow + more;
   }

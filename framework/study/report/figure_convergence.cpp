@@ -15,13 +15,13 @@ constexpr double kBottom = 214;
 constexpr double kAliveTop = 246;
 constexpr double kAliveBottom = 296;
 
-/// A spread by iteration, as it is drawn.
+/// A spread by iteration, as points of the figure.
 struct Band {
   std::vector<double> x;
   std::vector<Spread> y;
 };
 
-/// A best length holds until the next one is found; iterations of a population are all there.
+/// A best length holds until the next one is found; a population has all iterations.
 Band band_of(const Convergence& convergence, const std::vector<Spread>& spreads) {
   Band band;
   for (std::size_t i = 0; i < spreads.size(); ++i) {
@@ -37,7 +37,7 @@ Band band_of(const Convergence& convergence, const std::vector<Spread>& spreads)
 
 std::string place(double x, double y) { return pixels(x) + " " + pixels(y); }
 
-/// What lies between the percentiles, where both are finite.
+/// The area between the percentiles, where both are finite.
 void fill(Canvas& canvas, const Band& band, const Axis& along, const Axis& up, std::size_t series) {
   std::string d;
   std::string there;
@@ -109,7 +109,7 @@ Grid numbers_of(const Convergence& convergence) {
 std::string caption_of(const Convergence& convergence) {
   return "Median of " + counted(convergence.runs, "run") +
          " and the band from the 10th to the 90th percentile" +
-         (convergence.is_ratio ? "; lengths as times the last best of their run" : "") +
+         (convergence.is_ratio ? "; lengths relative to the final best of their run" : "") +
          ". A best length is infinite while there is no route.";
 }
 }  // namespace
@@ -123,7 +123,7 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
   const Axis up = is_population ? axis_up({&convergence.best, &convergence.mean}, kBottom, kTop)
                                 : axis_up({&convergence.best}, kBottom, kTop);
   draw_left(canvas, up, kLeft, kRight, kTop,
-            axis_label(convergence.is_ratio ? "Length, times the last best" : "Length, m", up));
+            axis_label(convergence.is_ratio ? "Length / final best" : "Length, m", up));
   const double bottom = is_population ? kAliveBottom : kBottom;
   draw_bottom(canvas, along, kTop, bottom, "Iteration, number");
   if (is_population) {

@@ -12,21 +12,21 @@ constexpr double kLeft = 48;
 constexpr double kRight = kFigureWidth - 16;
 constexpr double kTop = 12;
 constexpr double kBottom = 232;
-/// Profiles crowd near 1: beyond that many times they are drawn by their logarithms.
+/// Profiles crowd near 1: beyond that ratio the axis is logarithmic.
 constexpr double kWideProfile = 5;
 
 using Curve = std::vector<CurvePoint>;
 
 double end_of(const Curve& curve) { return curve.empty() ? 0 : curve.back().share; }
 
-/// Where the curve is at x.
+/// The value of the curve at x.
 double share_at(const Curve& curve, double x) {
   const auto after = std::upper_bound(curve.begin(), curve.end(), x,
                                       [](double at, const CurvePoint& p) { return at < p.at; });
   return after == curve.begin() ? 0 : (after - 1)->share;
 }
 
-/// Steps, without those that no screen could show.
+/// The steps of the curve, without those below a screen's resolution.
 void draw_steps(Canvas& canvas, const Curve& curve, const Axis& axis, const Axis& up,
                 std::size_t series) {
   std::string d = "M" + pixels(axis(axis.low())) + " " + pixels(up(0));
@@ -37,7 +37,7 @@ void draw_steps(Canvas& canvas, const Curve& curve, const Axis& axis, const Axis
     const std::string y = pixels(up(curve[at].share));
     const bool same_column = at + 1 < curve.size() && pixels(axis(curve[at + 1].at)) == x;
     if (same_column || y == last_y) {
-      continue;  // the next step stands on the same place
+      continue;  // the next step has the same coordinates
     }
     d += x == last_x ? "" : "H" + x;
     d += "V" + y;
@@ -47,7 +47,7 @@ void draw_steps(Canvas& canvas, const Curve& curve, const Axis& axis, const Axis
   canvas.path(d + "H" + pixels(axis(axis.high())), series_line(series));
 }
 
-/// All curves, and below them the key with where each ends.
+/// All curves, and below them the key with the end value of each.
 double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curve>& curves,
                    const Axis& axis, const std::string& label, const std::string& ends) {
   const Axis up(0, 1, false, kBottom, kTop);
@@ -55,7 +55,7 @@ double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curv
   draw_bottom(canvas, axis, kTop, kBottom, label);
   for (std::size_t p = 0; p < curves.size(); ++p) {
     draw_steps(canvas, curves[p], axis, up, p);
-    // Marks tell the curves apart where colours do not; every curve has its own places.
+    // Marks distinguish the curves without colours; each curve has them at different positions.
     for (int n = 0; n < 4; ++n) {
       const double share = (n + 0.35 + 0.6 * double(p % 7) / 7) / 4;
       const double px = kLeft + share * (kRight - kLeft);
@@ -97,14 +97,13 @@ std::vector<double> places(const std::vector<Curve>& curves) {
   return all;
 }
 
-/// What becomes of the runs that did not solve, or have no such value.
+/// Explains how runs that did not solve, or lack the value, are counted.
 std::string unsolved_text(std::size_t runs, std::size_t unsolved) {
   if (unsolved == 0) {
     return runs == 1 ? "The one run solved." : "All " + grouped(runs) + " runs solved.";
   }
   return "Of " + counted(runs, "run") + "; the " + (unsolved == 1 ? "one" : grouped(unsolved)) +
-         " that did not solve " + (unsolved == 1 ? "counts" : "count") +
-         " among all and never among the solved.";
+         " that did not solve " + (unsolved == 1 ? "counts" : "count") + " only in the total.";
 }
 }  // namespace
 
@@ -166,17 +165,18 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
   std::vector<double> all = places(*curves);
   all.push_back(1);
   const double most = *std::max_element(all.begin(), all.end());
-  // From 1 on: nothing is less than the least.
+  // From 1: no ratio to the lowest is smaller.
   const bool wide = most > kWideProfile;
   const Axis axis(1, std::max(most * (wide ? 1.1 : 1), 1.001), wide, kLeft, kRight);
   Canvas canvas;
   const double height = draw_curves(canvas, data, *curves, axis,
-                                    axis_label("times the least of all pipelines", axis), "");
+                                    axis_label("ratio to the lowest of all pipelines", axis), "");
   return Figure{"profile-" + slug(metric.metric),
                 "Performance profile of " + metric_title(metric.metric),
                 "The share of " + counted(costs.front().size(), "pair") +
-                    " (scenario, repetition) that a pipeline solved at a cost of at most so many "
-                    "times the least of all; where a curve begins: how often it was the least.",
+                    " (scenario, repetition) that a pipeline solved at a cost of at most this "
+                    "ratio to the lowest of all; a curve begins at the share of pairs in which the "
+                    "pipeline had the lowest cost.",
                 kFigureWidth,
                 height,
                 canvas.take(),

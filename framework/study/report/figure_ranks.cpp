@@ -9,7 +9,7 @@
 namespace altiplan::study::report {
 namespace {
 
-/// Beside the axis there is room for the names.
+/// Margins beside the axis for the names.
 constexpr double kLeft = 140;
 constexpr double kRight = kFigureWidth - 140;
 constexpr double kCharacter = 7;
@@ -31,7 +31,7 @@ void draw_critical(Canvas& canvas, const Axis& axis, double critical) {
 
 void draw_axis(Canvas& canvas, const Axis& axis, std::size_t count) {
   canvas.line(kLeft, kAxisY, kRight, kAxisY, "ink_line");
-  const std::size_t every = (count + 6) / 7;  // more numbers have no room
+  const std::size_t every = (count + 6) / 7;  // more numbers would not fit
   for (std::size_t rank = 1; rank <= count; ++rank) {
     canvas.line(axis(double(rank)), kAxisY - 5, axis(double(rank)), kAxisY, "ink_line");
     if ((rank - 1) % every == 0) {
@@ -62,7 +62,7 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
                 ink_line(3.5));
     below += kBarStep;
   }
-  // The better half is named on the left, the other on the right; leaders never cross.
+  // The better half is labelled on the left, the other on the right; leaders never cross.
   const std::size_t half = (order.size() + 1) / 2;
   for (std::size_t at = 0; at < order.size(); ++at) {
     const bool left = at < half;

@@ -33,7 +33,7 @@ std::size_t all_runs(const Analysis& analysis) {
   return runs;
 }
 
-/// Lines of at most so many characters, broken at the dots between the parts.
+/// Lines of at most that many characters, broken at the dots between the parts.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
   std::vector<std::string> lines(1);
   std::size_t at = 0;
@@ -72,7 +72,7 @@ std::string interval_text(double estimate, const std::optional<Interval>& interv
 Figure success_figure(const StudyData& data, const Analysis& analysis) {
   constexpr double kRow = 42;
   Figure figure{"success",
-                "Share of runs that solved",
+                "Share of solved runs",
                 "Bars: share of " + counted(all_runs(analysis), "run") +
                     " that solved; whiskers: 95 % interval.",
                 kFigureWidth,
@@ -117,7 +117,7 @@ Figure success_figure(const StudyData& data, const Analysis& analysis) {
 
 Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
   Figure figure{"outcomes",
-                "How the runs ended",
+                "Outcomes of the runs",
                 "Share of each outcome among " + counted(all_runs(analysis), "run") + ".",
                 kFigureWidth,
                 0,
@@ -146,7 +146,7 @@ Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
     }
     y += 9;
   }
-  // The key: only what occurs, in its order.
+  // The key: only outcomes that occur, in their order.
   std::vector<std::string> outcomes;
   for (const std::string& outcome : outcome_order()) {
     if (used.erase(outcome) > 0) {

@@ -12,7 +12,7 @@
 namespace altiplan::study::report {
 namespace {
 
-/// The variants sorted, and for each old place the new one.
+/// The sorted variants, and the new index for each old one.
 template <class Less>
 std::vector<std::size_t> sort_variants(std::vector<StoredVariant>& variants, const Less& less) {
   std::vector<std::size_t> order(variants.size());
@@ -29,15 +29,15 @@ std::vector<std::size_t> sort_variants(std::vector<StoredVariant>& variants, con
   return place;
 }
 
-/// Place of the entry that a pipeline is a variant of.
+/// Index of the entry of a pipeline variant.
 std::size_t entry_of(const StudyFile& file, const StoredVariant& variant) {
   const auto found = std::find_if(file.pipelines.begin(), file.pipelines.end(),
                                   [&](const auto& entry) { return entry.id == variant.of; });
   return std::size_t(found - file.pipelines.begin());
 }
 
-/// For each variant of a pipeline its place in the study's file; an entry's grid varies its last
-/// key fastest, as its runs do.
+/// The index of each pipeline variant in the study's file; an entry's grid varies its last key
+/// fastest, as its runs do.
 std::map<std::string, std::size_t> places_in(const StudyFile& file) {
   std::map<std::string, std::size_t> places;
   for (const PipelineChoice& entry : file.pipelines) {
@@ -46,7 +46,7 @@ std::map<std::string, std::size_t> places_in(const StudyFile& file) {
         places.try_emplace(entry.id + cell.label, places.size());
       }
     } catch (const ConfigError&) {
-      // A study that could not be planned; its pipelines are in the order of their names.
+      // A study that could not be planned: pipelines are ordered by name.
     }
   }
   return places;

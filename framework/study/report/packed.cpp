@@ -16,7 +16,7 @@ std::string packed(std::string_view text) {
   std::vector<Bytef> bytes(size);
   if (::compress2(bytes.data(), &size, reinterpret_cast<const Bytef*>(text.data()),
                   uLong(text.size()), Z_BEST_COMPRESSION) != Z_OK) {
-    throw Error("no memory to compress " + std::to_string(text.size()) + " bytes");
+    throw Error("out of memory while compressing " + std::to_string(text.size()) + " bytes");
   }
   return host::base64(std::as_bytes(std::span(bytes.data(), size)));
 }

@@ -6,6 +6,6 @@
 
 namespace altiplan::study::report {
 
-/// zlib, then base64: what the page's script takes apart again. Throws Error for lack of memory.
+/// zlib, then base64, unpacked by the page's script. Throws Error if out of memory.
 std::string packed(std::string_view text);
 }  // namespace altiplan::study::report

@@ -49,19 +49,19 @@ std::string table_html(const Table& table, std::size_t open_rows = 12) {
                       html_text(table));
 }
 
-/// What a reader must know before any number.
+/// The warnings shown before any number.
 std::string incomplete_html(const Content& content) {
   const std::string part = incomplete(content.data);
   return part.empty()
              ? ""
              : "<p class=notice><b>" + html(part) +
                    "</b> A sample, one of several shards, or a study that was interrupted: "
-                   "<code>altiplan study</code> goes on where it ended, and "
-                   "<code>altiplan report</code> takes shards together.</p>\n";
+                   "<code>altiplan study</code> continues where it ended, and "
+                   "<code>altiplan report</code> combines shards.</p>\n";
 }
 
-/// With what a comparison comes to beside its pipelines: on a narrow screen the rest is out of
-/// sight.
+/// With the result of a comparison next to its pipelines, so that it stays visible on a narrow
+/// screen.
 Table verdict_first(Table table) {
   std::size_t to = 2;
   for (const char* title : {"better", "p (Holm)"}) {
@@ -84,21 +84,21 @@ Table verdict_first(Table table) {
 
 std::string failures_html(const Content& content) {
   if (content.failures.empty()) {
-    return paragraph("None: every run that did not solve says why.", "good");
+    return paragraph("None: every run that did not solve has a reason.", "good");
   }
   std::size_t runs = 0;
   for (const FailureGroup& group : content.failures) {
     runs += group.rows.size();
   }
   return paragraph(counted(runs, "run") +
-                       " ended by a fault of a plugin or its build, not by the problem.",
+                       " ended by a fault of a plugin or its build, not because of the problem.",
                    "bad") +
          table_html(failure_table(content), 20);
 }
 
 std::string claims_html(const Content& content) {
   if (content.claims.empty() && content.claims_left_out.empty()) {
-    return paragraph("The study claims nothing.", "quiet");
+    return paragraph("The study has no claims.", "quiet");
   }
   std::string out = content.claims.empty() ? "" : "<ul class=claims>\n";
   for (const JudgedClaim& judged : content.claims) {
@@ -116,7 +116,7 @@ std::string claims_html(const Content& content) {
   return out;
 }
 
-/// What the values in brackets are.
+/// The meaning of the values in brackets.
 std::string short_names_html(const Content& content) {
   std::string keys;
   for (const std::string& line : short_name_keys(content.data)) {
@@ -139,7 +139,7 @@ std::string metric_html(const Content& content, std::size_t at) {
   const MetricAnalysis& metric = content.analysis.metrics[at];
   std::string out = "<h3 id=\"metric-" + slug(metric.metric) + "\">" +
                     html(metric_title(metric.metric)) + " <small>" + html(metric.metric) + ", " +
-                    (metric.better == Better::lower ? "less" : "more") +
+                    (metric.better == Better::lower ? "lower" : "higher") +
                     " is better</small></h3>\n";
   out += figures_html(content.metric_figures[at]);
   if (!metric.comparisons.empty()) {
@@ -181,7 +181,7 @@ std::string method_html(const Content& content) {
     for (const std::string& note : content.scenes.notes) {
       lines += "<li>" + html(note) + "</li>\n";
     }
-    out += folded("Scenes that could not be made (" + grouped(content.scenes.notes.size()) + ")",
+    out += folded("Scenes that could not be built (" + grouped(content.scenes.notes.size()) + ")",
                   lines + "</ul>\n");
   }
   return out;
@@ -193,7 +193,7 @@ std::string origin_html(const Content& content) {
   for (const std::string& version : content.builds.versions) {
     versions += (versions.empty() ? "" : ", ") + version;
   }
-  out += paragraph("Seed of the study: " + std::to_string(content.data.file.seed) +
+  out += paragraph("Random seed of the study: " + std::to_string(content.data.file.seed) +
                    (versions.empty() ? "" : "; altiplan " + versions) + ".");
   if (content.times && !content.data.sessions.empty()) {
     out += table_html(session_table(content), 6);
@@ -220,7 +220,7 @@ std::string contents_html(const Content& content) {
          "href=\"#origin\">Origin</a></nav>\n";
 }
 
-/// The head, with a policy under which nothing on the page can ask for anything.
+/// The head, with a content security policy that forbids all requests.
 std::string head_html(const Content& content) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -236,7 +236,7 @@ std::string head_html(const Content& content) {
   return out + "</style>\n</head>\n";
 }
 
-/// What the script takes when a run is asked for: packed, so that it costs nothing before.
+/// The data that the script unpacks when a run is opened: packed, so that it costs nothing before.
 std::string stores_html(const Content& content, const Table& scenarios) {
   const auto store = [](const std::string& id, const std::string& data) {
     return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + data + "</script>\n";
@@ -265,7 +265,7 @@ std::string page_text(const Content& content) {
     metrics += metric_html(content, at);
   }
   if (content.analysis.metrics.empty()) {
-    metrics = paragraph("No run has one of the metrics that the study compares.", "quiet");
+    metrics = paragraph("No run has any of the metrics that the study compares.", "quiet");
   } else {
     metrics += folded("Values of solved runs, all metrics", html_text(metric_table(content)));
   }
@@ -278,7 +278,7 @@ std::string page_text(const Content& content) {
   }
   body += section("scenarios", "Scenarios", scenarios_html(scenarios));
   body += section("method", "Method", method_html(content));
-  body += section("origin", "Where it comes from", origin_html(content));
+  body += section("origin", "Origin", origin_html(content));
   return head_html(content) + "<body>\n<main>\n" + body +
          "</main>\n<aside id=panel aria-label=\"Run\" hidden></aside>\n" +
          stores_html(content, scenarios) + "<script>\n" + std::string(page_script()) +

@@ -12,7 +12,7 @@
 
 namespace altiplan::study::report {
 
-/// A group of runs that failed alike.
+/// A group of runs with the same failure.
 struct FailureGroup {
   std::size_t pipeline = 0;
   std::string outcome;
@@ -20,13 +20,13 @@ struct FailureGroup {
   std::vector<std::size_t> rows;
 };
 
-/// What built the plugins that ran.
+/// The builds of the program and of the plugins that ran.
 struct Builds {
   std::vector<std::string> versions;              ///< of altiplan
   std::vector<std::vector<std::string>> plugins;  ///< kind, name, build
 };
 
-/// All that the report says, before it is written in any form.
+/// The content of the report, independent of the output format.
 struct Content {
   StudyData data;                        ///< in_order
   std::vector<std::string> short_names;  ///< of its pipelines
@@ -54,9 +54,9 @@ Table success_table(const Content& content);
 Table success_comparison_table(const Content& content);
 Table metric_table(const Content& content);
 Table comparison_table(const Content& content, const MetricAnalysis& metric);
-/// When the searches of each pipeline had come near to their last length.
+/// The iterations at which the searches of each pipeline came near to their final length.
 Table convergence_table(const Content& content);
-/// One row per scenario: of each pipeline how many runs solved, and the median of the first metric.
+/// One row per scenario: solved runs of each pipeline, and the median of the first metric.
 Table scenario_table(const Content& content);
 Table pipeline_table(const Content& content);
 Table session_table(const Content& content);
@@ -66,20 +66,20 @@ Grid run_grid(const Content& content);
 
 /// "A study of 4 pipelines …", one sentence.
 std::string summary(const Content& content);
-/// "34 of 540 planned runs are stored (6 %): verdicts are preliminary.", "" where all are stored.
+/// "34 of 540 planned runs are stored (6 %): verdicts are preliminary.", "" if all are stored.
 std::string incomplete(const StudyData& data);
-/// Paragraphs: tests, corrections, resamples, what was left out.
+/// Paragraphs on methods: tests, corrections, resamples, omissions.
 std::vector<std::string> method_text(const Content& content);
 /// The command that repeats a run.
 std::string replay_command(const Content& content, const RunRow& row);
 
-/// What the script needs of all runs, as JSON.
+/// The data of all runs for the script, as JSON.
 std::string page_data(const Content& content, const Table& scenarios);
 /// index.html.
 std::string page_text(const Content& content);
 
-/// Figures of convergence that the page carries.
+/// Number of convergence figures in the page.
 constexpr std::size_t kMaxConvergence = 48;
-/// Rows of the scenario table that stand in the page; the script adds the others.
+/// Rows of the scenario table in the page; the script adds the others.
 constexpr std::size_t kRowsShown = 50;
 }  // namespace altiplan::study::report

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/report/page_assets.hpp"
 
-// The assembler copies the files in between two symbols each, as for the viewer's page.
+// The assembler embeds each file between two symbols, as for the viewer's page.
 asm(".pushsection .rodata\n"
     "altiplan_report_style:\n"
     ".incbin \"" ALTIPLAN_REPORT_ASSETS

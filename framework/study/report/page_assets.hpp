@@ -5,7 +5,7 @@
 
 namespace altiplan::study::report {
 
-/// assets/report.css and assets/report.js, parts of the program.
+/// assets/report.css and assets/report.js, embedded in the program.
 std::string_view page_style();
 std::string_view page_script();
 }  // namespace altiplan::study::report

@@ -10,10 +10,10 @@
 namespace altiplan::study::report {
 namespace {
 
-/// Packed, some 6 bytes each.
+/// About 6 bytes each when packed.
 constexpr std::size_t kMaxValues = 300'000;
 
-/// Six digits are more than the page shows; all would only make it larger.
+/// Six digits: more than the page shows, and smaller than all digits.
 std::string short_number(std::string_view metric, double value) {
   if (is_straight(metric, value)) {
     return "\"straight\"";
@@ -28,7 +28,7 @@ std::string short_number(std::string_view metric, double value) {
   return {text, done.ptr};
 }
 
-/// Texts, each once, and for each run which.
+/// Unique texts, and the index of the text of each run.
 class Texts {
  public:
   std::size_t operator()(const std::string& text) {
@@ -53,8 +53,8 @@ host::Json names(const std::vector<StoredVariant>& variants) {
   return all;
 }
 
-/// The columns that the page carries: all, or of many runs the metrics of the whole run and those
-/// that are compared.
+/// The columns in the page: all, or for many runs only the metrics of the whole run and those
+/// compared.
 std::vector<std::size_t> shown_columns(const Content& content) {
   const StudyData& data = content.data;
   const bool all = data.rows.size() * data.columns.size() <= kMaxValues;
@@ -111,7 +111,7 @@ std::string page_data(const Content& content, const Table& scenarios) {
     json["runs"].push_back(std::move(run));
   }
   json["outcomes"] = outcomes.take();
-  json["stores"] = host::Json::array({"DB"});  // of whose number nothing may depend
+  json["stores"] = host::Json::array({"DB"});  // independent of the number of stores
   if (content.times) {
     json["stores"] = host::Json::array();
     for (const std::string& store : data.stores) {

@@ -11,7 +11,7 @@ namespace {
 struct Tally {
   std::size_t runs = 0;
   std::size_t solved = 0;
-  std::vector<double> values;  ///< of the metric, where a run solved and has it
+  std::vector<double> values;  ///< of the metric, for solved runs that have it
 };
 
 /// For each scenario and pipeline.
@@ -48,7 +48,7 @@ Table scenario_table(const Content& content) {
   const bool has_metric = !content.analysis.metrics.empty();
   const std::string metric = has_metric ? content.analysis.metrics.front().metric : "";
   Table table{"scenarios",
-              "Runs of each scenario that solved" +
+              "Solved runs of each scenario" +
                   (has_metric ? ", and their median " + metric_label(metric) : std::string()),
               {{"scenario"}},
               {}};

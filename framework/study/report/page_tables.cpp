@@ -35,7 +35,7 @@ std::string share_interval_text(const Success& success) {
   return interval ? "[" + percent(interval->low) + ", " + percent(interval->high) + "]" : "–";
 }
 
-/// "18 scenarios, 4 differ": the test drops those that do not.
+/// "18 scenarios, 4 differ": the test drops the others.
 Cell tested(const PairedEffect& effect) {
   Cell cell = units(effect.units);
   const std::size_t differ = effect.test ? effect.test->used : 0;
@@ -47,7 +47,7 @@ const std::string& name(const Content& content, std::size_t pipeline) {
   return content.short_names[pipeline];
 }
 
-/// The pipeline for which a comparison speaks with 5 % after Holm, or a dash.
+/// The pipeline that a comparison favours at 5 % after Holm, or a dash.
 std::string winner(const Content& content, const MetricAnalysis& metric, const Comparison& made) {
   if (!(made.p_holm < kAlpha) || made.rank_biserial() == 0) {
     return "–";
@@ -65,17 +65,18 @@ std::string replay_command(const Content& content, const RunRow& row) {
 }
 
 Table convergence_table(const Content& content) {
-  Table table{"convergence",
-              "The first iteration with a best length within 1 % of the last best, and with a mean "
-              "within 3 % of it; how many of a population found a route in the last iteration: "
-              "median [10th, 90th percentile] over runs, a dash where it was not reached",
-              {{"pipeline"},
-               {"step"},
-               {"runs", true},
-               {"best within 1 %", true},
-               {"mean within 3 %", true},
-               {"alive at the end", true}},
-              {}};
+  Table table{
+      "convergence",
+      "The first iteration with a best length within 1 % of the final best, and with a mean "
+      "within 3 % of it; the number of a population that found a route in the last "
+      "iteration: median [10th, 90th percentile] over runs, a dash if not reached",
+      {{"pipeline"},
+       {"step"},
+       {"runs", true},
+       {"best within 1 %", true},
+       {"mean within 3 %", true},
+       {"alive at the end", true}},
+      {}};
   for (const Convergence& made : content.convergence) {
     const auto of_population = [&](const Spread& over) {
       return made.is_population ? spread(over) : Cell("–");
@@ -88,15 +89,11 @@ Table convergence_table(const Content& content) {
 }
 
 Table failure_table(const Content& content) {
-  Table table{"failures",
-              "Unexplained failures: runs that ended by a fault of a plugin or its build",
-              {{"pipeline"},
-               {"outcome"},
-               {"message"},
-               {"runs", true},
-               {"for example"},
-               {"to see it again"}},
-              {}};
+  Table table{
+      "failures",
+      "Unexplained failures: runs that ended by a fault of a plugin or its build",
+      {{"pipeline"}, {"outcome"}, {"message"}, {"runs", true}, {"for example"}, {"to reproduce"}},
+      {}};
   for (const FailureGroup& group : content.failures) {
     const RunRow& row = content.data.rows[group.rows.front()];
     Cell message(shortened(printable(group.message), 300));
@@ -113,7 +110,7 @@ Table failure_table(const Content& content) {
 
 Table claim_table(const Content& content) {
   Table table{"verdicts",
-              "Claims and what the runs say of them",
+              "Claims and their verdicts",
               {{"claim"},
                {"that"},
                {"claimed"},
@@ -134,7 +131,7 @@ Table claim_table(const Content& content) {
 
 Table success_table(const Content& content) {
   Table table{"success",
-              "Share of runs that solved, with its 95 % interval",
+              "Share of solved runs, with its 95 % interval",
               {{"pipeline"},
                {"runs", true},
                {"solved", true},
@@ -161,7 +158,7 @@ Table success_table(const Content& content) {
 Table success_comparison_table(const Content& content) {
   Table table{"success-pairs",
               "Success, pipeline against pipeline: exact sign test over n scenarios (repetitions "
-              "where there is one scenario), Holm's correction over all rows",
+              "if there is one scenario), Holm's correction over all rows",
               {{"pipeline"},
                {"against"},
                {"n", true},
@@ -219,8 +216,8 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric) {
   Table table{"pairs-" + slug(metric.metric),
               metric_label(metric.metric) +
                   ", pipeline against pipeline on the pairs that both solved (" +
-                  (metric.better == Better::lower ? "less" : "more") +
-                  " is better): Wilcoxon's signed-rank test over n scenarios (repetitions where "
+                  (metric.better == Better::lower ? "lower" : "higher") +
+                  " is better): Wilcoxon's signed-rank test over n scenarios (repetitions if "
                   "there is one scenario), Holm's correction over all rows",
               {{"pipeline"},
                {"against"},
@@ -274,7 +271,7 @@ Table session_table(const Content& content) {
                {"altiplan"},
                {"jobs", true},
                {"reuse", true},
-               {"limits kept by"},
+               {"limits enforced by"},
                {"command"}},
               {}};
   for (const StoredSession& session : content.data.sessions) {

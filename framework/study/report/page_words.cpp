@@ -102,32 +102,33 @@ std::vector<std::string> method_text(const Content& content) {
   std::vector<std::string> text;
   text.emplace_back(
       "A pair is one scenario and repetition; every pipeline runs it with the same seed. A value "
-      "counts where its run solved and has it as a finite number; those that say how a run went "
-      "wrong (reached, collisions, least separation) count in every run that has them.");
+      "counts if its run solved and has it as a finite number; values that describe failures "
+      "(reached, collisions, minimum separation) count in every run that has them.");
   text.emplace_back(
-      "Success: the 95 % interval of a share is Wilson's score interval where runs are independent "
-      "(one per scenario, or one scenario); where all runs of all scenarios agree, Wilson's with a "
-      "scenario as one trial; else the bootstrap's, as below. Claims on a share have the same. Two "
-      "pipelines are compared by the exact two-sided sign test on scenarios: in how many one "
-      "solved more of the repetitions that both have run, and in how many the other; with one "
-      "repetition that is McNemar's test. Of one scenario, repetitions are counted. Holm's "
-      "step-down correction is over all pairs of pipelines.");
+      "Success: the 95 % interval of a share is Wilson's score interval if runs are independent "
+      "(one per scenario, or one scenario); if all runs of all scenarios agree, Wilson's with a "
+      "scenario as one trial; otherwise the bootstrap's, as below. Claims on a share use the same. "
+      "Two pipelines are compared by the exact two-sided sign test on the numbers of scenarios in "
+      "which either solved more of the repetitions that both have run; with one repetition this is "
+      "McNemar's test. With one scenario, repetitions are counted. Holm's step-down correction is "
+      "over all pairs of pipelines.");
   text.emplace_back(
       "Metrics: a pipeline is compared against another on the pairs that both solved. The effect "
-      "is the median of the ratio of its value to the other's where all values of the metric are "
-      "positive, else of the difference. Its 95 % interval is the percentile bootstrap over " +
+      "is the median of the ratio of its value to the other's if all values of the metric are "
+      "positive, otherwise of the difference. Its 95 % interval is the percentile bootstrap over " +
       grouped(resamples(pairs_of(content.data).size(), content.data.pipelines.size())) +
-      " resamples, of scenarios with all their repetitions (of repetitions where there is one "
-      "scenario), drawn from the study's seed " +
+      " resamples of scenarios with all their repetitions (of repetitions if there is one "
+      "scenario), seeded by the study's seed " +
       std::to_string(content.data.file.seed) + "; of fewer than " +
-      std::to_string(fewest_units(kConfidence)) + " there is none, as not even their whole range " +
-      "holds the median with that confidence.");
+      std::to_string(fewest_units(kConfidence)) +
+      " there is none, since not even their whole range " +
+      "contains the median with that confidence.");
   text.emplace_back(
       "Wilcoxon's signed-rank test is two-sided on the differences, one per scenario (the median "
-      "over its repetitions) or, of one scenario, one per repetition; zeros are dropped, ties "
-      "share the mean of their ranks; exact for at most 50 differences, else by the normal "
+      "over its repetitions) or, with one scenario, one per repetition; zeros are dropped, ties "
+      "share the mean of their ranks; exact for at most 50 differences, otherwise by the normal "
       "distribution with correction for ties, not for continuity. n is the number of differences. "
-      "Rank-biserial: matched pairs, -1 where the pipeline always has less than the one it is "
+      "Rank-biserial: matched pairs, -1 if the pipeline always has less than the one it is "
       "compared against. Holm's correction is over all pairs of pipelines, for each metric.");
   text.emplace_back(
       "Ranks: Friedman's test, corrected for ties, and Nemenyi's critical difference at 5 % "
@@ -135,17 +136,17 @@ std::vector<std::string> method_text(const Content& content) {
       "2006), over scenarios (medians over repetitions) that all pipelines solved, or over "
       "repetitions of one scenario.");
   text.emplace_back(
-      "Curves of runs solved count a run that did not solve among all and never among the solved: "
-      "its time is censored. Performance profiles: Dolan and Moré (2002). Box plots: Tukey's, "
+      "Curves of solved runs count a run that did not solve only in the total: its time is "
+      "censored. Performance profiles: Dolan and Moré (2002). Box plots: Tukey's, "
       "whiskers at the last value within 1.5 interquartile ranges.");
   text.push_back("Scenes: " + content.scenes.what);
   if (const std::string left_out = left_out_text(content); !left_out.empty()) {
-    text.push_back("Left out: " + left_out);
+    text.push_back("Omitted: " + left_out);
   }
   if (!content.times) {
     text.push_back(
-        "Made with --no-times: all that differs from run to run is left out (values whose names "
-        "end in time_s or memory_mb, run ids, sessions, machines, dates).");
+        "Made with --no-times: values that vary between equal runs are omitted (names that end in "
+        "time_s or memory_mb, run ids, sessions, machines, dates).");
   }
   return text;
 }

@@ -50,7 +50,7 @@ std::vector<FailureGroup> failures_of(const StudyData& data) {
   return all;
 }
 
-/// Of one result for each pipeline and each scenario file.
+/// From one result for each pipeline and each scenario file.
 Builds builds_of(const StudyData& data, const ResultSource& results) {
   std::set<std::pair<std::size_t, std::string>> seen;
   std::set<std::string> versions;
@@ -81,7 +81,7 @@ void judge_claims(Content& content) {
     JudgedClaim judged = judge_claim(content.data, claim);
     if (judged.measured && !content.times) {
       content.claims_left_out.push_back("The claim '" + claim.id +
-                                        "' is on measured times or memory, and is left out.");
+                                        "' is about measured times or memory, and is omitted.");
     } else {
       content.claims.push_back(std::move(judged));
     }
@@ -177,7 +177,7 @@ void write_tables(const Content& content, const fs::path& folder) {
   for (const auto& row : scenarios.rows) {
     grid.rows.emplace_back();
     for (const Cell& cell : row) {
-      // "3/4" stays; of a median all digits that it has.
+      // "3/4" is kept; medians have all digits.
       const bool is_number =
           !std::isnan(cell.sort) && cell.text.find('/') == std::string::npos && cell.text != "–";
       grid.rows.back().push_back(is_number ? exact(cell.sort) : cell.text == "–" ? "" : cell.text);
@@ -186,8 +186,8 @@ void write_tables(const Content& content, const fs::path& folder) {
   host::write_file(folder / "scenarios.csv", csv_text(grid));
 }
 
-/// Unlike fs::create_directories it asks nothing, and so takes nothing that it cannot look at for
-/// absent.
+/// Unlike fs::create_directories it does not check for existence, which fails for inaccessible
+/// folders.
 void make_folder(const fs::path& folder) {
   int error = ::mkdir(folder.c_str(), 0777) == 0 ? 0 : errno;
   if (error == ENOENT && folder.has_relative_path()) {
@@ -211,7 +211,7 @@ void write_parts(const Content& content, const std::string& page, const fs::path
   host::write_file(folder / "index.html", page);
 }
 
-/// Each takes the other's place, also where one of them is not there; again, and all is as it was.
+/// Exchanges the two, also if one does not exist; a second call restores the original state.
 void exchange(const fs::path& a, const fs::path& b) {
   if (!fs::exists(b)) {
     fs::rename(a, b);
@@ -221,14 +221,14 @@ void exchange(const fs::path& a, const fs::path& b) {
     if (errno != EINVAL && errno != ENOSYS) {
       throw fs::filesystem_error("rename", b, std::error_code(errno, std::generic_category()));
     }
-    const fs::path aside = a.string() + ".earlier";  // a file system that knows no exchange
+    const fs::path aside = a.string() + ".earlier";  // a file system without exchange
     fs::rename(b, aside);
     fs::rename(a, b);
     fs::rename(aside, a);
   }
 }
 
-/// An earlier report goes when all of the new one is in its place.
+/// Removes an earlier report once the new one is complete.
 void put_in_place(const fs::path& beside, const fs::path& folder) {
   const auto lock = host::uninterrupted();
   std::vector<const char*> done;
@@ -267,7 +267,7 @@ void expect_report_folder(const fs::path& folder) {
   }
   if (!fs::is_empty(folder) && !is_report(folder)) {
     throw Error("-o: '" + folder.string() +
-                "' holds other files, expected a new folder or one of an earlier report");
+                "' contains other files, expected a new folder or that of an earlier report");
   }
 }
 
@@ -292,10 +292,10 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   const Content content = content_of(source, options);
   const std::string page = page_text(content);
   const fs::path beside = host::name_beside(fs::absolute(folder) / "report");
-  // What has taken its place is not in it any more, and the folder goes where nothing has.
+  // Replaced files are no longer in it, and the folder is removed if nothing was replaced.
   const host::Unfinished unfinished([beside] {
     std::error_code error;
-    constexpr int kTries = 8;  // a folder that cannot be opened cannot be emptied
+    constexpr int kTries = 8;  // an inaccessible folder cannot be emptied
     for (int tries = 0; tries == 0 || (error && tries < kTries); ++tries) {
       fs::remove_all(beside, error);
     }

@@ -11,7 +11,7 @@
 
 namespace altiplan::study::report {
 
-/// What a report is made of.
+/// The input of a report.
 struct Source {
   StudyData data;
   std::string study_text;  ///< the study's file
@@ -21,28 +21,28 @@ struct Source {
 
 struct Options {
   std::string title;    ///< "": the study's name
-  std::string command;  ///< as it was called
-  bool times = true;    ///< false: nothing that differs from run to run
+  std::string command;  ///< the command line
+  bool times = true;    ///< false: no values that vary between equal runs
   SceneOptions scenes;  ///< `times` of it follows the one above
 };
 
-/// From stores of one study. Throws as load_study_data.
+/// Loads stores of one study. Throws like load_study_data.
 Source load_source(const std::vector<std::string>& stores);
 
-/// What write_report says of what it wrote.
+/// A summary of the files written by write_report.
 struct Written {
   std::size_t page_bytes = 0;
   std::size_t figures = 0;
   std::size_t scenes = 0;
-  std::vector<std::string> notes;    ///< on scenes that could not be made
-  std::vector<std::string> changed;  ///< sentences: what is not as it was when the runs were made
+  std::vector<std::string> notes;    ///< on scenes that could not be built
+  std::vector<std::string> changed;  ///< sentences on changes since the runs were made
   std::string summary;
 };
 
-/// Throws Error where the folder holds anything but an earlier report, or cannot be written.
+/// Throws Error if the folder contains anything but an earlier report, or is not writable.
 void expect_report_folder(const std::filesystem::path& folder);
 
-/// Writes index.html, runs.csv, figures/ and tables/ (docs/report.md) into the folder, in place of
+/// Writes index.html, runs.csv, figures/ and tables/ (docs/report.md) into the folder, replacing
 /// those of an earlier report. The same data give the same bytes.
 Written write_report(const Source& source, const Options& options,
                      const std::filesystem::path& folder);

@@ -7,7 +7,7 @@
 namespace altiplan::study::report {
 namespace {
 
-/// Builds by kind and name, of the plugins that make the world: what planned a route is in it.
+/// Builds by kind and name of the plugins that make the world: the planners do not matter.
 std::map<std::string, std::string> world_builds(const host::Json& plugins) {
   std::map<std::string, std::string> builds;
   for (const host::Json& plugin : plugins) {
@@ -23,18 +23,17 @@ std::map<std::string, std::string> world_builds(const host::Json& plugins) {
 std::vector<std::string> what_changed(const host::StoredResult& stored) {
   std::vector<std::string> changes;
   for (const std::string& file : stored.changed) {
-    changes.push_back(file +
-                      (host::is_there(file) ? " has changed since" : " is not there any more"));
+    changes.push_back(file + (host::is_there(file) ? " has changed since" : " no longer exists"));
   }
   if (!changes.empty()) {
-    return changes;  // what the files say now may name other plugins
+    return changes;  // the files may name other plugins now
   }
   const auto now =
       world_builds(host::plugins_json(host::load_config(stored.pipeline, stored.overrides)));
   for (const auto& [plugin, build] : world_builds(stored.json.at("plugins"))) {
     const auto found = now.find(plugin);
     if (found == now.end() || found->second != build) {
-      changes.push_back(plugin + " is of another build than then");
+      changes.push_back(plugin + " has been rebuilt since");
     }
   }
   return changes;

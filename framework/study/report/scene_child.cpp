@@ -24,7 +24,7 @@ constexpr char kNotGiven = 'n';  // by the machine
 constexpr char kEnd = '.';
 constexpr std::size_t kMaxBytes = 64'000'000;
 
-/// Memory too, whoever has asked for it.
+/// Memory too, whoever requested it.
 bool is_of_machine(const std::exception& error) {
   return dynamic_cast<const host::MachineFault*>(&error) != nullptr ||
          host::reason_of(error) == Reason::out_of_memory;
@@ -43,7 +43,7 @@ void write_all(int to, std::string_view text) {
 [[noreturn]] void be_child(const std::function<std::string()>& make, int to) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // Whatever a plugin prints is not for the report's reader.
+  // Discard the output of plugins.
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::dup2(nothing, standard);
@@ -60,7 +60,7 @@ void write_all(int to, std::string_view text) {
   ::_exit(0);
 }
 
-/// All that comes until the end or the time is over.
+/// All output until the end or the timeout.
 std::string read_within(int from, unsigned seconds, bool& late) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::seconds(seconds);
@@ -97,25 +97,27 @@ std::string ending(int status) {
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) {
-    throw host::MachineFault(std::string("no pipe for a scene: ") + std::strerror(errno));
+    throw host::MachineFault(std::string("cannot create a pipe for a scene: ") +
+                             std::strerror(errno));
   }
   const pid_t child = ::fork();
   if (child < 0) {
     const int error = errno;
     ::close(ends[0]);
     ::close(ends[1]);
-    throw host::MachineFault(std::string("no process for a scene: ") + std::strerror(error));
+    throw host::MachineFault(std::string("cannot start a process for a scene: ") +
+                             std::strerror(error));
   }
   if (child == 0) {
     ::close(ends[0]);
     be_child(make, ends[1]);
   }
-  ::setpgid(child, child);  // whoever comes first
+  ::setpgid(child, child);  // in parent and child: either may run first
   ::close(ends[1]);
   bool late = false;
   const std::string text = read_within(ends[0], seconds, late);
   ::close(ends[0]);
-  // Before it is waited for: until then its group's number is nobody else's.
+  // Before waiting for it: until then its group id is not reused.
   const bool whole = text.size() >= 2 && text.back() == kEnd;
   if (!whole && late) {
     ::kill(-child, SIGKILL);
@@ -123,7 +125,7 @@ std::string made_in_child(const std::function<std::string()>& make, unsigned sec
   siginfo_t ended{};
   while (::waitid(P_PID, id_t(child), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
   }
-  ::kill(-child, SIGKILL);  // what it may have left behind
+  ::kill(-child, SIGKILL);  // left-over processes
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxPosts = 140;  // on the longer side
 constexpr std::size_t kMaxSamples = 240;
-constexpr float kHeightSteps = 8;  // to the metre; finer heights would not compress
+constexpr float kHeightSteps = 8;  // per metre; finer heights would not compress
 
 std::vector<float> floats(const std::string& text) {
   const std::vector<std::byte> bytes = host::from_base64(text);
@@ -31,7 +31,7 @@ void thin_ground(host::Json& scene) {
   const int ny = ground.at("ny").get<int>();
   const int every = (std::max(nx, ny) - 1) / kMaxPosts + 1;
   if ((nx - 1) / every < 1 || (ny - 1) / every < 1) {
-    return;  // a strip: it has few posts
+    return;  // a strip with few posts
   }
   const std::vector<float> heights = floats(ground.at("heights").get<std::string>());
   std::vector<float> kept;
@@ -55,7 +55,7 @@ void thin_ground(host::Json& scene) {
   ground["heights"] = host::base64_of(kept);
 }
 
-/// Adds the sample with the least value.
+/// Adds the sample with the lowest value.
 void keep_least(const host::Json& values, std::set<std::size_t>& kept) {
   std::optional<std::size_t> least;
   for (std::size_t at = 0; at < values.size(); ++at) {
@@ -79,8 +79,8 @@ host::Json heights_over_ground(const host::Json& profile) {
   return heights;
 }
 
-/// Every n-th sample, the last, the lowest and nearest ones, and, where there is room, all that
-/// have a turn.
+/// Every n-th sample, the last, the lowest and nearest ones, and, within the limit, all with a
+/// turn.
 void thin_profile(host::Json& profile) {
   if (profile.is_null()) {
     return;

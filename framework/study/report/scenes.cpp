@@ -15,10 +15,10 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr unsigned kSeconds = 20;        // to build one scene
+constexpr unsigned kSeconds = 20;       // to build one scene
 constexpr std::size_t kMaxRoutes = 12;  // in one scene; more would hide each other
 
-/// Takes one of each list in turn, so that every kind has its examples.
+/// Takes one of each list in turn, so that every kind has examples.
 std::vector<std::size_t> in_turn(const std::vector<std::vector<std::size_t>>& lists) {
   std::vector<std::size_t> taken;
   bool any = true;
@@ -110,8 +110,8 @@ std::string scene_text(const StudyData& data, const std::vector<std::size_t>& ro
   return scene.dump(-1, ' ', false, host::Json::error_handler_t::replace);
 }
 
-/// A line of JSON, for each row what has changed since it was made, and after it the packed scene
-/// of those rows for which nothing has: a route belongs into the world that it was planned in.
+/// A line of JSON with the changes since each row was made, followed by the packed scene of the
+/// unchanged rows: a route must be shown in the world that it was planned in.
 std::string pair_text(const StudyData& data, const std::vector<std::size_t>& rows,
                       const std::vector<std::string>& texts, const SceneOptions& options) {
   host::Json changed = host::Json::array();
@@ -129,8 +129,8 @@ std::string pair_text(const StudyData& data, const std::vector<std::size_t>& row
          (drawn.empty() ? "" : packed(scene_text(data, drawn, results)));
 }
 
-/// A fault of the machine may have passed the second time; what reports it to the child need not
-/// say that it was one.
+/// A fault of the machine may be transient, and the child may report it as another error: retries
+/// once.
 std::string made_at_last(const std::function<std::string()>& make) {
   try {
     return made_in_child(make, kSeconds);
@@ -155,7 +155,7 @@ class SceneMaker {
         texts.push_back(std::move(text));
         rows.push_back(row);
       } else if (!text.empty()) {
-        why_not_[row] = "a scene holds " + std::to_string(kMaxRoutes) + " runs at most";
+        why_not_[row] = "a scene shows at most " + std::to_string(kMaxRoutes) + " runs";
       }
     }
     if (texts.empty()) {
@@ -168,7 +168,8 @@ class SceneMaker {
     } catch (const host::MachineFault& fault) {
       throw host::MachineFault("the scene of " + run_name(data_, data_.rows[chosen.front()]) +
                                ": " + fault.what());
-    } catch (const std::exception& error) {  // of JSON too: a plugin may spoil what its child says
+    } catch (const std::exception&
+                 error) {  // including JSON errors: a plugin may corrupt its child's output
       leave_out(chosen, error.what());
     }
   }
@@ -180,7 +181,7 @@ class SceneMaker {
     made.notes.assign(notes_.begin(), notes_.end());
     for (const auto& [change, runs] : changed_) {
       made.changed.push_back(change + ": " + counted(runs, "run") + " made before " +
-                             (runs == 1 ? "is" : "are") + " not drawn in 3-D.");
+                             (runs == 1 ? "is" : "are") + " not shown in 3-D.");
     }
     made.why_not = std::move(why_not_);
     return made;
@@ -233,10 +234,10 @@ class SceneMaker {
     }
     std::string text =
         counted(runs, "run") + " of " + grouped(scenes_.size()) + " of " + counted(pairs, "pair") +
-        " (scenario, repetition) can be seen in 3-D: failures of every kind, outliers, and a "
-        "sample drawn by the study's seed.";
+        " (scenario, repetition) are available in 3-D: failures of every kind, outliers, and a "
+        "random sample (seed of the study).";
     if (empty_ > 0) {
-      text += " Of " + counted(empty_, "more pair") + " no pipeline left a result.";
+      text += " " + counted(empty_, "more pair") + " without a result of any pipeline.";
     }
     if (beyond_ > 0) {
       text += " " + counted(beyond_, "more scene") + " did not fit.";

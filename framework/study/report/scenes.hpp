@@ -13,13 +13,13 @@
 
 namespace altiplan::study::report {
 
-/// The result.json of a run, "" where there is none.
+/// The result.json of a run, "" if there is none.
 using ResultSource = std::function<std::string(const RunRow&)>;
 
 struct SceneOptions {
   std::vector<std::filesystem::path> plugin_path;
   bool times = true;
-  std::size_t most = 48;               ///< scenes
+  std::size_t most = 48;              ///< scenes
   std::size_t max_bytes = 2'200'000;  ///< of all of them, packed
   std::size_t max_bytes_each = 400'000;
 };
@@ -32,30 +32,31 @@ struct PackedScene {
 
 struct Scenes {
   std::vector<PackedScene> scenes;
-  std::string what;                ///< a sentence: which runs have a scene
-  std::vector<std::string> notes;  ///< on scenes that could not be made
-  /// Sentences on files and plugins that are not those of the runs, which so are in no scene.
+  std::string what;                ///< a sentence on the runs with a scene
+  std::vector<std::string> notes;  ///< on scenes that could not be built
+  /// Sentences on files and plugins that have changed since the runs, which are therefore in no
+  /// scene.
   std::vector<std::string> changed;
-  /// Why a row is in no scene though its pair was to have one.
+  /// Why a row is in no scene although its pair was selected for one.
   std::map<std::size_t, std::string> why_not;
 };
 
-/// Scenes of runs that failed, of outliers, and of a sample that follows the study's seed, each
-/// with the other pipelines' runs of the same pair. Each is made in a process of its own: what a
-/// plugin does there costs its scene, which a note tells. What the machine does not give is asked
-/// for once more; then it is thrown as a MachineFault.
+/// Scenes of failed runs, of outliers, and of a random sample by the study's seed, each with the
+/// other pipelines' runs of the same pair. Each is built in its own process: a misbehaving plugin
+/// only loses its scene, with a note. Faults of the machine are retried once, then thrown as
+/// MachineFault.
 Scenes build_scenes(const StudyData& data, const Analysis& analysis, const ResultSource& results,
                     const SceneOptions& options);
 
-/// The pairs that are to have a scene, each by its rows, the one that it is for first.
+/// The pairs selected for a scene, each with its rows, the row that it was selected for first.
 std::vector<std::vector<std::size_t>> choose_scenes(const StudyData& data, const Analysis& analysis,
                                                     std::size_t most);
 
-/// What of a result's world is not as it was when the run was made: "hills.yaml has changed since",
-/// and builds of the plugins that make the world. Throws as load_config.
+/// The changes of a result's world since the run was made: "hills.yaml has changed since", and
+/// builds of the plugins that make the world. Throws like load_config.
 std::vector<std::string> what_changed(const host::StoredResult& stored);
 
-/// What a page of many scenes can carry: ground and profiles of fewer samples.
+/// Thins ground and profiles to fewer samples, for a page of many scenes.
 void thin_scene(host::Json& scene);
 /// Without keys that end in time_s, at any depth.
 void drop_times(host::Json& json);
@@ -65,8 +66,8 @@ class SceneLate : public Error {
   using Error::Error;
 };
 
-/// What `make` returns, made in a child process within a time, or throws SceneLate; throws Error
-/// with what it throws, or with how the child ended, and MachineFault where the machine gave no
-/// file, memory or process.
+/// The return value of `make`, computed in a child process within a time limit, or throws
+/// SceneLate; throws Error with the message of its exception or the end of the child, and
+/// MachineFault if the machine refuses a file, memory or process.
 std::string made_in_child(const std::function<std::string()>& make, unsigned seconds);
 }  // namespace altiplan::study::report

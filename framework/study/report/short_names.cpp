@@ -15,7 +15,7 @@ struct Parts {
   std::string values;
 };
 
-/// Nothing where the name is no entry with KEY=VALUE in brackets.
+/// Nothing if the name is not an entry with KEY=VALUE in brackets.
 std::optional<Parts> parts_of(const StoredVariant& variant) {
   const std::string& name = variant.name;
   if (!name.starts_with(variant.of + "[") || !name.ends_with("]")) {
@@ -42,7 +42,7 @@ std::optional<Parts> parts_of(const StoredVariant& variant) {
   }
 }
 
-/// The keys of each entry all of whose variants have the same ones.
+/// The keys of each entry whose variants all have the same ones.
 std::map<std::string, std::string> common_keys(const StudyData& data) {
   std::map<std::string, std::string> keys;
   std::set<std::string> unlike;

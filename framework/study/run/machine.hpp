@@ -5,6 +5,6 @@
 
 namespace altiplan::study {
 
-/// This machine, this version and this time; what was asked for is not filled in.
+/// This machine, version and time; the fields of the command line are left empty.
 StoredSession this_session();
 }  // namespace altiplan::study

@@ -25,7 +25,7 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The runs of a plan, and a store that they are put into.
+/// The runs of a plan and their store.
 class Study {
  public:
   Study(const StudyPlan& plan, const StudyOptions& options) : plan_(plan), options_(options) {
@@ -88,7 +88,7 @@ class Study {
     return pool;
   }
 
-  /// By which a record in the work folder is known: a later call may have selected other runs.
+  /// Identifies a record in the work folder: a later call may have selected other runs.
   std::string record_key(const PlannedRun& run) const {
     return run.key + " " + name_of_run(plan_, run);
   }
@@ -98,7 +98,8 @@ class Study {
     return found == by_key_.end() ? nullptr : &plan_.runs[found->second];
   }
 
-  /// The file may have grown (more seeds, another pipeline), but not lost what has been run.
+  /// The study file may have grown (more seeds, another pipeline), but must not have lost stored
+  /// runs.
   void expect_same_study(const Store& store) const {
     const auto names = [](const auto& variants) {
       std::set<std::string> all;
@@ -118,13 +119,13 @@ class Study {
       }
     }
     if (others > 0) {
-      throw Error("'" + store.file().string() + "' holds " + host::counted(others, "run") +
+      throw Error("'" + store.file().string() + "' contains " + host::counted(others, "run") +
                   " that this study does not have, such as " + first +
-                  ": give another --out, or --fresh to begin anew");
+                  ": give another --out, or --fresh to start over");
     }
   }
 
-  /// Makes the store one of this study, or refuses one that is of another.
+  /// Assigns the store to this study, or throws Error if it belongs to another.
   void prepare(Store& store) const {
     if (!store.study().empty()) {
       expect_same_study(store);
@@ -159,7 +160,7 @@ class Study {
   }
 
  private:
-  /// Runs that other files, plugins or another program gave are done again.
+  /// Selects for repetition the runs made with other files, plugins or another program.
   void drop_outdated(Store& store) const {
     std::map<std::string, std::string> wanted;
     for (const PlannedRun& run : plan_.runs) {
@@ -174,9 +175,9 @@ class Study {
     }
     if (!outdated.empty()) {
       options_.say(host::counted(outdated.size(), "stored run") +
-                   " came of other files, budgets, plugins or another program: done again" +
+                   " out of date (inputs, budgets or binaries changed): running again" +
                    (plan_.runs.size() < plan_.planned
-                        ? "; so may others be, which this call does not look at"
+                        ? "; others that are not selected may be out of date too"
                         : ""));
       store.remove(outdated);
     }
@@ -187,22 +188,22 @@ class Study {
   std::map<std::string, std::size_t> by_key_;
 };
 
-/// Runs are made with the libraries that the plan has loaded, whatever becomes of their files.
-/// A file that is written slowly changes more than once: it is named once.
+/// Runs use the libraries that the plan has loaded, even if their files change.
+/// A file that is written slowly changes more than once: it is reported once.
 void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs::path>& said) {
   for (const std::shared_ptr<host::Registry>& registry : plan.registries) {
     for (const fs::path& file : registry->changed()) {
       if (said.insert(file).second) {
         options.say(file.string() +
-                    " has changed since the study began: the runs of this call are made with the "
-                    "library of its beginning; call the study again to run them with the new one");
+                    " has changed since the study began: this call continues with the old library; "
+                    "repeat the command to run with the new one");
       }
     }
   }
 }
 
-/// What a killed call had run and not stored, of this selection or another; one that is out of date
-/// is found out by its key when it is asked for again.
+/// Recovers runs that a killed call made but did not store, of this selection or another; outdated
+/// ones are detected by their keys when they are next selected.
 std::size_t recover(const Study& study, const StudyPlan& plan, const WorkFolder& folder,
                     Store& store, std::int64_t session) {
   const std::vector<Ended> records = folder.records();
@@ -250,7 +251,7 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   session.limits = pool.limits_kept();
   const std::int64_t session_id = store.add_session(session);
   if (const std::size_t found = recover(study, plan, folder, store, session_id)) {
-    options.say(host::counted(found, "run") + " of the call before had ended unstored: stored now");
+    options.say("recovered " + host::counted(found, "unstored run") + " of the previous call");
   }
   folder.clear();
   const std::vector<std::size_t> left = study.without(store.keys());

@@ -12,7 +12,7 @@
 namespace altiplan::study {
 
 struct StudyProgress {
-  std::size_t runs = 0;    ///< that are wanted
+  std::size_t runs = 0;    ///< that are selected
   std::size_t before = 0;  ///< stored when this call began, recovered ones included
   std::size_t done = 0;    ///< by this call
   std::map<std::string, std::size_t> outcomes;  ///< of this call
@@ -24,11 +24,11 @@ struct StudyOptions {
   int jobs = 1;
   int reuse = 1;
   bool fresh = false;
-  bool traces = false;  ///< keep what the searches did
+  bool traces = false;  ///< store traces of the searches
   std::vector<std::filesystem::path> plugin_path;
-  std::string command;  ///< as the user gave it
+  std::string command;  ///< the command line
   std::function<void(const StudyProgress&)> progress;
-  std::function<void(const std::string&)> say;  ///< what the user should know
+  std::function<void(const std::string&)> say;  ///< receives warnings for the user
 };
 
 struct StudyEnd {
@@ -36,19 +36,19 @@ struct StudyEnd {
   bool is_interrupted = false;
 };
 
-/// Does the runs that the store does not hold yet. Throws Error where the store or its work folder
-/// cannot be used, or holds another study.
+/// Executes the runs that are not stored yet. Throws Error if the store or its work folder cannot
+/// be used, or belongs to another study.
 StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options);
 
-/// What is still to be done, and how long it takes by the runs that are stored, or else by one run
-/// of each pipeline that is done now and not stored.
+/// The remaining runs and their estimated time, from the stored runs, or else from one run of each
+/// pipeline made now and not stored.
 struct StudyEstimate {
   std::size_t stored = 0;
   std::size_t left = 0;
-  std::size_t measured = 0;  ///< runs that the estimate is from
-  bool is_probed = false;    ///< they were done now
+  std::size_t measured = 0;  ///< runs that the estimate is based on
+  bool is_probed = false;    ///< those runs were made now
   double run_s = 0;          ///< mean time of a run
-  double total_s = 0;        ///< of what is left, `jobs` at a time
+  double total_s = 0;        ///< of the remaining runs, with `jobs` in parallel
 };
 StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options);
 }  // namespace altiplan::study

@@ -23,14 +23,14 @@
 namespace altiplan::study {
 namespace {
 
-// Exit codes of a worker that has left the result as far as it goes in Job::crash_report; one that
-// has crashed has also written how, on the last line of its stderr.
+// Exit codes of a worker that has left a partial result in Job::crash_report; a crashed one has
+// also written the cause on the last line of its stderr.
 constexpr int kCrashed = 81;
 constexpr int kStuck = 82;
 
 constexpr std::size_t kResultAtMost = std::size_t(256) << 20;
 
-/// A payload is a line of JSON with the lengths of the texts that follow.
+/// A payload is a line of JSON with the lengths of the following texts.
 std::string payload_of(const RunOutcome& run) {
   const host::Json head = {{"outcome", name(run.outcome)},
                            {"message", run.message},
@@ -56,7 +56,7 @@ struct PayloadHead {
   std::size_t trace_bytes = 0;
 };
 
-/// nullopt where it is not as it was written.
+/// nullopt if the payload is damaged.
 std::optional<PayloadHead> head_of(const std::string& payload) {
   const std::size_t end = payload.find('\n');
   const host::Json json = host::Json::parse(payload.substr(0, end), nullptr, false);
@@ -82,13 +82,13 @@ std::optional<PayloadHead> head_of(const std::string& payload) {
 RunOutcome outcome_of_payload(const std::string& payload) {
   const std::optional<PayloadHead> head = head_of(payload);
   if (!head) {
-    return bad_output("the run's record is not as it was written");
+    return bad_output("the run's record is damaged");
   }
   if (head->result_bytes > kResultAtMost || head->trace_bytes > kResultAtMost) {
     return bad_output("its result or its trace is larger than 256 MB");
   }
   if (payload.size() - head->bytes != head->result_bytes + head->trace_bytes) {
-    return bad_output("the run's record is not as it was written");
+    return bad_output("the run's record is damaged");
   }
   RunOutcome run = head->run;
   run.result = payload.substr(head->bytes, head->result_bytes);
@@ -99,7 +99,7 @@ RunOutcome outcome_of_payload(const std::string& payload) {
   return run;
 }
 
-/// A message that ends with what the process cannot say any more: how it ended.
+/// Completes a message with the end of the process, which the process cannot report itself.
 std::string without_cause(std::string message) {
   if (const std::size_t at = message.find(host::ProcessGuard::CrashReport::kCause);
       at != message.npos) {
@@ -112,7 +112,7 @@ std::string without_cause(std::string message) {
 }
 
 host::ProcessGuard::CrashReport crash_report(const Job& job, const host::Config& config,
-                                         const host::RunResult& result) {
+                                             const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
   words.for_user = std::string("\n") + host::ProcessGuard::CrashReport::kCause;
   words.result = host::file_text(host::result_json(config, result));
@@ -121,7 +121,7 @@ host::ProcessGuard::CrashReport crash_report(const Job& job, const host::Config&
   return words;
 }
 
-/// A step that took more than the study gave it, beyond what stopping takes.
+/// A step that exceeded the study's time budget by more than the time to stop.
 const host::StepResult* overtime(const host::RunResult& result, const StudyBudget& budget) {
   const auto late = std::find_if(result.steps.begin(), result.steps.end(), [&](const auto& step) {
     return budget.time_s && step.verb == host::Verb::plan &&
@@ -140,8 +140,8 @@ RunOutcome outcome_of_result(const host::RunResult& result, const StudyBudget& b
     run.outcome = Outcome::out_of_memory;
   } else if (const host::StepResult* late = overtime(result, budget)) {
     run.outcome = Outcome::timed_out;
-    run.message = late->id + ": '" + late->plugin +
-                  "' says solved, but took more than the time budget of the study";
+    run.message =
+        late->id + ": '" + late->plugin + "' reports solved, but exceeded the study's time budget";
   }
   return run;
 }
@@ -162,7 +162,7 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
   options.on_stuck = [&](const host::RunResult& result) {
     try {
       host::write_file(job.crash_report, host::file_text(host::result_json(config, result)));
-    } catch (const Error&) {  // its note says who is stuck
+    } catch (const Error&) {  // the note names the step
     }
     ::_exit(kStuck);
   };
@@ -170,7 +170,7 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
   process.reset();
   RunOutcome outcome = outcome_of_result(result, budget);
   if (trace) {
-    result.trace.reset();  // it is not where the run has put it
+    result.trace.reset();  // it is not at the path in the result
     ReadText read = read_from(job.scratch, 0, kResultAtMost + 1);
     if (read.error != 0 && read.error != ENOENT) {
       throw host::MachineFault(host::unreadable(job.scratch, read.error));
@@ -185,7 +185,7 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
   return outcome;
 }
 
-/// `files` become those of the run.
+/// Sets `files` to the files of the run.
 RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const StudyBudget& budget,
                        bool trace, std::vector<std::filesystem::path>& files) {
   try {
@@ -198,12 +198,12 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
       return changed;
     }
     RunOutcome run = run_pipeline(job, config, budget, trace);
-    return planned.is_current(config) ? run : changed;  // what plugins read may have changed since
+    return planned.is_current(config) ? run : changed;  // files of plugins may have changed since
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
     return without_result(Outcome::not_done,
                           "the system refuses a run " +
-                              std::string(no_thread ? "a thread: " : "what it needs: ") +
+                              std::string(no_thread ? "a thread: " : "a resource: ") +
                               error.what());
   } catch (const host::MachineFault& fault) {
     return without_result(Outcome::not_done, fault.what());
@@ -217,16 +217,16 @@ RunOutcome run_guarded(const Job& job, const PlannedConfig& planned, const Study
     if (planned.is_on_trial) {  // not final if a file of it cannot be read
       return without_result(Outcome::bad_parameters, all);
     }
-    // All was read and checked when the study began, or cannot be read now.
+    // All files were checked when the study began: now one cannot be read.
     return without_result(Outcome::not_done, all + " (unlike when the runs were planned)");
   } catch (const std::bad_alloc&) {
-    return without_result(Outcome::out_of_memory, "no memory was left");
+    return without_result(Outcome::out_of_memory, "out of memory");
   } catch (const std::exception& error) {
     return without_result(Outcome::failed, error.what());
   }
 }
 
-/// A failure that nothing but the plugin explains, unless the machine had failed.
+/// True for a failure that only the plugin explains, unless the machine failed.
 bool is_unexplained(Outcome outcome) {
   return outcome == Outcome::failed || outcome == Outcome::crashed ||
          outcome == Outcome::out_of_memory || outcome == Outcome::bad_output ||
@@ -239,13 +239,13 @@ std::string signal_name(int number) {
   return name != nullptr ? "SIG" + std::string(name) : "signal " + std::to_string(number);
 }
 
-/// What plugins say need not be UTF-8: U+FFFD stands for what is not.
+/// A plugin's text as UTF-8, with U+FFFD for invalid bytes.
 std::string in_utf8(const std::string& text) {
   return host::Json::parse(
       host::Json(text).dump(-1, ' ', false, host::Json::error_handler_t::replace));
 }
 
-/// With the end of what it wrote to stdout and stderr, in one line.
+/// The message with the end of the output on stdout and stderr, in one line.
 std::string with_said(const std::string& message, const std::string& said) {
   constexpr std::size_t kAtMost = 300;
   std::string line;
@@ -260,10 +260,10 @@ std::string with_said(const std::string& message, const std::string& said) {
   if (line.ends_with(' ')) {
     line.pop_back();
   }
-  return line.empty() ? message : message + "; the last that it wrote: " + line;
+  return line.empty() ? message : message + "; last output: " + line;
 }
 
-/// How the process ended that nobody has ended from outside.
+/// The end of a process that was not ended from outside.
 std::string cause_of(const Ended& ended, std::string& said) {
   if (ended.how == Ending::killed) {
     return "was killed by " + signal_name(ended.signal);
@@ -313,7 +313,7 @@ std::string study_run(const Job& job, const PlannedConfig& planned, const StudyB
   if (is_unexplained(run.outcome) || run.outcome == Outcome::not_done ||
       run.outcome == Outcome::changed) {
     job.retire();
-    ::close_range(3, ~0U, 0);  // whatever a plugin has left open
+    ::close_range(3, ~0U, 0);  // descriptors that a plugin has left open
     if (const std::string why = host::first_unreadable(files); !why.empty()) {
       run = without_result(Outcome::not_done, why);
     }
@@ -333,7 +333,7 @@ RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
       RunOutcome run = outcome_of_payload(ended.payload);
       if (ended.left_behind > 0) {
         run.outcome = Outcome::failed;
-        run.message = "a plugin left processes behind, which were ended; " + run.message;
+        run.message = "a plugin left processes running, which were killed; " + run.message;
       }
       return run;
     }
@@ -343,7 +343,7 @@ RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
     case Ending::killed:
       return crashed(ended);
     case Ending::garbled:
-      return bad_output("the run's record is not as it was written");
+      return bad_output("the run's record is damaged");
     case Ending::too_large:
       return bad_output(ended.note + " wrote a file, or gave a result, of more than " +
                         number(limits.file_mb) + " MB");

@@ -19,12 +19,12 @@
 namespace altiplan::study {
 namespace {
 
-/// Two ends, neither of which outlives this object or goes to another program.
+/// A pipe, closed on destruction and not inherited by other programs.
 class Pipe {
  public:
   Pipe() {
     if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw Error(std::string("cannot make a pipe: ") + std::strerror(errno));
+      throw Error(std::string("cannot create a pipe: ") + std::strerror(errno));
     }
   }
   ~Pipe() {
@@ -47,7 +47,7 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-/// Whether there may be more to read.
+/// True if there may be more to read.
 bool read_some(int descriptor, std::string& text) {
   std::array<char, 4096> buffer;
   const ssize_t size = ::read(descriptor, buffer.data(), buffer.size());
@@ -57,7 +57,7 @@ bool read_some(int descriptor, std::string& text) {
   return size > 0 || (size < 0 && errno == EINTR);
 }
 
-/// Both to their ends, whichever has something first: a full pipe would stop the program.
+/// Reads both pipes to their ends, in the order of arrival: a full pipe would block the program.
 void read_all(const Pipe& out, const Pipe& err, CommandResult& result) {
   std::array<pollfd, 2> waiting{pollfd{out.reader(), POLLIN, 0}, pollfd{err.reader(), POLLIN, 0}};
   const std::array<std::string*, 2> texts{&result.out, &result.err};

@@ -16,9 +16,9 @@ namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
-/// A task that gains nothing from being started again must not be for ever.
+/// Limits the restarts of a task that makes no progress.
 constexpr int kMaxRestarts = 20;
-/// In which a study ends its runs before Slurm ends the task.
+/// Time for a study to end its runs before Slurm ends the task (s).
 constexpr int kGraceSeconds = 60;
 
 std::string quoted(const std::string& text) {
@@ -29,7 +29,7 @@ std::string quoted(const std::string& text) {
   return word + "'";
 }
 
-/// What sbatch takes for a job's name without a second thought.
+/// A job name with only plain characters, which sbatch accepts.
 std::string job_name(const SlurmJob& job) {
   std::string name = "altiplan-" + job.out.stem().string();
   for (char& c : name) {
@@ -43,7 +43,7 @@ std::vector<std::string> command(const SlurmJob& job, const std::string& log,
                                  const fs::path& script, const std::vector<std::string>& options) {
   std::string output = (job.folder() / "").string();
   for (std::size_t at = 0; (at = output.find('%', at)) != output.npos; at += 2) {
-    output.insert(at, "%");  // sbatch's own sign
+    output.insert(at, "%");  // sbatch's placeholder character
   }
   std::vector<std::string> all{"sbatch", "--parsable", "--chdir=" + job.working_folder.string(),
                                "--output=" + output + log};
@@ -53,7 +53,7 @@ std::vector<std::string> command(const SlurmJob& job, const std::string& log,
   return all;
 }
 
-/// The number that sbatch gave the job.
+/// The job number that sbatch printed.
 std::string number_of_job(const std::vector<std::string>& arguments) {
   const CommandResult result = run_command(arguments);
   const std::string number = result.out.substr(0, result.out.find_first_of(";\n"));
@@ -70,7 +70,7 @@ std::string number_of_job(const std::vector<std::string>& arguments) {
   return number;
 }
 
-/// Sums by what is alike in runs; the mean of as near a kind as there is.
+/// Sums of times over similar runs; gives the mean over the most similar ones stored.
 class Means {
  public:
   void add(const std::string& pipeline, const std::string& scenario, double seconds) {
@@ -123,8 +123,8 @@ std::string array_script(const SlurmJob& job) {
       << "#SBATCH --requeue\n"
       << "#SBATCH --open-mode=append\n"
       << "#SBATCH --signal=B:USR1@" << kGraceSeconds << "\n\n"
-      << "# Each task runs a part of the study. One that is cancelled, preempted or out of time\n"
-      << "# leaves its runs in its database; started again, it does the rest.\n"
+      << "# Each task runs one shard of the study. A task that is cancelled, preempted or out of\n"
+      << "# time keeps its runs in its database and continues with the rest when restarted.\n"
       << "task=$SLURM_ARRAY_TASK_ID\n"
       << "out_of_time=false\n"
       << "trap 'out_of_time=true; kill -TERM $study' USR1\n"
@@ -139,7 +139,7 @@ std::string array_script(const SlurmJob& job) {
       << "  wait $study\n"
       << "  code=$?\n"
       << "  if [[ $code -ne 0 && ${SLURM_RESTART_COUNT:-0} -lt " << kMaxRestarts << " ]]; then\n"
-      << "    echo \"out of time: queued again\"\n"
+      << "    echo \"out of time: requeued\"\n"
       << "    scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$task\" && sleep " << kGraceSeconds << "\n"
       << "  fi\n"
       << "fi\n"
@@ -154,7 +154,7 @@ std::string merge_script(const SlurmJob& job) {
          << "#SBATCH --ntasks=1\n"
          << "#SBATCH --requeue\n"
          << "#SBATCH --open-mode=append\n\n"
-         << "# Runs that are in the database already stay in it.\n"
+         << "# Runs that the database already contains are kept.\n"
          << "out=" << quoted(job.out.string()) << "\n"
          << "shards=" << quoted((job.folder() / "shard-").string()) << "\n"
          << "stores=()\n"
@@ -191,7 +191,7 @@ Submitted submit(const SlurmJob& job) {
 std::string still_queued(const std::vector<std::string>& jobs) {
   std::string all;
   for (const std::string& job : jobs) {
-    // Of a job that it has forgotten squeue says that its number is invalid.
+    // squeue reports an invalid number for a job that it no longer knows.
     const CommandResult result =
         run_command({"squeue", "--noheader", "--jobs=" + job, "--format=%i %T"});
     std::istringstream lines(result.code == 0 ? result.out : "");

@@ -9,20 +9,20 @@
 
 namespace altiplan::study {
 
-/// A study as an array of tasks, each of which runs a shard, and a job that merges them.
+/// A study as an array of tasks, each running one shard, and a job that merges the shards.
 struct SlurmJob {
-  std::filesystem::path program;  ///< altiplan, as the nodes find it
+  std::filesystem::path program;  ///< path of altiplan on the nodes
   std::filesystem::path study;    ///< absolute, like all paths here
   std::filesystem::path out;      ///< the database of all runs
   std::filesystem::path working_folder;
   int shards = 1;
-  int minutes = 0;                            ///< after which a task is stopped, and queued again
-  int jobs = 1;                               ///< processes of a task
-  double memory_mb = 0;                       ///< of a task
-  std::vector<std::string> study_arguments;   ///< more of `altiplan study`
-  std::vector<std::string> sbatch_arguments;  ///< more of sbatch, for both jobs
+  int minutes = 0;                            ///< time limit of a task, which is then requeued
+  int jobs = 1;                               ///< parallel runs per task
+  double memory_mb = 0;                       ///< per task
+  std::vector<std::string> study_arguments;   ///< further arguments of `altiplan study`
+  std::vector<std::string> sbatch_arguments;  ///< further arguments of sbatch, for both jobs
 
-  /// Scripts, logs and shards.
+  /// The folder of scripts, logs and shards.
   std::filesystem::path folder() const { return out.string() + ".slurm"; }
   std::filesystem::path array_file() const { return folder() / "array.sbatch"; }
   std::filesystem::path merge_file() const { return folder() / "merge.sbatch"; }
@@ -31,26 +31,25 @@ struct SlurmJob {
 
 std::string array_script(const SlurmJob& job);
 std::string merge_script(const SlurmJob& job);
-/// The calls of sbatch; that of the merge waits for all of `array`, the other's number.
+/// The sbatch commands; the merge job waits for all tasks of the job with the number `array`.
 std::vector<std::string> array_command(const SlurmJob& job);
 std::vector<std::string> merge_command(const SlurmJob& job, const std::string& array);
-/// As a shell would read it.
+/// The command quoted for a shell.
 std::string shell_text(const std::vector<std::string>& arguments);
 
 struct Submitted {
   std::string array;
   std::string merge;
 };
-/// Submits both. Throws Error with sbatch's own words where it refuses; nothing is left in the
-/// queue then.
+/// Submits both jobs. Throws Error with sbatch's message if it refuses one, and leaves nothing in
+/// the queue.
 Submitted submit(const SlurmJob& job);
 
-/// The state of those of the jobs that are still in the queue, such as "12_[3-9] PENDING"; "" where
-/// there is none.
+/// The state of those jobs that are still queued, such as "12_[3-9] PENDING"; "" if there is none.
 std::string still_queued(const std::vector<std::string>& jobs);
 
-/// Seconds that the runs of the plan will take, one after another, those left out whose keys are
-/// stored: by the mean of the stored runs of the same pipeline and scenario, else of the same
-/// pipeline, else of all. NaN without any stored run.
+/// Estimated total time (s) of the plan's runs whose keys are not stored: from the mean of the
+/// stored runs of the same pipeline and scenario, else of the same pipeline, else of all. NaN
+/// without any stored run.
 double estimated_seconds(const StudyPlan& plan, const std::vector<std::filesystem::path>& stores);
 }  // namespace altiplan::study

@@ -10,7 +10,7 @@
 namespace altiplan::study {
 namespace {
 
-/// Without a copy, as it is taken of 10,000 resamples of a sample that has no NaN.
+/// Without a copy, since it is computed for 10,000 resamples; the sample has no NaN.
 double median_in_place(std::span<double> sample) {
   const auto middle = sample.begin() + std::ptrdiff_t(sample.size() / 2);
   std::nth_element(sample.begin(), middle, sample.end());
@@ -18,7 +18,7 @@ double median_in_place(std::span<double> sample) {
                                 : (*middle + *std::max_element(sample.begin(), middle)) / 2;
 }
 
-/// The differences of each scenario; each pair's own where there is one scenario.
+/// The median difference of each scenario; of each pair if there is one scenario.
 std::vector<std::vector<double>> differences_of(const PairedSample& sample) {
   std::map<std::size_t, std::vector<double>> by_scenario;
   for (std::size_t at = 0; at < sample.size(); ++at) {

@@ -7,20 +7,20 @@
 
 namespace altiplan::study {
 
-// Statistics of studies whose scenarios have repetitions. These are no independent evidence: tests
-// count a scenario once, intervals draw whole scenarios. Of one scenario, repetitions are what is
-// counted and drawn. `groups` has the scenario of each value.
+// Statistics of studies whose scenarios have repetitions. Repetitions are not independent: tests
+// count each scenario once, bootstrap intervals resample whole scenarios. With a single scenario,
+// repetitions are counted and resampled. `groups` has the scenario of each value.
 
-/// What a test counts.
+/// The units that a test counts.
 struct Units {
   std::size_t count = 0;
-  bool of_scenarios = false;  ///< else repetitions of one
+  bool of_scenarios = false;  ///< otherwise repetitions of one
 
   std::string words() const;  ///< "20 scenarios", "5 repetitions"
 };
 Units units_of(std::span<const std::size_t> groups);
 
-/// Why a bootstrap gives no interval: "too few scenarios: at least 6 for 95 %"; "" where it does.
+/// Why a bootstrap gives no interval: "too few scenarios: at least 6 for 95 %"; "" if it does.
 std::string why_no_bootstrap(std::span<const std::size_t> groups, double confidence);
 
 /// The numbers of pairs of runs.
@@ -33,10 +33,10 @@ struct PairedSample {
   std::size_t size() const { return groups.size(); }
 };
 
-/// Whether second / first can be taken, or their difference only.
+/// True if second / first is defined, false if only their difference is.
 bool all_positive(const PairedSample& sample);
 
-/// How the second differs from the first.
+/// The difference of the second from the first.
 struct PairedEffect {
   double median = kNone;             ///< over the pairs, of second / first or second - first
   std::optional<Interval> interval;  ///< bootstrap
@@ -46,26 +46,26 @@ struct PairedEffect {
 PairedEffect paired_effect(const PairedSample& sample, bool is_ratio, const RandomStream& stream,
                            double confidence, std::size_t resamples = kResamples);
 
-/// The interval of a share, and how it was found: "Wilson, 20 pairs", "bootstrap of 20 scenarios".
+/// The interval of a share and its method: "Wilson, 20 pairs", "bootstrap of 20 scenarios".
 struct ShareInterval {
   std::optional<Interval> interval;
   std::string method;  ///< "" without an interval
 };
-/// `results` are 0 or 1; nothing of none. Wilson's interval where they are independent: one
-/// per scenario, or all of one scenario. Where all agree a bootstrap would see no variation and be
-/// certain after two scenarios: then Wilson's with each scenario as one trial. Else the bootstrap.
-/// Two intervals of the same share are the same, whoever asks, by the seed of the study.
+/// `results` are 0 or 1; no interval if empty. Wilson's interval if they are independent: one per
+/// scenario, or all of one scenario. If all results agree, Wilson's with each scenario as one
+/// trial, since a bootstrap would see no variation. Otherwise the bootstrap.
+/// Seeded from the study, so that intervals of the same share are identical everywhere.
 ShareInterval share_interval(std::span<const double> results, std::span<const std::size_t> groups,
                              std::uint64_t seed, double confidence);
 
-/// In how many scenarios one of two succeeded more often than the other, and the exact sign test of
-/// these numbers; with one pair per scenario that is McNemar's test.
+/// The numbers of scenarios in which one of two succeeded more often than the other, and their
+/// exact sign test; with one pair per scenario this is McNemar's test.
 struct SuccessTest {
   Units units;
   std::size_t first_more = 0;
   std::size_t second_more = 0;
   double p = kNone;  ///< two-sided; NaN without pairs
 };
-/// A pair's numbers are 1 where it succeeded, 0 where it did not.
+/// A pair's numbers are 1 for success and 0 for failure.
 SuccessTest success_test(const PairedSample& sample);
 }  // namespace altiplan::study

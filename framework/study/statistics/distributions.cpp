@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that includes Boost.Math, which takes longer to compile than all else here.
+// The only file that includes Boost.Math, which is slow to compile.
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -13,8 +13,8 @@ namespace {
 
 namespace math = boost::math;
 
-/// Nothing is thrown: what has no value is NaN, what is too great infinite. Doubles are not
-/// promoted, so that a result does not depend on how long the machine's long double is.
+/// Never throws: undefined values are NaN, overflow is infinite. Doubles are not promoted, so that
+/// results do not depend on the width of the machine's long double.
 using Quiet = math::policies::policy<math::policies::domain_error<math::policies::ignore_error>,
                                      math::policies::pole_error<math::policies::ignore_error>,
                                      math::policies::overflow_error<math::policies::ignore_error>,
@@ -24,7 +24,7 @@ using Normal = math::normal_distribution<double, Quiet>;
 using ChiSquared = math::chi_squared_distribution<double, Quiet>;
 using Binomial = math::binomial_distribution<double, Quiet>;
 
-/// P(a < Z <= b), both taken from the tail in which they are small.
+/// P(a < Z <= b), computed from the tail in which both are small.
 double normal_between(double a, double b) {
   return a > 0 ? normal_tail(a) - normal_tail(b) : normal_tail(-b) - normal_tail(-a);
 }
@@ -38,15 +38,15 @@ double chi_squared_tail(double x, int degrees) {
   if (std::isnan(x) || degrees < 1) {
     return kNone;
   }
-  if (x <= 0 || std::isinf(x)) {  // outside of what Boost takes
+  if (x <= 0 || std::isinf(x)) {  // outside Boost's domain
     return x <= 0 ? 1 : 0;
   }
   return math::cdf(math::complement(ChiSquared(degrees), x));
 }
 
-// k ∫ φ(z) [Φ(z) - Φ(z - q)]^(k-1) dz, over the greatest of the k variables; Boost.Math has no such
-// distribution. The trapezoidal rule converges faster than any power of the step for such a
-// function, which ends like a normal density on both sides: this step gives all digits.
+// k ∫ φ(z) [Φ(z) - Φ(z - q)]^(k-1) dz, over the maximum of the k variables; Boost.Math lacks this
+// distribution. The integrand decays like a normal density on both sides, so the trapezoidal rule
+// converges faster than any power of the step: this step gives full precision.
 double studentized_range(double q, int k) {
   if (std::isnan(q) || k < 2) {
     return kNone;
@@ -68,7 +68,7 @@ double studentized_range_quantile(double p, int k) {
     return kNone;
   }
   double low = 0;
-  double high = 64;  // where no double is left between the probability and 1
+  double high = 64;  // beyond it the probability rounds to 1
   while (std::nextafter(low, high) < high) {
     const double middle = (low + high) / 2;
     (studentized_range(middle, k) < p ? low : high) = middle;

@@ -11,7 +11,7 @@ namespace {
 
 bool is_confidence(double confidence) { return confidence > 0 && confidence < 1; }
 
-/// The values of a sample by group; each its own group where there is one only.
+/// The values of a sample by group; each value its own group if there is only one group.
 class Groups {
  public:
   explicit Groups(std::span<const std::size_t> groups) {
@@ -49,7 +49,7 @@ RandomStream stream_of(const RandomStream& stream, std::size_t number) {
   return stream.sub("resample", number);
 }
 
-/// NaN for an empty resample or an index outside of the sample.
+/// NaN for an empty resample or an index outside the sample.
 double of_resample(std::span<const double> sample, const std::vector<std::size_t>& indices,
                    const Statistic& statistic, std::vector<double>& drawn) {
   drawn.clear();
@@ -81,7 +81,7 @@ std::optional<Interval> wilson(std::int64_t successes, std::int64_t trials, doub
   const double z = normal_quantile((1 + confidence) / 2);
   const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
   const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-  // Both ends are exact where all or none succeed, which rounding must not take away.
+  // If all or none succeed, the end is exactly 1 or 0, whatever the rounding.
   return Interval{successes == 0 ? 0 : std::clamp(centre - half, 0.0, p),
                   successes == trials ? 1 : std::clamp(centre + half, p, 1.0)};
 }

@@ -34,10 +34,10 @@ double tie_sum(std::span<const double> sample) {
   return sum;
 }
 
-/// Two-sided, of the sum of the positive ranks, all 2^n choices of signs being equally likely.
+/// Two-sided p-value of the sum of the positive ranks, with all 2^n sign patterns equally likely.
 double exact_p(std::span<const double> ranks, double positive) {
-  // Twice the ranks: those of ties may be halves. chance[s] = P(sum of the ranks so far = s),
-  // halved with each rank added: exact while 2^-n is.
+  // Doubled ranks, since ties may have half ranks. chance[s] = P(sum of the ranks so far = s),
+  // halved with each rank added: exact as long as 2^-n is.
   const std::size_t n = ranks.size();
   std::vector<double> chance(n * (n + 1) + 1, 0.0);
   chance[0] = 1;
@@ -55,7 +55,7 @@ double exact_p(std::span<const double> ranks, double positive) {
   return std::min(1.0, 2 * std::min(less, greater));
 }
 
-/// Two-sided, by the normal distribution; corrected for ties, not for continuity.
+/// Two-sided p-value by the normal approximation; corrected for ties, not for continuity.
 double approximate_p(double n, double statistic, double ties) {
   const double mean = n * (n + 1) / 4;
   const double variance = (n * (n + 1) * (2 * n + 1) - ties / 2) / 24;

@@ -12,9 +12,9 @@
 
 namespace altiplan::study {
 
-// Statistics of samples, without knowledge of studies. docs/statistics.md has each one's source and
-// the SciPy call that it equals. Where a sample holds a NaN the answer is NaN or nothing, unless
-// the function says otherwise.
+// Statistics of samples, independent of studies. docs/statistics.md lists the source of each and
+// the equivalent SciPy call. For a sample with a NaN the result is NaN or nullopt, unless stated
+// otherwise.
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -27,24 +27,24 @@ struct Interval {
 
 /// Standard normal: P(Z > z).
 double normal_tail(double z);
-/// The z with P(Z <= z) = p; infinite for 0 and 1, NaN outside of them.
+/// The z with P(Z <= z) = p; infinite for 0 and 1, NaN outside [0, 1].
 double normal_quantile(double p);
 /// P(X > x) of the chi-squared distribution with that many degrees of freedom (at least 1).
 double chi_squared_tail(double x, int degrees);
 /// P(Q <= q) of the studentized range of k >= 2 normal variables of known variance.
 double studentized_range(double q, int k);
-/// Its inverse; NaN where p is not in (0, 1) or k < 2.
+/// Its inverse; NaN if p is not in (0, 1) or k < 2.
 double studentized_range_quantile(double p, int k);
 
 // ---- Summaries
 
-/// To 12 significant digits: two routes along the same points, their legs added in another order,
-/// are equally long.
+/// Rounded to 12 significant digits, so that routes along the same points are equally long in
+/// whatever order their legs are summed.
 double in_12_digits(double value);
 
-double mean(std::span<const double> sample);    ///< NaN of nothing
-double median(std::span<const double> sample);  ///< NaN of nothing
-/// Linear between order statistics (type 7 of Hyndman and Fan); NaN of nothing, or q not in [0, 1].
+double mean(std::span<const double> sample);    ///< NaN if empty
+double median(std::span<const double> sample);  ///< NaN if empty
+/// Linear between order statistics (type 7 of Hyndman and Fan); NaN if empty, or q not in [0, 1].
 double quantile(std::span<const double> sample, double q);
 /// The same without a copy: reorders the sample.
 double quantile_in_place(std::span<double> sample, double q);
@@ -58,60 +58,60 @@ struct BoxPlot {
   double high_whisker = 0;
   std::vector<std::size_t> outliers;  ///< indices into the sample, in its order
 };
-/// Nothing for an empty sample and where a value is infinite.
+/// Nothing if the sample is empty or a value is infinite.
 std::optional<BoxPlot> box_plot(std::span<const double> sample);
 
-/// A point of a step function, which has value `share` from `at` on.
+/// A point of a step function with the value `share` from `at` on.
 struct CurvePoint {
   double at = 0;
   double share = 0;
   bool operator==(const CurvePoint&) const = default;
 };
 
-/// The share of all runs that have solved by each time. A run that did not solve (its time is NaN)
-/// counts among all and never among the solved. One point per distinct time.
+/// The share of all runs solved by each time. A run that did not solve has the time NaN and counts
+/// only in the total. One point per distinct time.
 std::vector<CurvePoint> solved_by(std::span<const double> times);
 
 /// Dolan and Moré's performance profile, a curve per solver: the share of all problems that it
-/// solved at a cost of at most `at` times the least of all solvers. `costs` has a row per solver,
-/// one entry per problem, NaN where not solved. Zero over zero counts as 1, more than zero over
-/// zero as never. Nothing where rows differ in length or a cost is negative or infinite.
+/// solved at a cost of at most `at` times the lowest of all solvers. `costs` has a row per solver,
+/// one entry per problem, NaN if not solved. Zero over zero counts as 1, a positive cost over zero
+/// as never. Nothing if rows differ in length or a cost is negative or infinite.
 std::optional<std::vector<std::vector<CurvePoint>>> performance_profile(
     const std::vector<std::vector<double>>& costs);
 
 // ---- Intervals
 
-/// Wilson's score interval of a share. Nothing without trials, where successes are not within
-/// 0 … trials, or confidence not in (0, 1).
+/// Wilson's score interval of a share. Nothing without trials, or if successes are not within
+/// 0 … trials or confidence is not in (0, 1).
 std::optional<Interval> wilson(std::int64_t successes, std::int64_t trials, double confidence);
 
-/// A quantity of a sample; is given the sample's values in any order and may reorder them.
+/// A quantity of a sample; receives the sample's values in any order and may reorder them.
 using Statistic = std::function<double(std::span<double>)>;
 
 constexpr std::size_t kResamples = 10'000;
 
 /// The percentile interval of the statistic over the given resamples, lists of indices into the
-/// sample. Nothing for an empty sample, no resamples, an empty one, an index outside of the sample,
-/// a statistic that is NaN of any of them, or confidence not in (0, 1).
+/// sample. Nothing for an empty sample, no resamples, an empty resample, an index outside the
+/// sample, a statistic that is NaN for a resample, or confidence not in (0, 1).
 std::optional<Interval> bootstrap_interval(std::span<const double> sample,
                                            const Statistic& statistic,
                                            const std::vector<std::vector<std::size_t>>& resamples,
                                            double confidence);
 
-/// Indices of resample `number`: as many groups as there are, drawn with replacement, each with all
-/// that is in it. `groups` has the group of each value (any numbers); where all values are of one
-/// group, values are drawn.
+/// Indices of resample `number`: as many groups as the sample has, drawn with replacement, each
+/// with all its values. `groups` has the group of each value (any numbers); if all values are of
+/// one group, single values are drawn.
 std::vector<std::size_t> resample(std::span<const std::size_t> groups, const RandomStream& stream,
                                   std::size_t number);
 
-/// How many groups are drawn: that of the groups, or of the values where there is one group.
+/// Number of units drawn: the number of groups, or of values if there is one group.
 std::size_t resampled_units(std::span<const std::size_t> groups);
-/// The least number of units that carry an interval of a median: all of n units lie on one side of
-/// the true median with the chance 2^(1 - n), so that not even the range from the least to the
-/// greatest covers it more often than 1 - 2^(1 - n). 6 for 95 %; 0 for a confidence not in (0, 1).
+/// The minimum number of units for an interval of a median: all n units lie on one side of the true
+/// median with probability 2^(1 - n), so that even the range from minimum to maximum covers it only
+/// with probability 1 - 2^(1 - n). 6 for 95 %; 0 for a confidence not in (0, 1).
 std::size_t fewest_units(double confidence);
 
-/// bootstrap_interval over so many of these; nothing for fewer than fewest_units as well.
+/// bootstrap_interval over that many resamples; nothing for fewer than fewest_units as well.
 std::optional<Interval> bootstrap_interval(std::span<const double> sample,
                                            std::span<const std::size_t> groups,
                                            const Statistic& statistic, const RandomStream& stream,
@@ -119,14 +119,14 @@ std::optional<Interval> bootstrap_interval(std::span<const double> sample,
 
 // ---- Tests
 
-/// Exact two-sided McNemar test of how often only the first and only the second succeeded; 1 where
-/// neither ever did, NaN for negative numbers.
+/// Exact two-sided McNemar test of the numbers of pairs in which only the first and only the second
+/// succeeded; 1 if both are 0, NaN for negative numbers.
 double mcnemar(std::int64_t only_first, std::int64_t only_second);
 
 /// Ranks from 1, equal values share the mean of theirs.
 std::vector<double> ranks(std::span<const double> sample);
 
-/// How the p-value is found: `automatic` is exact for at most 50 differences that are not zero.
+/// Method of the p-value: `automatic` is exact for at most 50 non-zero differences.
 enum class WilcoxonMethod { automatic, exact, approximate };
 
 struct Wilcoxon {
@@ -140,36 +140,36 @@ struct Wilcoxon {
   bool exact = false;
 };
 /// Wilcoxon's signed-rank test of paired differences: zeros are dropped, differences of equal size
-/// share the mean of their ranks. Exact is the permutation test: given the sizes, all choices of
-/// signs are equally likely. The approximation is corrected for ties, not for continuity. Nothing
-/// where no difference is other than zero, and where `exact` is asked for of more than 1000.
+/// share the mean of their ranks. The exact test is the permutation test: given the sizes, all sign
+/// patterns are equally likely. The approximation is corrected for ties, not for continuity.
+/// Nothing if all differences are zero, or if `exact` is requested for more than 1000.
 std::optional<Wilcoxon> wilcoxon(std::span<const double> differences,
                                  WilcoxonMethod method = WilcoxonMethod::automatic);
 
-/// Vargha and Delaney's A12: the chance that a value of x is greater than one of y, ties half.
-/// Nothing where a sample is empty.
+/// Vargha and Delaney's A12: the probability that a value of x exceeds one of y, ties counting
+/// half. Nothing if a sample is empty.
 std::optional<double> vargha_delaney(std::span<const double> x, std::span<const double> y);
 /// Cliff's delta, 2 A12 - 1.
 std::optional<double> cliffs_delta(std::span<const double> x, std::span<const double> y);
 
-/// Holm's step-down adjusted p-values, in the order given. A NaN stays one and does not count.
+/// Holm's step-down adjusted p-values, in the order given. A NaN stays NaN and is not counted.
 std::vector<double> holm(std::span<const double> p);
 
 struct Friedman {
-  double statistic = 0;               ///< corrected for ties; NaN where all are tied
+  double statistic = 0;               ///< corrected for ties; NaN if all are tied
   double p = 0;                       ///< by chi-squared; NaN likewise
   std::vector<double> average_ranks;  ///< one per treatment, 1 for the lowest values
 };
 /// Friedman's test: a row per treatment (3 or more), one entry per block (1 or more). Nothing for
-/// fewer, or where rows differ in length.
+/// fewer, or if rows differ in length.
 std::optional<Friedman> friedman(const std::vector<std::vector<double>>& treatments);
 
 /// Nemenyi's critical difference of average ranks of k treatments over n blocks; NaN for k < 2,
 /// n < 1 or alpha not in (0, 1).
 double critical_difference(int k, std::int64_t n, double alpha);
 
-/// The bars of a critical-difference diagram: each is a largest set of treatments, two or more, of
-/// which no two differ by the critical difference or more; indices by ascending rank.
+/// The bars of a critical-difference diagram: each is a maximal set of two or more treatments, no
+/// two of which differ by the critical difference or more; indices by ascending rank.
 std::vector<std::vector<std::size_t>> joined(std::span<const double> average_ranks,
                                              double critical_difference);
 }  // namespace altiplan::study

@@ -21,7 +21,7 @@ double between(double a, double b, double t) {
     return a;
   }
   if (std::isinf(a) || std::isinf(b)) {
-    return a + b;  // NaN between infinities of both signs only
+    return a + b;  // NaN only for infinities of opposite signs
   }
   return t < 0.5 ? a + (b - a) * t : b - (b - a) * (1 - t);
 }
@@ -46,7 +46,7 @@ bool comparable(const std::vector<std::vector<double>>& costs) {
   });
 }
 
-/// The cost as a multiple of the least.
+/// The cost as a multiple of the lowest.
 double ratio(double cost, double least) {
   return cost == least ? 1 : cost / least;  // infinite over zero
 }
@@ -96,7 +96,7 @@ std::optional<BoxPlot> box_plot(std::span<const double> sample) {
   box.q1 = quantile(sample, 0.25);
   box.median = median(sample);
   box.q3 = quantile(sample, 0.75);
-  // A quartile may lie between a value within and an outlier: no whisker ends inside the box.
+  // A quartile may lie between an inlier and an outlier: keep whiskers outside the box.
   box.low_whisker = box.q1;
   box.high_whisker = box.q3;
   const double reach = 1.5 * (box.q3 - box.q1);

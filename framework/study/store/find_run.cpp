@@ -20,7 +20,7 @@ std::optional<std::int64_t> id_of(const std::string& text) {
 [[noreturn]] void fail_none(const Store& store, const std::vector<StoredRun>& runs,
                             const std::string& named) {
   if (runs.empty()) {
-    throw Error("'" + store.file().string() + "' holds no runs yet");
+    throw Error("'" + store.file().string() + "' contains no runs yet");
   }
   std::vector<std::string> names;
   for (const StoredRun& run : runs) {
@@ -28,7 +28,7 @@ std::optional<std::int64_t> id_of(const std::string& text) {
   }
   const std::string nearest = nearest_name(named, names);
   throw Error("'" + store.file().string() + "' has no run " + excerpt(named) +
-              ": expected its id, its key or the beginning of it (" + std::to_string(kShortestKey) +
+              ": expected its id, its key or a prefix of it (" + std::to_string(kShortestKey) +
               " characters or more), or its name, such as '" +
               (nearest.empty() ? names.front() : nearest) + "'");
 }

@@ -7,7 +7,7 @@
 
 namespace altiplan::study {
 
-/// The run with this id, name, or key that begins so, with its result and trace. Throws Error where
-/// there is none, or more than one.
+/// The run with this id, name or key prefix, with its result and trace. Throws Error if there is
+/// none, or more than one.
 StoredRun find_run(const Store& store, const std::string& named);
 }  // namespace altiplan::study

@@ -15,7 +15,7 @@
 namespace altiplan::study {
 namespace {
 
-/// Index of each name in `all`, which grows by those that it lacks.
+/// Index of each name in `all`; missing names are appended.
 std::map<std::string, std::size_t> gather(std::vector<StoredVariant>& all,
                                           const std::vector<StoredVariant>& more) {
   for (const StoredVariant& variant : more) {
@@ -50,7 +50,7 @@ StudyFile study_file(const Store& store) {
   std::map<std::string, std::string> study = store.study();
   const std::string name = "'" + store.file().string() + "'";
   if (study.empty()) {
-    throw Error(name + " holds no study yet");
+    throw Error(name + " contains no study yet");
   }
   if (study["text"].empty()) {
     throw Error(name + " is damaged: the text of its study is missing");
@@ -82,7 +82,7 @@ StudyData load_study_data(const std::vector<std::string>& stores) {
       const std::string& planned = study["planned"];
       std::from_chars(planned.data(), planned.data() + planned.size(), data.planned);
     } else if (study["text"] != text) {
-      throw Error("'" + name + "' is of another study than '" + stores.front() +
+      throw Error("'" + name + "' belongs to another study than '" + stores.front() +
                   "': their study files differ");
     }
     gather(data.scenarios, store.scenarios());

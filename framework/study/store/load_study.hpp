@@ -9,9 +9,9 @@
 
 namespace altiplan::study {
 
-/// The study's file as it was when the store was made. Throws Error naming the store.
+/// The study's file as of the creation of the store. Throws Error naming the store.
 StudyFile study_file(const Store& store);
 
-/// Throws Error where the stores are not of one study.
+/// Throws Error if the stores belong to different studies.
 StudyData load_study_data(const std::vector<std::string>& stores);
 }  // namespace altiplan::study

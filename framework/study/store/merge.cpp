@@ -24,12 +24,12 @@ std::string value_of(const Study& study, const std::string& name) {
   return found == study.end() ? "" : found->second;
 }
 
-/// Where two study files, each without comments and on one line, begin to differ: "'"repetitions":
-/// 2' against '"repetitions": 3'".
+/// The first difference of two study files, each without comments and on one line:
+/// "'"repetitions": 2' against '"repetitions": 3'".
 std::string where_they_differ(const std::string& first, const std::string& second) {
   const auto [one, other] = std::mismatch(first.begin(), first.end(), second.begin(), second.end());
   const std::size_t at = std::size_t(one - first.begin());
-  // From the key on, which is the same in both.
+  // From the key onwards, which is the same in both.
   const std::size_t separator = at == 0 ? first.npos : first.find_last_of(",{[", at - 1);
   const std::size_t begin = separator == first.npos ? 0 : separator + 1;
   const auto part = [&](const std::string& text) {
@@ -46,7 +46,7 @@ bool is_same(const StoredSession& a, const StoredSession& b) {
          a.host == b.host && a.jobs == b.jobs && a.reuse == b.reuse && a.limits == b.limits;
 }
 
-/// A result without the places of its files, which are others where the study lies elsewhere.
+/// A result without the paths of its files, which differ if the study was moved.
 host::Json without_places(const std::string& result) {
   host::Json json = result.empty() ? host::Json() : host::Json::parse(result, nullptr, false);
   if (json.is_object()) {
@@ -73,7 +73,7 @@ std::optional<host::Difference> results_differ(const std::string& first,
   }
   const host::Json one = without_places(first);
   const host::Json other = without_places(second);
-  // What is no JSON is compared as it is.
+  // Text that is not JSON is compared unchanged.
   return one.is_discarded() || other.is_discarded() ? host::first_difference(first, second)
                                                     : host::first_difference(one, other);
 }
@@ -107,7 +107,7 @@ class Merger {
   void expect_same_study(const Store& store) {
     const Study study = store.study();
     if (study.empty()) {
-      throw Error("'" + store.file().string() + "' holds no study yet");
+      throw Error("'" + store.file().string() + "' contains no study yet");
     }
     if (first_.empty()) {
       first_ = store.file().string();
@@ -115,7 +115,7 @@ class Merger {
       out_.set_study(study);
     } else if (const std::string why = studies_differ(study_, study); !why.empty()) {
       throw Error("'" + first_ + "' and '" + store.file().string() +
-                  "' are of different studies: " + why);
+                  "' belong to different studies: " + why);
     }
   }
 
@@ -127,21 +127,21 @@ class Merger {
     out_.add_variants(scenarios, pipelines);
   }
 
-  /// Of two folders with the same study the files' places may differ, and what is set must not.
+  /// In two folders of the same study file paths may differ, but the keys set must not.
   void expect_same_variants(const std::vector<StoredVariant>& added,
                             const std::vector<StoredVariant>& known, const std::string& kind,
                             const Store& store) const {
     for (const StoredVariant& variant : added) {
       for (const StoredVariant& other : known) {
         if (variant.name == other.name && (variant.of != other.of || variant.set != other.set)) {
-          throw Error("the " + kind + " '" + variant.name + "' is not the same in '" + first_ +
-                      "' and '" + store.file().string() + "': different keys are set");
+          throw Error("the " + kind + " '" + variant.name + "' sets different keys in '" + first_ +
+                      "' and '" + store.file().string() + "'");
         }
       }
     }
   }
 
-  /// Their new ids by the old ones; a session whose runs were merged before is there already.
+  /// New ids of the sessions by the old ones; a session merged before already exists.
   std::map<std::int64_t, std::int64_t> add_sessions(const Store& store) {
     std::map<std::int64_t, std::int64_t> ids;
     std::vector<StoredSession> known = out_.sessions();
@@ -155,7 +155,7 @@ class Merger {
   }
 
   void compare(const StoredRun& run, const std::string& file) {
-    flush();  // the run may be among those not written yet
+    flush();  // the run may not be written yet
     const StoredRun kept = *out_.run(run.key);
     std::optional<host::Difference> difference;
     if (kept.outcome != run.outcome) {
@@ -167,10 +167,10 @@ class Merger {
       ++merged_.again;
       return;
     }
-    merged_.differing.push_back("the run " + cell(run) + " came out differently in '" +
+    merged_.differing.push_back("the run " + cell(run) + " has different results in '" +
                                 from_.at(run.key) + "' and '" + file + "': " + difference->path +
                                 " is " + difference->first + " and " + difference->second +
-                                "; the first is kept");
+                                "; keeping the first");
   }
 
   void expect_free(const StoredRun& run, const std::string& file) {
@@ -225,14 +225,14 @@ std::string studies_differ(const std::map<std::string, std::string>& first,
     }
   }
   if (value_of(first, "text") != value_of(second, "text")) {
-    return "their files say " +
+    return "their files differ: " +
            where_they_differ(value_of(first, "text"), value_of(second, "text"));
   }
   return "";
 }
 
 Merged merge_stores(const std::vector<std::string>& stores, const std::filesystem::path& out) {
-  const WorkFolder locked(work_folder_of(out));  // no study writes what is replaced
+  const WorkFolder locked(work_folder_of(out));  // so that no study writes the file being replaced
   NewDatabase unfinished(out);
   Merged merged;
   {
@@ -240,7 +240,7 @@ Merged merge_stores(const std::vector<std::string>& stores, const std::filesyste
     for (const std::string& store : stores) {
       expect_no_writer(store);
       merger.add(store);
-      expect_no_writer(store);  // nor one that began meanwhile
+      expect_no_writer(store);  // nor one that has begun since
     }
     merged = merger.finish();
   }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 enum class Kind { absent, empty, store, database, other };
 
-/// The first bytes, fewer where the file is shorter.
+/// The first bytes, fewer if the file is shorter.
 std::string head_of(const fs::path& file) {
   constexpr std::size_t kHeader = 100;  // of a database, by SQLite's file format
   kit::InputFile in(file.string());
@@ -29,7 +29,7 @@ std::string head_of(const fs::path& file) {
   return head;
 }
 
-/// Four bytes, the highest first.
+/// Four bytes, big-endian.
 std::uint32_t word_at(const std::string& head, std::size_t at) {
   std::uint32_t word = 0;
   for (std::size_t n = 0; n < 4 && at + n < head.size(); ++n) {
@@ -54,7 +54,7 @@ Kind kind_of(const fs::path& file) {
   return word_at(head, kIdAt) == kApplicationId ? Kind::store : Kind::database;
 }
 
-/// By its first word: a rollback journal (zeros where it is done with) or a write-ahead log.
+/// By its first word: a rollback journal (zeros if finished) or a write-ahead log.
 bool is_of_sqlite(const fs::path& journal) {
   if (!fs::is_regular_file(host::link_status_of(journal))) {
     return false;
@@ -73,7 +73,7 @@ void remove_file(const fs::path& file) {
   }
 }
 
-/// Makes an empty file that was not there.
+/// Creates an empty file that did not exist.
 fs::path new_file_in(const fs::path& folder) {
   constexpr int kTries = 1000;
   for (int n = 0; n < kTries; ++n) {
@@ -98,7 +98,7 @@ fs::path place_of(const fs::path& file) {
   fs::path place = fs::absolute(file);
   for (int n = 0; n < kMaxLinks && fs::is_symlink(host::link_status_of(place)); ++n) {
     const fs::path target = fs::read_symlink(place, error);
-    place = place.parent_path() / target;  // the target alone, where it is absolute
+    place = place.parent_path() / target;  // only the target if it is absolute
   }
   const fs::path canonical = fs::weakly_canonical(place, error);
   return error ? place : canonical;
@@ -119,8 +119,9 @@ void expect_regular_or_absent(const fs::path& file) {
 void remove_store(const fs::path& file) {
   const Kind kind = kind_of(file);
   if (kind == Kind::database || kind == Kind::other) {
-    throw Error("'" + file.string() + "' is not removed: it is " +
-                (kind == Kind::database ? "a database, but not of altiplan study" : "no database"));
+    throw Error(
+        "'" + file.string() + "' is not removed: it is " +
+        (kind == Kind::database ? "a database, but not of altiplan study" : "not a database"));
   }
   const fs::path place = place_of(file);
   remove_journal(place);
@@ -131,7 +132,7 @@ void expect_replaceable(const fs::path& file) {
   const Kind kind = kind_of(file);
   if (kind == Kind::store || kind == Kind::other) {
     throw Error("'" + file.string() + "' is not replaced: it is " +
-                (kind == Kind::store ? "a database of altiplan study" : "no database"));
+                (kind == Kind::store ? "a database of altiplan study" : "not a database"));
   }
 }
 
@@ -142,9 +143,8 @@ void remove_journal(const fs::path& database) {
       continue;
     }
     if (!is_of_sqlite(journal)) {
-      throw Error("'" + journal.string() +
-                  "' is in the way: SQLite would take it for the journal " + "of '" +
-                  database.string() + "', which it is not; move it away");
+      throw Error("'" + journal.string() + "' would be read by SQLite as the journal of '" +
+                  database.string() + "', but is not a journal: move it away");
     }
     remove_file(journal);
   }

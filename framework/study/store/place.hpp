@@ -9,36 +9,36 @@
 
 namespace altiplan::study {
 
-/// "altp", in a database's header: by it `file`, and this program, tell a store from others.
+/// "altp" in the database header: identifies a store to `file` and to this program.
 constexpr std::int64_t kApplicationId = 0x616c7470;
 
-/// The file that a name means, absolute and without symbolic links, whether it is there or not: one
-/// store has one lock by whatever name it is called.
+/// The file of a name, absolute and without symbolic links, whether it exists or not: a store has
+/// one lock, whatever name it is opened by.
 std::filesystem::path place_of(const std::filesystem::path& file);
-/// The folder of the calls that work on a store; who holds its lock may write the store.
+/// The work folder of the processes that write a store; the owner of its lock may write the store.
 std::filesystem::path work_folder_of(const std::filesystem::path& store);
 
-/// Throws Error where the name is that of a folder, a pipe or a device.
+/// Throws Error if the name is a folder, a pipe or a device.
 void expect_regular_or_absent(const std::filesystem::path& file);
 
-/// Removes a store, a link's target in place of the link. Throws Error, saying what it is, where
-/// the file is neither a store nor empty.
+/// Removes a store, for a link its target. Throws Error with the kind of file if it is neither a
+/// store nor empty.
 void remove_store(const std::filesystem::path& file);
-/// Throws Error where the file is neither absent, nor empty, nor a database, or is a store: what
-/// another command writes would take its place.
+/// Throws Error unless another command may replace the file: it must be absent, empty or a database
+/// that is not a store.
 void expect_replaceable(const std::filesystem::path& file);
-/// Removes the journal of a database that was removed without it: SQLite would write it into the
-/// next database of that name. Throws Error where it is another file with such a name.
+/// Removes the leftover journal of a removed database: SQLite would apply it to the next database
+/// of that name. Throws Error if a file with that name is not a journal.
 void remove_journal(const std::filesystem::path& database);
 
-/// A database that is written beside its place, under a name that nobody else has, and takes the
-/// place when it is whole. Removed where it is not.
+/// A database written under a unique name beside its destination and renamed to it once complete;
+/// removed otherwise.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& place);
 
   const std::filesystem::path& file() const { return file_; }
-  /// To be called when the database is closed.
+  /// Call when the database is closed.
   void put_in_place();
 
  private:

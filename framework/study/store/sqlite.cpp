@@ -16,7 +16,7 @@
 namespace altiplan::study {
 namespace {
 
-/// SQLite does not keep the system's error of a COMMIT. That the disk is full it says itself.
+/// SQLite does not keep the system's error of a COMMIT; a full disk it reports itself.
 int system_error(int code, sqlite3* database) {
   const int error = sqlite3_system_errno(database);
   rlimit limit{};
@@ -24,34 +24,34 @@ int system_error(int code, sqlite3* database) {
   return error == 0 && code == SQLITE_IOERR_WRITE && is_limited ? EFBIG : error;
 }
 
-/// What the system said, or else SQLite.
+/// The system's error message, or else SQLite's.
 std::string cause(int error, const char* words) {
   return error != 0 ? std::strerror(error) : words;
 }
 
-/// The error with which the file could not be written to, 0 where it could. Not found by opening
-/// it: closing it again would drop the locks of this process.
+/// The error of writing to the file, 0 if it is writable. Checked without opening the file, since
+/// closing it would release this process's locks.
 int write_error(const std::filesystem::path& file) {
   const std::filesystem::path folder = place_of(file).parent_path();
   return ::access(file.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0 ? errno : 0;
 }
 
-/// SQLite, refused by the system, continues with reading alone, and keeps no error.
+/// When the system refuses write access, SQLite silently continues read-only and keeps no error.
 std::string why_read_only(const std::filesystem::path& file) {
   const int error = write_error(file);
   return error != 0 ? std::strerror(error)
-                    : "the system refused it once, and would allow it now: try again";
+                    : "the system refused write access, but allows it now: try again";
 }
 
-/// SQLite's own words for what users meet say little. `error` is the system's.
+/// Explains SQLite's errors, whose own messages say little. `error` is the system's.
 std::string meaning(const std::filesystem::path& file, int code, int error, const char* words) {
   if (code == SQLITE_READONLY_ROLLBACK) {
-    return "a program that wrote it was killed in the middle, which SQLite undoes where the file "
-           "and its folder may be written to: here they may not. Have their owner open it, or copy "
-           "the file together with its -journal";
+    return "a program was killed while writing it, and SQLite needs write access to the file and "
+           "its folder to roll back: have their owner open it, or copy the file together with its "
+           "-journal";
   }
   if (code == SQLITE_READONLY_DBMOVED) {
-    // SQLite takes a file that the system does not show for one that is gone, and keeps no reason.
+    // SQLite treats an inaccessible file as a missing one, and keeps no reason.
     return "it was removed or renamed while this program wrote to it, or the system did not show "
            "it";
   }
@@ -62,14 +62,14 @@ std::string meaning(const std::filesystem::path& file, int code, int error, cons
       return "it cannot be written to: " + why_read_only(file);
     case SQLITE_CANTOPEN:
       if (error == ENOENT && host::is_there(file)) {
-        return "its journal cannot be made";  // nor is kept why: SQLite asks to read it then
+        return "its journal cannot be created";  // the reason is lost: SQLite then tries to read it
       }
       return "it cannot be opened: " + (error == 0 ? "is its path longer than 500 bytes?"
                                                    : std::string(std::strerror(error)));
     case SQLITE_NOTADB:
-      return "it is no database";
+      return "it is not a database";
     case SQLITE_CORRUPT:
-      // The same word for a file whose reading the system refuses.
+      // SQLite reports the same for a file that the system refuses to read.
       return std::string("it is damaged, or cannot be read (") + words + ")";
     case SQLITE_BUSY:
       return "another program is writing to it";
@@ -188,7 +188,7 @@ Sqlite::Sqlite(const std::filesystem::path& file, int flags) : file_(file) {
   const bool refused =
       (flags & SQLITE_OPEN_READWRITE) != 0 && sqlite3_db_readonly(database_.get(), "main") == 1;
   if (refused && write_error(file) == 0) {
-    open(flags);  // what hindered the system has passed
+    open(flags);  // the cause in the system has passed
   }
   sqlite3_extended_result_codes(database_.get(), 1);
   sqlite3_busy_timeout(database_.get(), 10000);  // a report that reads while a study writes
@@ -220,7 +220,7 @@ Transaction::~Transaction() {
     try {
       database_.run("ROLLBACK");
     } catch (const Error&) {
-      // SQLite has rolled back by itself, or does when the file is opened next.
+      // SQLite has rolled back itself, or does so when the file is next opened.
     }
   }
 }

@@ -12,7 +12,7 @@
 
 namespace altiplan::study {
 
-/// A prepared statement. Bind, then step; `reset` before it is used again.
+/// A prepared statement. Bind, then step; call `reset` before reuse.
 class Statement {
  public:
   Statement(sqlite3* database, const std::filesystem::path& file, const char* sql);
@@ -23,15 +23,15 @@ class Statement {
   Statement& bind_blob(int index, std::string_view bytes);
   Statement& bind_null(int index);
 
-  /// Whether there is a row. Throws Error naming the file.
+  /// True if there is a row. Throws Error naming the file.
   bool step();
-  /// Runs a statement without rows, and makes it ready for the next time.
+  /// Executes a statement without rows and resets it.
   void run();
   void reset() { sqlite3_reset(statement_.get()); }
 
   std::string text(int column) const;
-  std::string_view blob(int column) const;  ///< until the next step
-  // SQLite takes a value of any type in any column, and reads a text as 0: these throw Error.
+  std::string_view blob(int column) const;  ///< valid until the next step
+  // SQLite accepts any type in any column, and reads text as 0: these throw Error instead.
   std::int64_t integer(int column) const;
   int count(int column) const;      ///< 0 to 2147483647
   double number(int column) const;  ///< 0 for NULL
@@ -52,7 +52,7 @@ class Statement {
 /// A database file. Throws Error naming the file.
 class Sqlite {
  public:
-  /// `flags` as for sqlite3_open_v2. The name is a file's, also where it looks like `:memory:`.
+  /// `flags` as for sqlite3_open_v2. The name is always a file, even if it looks like `:memory:`.
   Sqlite(const std::filesystem::path& file, int flags);
 
   Statement prepare(const char* sql) const { return {database_.get(), file_, sql}; }
@@ -69,7 +69,7 @@ class Sqlite {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// All or nothing: rolled back where it is left before `commit`.
+/// A transaction, rolled back unless `commit` is called.
 class Transaction {
  public:
   explicit Transaction(const Sqlite& database);

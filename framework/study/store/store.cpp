@@ -7,7 +7,7 @@
 namespace altiplan::study {
 namespace {
 
-/// A run is not kept waiting for its result to be packed; JSON shrinks to a fifth all the same.
+/// Fast compression, so that runs do not wait; JSON still shrinks to a fifth.
 constexpr int kLevel = 1;
 }  // namespace
 
@@ -148,7 +148,7 @@ std::optional<StoredRun> Store::run(std::string_view key) const {
 }
 
 std::string Store::trace(std::int64_t id) const {
-  // Most stores have none: that is found without unpacking a result.
+  // Most stores have none: the length shows that without unpacking a result.
   Statement row = database_->sqlite.prepare("SELECT length(trace) FROM results WHERE run = ?");
   row.bind(1, id);
   const auto whole = row.step() && row.integer(0) > 0 ? run(id) : std::nullopt;

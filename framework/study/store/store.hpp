@@ -19,9 +19,8 @@ enum class StoreMode { read, write };
 
 class StoreDatabase;
 
-/// The results of a study in one SQLite file. One writer, in batches; a batch is all there or not.
-/// Every function throws Error naming the file: not a store, of a later version, damaged, disk
-/// full.
+/// The results of a study in one SQLite file. One writer, in atomic batches. Every function throws
+/// Error naming the file: not a store, of a later version, damaged, disk full.
 class Store {
  public:
   Store(const std::filesystem::path& file, StoreMode mode);
@@ -29,7 +28,7 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// The study that the store is of: "name", "text" (the file), "path", "seed". Empty when new.
+  /// The study of the store: "name", "text" (the file), "path", "seed". Empty when new.
   std::map<std::string, std::string> study() const;
   void set_study(const std::map<std::string, std::string>& study);
   void add_variants(const std::vector<StoredVariant>& scenarios,
@@ -40,7 +39,7 @@ class Store {
   std::int64_t add_session(const StoredSession& session);  ///< its id
   std::vector<StoredSession> sessions() const;
 
-  /// Adds runs; one whose key is there already is left out.
+  /// Adds runs; skips those whose key is already stored.
   void add(const std::vector<StoredRun>& runs);
   /// Keys of all runs.
   std::vector<std::string> keys() const;
@@ -52,7 +51,7 @@ class Store {
   /// One run with its result and trace.
   std::optional<StoredRun> run(std::int64_t id) const;
   std::optional<StoredRun> run(std::string_view key) const;
-  /// The trace of a run, "" where there is none.
+  /// The trace of a run, "" if there is none.
   std::string trace(std::int64_t id) const;
   /// Removes the runs with these keys.
   void remove(const std::vector<std::string>& keys);

@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kVersion = 2;
-/// Of a result or a trace unpacked, more than any run leaves: a few kB of zeros make a gigabyte.
+/// Limit of an unpacked result or trace (bytes), since a few kB of zeros expand to a gigabyte.
 constexpr std::size_t kMaxBytes = std::size_t(1) << 30;
-/// Of a result's lists and objects in each other; each takes a call of a function to compare.
+/// Limit of a result's nesting, since comparison is recursive.
 constexpr int kMaxLevels = 500;
 
 constexpr const char* kSchema = R"sql(
@@ -55,7 +55,7 @@ std::int64_t pragma(const Sqlite& database, const char* sql) {
   return statement.step() ? statement.integer(0) : 0;
 }
 
-/// Whether lists and objects are in each other deeper than kMaxLevels.
+/// True if lists and objects are nested deeper than kMaxLevels.
 bool is_too_deep(std::string_view json) {
   int level = 0;
   bool is_text = false;
@@ -94,8 +94,8 @@ StoredRun run_of(const Statement& row) {
   return run;
 }
 
-/// A call that was killed while it wrote has left a journal, by which SQLite undoes what it had
-/// begun; a reader alone may not.
+/// A process killed while writing leaves a journal, with which SQLite rolls back; a read-only
+/// process must not.
 void undo_half_a_write(const fs::path& file) {
   if (host::is_there(place_of(file).string() + "-journal") && host::is_there(file)) {
     pragma(Sqlite(file, SQLITE_OPEN_READWRITE), "PRAGMA schema_version");
@@ -107,7 +107,8 @@ Sqlite opened(const fs::path& file, StoreMode mode) {
     undo_half_a_write(file);
     return {file, SQLITE_OPEN_READONLY};
   }
-  if (!host::is_there(file) || fs::is_empty(file)) {  // else its journal may be all that saves it
+  if (!host::is_there(file) ||
+      fs::is_empty(file)) {  // otherwise its journal may be needed to restore it
     remove_journal(file);
   }
   return {file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};
@@ -120,7 +121,7 @@ StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode)
   if (mode == StoreMode::write && is_new()) {
     try {
       create();
-    } catch (...) {  // a full disk: no empty file is left behind
+    } catch (...) {  // disk full: leave no empty file
       std::error_code ignored;
       if (fs::file_size(file, ignored) == 0) {
         fs::remove(place_of(file), ignored);
@@ -133,7 +134,8 @@ StoreDatabase::StoreDatabase(const fs::path& file, StoreMode mode)
 }
 
 bool StoreDatabase::is_new() const {
-  const std::int64_t version = pragma(sqlite, "PRAGMA schema_version");  // undoes half a write
+  const std::int64_t version =
+      pragma(sqlite, "PRAGMA schema_version");  // rolls back an incomplete write
   return version == 0 && fs::file_size(sqlite.file()) == 0;
 }
 
@@ -143,19 +145,19 @@ void StoreDatabase::fail_damaged(const std::string& why) const {
 
 void StoreDatabase::expect_store() const {
   if (is_new()) {
-    throw Error("'" + sqlite.file().string() + "' is empty: nothing has been stored in it yet");
+    throw Error("'" + sqlite.file().string() + "' is empty: no results have been stored yet");
   }
   const std::int64_t id = pragma(sqlite, "PRAGMA application_id");
   const std::int64_t version = pragma(sqlite, "PRAGMA user_version");
   if (pragma(sqlite, "PRAGMA page_count") == 0) {
-    throw Error("the database '" + sqlite.file().string() + "': it is no database");
+    throw Error("the database '" + sqlite.file().string() + "': it is not a database");
   }
   if (id != kApplicationId) {
     throw Error("'" + sqlite.file().string() + "' is a database, but not of altiplan study");
   }
   if (version != kVersion) {
     throw Error("'" + sqlite.file().string() + "' is of version " + std::to_string(version) +
-                " of the store; this program knows version " + std::to_string(kVersion));
+                " of the store; this program supports version " + std::to_string(kVersion));
   }
   expect_tables();
 }
@@ -167,7 +169,7 @@ void StoreDatabase::expect_tables() const {
       "'run_values'))");
   if (strange.step()) {
     fail_damaged("it has a " + strange.text(0) + " " + excerpt(strange.text(1)) +
-                 ", which no call of study makes");
+                 ", which altiplan study never creates");
   }
 }
 
@@ -202,7 +204,7 @@ std::vector<StoredVariant> StoreDatabase::variants(const char* table) const {
       variant.set = Json::parse(rows.blob(3)).get<std::vector<std::string>>();
     } catch (const Json::exception&) {
       throw Error("the database '" + sqlite.file().string() + "': the overrides of '" +
-                  variant.name + "' are no list of texts");
+                  variant.name + "' are not a list of strings");
     }
     all.push_back(std::move(variant));
   }
@@ -232,8 +234,8 @@ Statement StoreDatabase::outlines(const std::string& rest) const {
 
 StoredRun StoreDatabase::outline(const Statement& row) const {
   if (row.is_null(2) || row.is_null(3)) {
-    fail_damaged("the run " + row.text(1) + " is of no " +
-                 (row.is_null(2) ? "scenario" : "pipeline") + " that is stored");
+    fail_damaged("the " + std::string(row.is_null(2) ? "scenario" : "pipeline") + " of the run " +
+                 row.text(1) + " is not stored");
   }
   return run_of(row);
 }
@@ -251,7 +253,7 @@ std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
     fail_damaged(name + "cannot be unpacked");
   }
   if (!text) {
-    fail_damaged(name + "is larger than 1 GB unpacked, which no run leaves");
+    fail_damaged(name + "is larger than 1 GB unpacked, the limit");
   }
   if (is_too_deep(*text)) {
     fail_damaged(name + "is nested deeper than " + std::to_string(kMaxLevels) + " levels");

@@ -13,7 +13,8 @@
 namespace altiplan::study {
 namespace {
 
-/// A lock of the open file, of which the system does not tell the owner: its length does.
+/// A lock of the open file description. The system does not report its owner: the length of the
+/// lock encodes the process id.
 struct flock range_for(pid_t process) {
   constexpr off_t kBeyondAllStores = off_t(1) << 62;
   struct flock range {};
@@ -24,7 +25,7 @@ struct flock range_for(pid_t process) {
   return range;
 }
 
-/// Who has the lock: "process 4711", or "".
+/// The owner of the lock: "process 4711", or "".
 std::string writer_of(int descriptor) {
   struct flock held = range_for(0);
   const bool is_known = ::fcntl(descriptor, F_OFD_GETLK, &held) == 0 && held.l_type != F_UNLCK;
@@ -37,7 +38,7 @@ std::string why_not_locked(int descriptor, int error) {
   }
   const std::string writer = writer_of(descriptor);
   return "is being written by " + (writer.empty() ? "another process" : writer) +
-         ", under this name or another: wait for its end, or give another --out";
+         ", under this name or another: wait until it ends, or give another --out";
 }
 }  // namespace
 
@@ -58,7 +59,7 @@ void expect_no_writer(const std::filesystem::path& file) {
   const std::string writer = store.number() < 0 ? "" : writer_of(store.number());
   if (!writer.empty()) {
     throw Error("the database '" + file.string() + "' is being written by " + writer +
-                ": wait for its end, for more runs are to come");
+                ": wait until it ends, since it will add runs");
   }
 }
 }  // namespace altiplan::study

@@ -7,17 +7,17 @@
 
 namespace altiplan::study {
 
-/// The one writer of a store, by whatever name it is called: the lock is on the file itself, at
-/// bytes that neither it nor SQLite's locks reach, and goes with the process. Closing it gives up
-/// SQLite's locks too, so not in a transaction.
+/// Allows one writer of a store, whatever name it is opened by: the lock is on the file itself, at
+/// bytes beyond its content and SQLite's locks, and is released with the process. Closing it
+/// releases SQLite's locks too, so never close it in a transaction.
 class StoreLock {
  public:
-  /// Throws Error where another has it, with that one's process id.
+  /// Throws Error with the owner's process id if another process has the lock.
   explicit StoreLock(const std::filesystem::path& file);
 
  private:
   kit::Descriptor descriptor_;
 };
-/// Throws Error where a process writes the store now. No store may be open in this process.
+/// Throws Error if a process is writing the store. No store may be open in this process.
 void expect_no_writer(const std::filesystem::path& file);
 }  // namespace altiplan::study

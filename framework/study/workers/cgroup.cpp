@@ -26,7 +26,7 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// The kernel takes or refuses a value in one write.
+/// The kernel accepts or refuses a value in one write.
 bool put(const fs::path& file, const std::string& value) {
   const int to = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
   if (to < 0) {
@@ -37,7 +37,7 @@ bool put(const fs::path& file, const std::string& value) {
   return taken;
 }
 
-/// Where the second hierarchy is mounted; "" where it is not.
+/// The mount point of cgroup v2; "" if not mounted.
 fs::path mount_point() {
   std::ifstream mounts("/proc/self/mounts");
   for (std::string line; std::getline(mounts, line);) {
@@ -102,16 +102,16 @@ ControlGroups::ControlGroups(const fs::path& own, std::size_t workers, double me
   };
   std::error_code error;
   fs::create_directory(own_ / kParent, error);
-  expect(put(own_ / kParent / "cgroup.procs", "0"), "cannot move into a control group of its own");
-  expect(put(own_ / "cgroup.subtree_control", "+memory"), "cannot hand on the memory controller");
+  expect(put(own_ / kParent / "cgroup.procs", "0"), "cannot move into its own control group");
+  expect(put(own_ / "cgroup.subtree_control", "+memory"), "cannot delegate the memory controller");
   for (std::size_t i = 1; i <= workers; ++i) {
     const fs::path group = own_ / ("altiplan-worker-" + std::to_string(i));
     fs::create_directory(group, error);
     workers_.push_back(group);
     expect(put(group / "memory.max", std::to_string(std::int64_t(memory_mb * double(1 << 20)))),
-           "cannot bound the memory of a control group");
-    put(group / "memory.swap.max", "0");   // not there without swap
-    put(group / "memory.oom.group", "1");  // all of a worker's processes, or none
+           "cannot limit the memory of a control group");
+    put(group / "memory.swap.max", "0");   // missing without swap
+    put(group / "memory.oom.group", "1");  // kill all of a worker's processes, or none
   }
 }
 

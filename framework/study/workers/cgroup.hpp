@@ -10,19 +10,19 @@
 
 namespace altiplan::study {
 
-/// A control group (cgroup v2) for each worker, where the system has delegated one with the memory
+/// A control group (cgroup v2) for each worker, if the system has delegated one with the memory
 /// controller to this process alone (`systemd-run --user --scope -p Delegate=yes altiplan study
 /// …`).
 ///
-/// It is a second line: what a worker may take is judged by its process tree, and the group bounds
-/// what it can take between two looks. As a group with children may hold no process, this one moves
-/// into a child too, and back in the end.
+/// A second line of defence: the limits of a worker are checked on its process tree, and the group
+/// bounds its memory between two checks. A group with children must not contain processes, so this
+/// process moves into a child too, and back at the end.
 class ControlGroups {
  public:
-  /// None where the system has not delegated any, or does not let them be made.
+  /// Null if the system has not delegated any, or refuses to create them.
   static std::optional<std::filesystem::path> delegated();
 
-  /// `workers` groups, each with that bound of memory. Throws Error where they cannot be made.
+  /// `workers` groups, each with that memory bound. Throws Error if they cannot be created.
   ControlGroups(const std::filesystem::path& own, std::size_t workers, double memory_mb);
   ~ControlGroups();
   ControlGroups(const ControlGroups&) = delete;

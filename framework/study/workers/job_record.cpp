@@ -25,7 +25,7 @@ struct Head {
   std::int32_t place = 0;
   std::int32_t left_behind = 0;
   std::uint32_t threw = 0;
-  std::uint32_t crc = 0;  ///< of the head with 0 in this place, the key and the payload
+  std::uint32_t crc = 0;  ///< of the head with 0 in this field, the key and the payload
 };
 static_assert(sizeof(Head) == 64);
 
@@ -87,7 +87,7 @@ int append_file(const std::string& file, std::string_view text) {
   if (to < 0) {
     return errno;
   }
-  int error = ::fchmod(to, 0600) == 0 ? 0 : errno;  // whatever the umask has become
+  int error = ::fchmod(to, 0600) == 0 ? 0 : errno;  // independent of the umask
   while (!text.empty() && error == 0) {
     const ssize_t written = ::write(to, text.data(), text.size());
     if (written > 0) {

@@ -19,7 +19,7 @@
 namespace altiplan::study {
 namespace {
 
-constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are told
+constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are reported
 constexpr off_t kSaidAtMost = 1 << 20;  ///< … that are kept
 constexpr std::size_t kMaxCrashReport = 256 << 20;
 }  // namespace
@@ -29,7 +29,7 @@ PoolWorker::PoolWorker() {
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   said_ = ::memfd_create("altiplan worker", MFD_CLOEXEC);
   if (shared == MAP_FAILED || said_ < 0 || ::fcntl(said_, F_SETFL, O_APPEND) != 0) {
-    throw Error(std::string("no memory for a worker: ") + std::strerror(errno));
+    throw Error(std::string("cannot create the memory file of a worker: ") + std::strerror(errno));
   }
   board_ = new (shared) WorkerStatus;
 }
@@ -50,7 +50,7 @@ bool PoolWorker::start(const WorkFolder& folder, std::size_t serial, WorkerTask 
   task_.mark = folder.processes(0, serial).mark;
   new (board_) WorkerStatus;
   for (const std::string& file : {task_.records, task_.crash_report, task_.scratch}) {
-    ::unlink(file.c_str());  // whoever has put something there
+    ::unlink(file.c_str());  // whatever another process has put there
   }
   if (::ftruncate(said_, 0) != 0) {
     return false;
@@ -125,7 +125,7 @@ std::vector<Ended> PoolWorker::take_records() {
     Ended ended;
     if (take_record(rest, ended) != RecordState::whole || known_ >= task_.batch.size() ||
         ended.key != task_.keys[known_]) {
-      break;  // not there yet, or damaged: told when the process has ended
+      break;  // missing, or damaged: reported when the process has ended
     }
     if (seen_ == known_ + 1) {  // what the parent has seen of this job
       ended.peak_memory_mb = std::max(ended.peak_memory_mb, peak_mb_);
@@ -180,19 +180,20 @@ std::optional<Ended> PoolWorker::unfinished(Ending how) {
 std::size_t PoolWorker::clear_away(const std::vector<pid_t>& others) {
   static const bool kListed = ::access("/proc/thread-self/children", R_OK) == 0;
   process_ = -1;
-  tree_.root = 0;  // reaped: the number may be another's by now
+  tree_.root = 0;  // reaped: the process id may be reused by now
   const auto orphans = [&] {
     std::vector<pid_t> children = children_of(::getpid());
     std::erase_if(children, [&](pid_t child) { return std::ranges::count(others, child) > 0; });
     return children;
   };
   const auto alive = [](pid_t child) { return use_of(child).alive; };
-  // What a worker leaves has become this process's: mostly there is nothing, and no need to search.
+  // Orphans of a worker are adopted by this process: usually there are none and no search is
+  // needed.
   const std::vector<pid_t> left_to_us = orphans();
   const bool any = std::ranges::any_of(left_to_us, alive);
   const std::size_t left = any || !kListed ? tree_.kill() : 0;
   for (const pid_t orphan : left_to_us) {
-    // One that bears the mark of another worker is left to that one's end, which is near.
+    // An orphan with another worker's mark is left to that worker's end, which is near.
     if (alive(orphan) && !is_marked(orphan, family_.mark, family_.mask)) {
       ProcessTree{orphan, tree_.mark}.kill();
     }

@@ -25,7 +25,7 @@ namespace {
 
 using FileText = std::array<char, 4096>;  ///< ends with a zero
 
-/// The text of a file of /proc; "" where the process is gone.
+/// The text of a file of /proc; "" if the process has ended.
 std::string_view read_proc(pid_t process, const char* name, FileText& text) {
   std::array<char, 64> path{};
   std::snprintf(path.data(), path.size(), "/proc/%d/%s", int(process), name);
@@ -43,7 +43,7 @@ std::string_view read_proc(pid_t process, const char* name, FileText& text) {
   return {text.data(), size};
 }
 
-/// The number after a name like "VmHWM:", in kB; 0 where the name is missing.
+/// The number after a name like "VmHWM:", in kB; 0 if the name is missing.
 double megabytes(std::string_view text, std::string_view name) {
   const std::size_t at = text.find(name);
   return at == text.npos ? 0 : std::strtod(text.data() + at + name.size(), nullptr) / 1024;
@@ -60,7 +60,7 @@ std::vector<pid_t> all_numbers(const char* folder) {
   return numbers;
 }
 
-/// State and CPU time, which stand after the name in brackets; the name may hold anything.
+/// State and CPU time, which follow the name in brackets; the name may contain any characters.
 struct Stat {
   char state = 'X';
   double cpu_s = 0;
@@ -89,7 +89,7 @@ Stat stat_of(pid_t process) {
 
 bool ended(char state) { return state == 'Z' || state == 'X'; }
 
-/// Adds those below; takes out what has ended.
+/// Adds the descendants; removes ended processes.
 std::vector<pid_t> with_children(std::vector<pid_t> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {  // grows
     for (const pid_t child : children_of(found[i])) {
@@ -102,8 +102,8 @@ std::vector<pid_t> with_children(std::vector<pid_t> found) {
   return found;
 }
 
-/// Sends the signal to this very process: a number that has passed on to another one in the
-/// meantime is not in the tree.
+/// Sends the signal to exactly this process: a process id reused in the meantime is not in the
+/// tree.
 void send(const ProcessTree& tree, pid_t process, int signal) {
   const int handle = int(::syscall(SYS_pidfd_open, process, 0));  // glibc's are not for C++ yet
   if (handle < 0) {
@@ -176,7 +176,7 @@ std::vector<pid_t> ProcessTree::below_root() const {
 std::size_t ProcessTree::kill(pid_t keep) const {
   using Clock = std::chrono::steady_clock;
   if (root > 0) {
-    ::kill(-root, SIGKILL);  // its session at one blow, where nothing can slip through
+    ::kill(-root, SIGKILL);  // its whole session at once, without gaps
   }
   const Clock::time_point until = Clock::now() + std::chrono::seconds(10);
   std::size_t first = 0;
@@ -185,7 +185,7 @@ std::size_t ProcessTree::kill(pid_t keep) const {
     for (const pid_t process : found) {
       send(*this, process, SIGSTOP);
     }
-    if (find() == found) {  // all of them stand still
+    if (find() == found) {  // all of them are stopped
       for (const pid_t process : found) {
         send(*this, process, SIGKILL);
       }
@@ -237,8 +237,8 @@ TreeUse use_of(const std::vector<pid_t>& processes, double base_mb) {
       }
       return sum;
     };
-    // When one of them ends between two looks, its share of common pages counts with the next's:
-    // only what is there in two rounds counts.
+    // When a process ends between two checks, its share of common pages is added to another's: only
+    // memory seen in two rounds counts.
     const double first = proportional();
     all.memory_mb = std::min(first, proportional());
   }

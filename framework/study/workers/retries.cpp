@@ -16,11 +16,12 @@ namespace {
 constexpr int kTries = 3;
 constexpr int kTriesAtFaults = 5;
 constexpr int kFaultsInARow = 6;
-constexpr double kFirstPauseS = 0.05;  ///< after a fault; each is twice as long as the one before
+constexpr double kFirstPauseS =
+    0.05;  ///< after a fault; each pause is twice as long as the previous one
 
 double now_s() { return double(steady_ns()) * 1e-9; }
 
-/// Or its record is damaged, which another may have done as well.
+/// Also true for a damaged record, which another process may have caused.
 bool killed_from_outside(const Ended& ended) {
   constexpr std::array kFromOutside = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
   return ended.how == Ending::garbled ||
@@ -64,7 +65,7 @@ void Retries::fault(const std::string& what) {
   if (++faults_in_a_row_ >= kFaultsInARow) {
     give_up(what);
   } else if (options_.say && std::exchange(said_, what) != what) {
-    options_.say(what + "; tried again");
+    options_.say(what + "; trying again");
   }
 }
 

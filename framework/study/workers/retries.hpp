@@ -8,31 +8,30 @@
 
 namespace altiplan::study {
 
-/// Which jobs of a pool are done again, and when the pool gives up.
+/// Decides which jobs of a pool are retried, and when the pool gives up.
 class Retries {
  public:
   explicit Retries(const PoolOptions& options) : options_(options) {}
 
-  /// Whether that end may have been the work of another, or of the machine, and the job deserves
-  /// another try: after the others, and the last one while no other runs, so that what is of this
-  /// job alone is told apart.
+  /// True if another job or the machine may have caused that end, and the job is to be retried:
+  /// after the others, the last time while no other job runs, to isolate its own faults.
   bool try_again(const Ended& ended);
 
-  /// The machine has failed: what comes of a moment of that counts once, and nothing is to be
-  /// started before a pause.
+  /// Records a failure of the machine: simultaneous consequences count once, and nothing is started
+  /// before a pause.
   void fault(const std::string& what);
-  /// The pool is to end.
+  /// Ends the pool with a failure.
   void give_up(const std::string& why) { failure_ = failure_.empty() ? why : failure_; }
 
-  /// Whether the job has been tried before.
+  /// True if the job has been tried before.
   bool knows(std::size_t job) const { return tries_.contains(job); }
   bool is_last_try(std::size_t job) const;
   bool is_paused() const;
-  const std::string& failure() const { return failure_; }  ///< "" while there is hope
+  const std::string& failure() const { return failure_; }  ///< "" until the pool gives up
 
  private:
   const PoolOptions& options_;
-  std::map<std::size_t, int> tries_;           ///< that did not count
+  std::map<std::size_t, int> tries_;           ///< that are not counted
   std::map<std::size_t, std::string> causes_;  ///< of doubtful ends
   int faults_in_a_row_ = 0;
   double paused_until_s_ = 0;

@@ -11,7 +11,7 @@
 
 namespace altiplan::study {
 
-/// Signals become readable, instead of interrupting, while it lives.
+/// During its lifetime signals are read from a descriptor instead of interrupting.
 class Signals {
  public:
   Signals() {
@@ -22,7 +22,7 @@ class Signals {
     }
     ::sigprocmask(SIG_BLOCK, &caught, &before_);
     struct sigaction standard {};
-    standard.sa_handler = SIG_DFL;  // ignored, children would not wait to be reaped
+    standard.sa_handler = SIG_DFL;  // if ignored, children could not be reaped
     ::sigaction(SIGCHLD, &standard, &child_before_);
     file_ = ::signalfd(-1, &caught, SFD_CLOEXEC | SFD_NONBLOCK);
     ::prctl(PR_GET_CHILD_SUBREAPER, &reaper_before_);
@@ -37,7 +37,7 @@ class Signals {
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
-  /// Waits for a child to end, or for the time; whether somebody wants the pool to end.
+  /// Waits for a child to end, or for the time; true if a signal requests the end of the pool.
   bool wait(double seconds) const {
     pollfd ready{file_, POLLIN, 0};
     ::poll(&ready, 1, std::max(0, int(seconds * 1000 + 0.999)));

@@ -15,7 +15,7 @@
 namespace altiplan::study {
 namespace {
 
-/// Waits for the parent's farewell or its end.
+/// Waits for the parent's goodbye message or its end.
 [[noreturn]] void keep_watch(const WorkFolder& folder, int leash) {
   ::setsid();
   sigset_t all;
@@ -48,7 +48,8 @@ void Supervisor::start() {
   leash_ = -1;
   process_ = -1;
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    throw Error(std::string("no socket to the supervisor of the workers: ") + std::strerror(errno));
+    throw Error(std::string("cannot create a socket to the supervisor of the workers: ") +
+                std::strerror(errno));
   }
   process_ = ::fork();
   if (process_ == 0) {
@@ -58,7 +59,7 @@ void Supervisor::start() {
   ::close(ends[0]);
   if (process_ < 0) {
     ::close(ends[1]);
-    throw Error(std::string("no process for the supervisor of the workers: ") + std::strerror(error));
+    throw Error(std::string("cannot start the supervisor of the workers: ") + std::strerror(error));
   }
   leash_ = ends[1];
 }
@@ -70,10 +71,10 @@ void Supervisor::replace() {
 
 Supervisor::~Supervisor() {
   if (process_ < 0) {
-    return;  // the machine had none to replace the one that has ended
+    return;  // no process could be started to replace the ended one
   }
   const char farewell = '.';
-  if (::send(leash_, &farewell, 1, MSG_NOSIGNAL) == 1) {  // else it is gone already
+  if (::send(leash_, &farewell, 1, MSG_NOSIGNAL) == 1) {  // otherwise it has already ended
     while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
     }
   } else {

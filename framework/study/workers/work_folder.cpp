@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bits of the mark that number the worker; those above say which folder it works for.
+/// Bits of the mark for the worker's number; the higher bits identify the folder.
 constexpr std::uint64_t kWorkerBits = 0xFF'FFFF;
 
 std::string host_name() {
@@ -34,7 +34,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Who holds the lock, as it has written into the file: "4711 on name".
+/// The owner of the lock, as written in the file: "4711 on name".
 struct Holder {
   int process = 0;
   std::string host;
@@ -52,7 +52,7 @@ Holder holder(int lock) {
   return holder;
 }
 
-/// Its parent has ended, and its supervisor will have done so in a moment.
+/// True if the parent has ended, so that its supervisor is about to end.
 bool gone(const Holder& holder) {
   return holder.process > 0 && holder.host == host_name() && ::kill(holder.process, 0) != 0 &&
          errno == ESRCH;
@@ -62,14 +62,14 @@ bool gone(const Holder& holder) {
   throw Error(folder.string() + ": " + what + ": " + std::strerror(error));
 }
 
-/// And the folder, where an earlier call has left no records in it.
+/// Also removes the folder, unless an earlier call has left records in it.
 void remove_lock(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(folder / "lock", ignored);
   fs::remove(folder, ignored);
 }
 
-/// A locked descriptor, or -1 where the file was removed by the one who held the lock before.
+/// A locked descriptor, or -1 if the previous owner of the lock removed the file.
 int try_lock(const fs::path& folder) {
   using Clock = std::chrono::steady_clock;
   const fs::path file = folder / "lock";
@@ -94,7 +94,7 @@ int try_lock(const fs::path& folder) {
     const Holder by = holder(lock);
     if (Clock::now() > until || (by.process > 0 && !gone(by))) {
       ::close(lock);
-      throw Error(folder.string() + ": another process is at work here: " +
+      throw Error(folder.string() + ": in use by another process: " +
                   (by.process > 0 ? std::to_string(by.process) + " on " + by.host : "unknown"));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -107,7 +107,7 @@ int try_lock(const fs::path& folder) {
     if (is_new) {
       remove_lock(folder);
     }
-    refuse(folder, "its lock cannot be looked at", error);
+    refuse(folder, "cannot read the lock of the work folder", error);
   }
   if (locked.st_ino != there.st_ino || locked.st_dev != there.st_dev) {
     ::close(lock);
@@ -124,11 +124,12 @@ void sign(const fs::path& folder, int lock) {
   }
 }
 
-/// Bit 62 is set so that nothing is ever near the limit that serves as the mark.
+/// Bit 62 is set so that no memory use ever reaches the limit that serves as the mark.
 std::uint64_t mark_of(const fs::path& folder) {
   struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) {  // another folder's workers may have the mark else
-    refuse(folder, "cannot be looked at", errno);
+  if (::stat(folder.c_str(), &status) !=
+      0) {  // otherwise another folder's workers may share the mark
+    refuse(folder, "cannot read the work folder's status", errno);
   }
   const std::size_t hash =
       std::hash<std::string>()(std::to_string(status.st_dev) + " " + std::to_string(status.st_ino));
@@ -160,7 +161,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
     fs::create_directories(path_, error);
     std::error_code ignored;
     if (error && !fs::is_directory(path_, ignored)) {
-      refuse(path_, "cannot make the work folder", error.value());
+      refuse(path_, "cannot create the work folder", error.value());
     }
     lock_ = try_lock(path_);
   } while (lock_ < 0);
@@ -178,7 +179,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
       const bool is_done = records().empty();
       for (const fs::path& file : files_of_workers(path_)) {
         std::error_code error;
-        if (is_done || file.extension() != ".records") {  // by which the next call goes on
+        if (is_done || file.extension() != ".records") {  // the next call continues from them
           fs::remove(file, error);
         }
       }
@@ -186,7 +187,7 @@ WorkFolder::WorkFolder(const fs::path& folder)
         remove_lock(path_);
       }
     } catch (const host::MachineFault&) {
-      // The next call looks again.
+      // The next call tries again.
     }
   });
 }

@@ -35,14 +35,14 @@ void limit(int which, rlim_t soft) {
   ::setrlimit(__rlimit_resource_t(which), &now);
 }
 
-/// Cuts the ties to the parent: session, signals, descriptors, limits.
+/// Detaches from the parent: session, signals, descriptors, limits.
 void stand_alone(const WorkerTask& task) {
   ::setsid();
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != task.parent) {
-    ::_exit(0);  // it was gone before it could tell
+    ::_exit(0);  // the parent ended before PR_SET_PDEATHSIG
   }
-  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // so that no process escapes by outliving its parent
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // so that orphans are adopted by the worker
   set_mark(task.mark);
   if (!task.group.empty()) {
     write_system_file(task.group.c_str(), "0");
@@ -54,7 +54,8 @@ void stand_alone(const WorkerTask& task) {
   ::close_range(3, ~0U, 0);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, rlim_t(task.limits.file_mb * double(1 << 20)));
-  write_system_file("/proc/self/oom_score_adj", "1000");  // the kernel shall not choose the parent
+  write_system_file("/proc/self/oom_score_adj",
+                    "1000");  // so that the kernel does not choose the parent
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE, SIGXFSZ}) {
     ::signal(signal, SIG_DFL);
   }
@@ -74,7 +75,7 @@ double cpu_s() {
   return sum;
 }
 
-/// Reaps what has ended; the number of children that have not.
+/// Reaps ended children; returns the number of the others.
 int children_left() {
   pid_t reaped = 0;
   while ((reaped = ::waitpid(-1, nullptr, WNOHANG)) > 0) {
@@ -153,24 +154,24 @@ class Worker {
     ended.wall_s = double(steady_ns() - began_ns_) * 1e-9;
     ended.left_behind = children_left();
     ended.cpu_s = cpu_s() - cpu_before_s_;
-    // Of the peak, which counts pages of files too, those are taken off that are there now.
+    // The peak counts file pages too: subtract those present now.
     ended.peak_memory_mb = std::max({0.0, now.memory_mb - before_.memory_mb,
                                      now.peak_resident_mb - now.file_mb - before_.memory_mb});
     constexpr double kHoardMb = 64;
-    // Threads of a plugin that go on would take time from the jobs that follow.
+    // Running threads of a plugin would slow down the next jobs.
     retire_ = retire_ || ended.how != Ending::done || ended.left_behind > 0 ||
               threads() > threads_at_birth_ ||
               now.memory_mb - memory_at_birth_mb_ >
                   std::max(kHoardMb, task_.limits.memory_mb.value_or(0) / 4);
   }
 
-  /// What a plugin has left open is not to stand in the way of what follows.
+  /// Closes what a plugin has left open, so that it does not affect the next jobs.
   void close_descriptors() {
     ::close_range(3, ~0U, 0);
     retire_ = true;
   }
 
-  /// Measurements without which limits and the record would be wrong.
+  /// Takes the measurements that limits and the record depend on.
   ProcessUse own_use() {
     ProcessUse use = use_of(::getpid());
     if (!use.alive || use.memory_mb <= 0) {
@@ -183,7 +184,7 @@ class Worker {
     return use;
   }
 
-  /// By the file's name, as the plugin may have closed or taken any descriptor.
+  /// By the file's name, since the plugin may have closed or reused any descriptor.
   void hand_in(const Ended& ended) {
     ::signal(SIGXFSZ, SIG_IGN);
     const std::string text = record_text(ended);
@@ -199,7 +200,7 @@ class Worker {
     board_.handed_in = board_.begun.load();
   }
 
-  /// The job has no outcome, for no fault of its own.
+  /// Ends the job without an outcome, because of the machine.
   [[noreturn]] void give_up(int error, const std::string& why) {
     job_.note(why);
     board_.error = error;

@@ -28,8 +28,7 @@ constexpr double kWatchEveryS = 0.02;
 
 double now_s() { return double(steady_ns()) * 1e-9; }
 
-/// How often the kernel has killed for lack of memory, the system's or a group's, since the system
-/// started.
+/// The number of kills by the kernel for lack of memory, system-wide or in a group, since boot.
 long kernel_kills() {
   std::ifstream counters("/proc/vmstat");
   std::string name;
@@ -48,7 +47,7 @@ struct Reaped {
   int status = 0;
   double cpu_s = 0;  ///< with that of the children that it has waited for
 
-  /// False where none has.
+  /// False if none has.
   bool wait(pid_t which, int options) {
     rusage used{};
     do {
@@ -86,8 +85,7 @@ class PoolRun {
         reap();
         look();
         if (!retries_.failure().empty()) {
-          throw Error(retries_.failure() +
-                      "; what was done before is kept, and the same call goes on");
+          throw Error(retries_.failure() + "; ended runs are kept: repeat the command to continue");
         }
         keep_now_and_then();
       }
@@ -109,8 +107,8 @@ class PoolRun {
     return waiting_.empty() && std::ranges::none_of(workers_, &PoolWorker::busy);
   }
 
-  /// Up to `reuse` jobs, fewer towards the end so that all workers have some; one that has ended a
-  /// process before has one for itself.
+  /// Up to `reuse` jobs, fewer towards the end so that all workers have some; a job that has ended
+  /// a process before runs in its own process.
   std::vector<std::size_t> next_batch() {
     const std::size_t fair = waiting_.size() / (2 * workers_.size());
     const std::size_t size = std::clamp<std::size_t>(fair, 1, std::size_t(options_.reuse));
@@ -148,9 +146,9 @@ class PoolRun {
         const int error = errno;
         waiting_.insert(waiting_.begin(), task.batch.begin(), task.batch.end());
         if (std::ranges::none_of(workers_, &PoolWorker::busy)) {
-          retries_.fault(std::string("no process for a worker: ") + std::strerror(error));
+          retries_.fault(std::string("cannot start a worker process: ") + std::strerror(error));
         }
-        return;  // again when one has ended
+        return;  // retried when a worker has ended
       }
     }
   }
@@ -167,7 +165,7 @@ class PoolRun {
     }
   }
 
-  /// Looks at what all workers use, and ends those that use too much.
+  /// Checks the resource use of all workers, and ends those beyond a limit.
   void look() {
     if (now_s() < next_look_s_) {
       return;
@@ -184,7 +182,7 @@ class PoolRun {
     next_look_s_ = now_s() + kWatchEveryS;
   }
 
-  /// Kills the worker and all its processes, as it went beyond a limit.
+  /// Kills the worker and all its processes, because it exceeded a limit.
   void end(PoolWorker& worker, std::optional<Ending> beyond) {
     worker.kill();
     Reaped reaped;
@@ -199,7 +197,7 @@ class PoolRun {
     }
   }
 
-  /// Has the job done again, after the others, or keeps its end.
+  /// Retries the job after the others, or keeps its end.
   void take(Ended ended) {
     if (retries_.try_again(ended)) {
       waiting_.push_back(ended.job);
@@ -208,9 +206,9 @@ class PoolRun {
     }
   }
 
-  /// How the job ended during which the process did.
+  /// The end of the job that was running when the process ended.
   Ending ending(const PoolWorker& worker, int status) {
-    if (worker.lost_record()) {  // of an earlier job than that under way, maybe
+    if (worker.lost_record()) {  // possibly of a job before the current one
       return Ending::garbled;
     }
     if (worker.error() == EFBIG || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ)) {
@@ -224,8 +222,8 @@ class PoolRun {
                                                                        : Ending::killed;
   }
 
-  /// After the worker's process was reaped: the job that was under way has its end, or is done
-  /// again; those that had not begun wait for another worker.
+  /// After the worker's process was reaped: the current job ends or is retried; jobs that had not
+  /// begun wait for another worker.
   void settle(PoolWorker& worker, const Reaped& reaped, std::optional<Ending> beyond) {
     worker.add_cpu(reaped.cpu_s);
     take_records(worker);
@@ -248,7 +246,7 @@ class PoolRun {
     }
   }
 
-  /// What is no fault of a job is one of the study.
+  /// A failure without a job ends the study.
   void expect_well(const PoolWorker& worker, std::size_t known) {
     constexpr int kAtMost = 20;
     if (const int error = worker.error(); error != 0 && error != EFBIG) {
@@ -257,11 +255,12 @@ class PoolRun {
       retries_.fault(worker.unread());
     }
     if (known == 0 && !worker.born() && ++stillborn_ > kAtMost) {
-      retries_.give_up("the processes for the runs end before they have begun");
+      retries_.give_up("the worker processes end before their runs begin");
     }
   }
 
-  /// Ends what the worker has left behind; its last job is told of it where it was between jobs.
+  /// Ends the processes that the worker has left behind; counts them for its last job if it was
+  /// between jobs.
   void clear_away(PoolWorker& worker, bool between_jobs) {
     std::vector<pid_t> others{supervisor_.process()};
     for (const PoolWorker& other : workers_) {
@@ -277,7 +276,7 @@ class PoolRun {
     }
   }
 
-  /// The jobs that are under way have no outcome.
+  /// Kills the current jobs, which have no outcome.
   void kill_all() {
     stopping_ = true;
     for (PoolWorker& worker : workers_) {
@@ -313,8 +312,8 @@ class PoolRun {
   std::size_t& serial_;
   std::deque<std::size_t> waiting_;
   Retries retries_;
-  std::vector<Ended> ended_;          ///< and not yet kept
-  std::vector<std::string> records_;  ///< files that are of no use when those are kept
+  std::vector<Ended> ended_;          ///< but not yet kept
+  std::vector<std::string> records_;  ///< files to remove when those are kept
   std::vector<std::string> unread_;   ///< that may hold jobs which the next call finds
   const Signals signals_;
   Supervisor supervisor_;
@@ -323,7 +322,7 @@ class PoolRun {
   double next_look_s_ = 0;
   double next_keep_s_ = 0;
   int stillborn_ = 0;
-  bool undisturbed_ = false;  ///< the job that was started last runs while no other does
+  bool undisturbed_ = false;  ///< the job started last runs alone
   bool stopping_ = false;
   bool keep_threw_ = false;
 };
@@ -336,7 +335,7 @@ WorkerPool::WorkerPool(WorkFolder& folder, PoolOptions options)
   if (!group || !memory_mb) {
     return;
   }
-  try {  // with room for what a process that is used again may have kept
+  try {  // with a margin for memory that a reused process may keep
     constexpr double kRoom = 1.25;
     constexpr double kRoomMb = 128;
     groups_ = std::make_unique<ControlGroups>(*group, std::size_t(options_.jobs),

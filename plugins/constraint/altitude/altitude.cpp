@@ -16,10 +16,10 @@ struct Params {
   Datum datum = Datum::sea;
 
   void describe(Fields& f) {
-    f("min_m", min_m).unit("m").range(-20000, 100000).doc("lowest height above the datum");
-    f("max_m", max_m).unit("m").range(-20000, 100000).doc("greatest height above the datum");
+    f("min_m", min_m).unit("m").range(-20000, 100000).doc("minimum height above the datum");
+    f("max_m", max_m).unit("m").range(-20000, 100000).doc("maximum height above the datum");
     f("datum", datum, {{"sea", Datum::sea}, {"ground", Datum::ground}, {"start", Datum::start}})
-        .doc("what heights count from: the sea, the ground below, or the start of the route");
+        .doc("datum of the heights: the sea, the ground below, or the start of the route");
     f.check(min_m || max_m, "altitude needs min_m, max_m or both");
     f.check(!min_m || !max_m || *min_m <= *max_m, "min_m must not exceed max_m");
   }
@@ -31,7 +31,7 @@ class Altitude final : public Constraint {
 
  private:
   void do_tighten(Limits& limits, const Request& request) const override {
-    // The start's height turns the third datum into the first.
+    // Adding the start's height converts datum `start` to datum `sea`.
     const double shift = params_.datum == Datum::start ? request.start.position.z() : 0;
     AltitudeBand band;
     if (params_.datum == Datum::ground) {
@@ -47,4 +47,4 @@ class Altitude final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "altitude", Altitude, Params,
-                "Keeps the route between two heights over the sea, the ground or the start")
+                "Keeps the route between two heights above the sea, the ground or the start")

@@ -15,7 +15,7 @@ struct Params {
         .unit("m")
         .range(0, 100000)
         .required()
-        .doc("least distance from the path of the vehicle's centre to any obstacle");
+        .doc("minimum distance from the path of the vehicle's centre to any obstacle");
   }
 };
 
@@ -33,4 +33,4 @@ class Clearance final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "clearance", Clearance, Params,
-                "Keeps the route a distance from every obstacle")
+                "Keeps a minimum distance between the route and every obstacle")

@@ -15,7 +15,7 @@ struct Params {
         .unit("m")
         .range(0, 100000)
         .required()
-        .doc("least height of the route above the ground below it");
+        .doc("minimum height of the route above the ground below it");
   }
 };
 
@@ -34,4 +34,4 @@ class GroundClearance final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "ground_clearance", GroundClearance, Params,
-                "Keeps the route a height above the ground")
+                "Keeps the route at a minimum height above the ground")

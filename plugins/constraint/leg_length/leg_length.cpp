@@ -36,4 +36,4 @@ class LegLength final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "leg_length", LegLength, Params,
-                "Keeps every leg of the route within a least and a greatest length")
+                "Keeps every leg of the route within a minimum and a maximum length")

@@ -34,7 +34,7 @@ TEST(RouteLength, OnlyTightens) {
 }
 
 TEST(RouteLength, TheJudgeSumsTheLegs) {
-  // Two sides of a rectangle with the diagonal 1000 m: 600 m and 800 m.
+  // Two sides of a rectangle whose diagonal is 1000 m: 600 m and 800 m.
   const Route route{{0, 0, 100}, {360, 480, 100}, {1000, 0, 100}};
   EXPECT_TRUE(check(route, problem("{max_m: 1400}")).ok());
   const CheckResult result = check(route, problem("{max_ratio: 1.39}"));

@@ -18,9 +18,9 @@ struct Params {
         .unit("deg")
         .range(0, 180)
         .required()
-        .doc("greatest change of direction between two legs");
+        .doc("largest change of direction between two legs");
     f("plane", plane, {{"horizontal", Plane::horizontal}, {"spatial", Plane::spatial}})
-        .doc("the turn as seen from above, or in three dimensions");
+        .doc("measure the turn as seen from above, or in three dimensions");
   }
 };
 
@@ -41,4 +41,4 @@ class TurnAngle final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "turn_angle", TurnAngle, Params,
-                "Limits the turn at a waypoint, in the horizontal or in space")
+                "Limits the turn at a waypoint, in the horizontal plane or in 3-D")

@@ -36,7 +36,7 @@ TEST(TurnAngle, OnlyTightens) {
 }
 
 TEST(TurnAngle, TheJudgeMeasuresInItsPlane) {
-  // Straight on as seen from above, 90 degrees in space.
+  // Straight on as seen from above, 90 degrees in 3-D.
   const Route hump{{0, 0, 100}, {500, 0, 600}, {1000, 0, 100}};
   EXPECT_TRUE(check(hump, problem("{max_deg: 1}")).ok());
   EXPECT_TRUE(check(hump, problem("{max_deg: 90, plane: spatial}")).ok());

@@ -15,14 +15,14 @@ struct Building {
   Shape shape;  ///< local metres
 };
 
-/// What a file of buildings brings.
+/// Contents of a file of buildings.
 struct Buildings {
   std::vector<Building> list;
   std::vector<std::string> notes;
-  std::optional<Frame> frame;  ///< that the file fixes, where the world has none yet
+  std::optional<Frame> frame;  ///< fixed by the file, if the world has none yet
 };
 
-/// How a file without a height for every building is read.
+/// Reading rules for files without a height for every building.
 struct Heights {
   std::string height_property = "height";
   std::string levels_property;
@@ -30,20 +30,20 @@ struct Heights {
   std::optional<double> default_height_m;
 };
 
-/// GeoJSON footprints with heights, standing on the ground of the layers before or at `base_m`.
+/// GeoJSON footprints with heights, on the ground of the preceding layers or at `base_m`.
 Buildings read_footprints(const std::string& file, const Heights& heights, double base_m,
                           const Site& site);
 
-/// CityJSON 1.x and 2.0: every Building and BuildingPart as a prism over its ground surface, as
-/// high as its highest point. The file's metres are the local ones, but for `origin_m`, the place
-/// that becomes (0, 0): the south-west corner of the buildings where it is left out.
+/// CityJSON 1.x and 2.0: every Building and BuildingPart as a prism over its ground surface, up to
+/// its highest point. The file's metres are local ones, offset by `origin_m`, the position that
+/// becomes (0, 0): by default the south-west corner of the buildings.
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m);
 
-/// Whether the file says of itself that it is CityJSON.
+/// True if the file declares itself as CityJSON.
 bool is_city_json(const std::string& file);
 
-/// The colliders of the flying-car simulator: "lat0 …, lon0 …", the columns' names, then boxes by
+/// The colliders of the flying-car simulator: "lat0 …, lon0 …", the column names, then boxes by
 /// centre and half sizes; x is north, y east, z up.
 Buildings read_colliders(const std::string& file, const Site& site);
 }  // namespace altiplan::city

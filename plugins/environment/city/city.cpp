@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cities: drawn from a seed (paper 003, section 4), or read from footprints, CityJSON or the
+// Cities: generated from a seed (paper 003, section 4), or read from footprints, CityJSON or the
 // colliders of a simulator.
 #include <algorithm>
 #include <filesystem>
@@ -31,14 +31,14 @@ struct Params {
   void describe(Fields& f) {
     f("generate", generate,
       {{"nothing", Source::file}, {"simple", Source::simple}, {"complex", Source::complex}})
-        .doc("draws a city of paper 003: blocks along streets (simple), or anywhere (complex)");
-    f("seed", seed).at_least(0).doc("of the draw; left out, the run's seed");
-    f("cells", cells).at_least(10).doc("cells of a drawn city along x, y and z");
-    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge of its cells");
-    f("buildings", buildings).at_least(0).doc("how many a complex city draws");
+        .doc("generate a city of paper 003: blocks along streets (simple), or anywhere (complex)");
+    f("seed", seed).at_least(0).doc("random seed of the city; default: the run's seed");
+    f("cells", cells).at_least(10).doc("cells of a generated city along x, y and z");
+    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge length of its cells");
+    f("buildings", buildings).at_least(0).doc("number of buildings in a complex city");
     f("max_cells", max_cells)
         .at_least(1)
-        .doc("a drawn city of more cells is refused before anything is allocated");
+        .doc("a generated city with more cells is rejected before anything is allocated");
     f("file", file)
         .doc(
             "buildings: GeoJSON footprints in WGS 84, CityJSON, or the .csv colliders of a "
@@ -47,21 +47,28 @@ struct Params {
         .doc("the footprints' property with the height above ground, m");
     f("levels_property", heights.levels_property)
         .doc("the property with the number of levels, for footprints without a height");
-    f("metres_per_level", heights.metres_per_level).unit("m").greater_than(0).doc("of each level");
+    f("metres_per_level", heights.metres_per_level)
+        .unit("m")
+        .greater_than(0)
+        .doc("height of each level");
     f("default_height_m", heights.default_height_m)
         .unit("m")
         .greater_than(0)
-        .doc("height of footprints that have neither; left out, such a file is refused");
+        .doc("height of footprints that have neither; left out, such a file is rejected");
     f("base_m", base_m)
         .unit("m")
-        .doc("where footprints stand, above sea level, if no layer before has ground below them");
+        .doc(
+            "height of the footprints above sea level, if no preceding layer has ground below "
+            "them");
     f("origin_m", origin_m)
         .unit("m")
         .doc(
-            "the place [x, y] in a CityJSON file's metres that becomes (0, 0) here; left out, the "
+            "the point [x, y] in a CityJSON file's metres that becomes (0, 0) here; default: the "
             "south-west corner of its buildings");
     f("attribution", attribution)
-        .doc("whom pictures of the city name, such as '© OpenStreetMap contributors, ODbL'");
+        .doc(
+            "source to credit in pictures of the city, such as '© OpenStreetMap contributors, "
+            "ODbL'");
     f.check(file.has_value() == (generate == Source::file),
             "give either file, or generate: simple or complex");
   }
@@ -110,7 +117,7 @@ class City final : public Environment {
     info_.notes.push_back(std::to_string(cells->cells().blocked_count()) + " of " +
                           std::to_string(cells->cells().spec().cell_count()) + " cells blocked");
     if (!site.start || !site.goal) {
-      info_.notes.push_back("start and goal are kept free only where they are given as at_m");
+      info_.notes.push_back("start and goal are kept free only if they are given as at_m");
     }
     layer_ = std::move(cells);
     drawing_ = layer_->drawing().value();
@@ -157,4 +164,4 @@ class City final : public Environment {
 }  // namespace altiplan::city
 
 ALTIPLAN_PLUGIN(Environment, "city", altiplan::city::City, altiplan::city::Params,
-                "Buildings: drawn cities, GeoJSON footprints, CityJSON, simulator colliders")
+                "buildings: generated cities, GeoJSON footprints, CityJSON, simulator colliders")

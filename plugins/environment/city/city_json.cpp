@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by their number.
+// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by index.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 Json parse(const std::string& file, const std::string& text) {
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
     if (depth > kMaxDepth) {
-      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
+      throw Error(file + ": lists and objects are nested more than " + std::to_string(kMaxDepth) +
                   " levels deep");
     }
     return true;
@@ -29,10 +29,10 @@ Json parse(const std::string& file, const std::string& text) {
     return Json::parse(text, shallow);
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
-    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
+    throw Error(file + ": is not valid JSON: it ends early or has an error in line " +
                 std::to_string(1 + std::count(text.begin(), end, '\n')));
   } catch (const Json::out_of_range&) {
-    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
+    throw Error(file + ": contains a number that is too large (beyond 1.8e308)");
   }
 }
 
@@ -67,7 +67,7 @@ struct Model {
       face.emplace_back();
       for (const Json& index : ring.get_ref<const Json::array_t&>()) {
         if (!index.is_number_unsigned() || index.get<std::size_t>() >= vertices.size()) {
-          throw Error("expected the number of one of the " + std::to_string(vertices.size()) +
+          throw Error("expected the index of one of the " + std::to_string(vertices.size()) +
                       " vertices, found " + index.dump());
         }
         face.back().push_back(vertices[index.get<std::size_t>()]);
@@ -77,7 +77,7 @@ struct Model {
   }
 };
 
-/// The faces of a geometry, and which of them its semantics call ground.
+/// The faces of a geometry, and those that its semantics declare as ground.
 struct Surfaces {
   std::vector<Face> all;
   std::vector<Face> ground;
@@ -151,17 +151,17 @@ kit::Ring convex_hull(kit::Ring points) {
   return hull;
 }
 
-/// Whether the prisms' plans hold p, or nearly.
+/// True if the prisms' plans contain p, or nearly.
 bool covered(const std::vector<Prism>& prisms, const Vec3& p) {
-  constexpr double kNearly = 0.1;  // metres: models are drawn to that
+  constexpr double kNearly = 0.1;  // metres: accuracy of the models
   return std::any_of(prisms.begin(), prisms.end(), [&](const Prism& prism) {
     return signed_distance(Shape(prism), {p.x(), p.y(), (prism.floor + prism.ceiling) / 2}) <
            kNearly;
   });
 }
 
-/// Prisms that hold all of the geometry: over its ground, or over the hull of its plan where that
-/// is not told or something juts out.
+/// Prisms that enclose all of the geometry: over its ground, or over the hull of its plan if the
+/// ground is not given or something protrudes.
 std::vector<Prism> prisms_of(const Surfaces& surfaces) {
   double low = kInfinity;
   double high = -kInfinity;
@@ -236,7 +236,7 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 bool is_city_json(const std::string& file) {
   const std::string text = kit::read_file(file, kAnySize);
   if (text.find("CityJSON") == text.npos) {
-    return false;  // other files are parsed by their reader alone
+    return false;  // other files are parsed only by their own readers
   }
   const Json json = parse(file, text);
   return json.is_object() && json.contains("type") && json["type"] == "CityJSON";
@@ -258,12 +258,13 @@ Buildings read_city_json(const std::string& file,
     }
   } catch (const Json::exception& error) {
     const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
-    throw Error(file + ": " + at + " is not as CityJSON has it: " + why.substr(why.find("] ") + 2));
+    throw Error(file + ": " + at +
+                " violates the CityJSON format: " + why.substr(why.find("] ") + 2));
   } catch (const Error& error) {
     throw Error(file + ": " + at + ": " + error.what());
   }
   if (buildings.list.empty()) {
-    throw Error(file + ": there is no building with a geometry in it");
+    throw Error(file + ": contains no building with a geometry");
   }
   Vec3 low = bounds(buildings.list.front().shape).min;
   for (const Building& building : buildings.list) {

@@ -41,7 +41,8 @@ VoxelGrid cells_of(const Environment& layer) {
   return grid;
 }
 
-/// The spec page's words, cell by cell: a building grown by one cell on its sides and top.
+/// A direct implementation of the specification, cell by cell: a building grown by one cell on its
+/// sides and top.
 class Plain {
  public:
   Plain(Cell start, Cell goal) : kept_{start, goal} {}
@@ -193,7 +194,7 @@ std::string sample(const char* name) {
 
 TEST(City, CityJsonIsNeverSmallerThanItsModel) {
   const auto layer = city("{file: " + sample("conformance.city.json") + "}");
-  // The farm: a gable of 11 m; the barn juts out to 37 m east of the origin, at any height.
+  // The farm: a gable of 11 m; the barn protrudes to 37 m east of the origin, at any height.
   EXPECT_EQ(layer->bounds().min, Vec3(0, 0, 3));
   EXPECT_LT(layer->clearance({6, 9, 13.9}), 0);
   EXPECT_LT(layer->clearance({36.5, 8, 7}), 0);
@@ -213,7 +214,7 @@ TEST(City, RealFilesAreReadWhole) {
   const auto berlin =
       notes("berlin_buildings.geojson", ", levels_property: levels, default_height_m: 12");
   EXPECT_EQ(berlin[0], "635 buildings, 0 features without an area skipped");
-  EXPECT_EQ(berlin[1], "305 heights as written, 161 by their levels, 169 by default_height_m");
+  EXPECT_EQ(berlin[1], "305 heights as given, 161 from levels, 169 from default_height_m");
   EXPECT_EQ(notes("sf_colliders.csv", "").front(), "3845 boxes");
   EXPECT_EQ(notes("DH_01_subs.city.json", "").front().substr(0, 9), "9 prisms,");
   EXPECT_NE(refusal("{file: " + (folder / "berlin_buildings.geojson").string() + "}")
@@ -241,7 +242,7 @@ TEST(City, WhatIsWrongIsNamed) {
       {"a.csv", "lat0 137.8, lon0 -122.4\n", ":1: expected 'lat0"},
       {"a.csv", "lat0 nan, lon0 -122.4\n", ":1: expected 'lat0"},
       {"a.csv", "lat0 37.8, lon0 -122.4\nx,y,z\n", ":2: expected the columns"},
-      {"a.csv", csv, "there is no box in it"},
+      {"a.csv", csv, "contains no box"},
       {"a.csv", csv + "1,2,3,4,5\n", ":3: expected six numbers"},
       {"a.csv", csv + "1,2,3,4,5,6,7\n", ":3: expected six numbers"},
       {"a.csv", csv + "1,2,3,4,5,nan\n", ":3: expected six numbers"},
@@ -250,22 +251,22 @@ TEST(City, WhatIsWrongIsNamed) {
       {"a.csv", csv + "1,2,3,4,-5,6\n", ":3: expected half sizes above 0"},
       {"a.json", replaced(json, "\"CityObjects\"", "\"Objects\""), "key 'CityObjects' not found"},
       {"a.json", replaced(json, "\"vertices\"", "\"vertexes\""), "key 'vertices' not found"},
-      {"a.json", replaced(json, "[[[[3", "[[[[999"), "expected the number of one of the"},
-      {"a.json", replaced(json, "[[[[3", "[[[[-1"), "expected the number of one of the"},
+      {"a.json", replaced(json, "[[[[3", "[[[[999"), "expected the index of one of the"},
+      {"a.json", replaced(json, "[[[[3", "[[[[-1"), "expected the index of one of the"},
       {"a.json", replaced(json, "\"Solid\"", "\"Sponge\""), "surfaces or solids, found 'Sponge'"},
       {"a.json", replaced(json, "[0.001", "[1e308"), "is not finite"},
       {"a.json", replaced(json, "[0.001", "[\"x\""), "must be number"},
-      {"a.json", json.substr(0, json.size() / 2), "is not JSON"},
+      {"a.json", json.substr(0, json.size() / 2), "is not valid JSON"},
       {"a.json", replaced(json, "\"semantics\"", "\"semantics\": 7, \"other\""), ""},
-      {"a.geojson", R"({"type":"FeatureCollection","features":[]})", "there is no building"},
+      {"a.geojson", R"({"type":"FeatureCollection","features":[]})", "contains no building"},
       {"a.geojson", footprint(R"("height": "tall")"), "expected metres in the property 'height'"},
       {"a.geojson", footprint(R"("height": -3)"), "expected a 'height' above 0"},
       {"a.geojson", footprint(R"("height": 0)"), "expected a 'height' above 0"},
       {"a.geojson", footprint(R"("height": 1e999)"), "too large"},
       {"a.geojson", footprint(""), "'hall': has no 'height'"},
       {"a.geojson", footprint(R"("height": 3)", 190), "expected longitude"},
-      {"a.geojson", "[1, 2", "is not JSON"},
-      {"a.geojson", "lat0 37.8", "is not JSON"}};
+      {"a.geojson", "[1, 2", "is not valid JSON"},
+      {"a.geojson", "lat0 37.8", "is not valid JSON"}};
   for (const Case& one : cases) {
     const auto file = folder.write(one.name, one.text);
     const std::string said = refusal("{file: " + file.string() + "}");

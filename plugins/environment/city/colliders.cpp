@@ -8,7 +8,7 @@
 namespace altiplan::city {
 namespace {
 
-/// The number that the text begins with after blanks, taken off it.
+/// Parses and removes the number at the beginning of the text, after blanks.
 std::optional<double> take_number(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
   double value = 0;
@@ -47,7 +47,7 @@ std::optional<std::array<double, 2>> origin_of(std::string_view line) {
   return std::array<double, 2>{*lat, *lon};
 }
 
-/// Six numbers with commas between them.
+/// Six numbers separated by commas.
 std::optional<std::array<double, 6>> box_of(std::string_view line) {
   std::array<double, 6> numbers{};
   for (std::size_t n = 0; n < 6; ++n) {
@@ -96,7 +96,7 @@ Buildings read_colliders(const std::string& file, const Site& site) {
     }
     const auto box = box_of(line);
     if (!box) {
-      refuse("six numbers with commas between them");
+      refuse("six numbers separated by commas");
     }
     const auto& [north, east, up, half_north, half_east, half_up] = *box;
     if (!(half_north > 0 && half_east > 0 && half_up > 0)) {
@@ -108,7 +108,7 @@ Buildings read_colliders(const std::string& file, const Site& site) {
         {"line " + std::to_string(number), BoxShape{{centre - half, centre + half}}});
   }
   if (buildings.list.empty()) {
-    throw Error(file + ": there is no box in it");
+    throw Error(file + ": contains no box");
   }
   buildings.notes = {std::to_string(buildings.list.size()) + " boxes"};
   return buildings;

@@ -8,7 +8,7 @@
 namespace altiplan::city {
 namespace {
 
-/// Says where each building's height is from.
+/// Determines each building's height and counts its sources.
 class HeightRule {
  public:
   explicit HeightRule(const Heights& heights) : heights_(heights) {}
@@ -33,8 +33,8 @@ class HeightRule {
   }
 
   std::string note() const {
-    return std::to_string(measured_) + " heights as written, " + std::to_string(by_levels_) +
-           " by their levels, " + std::to_string(by_default_) + " by default_height_m";
+    return std::to_string(measured_) + " heights as given, " + std::to_string(by_levels_) +
+           " from levels, " + std::to_string(by_default_) + " from default_height_m";
   }
 
  private:
@@ -51,7 +51,7 @@ class HeightRule {
   std::size_t by_default_ = 0;
 };
 
-/// Its origin is the buildings' south-west corner.
+/// The origin is the buildings' south-west corner.
 Frame frame_around(const kit::GeoJson& json) {
   std::array<double, 2> low{180, 90};
   double north = -90;
@@ -88,7 +88,7 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
                           const Site& site) {
   const kit::GeoJson json = kit::read_geojson(file);
   if (json.features.empty()) {
-    throw Error(file + ": there is no building in it");
+    throw Error(file + ": contains no building");
   }
   kit::expect_properties(file, json, {heights.levels_property});
   Buildings buildings;

@@ -8,7 +8,7 @@
 namespace altiplan::city {
 namespace {
 
-/// Puts buildings into the grid, each grown by a cell.
+/// Places buildings in the grid, each grown by a cell.
 class Site {
  public:
   explicit Site(const Draw& draw) : grid_(spec_of(draw)) {
@@ -22,7 +22,7 @@ class Site {
   /// A building of w x d x h cells whose lower corner is (x, y).
   void place(int x, int y, int w, int d, int h) {
     const Cell low{x - 1, y - 1, 0};
-    const Cell high{x + w, y + d, h};  // included
+    const Cell high{x + w, y + d, h};  // inclusive
     for (const Cell& kept : kept_free_) {
       bool covered = true;
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ class Site {
   std::vector<Cell> kept_free_;
 };
 
-constexpr int kBlock = 20;  ///< cells of a street block, a building in the middle of each
+constexpr int kBlock = 20;  ///< cells of a street block, with a building in its middle
 
 void draw_simple(const Draw& draw, Site& site) {
   SplitMix64 random(draw.seed);

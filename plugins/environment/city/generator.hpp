@@ -9,14 +9,14 @@ namespace altiplan::city {
 
 enum class Kind { simple, complex };
 
-/// What is drawn: cities of blocks in cells, paper 003, section 4.
+/// Parameters of generated cities: blocks in cells, paper 003, section 4.
 struct Draw {
   Kind kind = Kind::simple;
   std::uint64_t seed = 0;
   Cell cells{80, 80, 100};
   double cell_m = 10;
   int buildings = 60;         ///< of a complex city
-  std::optional<Vec3> start;  ///< buildings that would cover it are left out
+  std::optional<Vec3> start;  ///< buildings that would cover it are omitted
   std::optional<Vec3> goal;
 };
 

@@ -20,26 +20,26 @@ struct Params {
 
   void describe(Fields& f) {
     f("file", file).doc("MovingAI grid map (.map)").required();
-    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge of a cell");
+    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge length of a cell");
     f("height_m", height_m)
         .unit("m")
         .range(0.001, 1e6)
-        .doc("how high the blocked cells reach, from 0; the map is one layer of cells");
+        .doc("height of the blocked cells above 0; the map is one layer of cells");
     f("max_cells", max_cells)
         .at_least(1)
-        .doc("a file that declares more cells is refused before anything is allocated");
+        .doc("a file that declares more cells is rejected before anything is allocated");
   }
 };
 
-/// The file's lines, with their numbers for messages.
+/// The file's lines, numbered for messages.
 class Lines {
  public:
-  /// Throws InputError where it is no file to be read.
+  /// Throws InputError if the file cannot be read.
   explicit Lines(const std::string& file) : file_(file), stream_(file) {}
   [[noreturn]] void refuse(const std::string& why) const {
     throw ParameterError("file", file_ + ":" + std::to_string(number_) + ": " + why);
   }
-  /// The next line, without its end (LF or CRLF); throws where the file ends.
+  /// The next line, without its end (LF or CRLF); throws at the end of the file.
   std::string next(const std::string& expected) {
     std::string line;
     ++number_;
@@ -79,7 +79,7 @@ class Lines {
   int number_ = 0;
 };
 
-/// A byte as a message shows it.
+/// A byte as shown in messages.
 std::string quoted(char c) {
   constexpr char kHex[] = "0123456789abcdef";
   const auto byte = static_cast<unsigned char>(c);
@@ -87,7 +87,7 @@ std::string quoted(char c) {
                                     : std::string("0x") + kHex[byte >> 4] + kHex[byte & 15];
 }
 
-/// Height and width of the map, which stand before it.
+/// Height and width of the map, which precede it.
 std::pair<int, int> read_size(Lines& lines) {
   if (const std::string type = lines.next("'type octile'"); type != "type octile") {
     lines.refuse("expected 'type octile', found " + excerpt(type));
@@ -109,14 +109,14 @@ std::pair<int, int> read_size(Lines& lines) {
   return {height, width};
 }
 
-/// Blocks what the line of the map says of row j.
+/// Blocks the cells that the line marks in row j.
 void read_row(const std::string& line, int j, const Lines& lines, VoxelGrid& cells) {
   const int width = cells.spec().counts[0];
   if (line.size() != std::size_t(width)) {
     lines.refuse("expected a row of " + std::to_string(width) + " cells, found " +
                  std::to_string(line.size()));
   }
-  int first_blocked = 0;  // of the cells since the last free one
+  int first_blocked = 0;  // first of the cells since the last free one
   for (int column = 0; column < width; ++column) {
     const char c = line[std::size_t(column)];
     if (c == '.' || c == 'G') {
@@ -127,7 +127,7 @@ void read_row(const std::string& line, int j, const Lines& lines, VoxelGrid& cel
     } else if (c != '@' && c != 'O' && c != 'T') {
       lines.refuse("cell " + std::to_string(column + 1) +
                    ": expected '.' or 'G' (free), '@', 'O' or 'T' (blocked), found " + quoted(c) +
-                   " (swamp and water have costs of their own, which no " + "planner here knows)");
+                   " (swamp and water have traversal costs, which no planner " + "here supports)");
     }
   }
   cells.block_run(first_blocked, width - 1, j, 0);
@@ -155,7 +155,7 @@ VoxelGrid read(const Params& params) {
     read_row(line, height - 1 - row, lines, cells);
   }
   if (!lines.at_end()) {
-    lines.refuse("there is more in the file than the " + std::to_string(height) +
+    lines.refuse("the file continues after the " + std::to_string(height) +
                  " rows that it declares");
   }
   return cells;
@@ -174,4 +174,4 @@ class GridMap final : public kit::CellLayer {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "grid_map", GridMap, Params,
-                "A two-dimensional grid map in MovingAI's format")
+                "a two-dimensional grid map in MovingAI's format")

@@ -63,7 +63,7 @@ TEST(GridMap, WhatIsWrongIsNamedWithItsLine) {
            {head + "...\n....\n", ":6: expected a row of 3 cells, found 4"},
            {head + "...\n.S.\n", ":6: cell 2: expected '.' or 'G' (free), '@', 'O' or 'T'"},
            {head + std::string("...\n.\0.\n", 8), "found 0x00"},
-           {head + "...\n...\n...\n", ":7: there is more in the file than the 2 rows"}}) {
+           {head + "...\n...\n...\n", ":7: the file continues after the 2 rows"}}) {
     EXPECT_NE(refusal(text).find(why), std::string::npos) << text << refusal(text);
   }
   EXPECT_NE(refusal(head + "...\n...\n", ", max_cells: 5").find("more than max_cells"),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The hills of paper 002, given peak by peak or drawn from a seed:
+// The hills of paper 002, given peak by peak or generated from a seed:
 //   alt(x, y) = min(cap, base + Σ h exp(-((x - x0)/sx)²/2 - ((y - y0)/sy)²/2)).
-// A smooth surface: every answer is certified by bounds of its first and second derivatives, none
-// by samples.
+// A smooth surface: every result is certified by bounds of its first and second derivatives, not by
+// sampling.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -25,12 +25,16 @@ struct PeakParams {
   std::array<double, 2> sigma_m{5000, 5000};
 
   void describe(Fields& f) {
-    f("at_m", at_m).unit("m").doc("where the peak stands").required();
-    f("height_m", height_m).unit("m").at_least(0).doc("of the peak alone, above base_m").required();
+    f("at_m", at_m).unit("m").doc("position of the peak").required();
+    f("height_m", height_m)
+        .unit("m")
+        .at_least(0)
+        .doc("height of the peak alone, above base_m")
+        .required();
     f("sigma_m", sigma_m)
         .unit("m")
         .at_least(1)
-        .doc("half widths east and north, where the peak is at 0.61 of its height")
+        .doc("standard deviations east and north, where the peak is at 0.61 of its height")
         .required();
   }
 };
@@ -45,21 +49,24 @@ struct Params {
 
   void describe(Fields& f) {
     f("base_m", base_m).unit("m").doc("height of the ground far from all peaks");
-    f("cap_m", cap_m).unit("m").doc("no ground is higher: what would be is a plateau");
-    f("peaks", peaks).doc("the peaks; left out, they are drawn");
-    f("count", count).range(1, 1000).doc("how many peaks are drawn (16 where left out)");
-    f("seed", seed).at_least(0).doc("of the draw; left out, the run's seed");
+    f("cap_m", cap_m).unit("m").doc("maximum height of the ground; higher parts become a plateau");
+    f("peaks", peaks).doc("the peaks; left out, they are generated");
+    f("count", count).range(1, 1000).doc("number of generated peaks (default: 16)");
+    f("seed", seed).at_least(0).doc("random seed of the peaks; default: the run's seed");
     f("extent_m", extent_m)
         .unit("m")
         .at_least(100)
-        .doc("side of the square, from the origin, that peaks are drawn in; widths go with it");
+        .doc(
+            "side of the square, from the origin, in which peaks are generated; their widths "
+            "scale with it");
     f.check(peaks.empty() || (!count && !seed), "give either peaks, or count and seed");
     f.check(cap_m > base_m, "cap_m must be greater than base_m");
   }
 };
 
-/// The published generator; all peaks are drawn again while the start or goal is not above ground.
-/// Zones over them are left to the judge: they do not depend on the peaks, and no draw helps.
+/// The published generator; all peaks are regenerated while the start or goal is not above ground.
+/// Zones over them are left to the judge: they do not depend on the peaks, and regenerating does
+/// not help.
 hills::Surface draw(const Params& params, const Site& site) {
   RandomStream of_run = site.random;
   SplitMix64 random(params.seed ? std::uint64_t(*params.seed) : of_run());
@@ -83,8 +90,8 @@ hills::Surface draw(const Params& params, const Site& site) {
       return hills::Surface(params.base_m, params.cap_m, std::move(peaks));
     }
   }
-  throw Error("hills: the ground covers the start or the goal in " + std::to_string(kDraws) +
-              " draws; expected a start and goal above base_m, and not too many peaks");
+  throw Error("hills: the ground covers the start or the goal in all " + std::to_string(kDraws) +
+              " attempts; expected a start and goal above base_m, and not too many peaks");
 }
 
 hills::Surface make(const Params& params, const Site& site) {
@@ -108,7 +115,7 @@ class Hills final : public Environment, public Ground {
   }
 
  private:
-  // The ground goes on for ever; a scenario says how much of it is flown over (volume).
+  // The ground is unbounded; a scenario specifies how much of it is flown over (volume).
   Box do_bounds() const override {
     return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, surface_.top()}};
   }
@@ -135,7 +142,7 @@ class Hills final : public Environment, public Ground {
     return std::max(above / std::hypot(1, surface_.max_slope()), p.z() - surface_.top());
   }
 
-  /// The steepest slope within that of a leg.
+  /// The steepest slope within that distance of a leg.
   double slope_near(const Vec3& a, const Vec3& b, double within) const {
     const Vec3 middle = (a + b) / 2;
     const double half = std::hypot(b.x() - a.x(), b.y() - a.y()) / 2;
@@ -189,12 +196,12 @@ class Hills final : public Environment, public Ground {
     }
     const double gap = p.z() - surface_.height(p.x(), p.y());
     if (gap <= kLengthTolerance) {
-      // The way out is up; the depth is a lower bound, as clearance has it.
+      // The way out is up; the depth is a lower bound, as clearance requires.
       sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
     }
     if (gap > kit::height_for(reach, surface_.max_slope(p.x(), p.y(), reach))) {
-      return;  // no slope within reach rises so far
+      return;  // no slope within reach rises that far
     }
     const auto ground = [&](double x, double y) { return surface_.height(x, y); };
     const auto highest = [&](double x0, double y0, double x1, double y1) {
@@ -218,13 +225,13 @@ class Hills final : public Environment, public Ground {
     });
   }
 
-  // The search beside the edge of the plateau ends there.
+  // The search near the edge of the plateau ends there.
   double do_over_approximation() const override { return 1e-5; }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   const LayerInfo& do_info() const override { return info_; }
 
-  static constexpr double kShortest = 1;  // metres of a leg, below which it is searched whole
+  static constexpr double kShortest = 1;  // metres of a leg, below which it is searched undivided
 
   hills::Surface surface_;
   LayerInfo info_;
@@ -232,4 +239,4 @@ class Hills final : public Environment, public Ground {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "hills", Hills, Params,
-                "smooth hills, peak by peak or drawn from a seed (paper 002)")
+                "smooth hills, peak by peak or generated from a seed (paper 002)")

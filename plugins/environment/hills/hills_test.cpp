@@ -49,8 +49,8 @@ double height(const std::vector<Row>& rows, double x, double y) {
   return std::min(4000.0, sum);
 }
 
-// Least of the leg's heights above the ground (sign -1: greatest) by dense sampling, refined around
-// every sample that is no higher than its neighbours.
+// Minimum of the leg's heights above the ground (sign -1: maximum) by dense sampling, refined
+// around every sample that is no higher than its neighbours.
 double sampled_gap(const std::vector<Row>& rows, const Vec3& a, const Vec3& b, double sign = 1) {
   const auto gap = [&](double t) {
     const Vec3 p = a + std::clamp(t, 0.0, 1.0) * (b - a);
@@ -64,7 +64,7 @@ double sampled_gap(const std::vector<Row>& rows, const Vec3& a, const Vec3& b, d
     if (gap(at) > std::min(gap(at - step), gap(at + step)) || gap(at) > best + 5) {
       continue;
     }
-    while (step > 1e-12) {  // halves towards the least
+    while (step > 1e-12) {  // halves towards the minimum
       step /= 2;
       for (const double side : {at - step, at + step}) {
         at = gap(side) < gap(at) ? side : at;
@@ -91,7 +91,7 @@ TEST(Hills, FittedTerrainOfThePage) {
   EXPECT_NEAR(*hills->ground()->height(-400000, 0), 500, 1e-9);
 }
 
-// A second writing of the generator, by the page.
+// An independent implementation of the generator, by the specification page.
 std::vector<Row> generated(std::uint64_t state, int count, const Vec3& start, const Vec3& goal) {
   const auto u = [&] {
     std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
@@ -197,7 +197,7 @@ TEST(Hills, GapIsExact) {
 }
 
 TEST(Hills, SpikeBetweenSamplesIsSeen) {
-  // A needle one metre wide on a plain, beside all samples at the leg's quarters, 1 cm too high.
+  // A needle one metre wide on a plain, between the samples at the leg's quarters, 1 cm too high.
   const std::vector<Row> rows{{31234.5, 5000, 50, 1, 1}};
   const Made hills = make_environment("hills", yaml(rows));
   const Vec3 up(0, 0, 0.02);

@@ -19,7 +19,7 @@ double bell_bend(double w) { return (w * w - 1) * std::exp(-w * w / 2); }
 const double kMaxBendAt = std::sqrt(3.0);
 const double kMaxBend = bell_bend(kMaxBendAt);
 
-/// The ground along a leg, over the share t of the leg: a sum of one-dimensional bells.
+/// The ground along a leg, over the fraction t of the leg: a sum of one-dimensional bells.
 class Profile {
  public:
   Profile(const Vec3& a, const Vec3& b, double base, const std::vector<Peak>& peaks) : base_(base) {
@@ -49,7 +49,7 @@ class Profile {
     return sum;
   }
 
-  /// Greatest of sign × second derivative on [from, to], or more; never below 0.
+  /// Upper bound of sign × second derivative on [from, to]; never below 0.
   double bend(double sign, double from, double to) const {
     double bound = 0;
     for (const Bell& bell : bells_) {
@@ -79,7 +79,7 @@ class Profile {
   std::vector<Bell> bells_;
 };
 
-/// Least over t in [0, 1] of max(line(t), sign (z(t) - ground(t))), by branch and bound: between
+/// Minimum over t in [0, 1] of max(line(t), sign (z(t) - ground(t))), by branch and bound: between
 /// its ends a function falls below the chord by at most bend L² / 8.
 struct Least {
   const Profile& profile;
@@ -129,19 +129,19 @@ struct Least {
 
 constexpr double kNoLine = -1e300;
 
-/// Whether the leg is, for all that the ground can tell, a point of the map.
+/// True if the leg is, as far as the ground is concerned, a point of the map.
 bool is_vertical(const Vec3& a, const Vec3& b) {
   return std::hypot(b.x() - a.x(), b.y() - a.y()) < 1e-9;
 }
 
-/// Part of the plane, with what may be the greatest value in it.
+/// Part of the plane, with an upper bound of the maximum in it.
 struct Part {
   double x, y, half_x, half_y, bound;
   bool operator<(const Part& other) const { return bound < other.bound; }
 };
 
-/// An upper bound, within `relative` and `absolute`, of the greatest value over a box.
-/// look(x, y, half_x, half_y) gives {a value in that part, an upper bound for it}.
+/// An upper bound, within `relative` and `absolute`, of the maximum over a box. look(x, y, half_x,
+/// half_y) gives {a value in that part, an upper bound for it}.
 template <class Look>
 double greatest(Part whole, double relative, double absolute, const Look& look) {
   double best = -kInfinity;
@@ -200,7 +200,7 @@ Surface::Local Surface::local(double x, double y) const {
 }
 
 // Bound of the second derivative in any direction within r of (x, y). In the peak's own units it is
-// max(1, |w² - 1|) exp(-w² / 2) at most, which only falls with the distance w.
+// at most max(1, |w² - 1|) exp(-w² / 2), which only falls with the distance w.
 double Surface::bend(double x, double y, double r) const {
   double bound = 0;
   for (const Peak& peak : peaks_) {
@@ -244,8 +244,8 @@ namespace {
 /// u = (x - m) / s.
 struct Factors {
   std::vector<double> node;  ///< exp(-u² / 2) at the nodes, all intervals' first ones first
-  std::vector<double> most;  ///< greatest of it in each interval
-  std::vector<double> bend;  ///< greatest of (1 - u²) exp(-u² / 2) / s² in each, or 0
+  std::vector<double> most;  ///< maximum of it in each interval
+  std::vector<double> bend;  ///< maximum of (1 - u²) exp(-u² / 2) / s² in each, or 0
 
   Factors(const Surface::Intervals& at, int pieces, double m, double s) {
     for (int n = 0; n <= pieces; ++n) {
@@ -264,13 +264,13 @@ struct Factors {
 }  // namespace
 
 // A bell is the product of a factor along each axis, so that the ground at the nodes of a lattice,
-// `pieces` to each box and axis, takes no exponential a node. Between the nodes a function rises
-// above them by at most (greatest downward bend) L² / 8 along each axis. Narrow hills are bounded
-// by the greatest of each bell instead.
+// `pieces` to each box and axis, needs no exponential per node. Between the nodes a function rises
+// above them by at most (maximum downward bend) L² / 8 along each axis. Narrow hills are bounded by
+// the maximum of each bell instead.
 std::vector<double> Surface::highest(const Intervals& east, const Intervals& north,
                                      double within) const {
   constexpr int kMaxPieces = 12;
-  double sag = 0;  // of a box that is one piece
+  double sag = 0;  // for an undivided box
   for (const Peak& peak : peaks_) {
     sag += peak.height * (square(east.half / peak.sx) + square(north.half / peak.sy)) / 2;
   }
@@ -317,7 +317,7 @@ std::vector<double> Surface::highest(const Intervals& east, const Intervals& nor
 }
 
 // A bell is steepest at one width from its middle: beyond ten widths from all of them the slope is
-// no matter.
+// negligible.
 double Surface::steepest() const {
   constexpr double kWidths = 10;
   altiplan::Box box = altiplan::Box::empty();
@@ -359,7 +359,7 @@ double Surface::gap_max(const Vec3& a, const Vec3& b) const {
   if (is_vertical(a, b)) {
     return high - height(a.x(), a.y());
   }
-  // z - min(cap, sum) = max(z - cap, z - sum), and the greatest of each may be taken alone.
+  // z - min(cap, sum) = max(z - cap, z - sum), and the maximum of each may be taken alone.
   const Profile profile(a, b, base_, peaks_);
   const double below = Least{profile, -1, a.z(), b.z(), kNoLine, kNoLine, kInfinity}.find();
   return std::max(high - cap_, -below);

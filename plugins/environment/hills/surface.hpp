@@ -24,31 +24,33 @@ class Surface {
   Surface(double base, double cap, std::vector<Peak> peaks);
 
   double height(double x, double y) const { return std::min(cap_, base_ + bells(peaks_, x, y)); }
-  /// No ground is higher.
+  /// Upper bound of the ground.
   double top() const { return top_; }
-  /// No ground is steeper; within 1 % of the steepest.
+  /// Upper bound of the slope; within 1 % of the steepest.
   double max_slope() const { return max_slope_; }
-  /// No ground within r of (x, y) is steeper.
+  /// Upper bound of the slope within r of (x, y).
   double max_slope(double x, double y, double r) const;
-  /// No ground in the closed box is higher; one evaluation, loose in a large box.
+  /// Upper bound of the ground in the closed box; one evaluation, loose in a large box.
   double height_bound(double x0, double y0, double x1, double y1) const;
   /// The ground over the closed box.
   altiplan::kit::GroundPiece piece(double x0, double y0, double x1, double y1) const;
-  /// Intervals along an axis: middles `step` apart from `first`, each `half` to both sides.
+  /// Intervals along an axis: their middles `step` apart starting at `first`, each extending `half`
+  /// to both sides.
   struct Intervals {
     double first, step, half;
     int count;
   };
-  /// No ground is higher in each closed box of an interval east and one north (rows from the south,
-  /// each from the west); within about `within` metres of the highest ground where the hills are
-  /// wide against the boxes.
+  /// Upper bound of the ground in each closed box of an interval east and one north (rows from the
+  /// south, each from the west); within about `within` metres of the highest ground if the hills
+  /// are wide compared with the boxes.
   std::vector<double> highest(const Intervals& east, const Intervals& north, double within) const;
 
-  /// Least height of the leg above the ground, within 1e-7 m; any value of at least `enough` once
-  /// it is known to be that high, and any below `too_low` once it is known to be so low.
+  /// Minimum height of the leg above the ground, within 1e-7 m; may return any value of at least
+  /// `enough` once it is known to be that high, and any below `too_low` once it is known to be that
+  /// low.
   double gap(const altiplan::Vec3& a, const altiplan::Vec3& b, double enough,
              double too_low = -altiplan::kInfinity) const;
-  /// Greatest height of the leg above the ground, likewise.
+  /// Maximum height of the leg above the ground, likewise.
   double gap_max(const altiplan::Vec3& a, const altiplan::Vec3& b) const;
 
  private:

@@ -13,12 +13,12 @@
 namespace altiplan::mesh {
 namespace {
 
-/// Corners in cubes of `within`: those within reach are in the same or a neighbouring cube.
+/// Corners in cubes of edge `within`: those within reach are in the same or a neighbouring cube.
 class Welder {
  public:
   explicit Welder(double within) : within_(within) {}
 
-  /// Number of the kept corner that this one becomes.
+  /// Index of the kept corner into which this one merges.
   std::uint32_t operator()(const Vec3& corner) {
     const Vec3 cube = within_ > 0 ? Vec3((corner / within_).array().floor())
                                   : Vec3(corner.array() + 0);  // -0 is 0
@@ -98,12 +98,12 @@ void check_edges(const Model& model, const Place& place) {
   }
   if (first != nullptr) {
     throw Error("is not closed: " + std::to_string(open) + " edges are in one triangle only, and " +
-                std::to_string(clashing) + " in triangles that do not run opposite ways; one is " +
+                std::to_string(clashing) + " in triangles of inconsistent orientation; one is " +
                 place(model.corners[first->low]) + " to " + place(model.corners[first->high]));
   }
 }
 
-/// The number of each corner's shell: corners that triangles join have the same.
+/// Index of each corner's shell: corners joined by triangles share it.
 std::vector<std::uint32_t> shells_of(const Model& model) {
   std::vector<std::uint32_t> parent(model.corners.size());
   std::iota(parent.begin(), parent.end(), 0U);

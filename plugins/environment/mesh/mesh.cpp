@@ -13,7 +13,7 @@
 namespace altiplan::mesh {
 namespace {
 
-/// Distances below this are rounding: the leg meets the surface.
+/// Distances below this are rounding errors: the leg touches the surface.
 constexpr double kMeets = 1e-9;
 constexpr double kFarthest = 1e7;
 
@@ -30,20 +30,20 @@ struct Params {
 
   void describe(Fields& f) {
     f("file", file).doc("closed surface: STL (ASCII or binary) or OBJ").required();
-    f("scale", scale).greater_than(0).doc("metres that a unit of the file is");
+    f("scale", scale).greater_than(0).doc("metres per unit of the file");
     f("up", up, {{"z", Up::z}, {"y", Up::y}})
         .doc("the file's axis that points up; with y its -z points north");
     f("heading_deg", heading_deg)
         .range(-360, 360)
-        .doc("turns the model clockwise, seen from above, about its zero");
-    f.point(at).doc("where the model's zero is placed; left out, at [0, 0, 0]");
+        .doc("rotation of the model about its origin, clockwise as seen from above");
+    f.point(at).doc("position of the model's origin; default: [0, 0, 0]");
     f("weld_m", weld_m)
         .unit("m")
         .range(0, 1)
-        .doc("corners at most that far apart are one; they move by no more");
+        .doc("corners at most this far apart are merged; they move by no more");
     f("max_triangles", max_triangles)
         .range(1, 100'000'000)
-        .doc("a file of more triangles is refused before they are built");
+        .doc("a file with more triangles is rejected before they are built");
   }
 };
 
@@ -57,7 +57,7 @@ struct Placement {
     const double angle = radians(params.heading_deg);
     double sine = std::sin(angle);
     double cosine = std::cos(angle);
-    if (std::fmod(params.heading_deg, 90) == 0) {  // what lies along an axis stays so
+    if (std::fmod(params.heading_deg, 90) == 0) {  // axis-aligned parts stay exactly so
       sine = std::round(sine);
       cosine = std::round(cosine);
     }
@@ -71,7 +71,7 @@ struct Placement {
       at = site.resolve(params.at);
       if (!params.at.has_height && !params.at.above_ground_m &&
           params.at.form != Point::Form::cell) {
-        throw Error("a mesh needs the height of its zero: a third number or above_ground_m");
+        throw Error("a mesh needs the height of its origin: a third number or above_ground_m");
       }
     }
   }
@@ -111,18 +111,18 @@ Solid read(const Params& params, const Site& site) {
     for (const Vec3& corner : solid.triangles.back()) {
       if (!is_finite(corner) || corner.cwiseAbs().maxCoeff() > kFarthest) {
         throw ParameterError("file", file + ": reaches to " + text(corner) +
-                                         ", farther than 10,000 km; mind `scale`");
+                                         ", farther than 10,000 km; check `scale`");
       }
     }
   }
   solid.note = std::to_string(solid.triangles.size()) + " triangles in " + std::to_string(shells) +
                (shells == 1 ? " closed part, " : " closed parts, ") + std::to_string(dropped) +
-               " without area left out";
+               " without area omitted";
   return solid;
 }
 
-/// The places that the surface winds around, and the surface. Exact: distances to triangles are
-/// closed forms.
+/// The positions enclosed by the surface, and the surface. Exact: distances to triangles are closed
+/// forms.
 class Mesh final : public Environment {
  public:
   Mesh(const Params& params, const Site& site) : Mesh(read(params, site)) {}
@@ -153,9 +153,9 @@ class Mesh final : public Environment {
     return gets_inside(a, b, limit);
   }
 
-  /// Whether a point that flies the leg gets inside: touching is free. Between two meetings with
-  /// the surface the leg is on one side of it; there it is judged at half the depth that a point is
-  /// judged by, so that it is never free where a point of it is not.
+  /// True if a point that flies the leg gets inside: touching is free. Between two contacts with
+  /// the surface the leg is on one side of it; there it is checked at half the depth used for
+  /// points, so that it is never free where a point of it is not.
   bool gets_inside(const Vec3& a, const Vec3& b, double limit) const {
     std::vector<double> places = surface_.meetings(a, b, kMeets);
     places.insert(places.begin(), 0);
@@ -205,4 +205,4 @@ class Mesh final : public Environment {
 }  // namespace altiplan::mesh
 
 ALTIPLAN_PLUGIN(Environment, "mesh", altiplan::mesh::Mesh, altiplan::mesh::Params,
-                "A closed triangle mesh (STL, OBJ) as a solid")
+                "a closed triangle mesh (STL, OBJ) as a solid")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Damaged models: each is refused in a sentence that names the file, or is another closed solid;
-// none ends the process or takes more than max_triangles allows.
+// Damaged models: each is rejected with a message that names the file, or is another closed solid;
+// none crashes the process or exceeds max_triangles.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -90,7 +90,7 @@ struct Damage {
 TEST_F(DamagedMesh, TextStlIsRefusedByLine) {
   ASSERT_EQ(refusal("a.stl", stl()), "");
   const Damage all[] = {
-      {"solid thing\nfacet", "sold thing\nfacet", "is no STL file"},
+      {"solid thing\nfacet", "sold thing\nfacet", "is not an STL file"},
       {"facet normal 0 0 0\nouter loop\nvertex 0.000000 0.000000 0.000000\nvertex 0.000000 1",
        "facet normal 0 0\nouter loop\nvertex 0.000000 0.000000 0.000000\nvertex 0.000000 1",
        ".stl:2: expected 'facet normal' and three numbers, found 'facet normal 0 0'"},
@@ -110,9 +110,9 @@ TEST_F(DamagedMesh, TextStlIsRefusedByLine) {
       {"vertex 1.000000 0.000000 0.000000\nendloop", "vertex 1,0 0 0\nendloop",
        ".stl:6: expected 'vertex' and three numbers"},
       {"vertex 1.000000 0.000000 0.000000\nendloop", "vertex 1e20 0 0\nendloop",
-       "has a coordinate that is no number of at most 1e+09"},
+       "has a coordinate that is not a number of at most 1e+09"},
       {"vertex 1.000000 0.000000 0.000000\nendloop", "vertex 1e99 0 0\nendloop",
-       "has a coordinate that is no number of at most 1e+09"},
+       "has a coordinate that is not a number of at most 1e+09"},
       {"vertex 1.000000 0.000000 0.000000\nendloop",
        "vertex 1.000000 0.000000 0.000000\nvertex 2 2 2\nendloop", ".stl:7: expected 'endloop'"},
       {"vertex 1.000000 0.000000 0.000000\nendloop\nendfacet\nfacet",
@@ -146,15 +146,16 @@ TEST_F(DamagedMesh, BinaryStlIsRefused) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
     return bytes;
   };
-  const std::string length = "is no STL file: it does not begin with 'solid', and a binary one of ";
+  const std::string length =
+      "is not an STL file: it does not begin with 'solid', and a binary one of ";
   for (const std::uint32_t count : {0U, 3U, 5U, 1000U, 4294967295U}) {
     expect_refused("a.stl", with(80, count),
                    length + std::to_string(count) + " triangles, as it declares, has " +
                        std::to_string(84 + 50 * std::size_t(count)) + " bytes, found 284");
   }
   expect_refused("a.stl", binary_stl() + "x", length);
-  expect_refused("a.stl", "", "is no STL file: it has 0 bytes");
-  expect_refused("a.stl", std::string(83, 'x'), "is no STL file: it has 83 bytes");
+  expect_refused("a.stl", "", "is not an STL file: it has 0 bytes");
+  expect_refused("a.stl", std::string(83, 'x'), "is not an STL file: it has 83 bytes");
   const std::string none = std::string(84, '\0');
   EXPECT_NE(refusal("a.stl", none), "");
   std::string many(84, ' ');
@@ -166,7 +167,7 @@ TEST_F(DamagedMesh, BinaryStlIsRefused) {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30F}) {
     for (const std::size_t number : {0U, 1U, 2U, 4U, 8U}) {
-      expect_refused("a.stl", with(96 + 4 * number, bad), "has a coordinate that is no number");
+      expect_refused("a.stl", with(96 + 4 * number, bad), "has a coordinate that is not a number");
     }
   }
   expect_refused("a.stl", with(96 + 12, 0.25F), "is not closed");
@@ -192,7 +193,7 @@ TEST_F(DamagedMesh, ObjIsRefusedByLine) {
       {"v 1 0 0", "\x01\x02",
        ".obj:4: expected a statement of an OBJ file (v, f, vn, vt, o, g, s, "
        "usemtl, …), found '"},
-      {"v 1 0 0", "v 1e30 0 0", "has a coordinate that is no number of at most 1e+09"},
+      {"v 1 0 0", "v 1e30 0 0", "has a coordinate that is not a number of at most 1e+09"},
       {"v 1 0 0", "", ".obj:9: expected 'f'"},
       {"f 1//1 3", "f 0//1 3", face.c_str()},
       {"f 1//1 3", "f 5//1 3", face.c_str()},
@@ -228,7 +229,7 @@ TEST_F(DamagedMesh, WhatIsNoModelIsRefused) {
   for (const char* name : {"a.ply", "a", "a.stl.gz", "a.3ds", "a.gltf"}) {
     expect_refused(name, obj(), "expected a file that ends in .stl or .obj");
   }
-  expect_refused("a.stl", obj(), "is no STL file");
+  expect_refused("a.stl", obj(), "is not an STL file");
   expect_refused("a.obj", stl(), ".obj:1: expected a statement of an OBJ file");
   std::filesystem::create_directory(folder_ / "folder.stl");
   EXPECT_NE(mesh_refusal(folder_ / "folder.stl").find("is a folder, expected a file"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of prisms against the closed forms of those prisms.
+// Meshes of prisms compared with the closed forms of those prisms.
 #include <gtest/gtest.h>
 
 #include <assimp/postprocess.h>
@@ -110,7 +110,7 @@ TEST_F(Mesh, CellsAreThoseOfThePrism) {
       layer->rasterize(grid);
       exact.layers()[0].environment->rasterize(expected);
       EXPECT_TRUE(VoxelGrid::diff(grid, expected).empty()) << inflation;
-      if (inflation == 0) {  // the faces lie on those of cells: neither rule takes more
+      if (inflation == 0) {  // the faces coincide with those of cells: neither rule takes more
         EXPECT_EQ(grid.blocked_count(), 468U);
       }
     }
@@ -181,7 +181,7 @@ TEST_F(Mesh, TheFormatsOfAssimpHoldTheSame) {
 }
 
 TEST_F(Mesh, MaterialsAreNotOpened) {
-  // A material file that cannot be opened, and one that would be a directory: no difference.
+  // A material file that cannot be opened, and a directory in its place: no difference.
   const std::string text = obj_of(cuboid({0, 0, 0}, {1, 1, 1}));
   for (const char* library : {"/nowhere/looks.mtl", "/", "../../../etc/passwd"}) {
     const auto file =
@@ -192,7 +192,7 @@ TEST_F(Mesh, MaterialsAreNotOpened) {
 
 TEST_F(Mesh, CornersAreWeldedAndSliversLeftOut) {
   Faces model = cuboid({0, 0, 0}, {1, 1, 1});
-  // Each face with corners of its own, off by less than weld_m, and a triangle of no area.
+  // Each face with separate corners, off by less than weld_m, and a triangle of zero area.
   Faces apart;
   RandomStream random(3);
   for (const std::vector<int>& face : model.faces) {
@@ -207,7 +207,7 @@ TEST_F(Mesh, CornersAreWeldedAndSliversLeftOut) {
   }
   apart.faces.push_back({0, 1, 0});
   const auto layer = layer_of(apart);
-  EXPECT_EQ(layer->info().notes[0], "12 triangles in 1 closed part, 1 without area left out");
+  EXPECT_EQ(layer->info().notes[0], "12 triangles in 1 closed part, 1 without area omitted");
   EXPECT_NEAR(layer->clearance({2, 0.5, 0.5}), 1, 1e-4);
   EXPECT_NE(mesh_refusal(folder_ / "model.obj", ", weld_m: 0").find("is not closed"),
             std::string::npos);
@@ -220,10 +220,10 @@ TEST_F(Mesh, OpenOnesAreRefused) {
   const Faces cube = cuboid({0, 0, 0}, {1, 1, 1});
   Faces open = cube;
   open.faces.erase(open.faces.begin() + 1);
-  EXPECT_NE(refusal_of(open).find(
-                "is not closed: 4 edges are in one triangle only, and 0 in "
-                "triangles that do not run opposite ways; one is (1, 0, 1) to (0, 0, 1)"),
-            std::string::npos)
+  EXPECT_NE(
+      refusal_of(open).find("is not closed: 4 edges are in one triangle only, and 0 in "
+                            "triangles of inconsistent orientation; one is (1, 0, 1) to (0, 0, 1)"),
+      std::string::npos)
       << refusal_of(open);
   Faces flipped = cube;
   std::reverse(flipped.faces[1].begin(), flipped.faces[1].end());
@@ -244,7 +244,7 @@ TEST_F(Mesh, OpenOnesAreRefused) {
 }
 
 TEST_F(Mesh, ARouteIsPlannedAroundItAndJudged) {
-  // A gate: two posts and a beam, closed below by a wall; the way is above the wall.
+  // A gate: two posts and a beam, closed below by a wall; the path is above the wall.
   Faces gate = cuboid({48, 0, 0}, {52, 40, 60});
   gate.add(cuboid({48, 60, 0}, {52, 100, 60}));
   gate.add(cuboid({48, 40, 40}, {52, 60, 60}));

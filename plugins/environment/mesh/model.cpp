@@ -20,7 +20,7 @@ namespace altiplan::mesh {
 namespace {
 namespace fs = std::filesystem;
 
-/// What a triangle takes at most in a file, of text with long numbers.
+/// Maximum size of a triangle in a file, as text with long numbers.
 constexpr std::uintmax_t kBytesOfTriangle = 512;
 constexpr double kFarthest = 1e9;
 constexpr std::size_t kStlHeader = 80;
@@ -44,7 +44,7 @@ std::string read(const std::string& file, std::int64_t max_triangles) {
   return kit::read_file(file, kBytesOfTriangle * (std::uintmax_t(max_triangles) + 1));
 }
 
-/// A binary file is told by its length, as `solid` may stand at its beginning too.
+/// A binary file is recognised by its length, as it may also begin with `solid`.
 void check_stl(const std::string& file, const std::string& bytes, std::int64_t max_triangles) {
   const bool has_count = bytes.size() >= kStlHeader + 4;
   std::uint32_t count = 0;
@@ -59,17 +59,17 @@ void check_stl(const std::string& file, const std::string& bytes, std::int64_t m
              bytes.compare(bytes.find_first_not_of(" \t\r\n"), 5, "solid") == 0) {
     check_stl_text(file, bytes, max_triangles);
   } else if (has_count) {
-    refuse(file, "is no STL file: it does not begin with 'solid', and a binary one of " +
+    refuse(file, "is not an STL file: it does not begin with 'solid', and a binary one of " +
                      std::to_string(count) + " triangles, as it declares, has " +
                      std::to_string(kStlHeader + 4 + kStlTriangle * std::size_t(count)) +
                      " bytes, found " + std::to_string(bytes.size()));
   } else {
-    refuse(file, "is no STL file: it has " + std::to_string(bytes.size()) +
+    refuse(file, "is not an STL file: it has " + std::to_string(bytes.size()) +
                      " bytes and does not begin with 'solid'");
   }
 }
 
-/// The one file that assimp may open; whatever that names is not there.
+/// The only file that assimp may open; files that it references do not exist.
 class OneFile final : public Assimp::IOSystem {
  public:
   OneFile(std::string name, const std::string& bytes) : name_(std::move(name)), bytes_(bytes) {}
@@ -88,7 +88,7 @@ class OneFile final : public Assimp::IOSystem {
   const std::string& bytes_;
 };
 
-/// Of assimp's fifty readers the one for that ending stays.
+/// Keeps only the reader for that extension of assimp's fifty.
 void leave_one_reader(Assimp::Importer& importer, const std::string& ending) {
   Assimp::BaseImporter* const kept = importer.GetImporter(ending.c_str());
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -110,7 +110,7 @@ Model model_of(const aiScene& scene, const std::string& file) {
       model.corners.emplace_back(double(v.x), double(v.y), double(v.z));
       const Vec3& corner = model.corners.back();
       if (!is_finite(corner) || corner.cwiseAbs().maxCoeff() > kFarthest) {
-        refuse(file, "has a coordinate that is no number of at most 1e+09, its corner " +
+        refuse(file, "has a coordinate that is not a number of at most 1e+09, its corner " +
                          std::to_string(before + i + 1));
       }
     }
@@ -149,7 +149,7 @@ Model read_model(const std::string& file, std::int64_t max_triangles) {
   }
   Model model = model_of(*scene, file);
   if (model.triangles.empty()) {
-    refuse(file, "holds no triangle");
+    refuse(file, "contains no triangle");
   }
   return model;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models of the tests, and the layer made of one.
+// Models for the tests, and the layer made from one.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace altiplan::testing {
 
-/// Corners and faces, counted from 0.
+/// Corners and faces, numbered from 0.
 struct Faces {
   std::vector<Vec3> corners;
   std::vector<std::vector<int>> faces;
@@ -37,7 +37,7 @@ struct Faces {
   }
 };
 
-/// A prism between two heights over an outline that runs counter-clockwise.
+/// A prism between two heights over a counter-clockwise outline.
 inline Faces prism(const std::vector<std::array<double, 2>>& outline, double floor,
                    double ceiling) {
   Faces made;
@@ -82,7 +82,7 @@ inline std::unique_ptr<Environment> mesh_of(const std::filesystem::path& file,
   return make_environment("mesh", "{file: '" + file.string() + "'" + more + "}", site);
 }
 
-/// The sentence that refuses the file, "" where it is taken; it names the file.
+/// The message that rejects the file, "" if it is accepted; checks that it names the file.
 inline std::string mesh_refusal(const std::filesystem::path& file, const std::string& more = "") {
   try {
     mesh_of(file, more);

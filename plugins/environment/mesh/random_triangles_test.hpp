@@ -8,7 +8,7 @@ namespace altiplan::mesh {
 
 inline const Box kAround{{-1, -1, -1}, {1, 1, 1}};
 
-/// Triangles, of which some are thin, some a segment, some flat along the axes.
+/// Triangles, some of them thin, some degenerate to a segment, some flat along the axes.
 inline Triangle triangle(RandomStream& random, int kind) {
   Triangle t{random.in(kAround), random.in(kAround), random.in(kAround)};
   if (kind % 5 == 1) {

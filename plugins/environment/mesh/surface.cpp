@@ -20,7 +20,7 @@ struct Crossing {
   bool up;  ///< the edge runs toward greater y
 };
 
-/// Where the edge from–to, which crosses that y, does; never outside of its ends' box.
+/// Position where the edge from–to, which crosses that y, does; never outside its ends' box.
 Crossing at_level(const Vec3& from, const Vec3& to, double y) {
   const bool up = from.y() < to.y();
   const Vec3& low = up ? from : to;
@@ -33,7 +33,7 @@ Crossing at_level(const Vec3& from, const Vec3& to, double y) {
   return {mix(0), mix(2), up};
 }
 
-/// 1 where the triangle is above p and faces up, -1 where it faces down, else 0.
+/// 1 if the triangle is above p and faces up, -1 if it faces down, else 0.
 int winding_of(const Triangle& t, const Vec3& p) {
   std::array<Crossing, 2> at{};
   std::size_t count = 0;
@@ -61,7 +61,7 @@ Surface::Surface(std::vector<Triangle> triangles) : triangles_(std::move(triangl
   build(0, std::uint32_t(triangles_.size()));
 }
 
-/// Halves the triangles by their middles along the longest side of their box.
+/// Splits the triangles at their median along the longest side of their box.
 std::uint32_t Surface::build(std::uint32_t first, std::uint32_t count) {
   const auto number = std::uint32_t(nodes_.size());
   nodes_.emplace_back();

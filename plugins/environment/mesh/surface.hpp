@@ -7,7 +7,7 @@
 
 namespace altiplan::mesh {
 
-/// Triangles under a tree of boxes; each query looks at O(log n) of them where they are spread.
+/// Triangles in a tree of boxes; each query examines O(log n) of them where they are spread.
 class Surface {
  public:
   explicit Surface(std::vector<Triangle> triangles);
@@ -21,17 +21,17 @@ class Surface {
     const Triangle* triangle;
   };
   Nearest nearest(const Vec3& p) const;
-  /// Whether some triangle is nearer to the leg, or the box, than that.
+  /// True if some triangle is nearer to the leg, or the box, than that.
   bool leg_is_nearer(const Vec3& a, const Vec3& b, double distance) const;
   bool box_is_nearer(const Box& box, double distance) const;
-  /// The places of `add_meetings` of all triangles, ascending.
+  /// The results of `add_meetings` for all triangles, ascending.
   std::vector<double> meetings(const Vec3& a, const Vec3& b, double distance) const;
-  /// How often the surface winds around p: 0 outside of a closed one.
+  /// Winding number of the surface around p: 0 outside a closed one.
   ///
   /// The signed number of triangles above p. Each crosses the level of p's y in two of its edges,
-  /// and is above or below p where the line between those two is. A shared edge has one place, to
-  /// the last bit, in both its triangles, so a vertical through an edge or a corner counts once: no
-  /// place is in doubt that is farther from the surface than rounding.
+  /// and is above or below p if the line between those crossings is. A shared edge gives exactly
+  /// the same crossing in both its triangles, so a vertical through an edge or a corner counts
+  /// once: no position is in doubt that is farther from the surface than rounding.
   int winding(const Vec3& p) const;
 
  private:
@@ -39,12 +39,12 @@ class Surface {
     Box box = Box::empty();
     std::uint32_t first = 0;  ///< of its triangles
     std::uint32_t count = 0;
-    std::uint32_t right = 0;  ///< its second child, the first is the next node; 0: a leaf
+    std::uint32_t right = 0;  ///< index of its second child, the first is the next node; 0: a leaf
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
   void find_nearest(const Node& node, const Vec3& p, Nearest& best) const;
-  /// Calls visit(triangle) below the nodes whose box enter(box) admits, until it returns true.
+  /// Calls visit(triangle) below the nodes whose box enter(box) accepts, until it returns true.
   template <class Enter, class Visit>
   bool any(const Node& node, const Enter& enter, const Visit& visit) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree against a walk over all triangles, and the winding number against the sum of solid
+// The tree compared with a scan of all triangles, and the winding number with the sum of solid
 // angles.
 #include "surface.hpp"
 
@@ -13,7 +13,7 @@
 namespace altiplan::mesh {
 namespace {
 
-/// A torus whose tube has flat sides, standing on its corners' grid: many verticals meet edges.
+/// A torus whose tube has flat sides, with its corners on a grid: many verticals meet edges.
 std::vector<Triangle> torus(int around, int tube) {
   const auto corner = [&](int i, int j) {
     const double u = 2 * kPi * (i % around) / around;
@@ -84,7 +84,7 @@ TEST(Surface, WindingIsThatOfTheSolidAngles) {
   RandomStream random(5);
   for (const auto& [around, tube] : {std::pair(8, 4), {7, 5}, {16, 8}}) {
     std::vector<Triangle> all = torus(around, tube);
-    // Another that overlaps the first, and one inside out.
+    // Another one that overlaps the first, and one inside out.
     for (const Triangle& t : torus(around, tube)) {
       all.push_back({t[0] + Vec3(0.5, 0, 0), t[1] + Vec3(0.5, 0, 0), t[2] + Vec3(0.5, 0, 0)});
       all.push_back({t[0] + Vec3(0, 3, 0), t[2] + Vec3(0, 3, 0), t[1] + Vec3(0, 3, 0)});
@@ -110,7 +110,7 @@ TEST(Surface, WindingIsThatOfTheSolidAngles) {
 }
 
 TEST(Surface, WallsAlongTheAxesAreOnNoVertical) {
-  // A wall that rounding has left not quite upright, and places in its plane beside it.
+  // A wall that rounding has left slightly tilted, and positions in its plane beside it.
   const double tilt = 6e-17;
   const Vec3 a(0, 0, 0);
   const Vec3 b(1, tilt, 0);

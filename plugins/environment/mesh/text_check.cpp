@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
 
-/// A file's lines as words.
+/// A file's lines, split into words.
 class Lines {
  public:
   Lines(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
-  /// The words of the next line that has any; false at the end.
+  /// The words of the next non-empty line; false at the end.
   bool next(std::vector<std::string_view>& words) {
     words.clear();
     while (words.empty() && begin_ < text_.size()) {
@@ -60,7 +60,7 @@ class Lines {
 
 using Words = std::vector<std::string_view>;
 
-/// A finite number and nothing else; a leading + is written by some.
+/// A finite number and nothing else; some programs write a leading +.
 bool is_number(std::string_view word) {
   if (word.starts_with('+')) {
     word.remove_prefix(1);
@@ -80,7 +80,7 @@ bool are_numbers(const Words& words, std::size_t from) {
   return true;
 }
 
-/// What has to stand in the lines of a facet, after `facet`.
+/// Required contents of a facet's lines, after `facet`.
 struct Expected {
   const char* text;
   std::size_t words;
@@ -99,10 +99,10 @@ bool is(const Words& words, const Expected& expected) {
          are_numbers(words, expected.words - expected.numbers);
 }
 
-/// Statements that say nothing of a solid's surface.
+/// Statements that do not affect a solid's surface.
 constexpr std::string_view kLooks[] = {"vn", "vt", "o", "g", "s", "l", "p", "usemtl", "mtllib"};
 
-/// The number of a face's corner, before its texture and normal.
+/// The index of a face's corner, before its texture and normal.
 std::string_view vertex_of(std::string_view corner) { return corner.substr(0, corner.find('/')); }
 
 bool is_vertex_of(std::string_view word, std::int64_t vertices) {

@@ -9,7 +9,7 @@
 namespace altiplan::mesh {
 namespace {
 
-/// A triangle whose height is less than this share of its length is looked at as its edges.
+/// A triangle whose height is less than this fraction of its length is treated as its edges.
 constexpr double kThin = 1e-10;
 
 Vec3 normal_of(const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
@@ -20,7 +20,7 @@ bool is_thin(const Triangle& t, const Vec3& normal) {
   return !(normal.norm() > kThin * longest);
 }
 
-/// Whether q, a point of the triangle's plane, lies within its edges.
+/// True if q, a point of the triangle's plane, lies within its edges.
 bool is_within(const Triangle& t, const Vec3& normal, const Vec3& q) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3& from = t[i];
@@ -39,7 +39,7 @@ Vec3 nearest_on_segment(const Vec3& from, const Vec3& to, const Vec3& p) {
 }
 
 struct Approach {
-  double along;  ///< place on the leg
+  double along;  ///< position on the leg
   double distance;
 };
 
@@ -64,7 +64,7 @@ Approach approach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
       consider(along, nearest_on_segment(c, d, a + along * leg));
     }
   }
-  // Parallel ones, and those that are nearest at an end.
+  // Parallel segments, and those that are nearest at an end.
   consider(0, nearest_on_segment(c, d, a));
   consider(1, nearest_on_segment(c, d, b));
   for (const Vec3& end : {c, d}) {
@@ -74,7 +74,7 @@ Approach approach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return best;
 }
 
-/// Where the leg crosses the triangle's inside, or a value below 0.
+/// Position where the leg crosses the triangle's inside, or a value below 0.
 double crossing(const Triangle& t, const Vec3& normal, const Vec3& a, const Vec3& b) {
   const double above = normal.dot(a - t[0]);
   const double below = normal.dot(b - t[0]);

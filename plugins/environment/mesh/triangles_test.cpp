@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances against sampling.
+// Distances compared with sampling.
 #include "triangles.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace altiplan::mesh {
 namespace {
 
-/// Visits points of the triangle by even steps.
+/// Visits points of the triangle at even spacing.
 template <class Visit>
 void sample(const Triangle& t, const Visit& visit) {
   constexpr int kSteps = 60;
@@ -23,7 +23,7 @@ void sample(const Triangle& t, const Visit& visit) {
     }
   }
 }
-/// No point of a triangle in kAround is farther from a sample.
+/// Every point of a triangle in kAround is at most this far from a sample.
 constexpr double kGap = 2 * 3.5 / 60;
 
 TEST(Triangle, NearestPointIsOnItAndNearest) {

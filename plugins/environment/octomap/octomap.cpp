@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occupancy maps of OctoMap as the finest voxels of their octree.
+// OctoMap occupancy maps as the finest voxels of their octree.
 #include <algorithm>
 #include <mutex>
 
@@ -23,23 +23,23 @@ struct Params {
   void describe(Fields& f) {
     f("file", file).doc("OctoMap file: .bt, or .ot with or without colours").required();
     f("unknown", unknown, {{"free", Unknown::free}, {"blocked", Unknown::blocked}})
-        .doc("what voxels of the map's box are that nobody has measured");
+        .doc("state of the voxels in the map's box that were not measured");
     f("occupied_from", occupied_from)
         .range(0.01, 0.99)
-        .doc("probability from which a voxel of an .ot file counts as occupied");
+        .doc("minimum probability at which a voxel of an .ot file counts as occupied");
     f("max_cells", max_cells)
         .at_least(1)
-        .doc("a map whose box has more voxels is refused before anything is allocated");
+        .doc("a map whose box has more voxels is rejected before anything is allocated");
   }
 };
 
 struct Read {
-  VoxelGrid cells;     ///< what is blocked
-  VoxelGrid occupied;  ///< what of it was measured
+  VoxelGrid cells;     ///< blocked voxels
+  VoxelGrid occupied;  ///< those of them that were measured
   std::vector<std::string> notes;
 };
 
-/// The box of all that is known.
+/// The bounding box of all known voxels.
 GridSpec spec_of(const Octree& tree, const Params& params) {
   Cell low{1 << kDepth, 1 << kDepth, 1 << kDepth};
   Cell high{0, 0, 0};
@@ -50,7 +50,7 @@ GridSpec spec_of(const Octree& tree, const Params& params) {
     }
   });
   if (low[0] >= high[0]) {
-    throw Error(params.file.text + ": there is nothing known in the map");
+    throw Error(params.file.text + ": the map has no known voxel");
   }
   GridSpec spec;
   spec.rule = GridSpec::Rule::native;
@@ -104,8 +104,8 @@ Read read(const Params& params) {
   });
   if (unknown_blocked && voxels[0] == 0) {
     throw ParameterError("unknown", params.file.text +
-                                        ": the map says of no voxel that it is free; fly where "
-                                        "nobody has measured with unknown: free");
+                                        ": the map marks no voxel as free; set unknown: free to "
+                                        "fly through unmeasured space");
   }
   const auto count = [](std::int64_t n) { return std::to_string(n); };
   result.notes = {count(leaves[1]) + " occupied leaves (" + count(voxels[1]) + " voxels), " +
@@ -152,14 +152,14 @@ class OctoMap final : public kit::CellLayer, public WhatBlocks {
     return is_measured ? "" : "unknown space, treated as blocked";
   }
 
-  static constexpr double kNearer = 1e-5;  ///< m: what is no nearer than that is as near
+  static constexpr double kNearer = 1e-5;  ///< m: differences below this count as equal
 
   VoxelGrid occupied_;
-  mutable std::once_flag asked_;  ///< for a message, seldom
+  mutable std::once_flag asked_;  ///< for messages, rarely needed
   mutable std::optional<kit::CellLayer> measured_;
 };
 }  // namespace
 }  // namespace altiplan::octomap
 
 ALTIPLAN_PLUGIN(Environment, "octomap", altiplan::octomap::OctoMap, altiplan::octomap::Params,
-                "An OctoMap occupancy map (.bt, .ot)")
+                "an OctoMap occupancy map (.bt, .ot)")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle is OctoMap itself: it writes the files, and says what is in them.
+// The oracle is OctoMap itself: it writes the files, and provides their contents.
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -52,7 +52,7 @@ void fill(Tree& tree, std::uint64_t seed) {
   tree.updateInnerOccupancy();
 }
 
-/// Every voxel of the layer's box is as the tree has it.
+/// Checks every voxel of the layer's box against the tree.
 template <class Tree>
 void expect_equal(const Environment& layer, const Tree& tree, bool unknown_blocked) {
   VoxelGrid grid(layer.info().native_grid.value());
@@ -93,7 +93,7 @@ TEST(OctoMap, ReadsWhatOctoMapWrites) {
     }
     octomap::OcTree max_likely(tree);
     const std::string binary = (folder / "binary.bt").string();
-    ASSERT_TRUE(max_likely.writeBinary(binary));  // makes the tree one of yes and no
+    ASSERT_TRUE(max_likely.writeBinary(binary));  // reduces the tree to free and occupied
     expect_equal(*load(binary), max_likely, true);
   }
 }
@@ -131,7 +131,7 @@ TEST(OctoMap, TheThresholdIsTheUsers) {
 
 TEST(OctoMap, RealMapsHaveTheirVoxels) {
   ALTIPLAN_DATA_OR_SKIP(folder, "voxel3d");
-  EXPECT_NE(refusal(folder / "laberynth.bt").find("with unknown: free"), std::string::npos);
+  EXPECT_NE(refusal(folder / "laberynth.bt").find("set unknown: free"), std::string::npos);
   const auto known = [&](const char* file) {
     const std::string note = load(folder / file, ", unknown: free")->info().notes.front();
     return note.substr(0, note.find("), ", note.find("free")) + 1);
@@ -142,8 +142,8 @@ TEST(OctoMap, RealMapsHaveTheirVoxels) {
   EXPECT_EQ(known("laberynth.bt"), "93888 occupied leaves (469886 voxels), 0 free (0)");
 }
 
-/// A floor of 10 x 10 occupied voxels of 1 m with free ones above it, in a box whose upper half
-/// nobody has measured.
+/// A floor of 10 x 10 occupied voxels of 1 m with free ones above it, in a box whose upper half is
+/// unmeasured.
 std::filesystem::path half_known(const TempFolder& folder) {
   octomap::OcTree tree(1);
   for (float x = 0.5F; x < 10; ++x) {
@@ -212,7 +212,7 @@ TEST(OctoMap, TheJudgeSaysWhereUnknownSpaceBlocks) {
   EXPECT_EQ(said({1, 1, 1.25}, {8, 8, 1.25}, 0.5),
             "comes to 0.25 m of 'map', where 0.50 m of clearance are needed");
   EXPECT_NE(point_problem({5, 5, 7}, request).find(why), std::string::npos);
-  // Inside of unknown space, where it touches what was measured.
+  // Inside unknown space, where it touches measured voxels.
   const Request beside = request_in(World().with({"map", "octomap", load(touching(folder)), true}),
                                     {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {{0, 0, 0}, {10, 10, 10}});
   EXPECT_NE(point_problem({1, 2.5, 0.5}, beside).find(why), std::string::npos);
@@ -260,14 +260,14 @@ TEST(OctoMap, WhatIsWrongIsNamed) {
       {header("file", "id OcTreeStamped\nres 0.1\n"), "found 'OcTreeStamped'"},
       {header("file", "id OcTree\nres 0.1\nwhat 3\n"), ":4: expected id, size, res or data"},
       {"# Octomap OcTree binary file\nid OcTree\nres 0.1\n", ":4: expected a line"},
-      {binary, "the nodes break off"},
-      {binary + nodes({3}), "the nodes break off"},
-      {binary + nodes({3, 0}), "the nodes break off"},
-      {binary + nodes({0, 0}), "there is nothing known in the map"},
+      {binary, "the nodes end early"},
+      {binary + nodes({3}), "the nodes end early"},
+      {binary + nodes({3, 0}), "the nodes end early"},
+      {binary + nodes({0, 0}), "the map has no known voxel"},
       {binary + nodes({2, 0, 0}), "1 bytes follow the tree's nodes"},
       {deep, "children below the finest level"},
-      {full, "the nodes break off"},
-      {full + nodes({0, 0, 0, 0}), "the nodes break off"},
+      {full, "the nodes end early"},
+      {full + nodes({0, 0, 0, 0}), "the nodes end early"},
       {full + nan, "is not a number"},
       {deep_full, "children below the finest level"},
       {full + nodes({0, 0, 0, 0, 0, 9}), "1 bytes follow"},

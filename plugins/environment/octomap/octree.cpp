@@ -61,7 +61,7 @@ Octree::Octree(const std::string& file) : file_(file), bytes_(kit::read_file(fil
   node_bytes_ = id == "ColorOcTree" ? 7 : 4;  // log-odds; red, green and blue
 }
 
-/// One way through the nodes, depth first.
+/// A depth-first traversal of the nodes.
 struct Octree::Walk {
   const Octree& tree;
   double occupied_from;  ///< log-odds
@@ -70,7 +70,7 @@ struct Octree::Walk {
 
   const char* take(std::size_t count) {
     if (tree.bytes_.size() - at < count) {
-      throw Error(tree.file_ + ": the nodes break off at byte " + std::to_string(at));
+      throw Error(tree.file_ + ": the nodes end early at byte " + std::to_string(at));
     }
     at += count;
     return tree.bytes_.data() + at - count;
@@ -91,7 +91,7 @@ struct Octree::Walk {
     return child;
   }
 
-  /// Two bits a child: 00 unknown, 01 free, 10 occupied, 11 a node of its own, which follows.
+  /// Two bits per child: 00 unknown, 01 free, 10 occupied, 11 an inner node, which follows.
   void binary(const Leaf& node) {
     expect_depth(node.edge);
     std::uint16_t children = 0;
@@ -111,7 +111,7 @@ struct Octree::Walk {
     }
   }
 
-  /// Log-odds, perhaps a colour, a mask of the children, and those.
+  /// Log-odds, possibly a colour, a mask of the children, and the children.
   void full(Leaf node) {
     float log_odds = 0;
     std::memcpy(&log_odds, take(tree.node_bytes_), sizeof log_odds);

@@ -24,14 +24,13 @@ inline constexpr int kOriginKey = 1 << (kDepth - 1);
 /// doi:10.1007/s10514-012-9321-0. Binary trees (.bt) and full ones (.ot), with or without colours.
 class Octree {
  public:
-  /// Throws Error naming the file and what is wrong with it; the tree's nodes are looked at by
-  /// `leaves`.
+  /// Throws Error naming the file and the defect; `leaves` checks the tree's nodes.
   explicit Octree(const std::string& file);
 
-  double resolution() const { return resolution_; }  ///< metres, edge of a finest voxel
+  double resolution() const { return resolution_; }  ///< metres, edge length of a finest voxel
 
-  /// Calls `leaf` for each known leaf; one of a full tree is occupied from that probability on.
-  /// Throws Error where the nodes are damaged.
+  /// Calls `leaf` for each known leaf; a leaf of a full tree is occupied from that probability on.
+  /// Throws Error if the nodes are damaged.
   void leaves(double occupied_from, const std::function<void(const Leaf&)>& leaf) const;
 
  private:
@@ -39,9 +38,9 @@ class Octree {
 
   std::string file_;
   std::string bytes_;
-  std::size_t data_ = 0;  ///< where the nodes begin
+  std::size_t data_ = 0;  ///< beginning of the nodes
   bool binary_ = false;
-  std::size_t node_bytes_ = 0;  ///< of a full tree, without the mask of its children
+  std::size_t node_bytes_ = 0;  ///< for a full tree, without the mask of its children
   double resolution_ = 0;
 };
 }  // namespace altiplan::octomap

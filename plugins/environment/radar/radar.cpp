@@ -17,9 +17,12 @@ struct Params {
 
   void describe(Fields& f) {
     f.point(at).required().doc("the antenna");
-    f("range_m", range_m).unit("m").greater_than(0).doc("detection range; or give `equation`");
+    f("range_m", range_m)
+        .unit("m")
+        .greater_than(0)
+        .doc("detection range; alternative to `equation`");
     f("equation", equation).doc("the quantities of the radar equation, paper 000, eq. (1)");
-    f("masking", masking).doc("whether ground between the antenna and a point hides the point");
+    f("masking", masking).doc("ground between the antenna and a point hides the point");
     f.check(range_m.has_value() != equation.has_value(), "give either range_m or equation");
   }
 };
@@ -35,11 +38,11 @@ Vec3 antenna(const Params& params, const Site& site) {
   return at;
 }
 
-/// A ball around the antenna; with masking, without what the ground hides.
+/// A ball around the antenna; with masking, without the parts hidden by the ground.
 ///
-/// A point's line of sight has the gap g, its least height above the ground: the point is covered
-/// where g >= 0. Moving the point by d changes g by at most √(1 + s²) d, s the steepest slope of
-/// the ground, so -g / √(1 + s²) is a 1-Lipschitz lower bound of the distance to what is covered.
+/// A point's line of sight has the gap g, its minimum height above the ground: the point is covered
+/// if g >= 0. Moving the point by d changes g by at most √(1 + s²) d, s the steepest slope of the
+/// ground, so -g / √(1 + s²) is a 1-Lipschitz lower bound of the distance to the covered volume.
 class Radar final : public Environment {
  public:
   Radar(const Params& params, const Site& site)
@@ -73,17 +76,17 @@ class Radar final : public Environment {
     area_.max.z() = kInfinity;
     const auto height = ground_->height(at_.x(), at_.y());
     if (!height || at_.z() < *height) {
-      throw Error(height ? "the antenna stands below the ground"
+      throw Error(height ? "the antenna is below the ground"
                          : "masking: there is no ground below the antenna");
     }
     const double slope = ground_->slope(ball_.bounds().intersected(area_));
     steepness_ = std::hypot(1, slope);
     if (!std::isfinite(slope)) {
-      ground_ = nullptr;  // nothing can be said about what is hidden
+      ground_ = nullptr;  // the hidden volume is unknown
     }
   }
 
-  // Signed distance of p from what the ground does not hide, a lower bound; where there is no
+  // Lower bound of the signed distance of p from the volume not hidden by the ground; without
   // ground nothing is hidden.
   double to_covered(const Vec3& p) const {
     const double to_edge = (p - area_.min).cwiseMin(area_.max - p).head<2>().minCoeff();
@@ -101,8 +104,8 @@ class Radar final : public Environment {
     return ground_ != nullptr ? std::max(to_ball, to_covered(p)) : to_ball;
   }
 
-  // Masked: looks at places along the leg no further apart than the slack; a place speaks for half
-  // the slack to both sides.
+  // With masking: samples the leg at spacings no larger than the over-approximation; a sample
+  // represents half of it to both sides.
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     if (!ball_.blocked(a, b, r)) {
       return false;
@@ -110,8 +113,8 @@ class Radar final : public Environment {
     if (ground_ == nullptr) {
       return true;
     }
-    // A flagged place must not depend on how it was found, else the answer would not be monotone
-    // in r; places nearer than the spare clearance need no look, nor do those beyond the range.
+    // The result at a sample must not depend on how it was found, else it would not be monotone in
+    // r; samples nearer than the spare clearance need no check, nor do those beyond the range.
     const Vec3 way = b - a;
     const double total = way.norm();
     const double count = std::max(1.0, std::ceil(total / kMaskedSlack));
@@ -159,7 +162,7 @@ class Radar final : public Environment {
     ball_.rasterize(ball);
     for (int j = 0; j < spec.counts[1]; ++j) {
       for (int i = 0; i < spec.counts[0]; ++i) {
-        // A line of sight rises with its end: what is hidden lies below what is not.
+        // A line of sight rises with its end: hidden points lie below visible ones.
         int low = 0;
         int high = spec.counts[2];
         while (low < high) {
@@ -209,4 +212,4 @@ class Radar final : public Environment {
 }  // namespace altiplan::radar
 
 ALTIPLAN_PLUGIN(Environment, "radar", altiplan::radar::Radar, altiplan::radar::Params,
-                "Radar coverage: a range or the radar equation, with terrain masking")
+                "radar coverage: a range or the radar equation, with terrain masking")

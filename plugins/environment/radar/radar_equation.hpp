@@ -10,7 +10,7 @@ namespace altiplan::radar {
 
 inline constexpr double kBoltzmann = 1.380649e-23;  // J/K
 
-/// A ratio, written as such or in decibels.
+/// A ratio, given as a plain number or in decibels.
 struct Ratio {
   std::optional<double> linear;
   std::optional<double> db;
@@ -26,7 +26,7 @@ struct Ratio {
 struct RadarEquation {
   double power_w = 0;           ///< P_t
   Ratio transmit_gain;          ///< G_t
-  Ratio receive_gain;           ///< G_r; as G_t where left out
+  Ratio receive_gain;           ///< G_r; default: G_t
   double wavelength_m = 0;      ///< λ
   double cross_section_m2 = 0;  ///< σ
   Ratio receive_loss;           ///< L_r
@@ -39,16 +39,16 @@ struct RadarEquation {
   void describe(Fields& f) {
     f("power_w", power_w).unit("W").greater_than(0).required().doc("transmit power P_t");
     describe(f, transmit_gain, "transmit_gain", "antenna gain G_t");
-    describe(f, receive_gain, "receive_gain", "antenna gain G_r; left out: as transmit_gain");
+    describe(f, receive_gain, "receive_gain", "antenna gain G_r; default: transmit_gain");
     f("wavelength_m", wavelength_m).unit("m").greater_than(0).required().doc("wavelength λ");
     f("cross_section_m2", cross_section_m2)
         .unit("m²")
         .greater_than(0)
         .required()
         .doc("mean radar cross-section σ of the vehicle");
-    describe(f, receive_loss, "receive_loss", "feed loss L_r; left out: 1");
-    describe(f, transmit_loss, "transmit_loss", "feed loss L_t; left out: 1");
-    describe(f, noise_figure, "noise_figure", "noise figure F_r; left out: 1");
+    describe(f, receive_loss, "receive_loss", "feed loss L_r; default: 1");
+    describe(f, transmit_loss, "transmit_loss", "feed loss L_t; default: 1");
+    describe(f, noise_figure, "noise_figure", "noise figure F_r; default: 1");
     f("temperature_k", temperature_k).unit("K").greater_than(0).doc("noise temperature T");
     f("bandwidth_hz", bandwidth_hz).unit("Hz").greater_than(0).required().doc("bandwidth B_r");
     describe(f, detection_factor, "detection_factor", "detection factor D_d");

@@ -108,7 +108,7 @@ TEST(Radar, MaskedPointsAreThoseWithoutLineOfSight) {
   int hidden = 0;
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p(random.uniform(-2000, 2000), random.uniform(-2000, 2000), random.uniform(0, 400));
-    // Line of sight by dense samples.
+    // Line of sight by dense sampling.
     double gap = kInfinity;
     for (int m = 1; m <= 200; ++m) {
       const Vec3 q = antenna + m / 200.0 * (p - antenna);
@@ -123,7 +123,7 @@ TEST(Radar, MaskedPointsAreThoseWithoutLineOfSight) {
     } else if (masked) {
       ASSERT_GT(radar->clearance(p), 0) << p.transpose();
     }
-    // 1-Lipschitz, so that no covered point is nearer than the clearance says.
+    // 1-Lipschitz, so no covered point is nearer than the clearance.
     const Vec3 q =
         p + Vec3(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50));
     ASSERT_LE(std::abs(radar->clearance(p) - radar->clearance(q)), (p - q).norm() + 1e-6);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Random maps for planners in the plane: threats over a square, after the 80 of paper 001 (Li
-// Chuntao, Yi Xiaoqin, Hu Mu, "Real-time path planning of UAV based on velocity vector field",
-// 2012, section 5.1), which are not published.
+// Random maps for planners in 2-D: threats over a square, after the 80 of paper 001 (Li Chuntao, Yi
+// Xiaoqin, Hu Mu, "Real-time path planning of UAV based on velocity vector field", 2012, section
+// 5.1), which are not published.
 #include <array>
 #include <random>
 
@@ -23,13 +23,15 @@ struct Params {
 
   void describe(Fields& f) {
     f("kind", kind, {{"A", Radii::of_table}, {"B", Radii::wide}, {"C", Radii::narrow}})
-        .doc("radii: A, one of the twelve of table 1; B, 1 to 9 km; C, 1 to 5 km");
-    f("count", count).range(1, 100000).doc("how many threats are drawn");
+        .doc(
+            "distribution of the radii: A, one of the twelve of table 1; B, 1 to 9 km; C, 1 to "
+            "5 km");
+    f("count", count).range(1, 100000).doc("number of threats");
     f("extent_m", extent_m)
         .unit("m")
         .range(1, 1e9)
-        .doc("side of the square, from the origin, that their centres are drawn in");
-    f("seed", seed).at_least(0).doc("of the draw; left out, the run's seed");
+        .doc("side of the square, from the origin, that contains the threats' centres");
+    f("seed", seed).at_least(0).doc("random seed of the threats; default: the run's seed");
   }
 };
 
@@ -84,4 +86,4 @@ class RandomThreats final : public kit::ShapeLayer {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "random_threats", RandomThreats, Params,
-                "discs of any height drawn over a square, for planners in the plane (paper 001)")
+                "random discs of unlimited height over a square, for planners in 2-D (paper 001)")

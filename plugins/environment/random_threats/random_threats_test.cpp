@@ -35,7 +35,7 @@ TEST(RandomThreats, AreThoseOfTheGenerator) {
 }
 
 TEST(RandomThreats, FirstOfSeedOne) {
-  // Held down to the figure: a changed generator would make other maps under the same numbers.
+  // Compared with exact values: a changed generator would produce other maps for the same seeds.
   const Threat first =
       make_environment("random_threats", "{kind: B, seed: 1}")->info().threats.front();
   EXPECT_NEAR(first.centre.x(), 90000 * 0.13387664401253274, 1e-6);

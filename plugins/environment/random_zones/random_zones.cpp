@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Random maps for planners in the plane: bars, blocks and circles that keep apart, after the map of
-// paper 004 (Li Rongsheng et al., "Path planning for flight vehicles based on improved ACO",
-// figures 6 to 8), which is one picture.
+// Random maps for planners in 2-D: bars, blocks and circles that keep apart, after the map of paper
+// 004 (Li Rongsheng et al., "Path planning for flight vehicles based on improved ACO", figures 6 to
+// 8), which is a single figure.
 #include "altiplan/environment.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
@@ -33,45 +33,56 @@ struct Params {
     f("extent_m", extent_m)
         .unit("m")
         .range(1, 1e9)
-        .doc("east and north sides of the rectangle, from the origin, that holds all zones");
-    f("bars", bars).range(0, 1000).doc("how many bars are drawn, each with a bend in its middle");
+        .doc("east and north sides of the rectangle, from the origin, that contains all zones");
+    f("bars", bars).range(0, 1000).doc("number of bars, each with a bend in its middle");
     f("bars_across", bars_across)
         .range(0, 1000)
         .doc(
-            "so many of them, drawn first, cross the straight line between the first two points of "
-            "clear_of_m");
-    f("bar_length_m", bar_length_m).unit("m").range(1e-3, 1e9).doc("of a bar: least and greatest");
-    f("bar_width_m", bar_width_m).unit("m").range(1e-3, 1e9).doc("of a bar: least and greatest");
-    f("bend_deg", bend_deg).unit("deg").range(0, 120).doc("a bar bends by at most this much");
-    f("blocks", blocks).range(0, 1000).doc("how many polygons of 3 to 6 corners are drawn");
+            "number of bars, generated first, that cross the straight line between the first two "
+            "points of clear_of_m");
+    f("bar_length_m", bar_length_m)
+        .unit("m")
+        .range(1e-3, 1e9)
+        .doc("minimum and maximum length of a bar");
+    f("bar_width_m", bar_width_m)
+        .unit("m")
+        .range(1e-3, 1e9)
+        .doc("minimum and maximum width of a bar");
+    f("bend_deg", bend_deg).unit("deg").range(0, 120).doc("maximum bend of a bar");
+    f("blocks", blocks).range(0, 1000).doc("number of polygons of 3 to 6 corners");
     f("block_reach_m", block_reach_m)
         .unit("m")
         .range(1e-3, 1e9)
         .doc(
-            "from a block's middle to its corners: least and greatest; a corner has 0.7 to 1 of "
-            "it");
-    f("circles", circles).range(0, 1000).doc("how many circles are drawn");
-    f("radius_m", radius_m).unit("m").range(1e-3, 1e9).doc("of a circle: least and greatest");
+            "minimum and maximum distance from a block's middle to its corners; each corner is "
+            "at 0.7 to 1 of it");
+    f("circles", circles).range(0, 1000).doc("number of circles");
+    f("radius_m", radius_m)
+        .unit("m")
+        .range(1e-3, 1e9)
+        .doc("minimum and maximum radius of a circle");
     f("gap_m", gap_m)
         .unit("m")
         .at_least(0)
-        .doc("zones are so far from each other and from the rectangle's sides at least");
-    f("clear_of_m", clear_of_m).unit("m").doc("points that zones keep off, such as start and goal");
-    f("clear_m", clear_m).unit("m").at_least(0).doc("least distance from these points");
-    f("seed", seed).at_least(0).doc("of the draw; left out, the run's seed");
+        .doc("minimum distance between zones, and from the rectangle's sides");
+    f("clear_of_m", clear_of_m)
+        .unit("m")
+        .doc("points to keep clear of zones, such as start and goal");
+    f("clear_m", clear_m).unit("m").at_least(0).doc("minimum distance of zones from these points");
+    f("seed", seed).at_least(0).doc("random seed of the zones; default: the run's seed");
     for (const Range& range : {bar_length_m, bar_width_m, block_reach_m, radius_m}) {
-      f.check(range[0] <= range[1], "give the least value before the greatest");
+      f.check(range[0] <= range[1], "give the minimum before the maximum");
     }
-    f.check(bars_across <= bars, "bars_across must not be more than bars");
+    f.check(bars_across <= bars, "bars_across must not exceed bars");
     f.check(bars_across == 0 || clear_of_m.size() > 1,
             "bars_across needs two points in clear_of_m");
-    // Else the inner corner of a bend lies beyond the bar's end, and its outline meets itself.
+    // Else the inner corner of a bend lies beyond the bar's end, and its outline intersects itself.
     f.check(bars == 0 || bar_length_m[0] > bar_width_m[1] * std::tan(bend_deg / 2 * kPi / 180),
             "bars are too short for their width and bend");
   }
 };
 
-/// Draws one map; the order of the draws is part of the maps' definition.
+/// Generates one map; the order of the random numbers is part of the maps' definition.
 class Draw {
  public:
   Draw(const Params& params, std::uint64_t seed) : params_(params), random_(seed) {}
@@ -86,15 +97,15 @@ class Draw {
         return zones;
       }
     }
-    throw Error("random_zones: a zone finds no room in " + std::to_string(kMaps) + " maps and " +
-                std::to_string(kTries) + " places each; expected fewer or smaller zones");
+    throw Error("random_zones: a zone does not fit in " + std::to_string(kMaps) + " maps and " +
+                std::to_string(kTries) + " positions each; expected fewer or smaller zones");
   }
 
  private:
   static constexpr int kMaps = 100;
   static constexpr int kTries = 1000;
 
-  /// Each zone is drawn until it has room; false where it finds none.
+  /// Each zone is regenerated until it fits; false if none does.
   bool add(int count, Shape (Draw::*draw)(), std::vector<Shape>& zones, bool across = false) {
     for (int n = 0; n < count; ++n) {
       int tries = 0;
@@ -145,7 +156,7 @@ class Draw {
     return prism;
   }
 
-  /// A polygon with its corners in turn around the middle, convex or not.
+  /// A polygon with its corners in order around the middle, convex or not.
   Shape block() {
     const Point2 at = middle();
     const int corners = 3 + int(4 * random_.uniform());
@@ -196,14 +207,14 @@ class Draw {
     return leg_distance(zone, {a[0], a[1], 0}, {b[0], b[1], 0}) == 0;
   }
 
-  /// What tells most zones apart, and costs least.
+  /// Separates most zones, at the lowest cost.
   bool boxes_come_near(const Box& a, const Box& b) const {
     const double gap = params_.gap_m + kLengthTolerance;
     return a.min.x() <= b.max.x() + gap && b.min.x() <= a.max.x() + gap &&
            a.min.y() <= b.max.y() + gap && b.min.y() <= a.max.y() + gap;
   }
 
-  /// Circles come last: a polygon has polygons alone before it. Each one's edges are asked of the
+  /// Circles come last: only polygons precede a polygon. Each one's edges are checked against the
   /// other, which may lie inside.
   bool nearer_than_gap(const Shape& zone, const Shape& other) const {
     if (const auto* cylinder = std::get_if<Cylinder>(&zone)) {
@@ -246,5 +257,5 @@ class RandomZones final : public kit::ShapeLayer {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "random_zones", RandomZones, Params,
-                "bars, blocks and circles of any height drawn over a rectangle, for planners in "
-                "the plane (paper 004)")
+                "random bars, blocks and circles of unlimited height over a rectangle, for "
+                "planners in 2-D (paper 004)")

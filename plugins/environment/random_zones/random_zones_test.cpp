@@ -19,7 +19,7 @@ std::vector<Shape> zones(const std::string& yaml) {
   return shapes;
 }
 
-/// A circle as a ring of points: metres are all that matters here.
+/// A circle as a ring of points: the coordinates are treated as metres.
 std::vector<Point2> outline(const Shape& shape) {
   if (const auto* prism = std::get_if<Prism>(&shape)) {
     return prism->outline;
@@ -44,11 +44,11 @@ double between(const std::vector<Point2>& ring, const std::vector<Point2>& other
 }
 
 TEST(RandomZones, FirstOnesOfSeedOne) {
-  // Held down to the figure: a changed generator would make other maps under the same numbers.
+  // Compared with exact values: a changed generator would produce other maps for the same seeds.
   SplitMix64 random(1);
   const auto in = [&](double low, double high) { return low + (high - low) * random.uniform(); };
   const std::string open = "{seed: 1, gap_m: 0, clear_of_m: [], bars_across: 0, extent_m: ";
-  // A rectangle so large that no draw is refused (the zone's middle is far from its sides).
+  // A rectangle so large that no zone is rejected (the zone's middle is far from its sides).
   const std::vector<Shape> all = zones(open + "[1e8, 1e8], bars: 1, blocks: 1, circles: 1}");
   ASSERT_EQ(all.size(), 3U);
 
@@ -66,7 +66,8 @@ TEST(RandomZones, FirstOnesOfSeedOne) {
   EXPECT_NEAR(end[1], y + length / 2 * std::sin(ahead), 1e-6);
   EXPECT_NEAR(std::hypot(bar[2][0] - bar[3][0], bar[2][1] - bar[3][1]), width, 1e-6);
   EXPECT_NEAR(std::hypot(bar[0][0] - bar[5][0], bar[0][1] - bar[5][1]), width, 1e-6);
-  // Both halves are as wide everywhere: their long sides run as far from the middle.
+  // Both halves have the same width everywhere: their long sides run at the same distance from the
+  // middle.
   const auto beside = [&](const Point2& p, const Point2& q) {
     return std::abs(oracle::cross(p, q, {x, y})) / std::hypot(q[0] - p[0], q[1] - p[1]);
   };
@@ -107,7 +108,7 @@ TEST(RandomZones, KeepApartAndOffThePoints) {
       EXPECT_GE(between({{30, 30}, {970, 630}}, ring), 60 - 1e-9);
       for (std::size_t m = 0; m < n; ++m) {
         const std::vector<Point2> other = outline(all[m]);
-        // The rings of points lie within their circles: nothing is nearer by that.
+        // The rings of points lie within their circles, so this never understates a distance.
         EXPECT_GE(std::min(between(ring, other), between(other, ring)), 25 - 1e-9) << seed;
         EXPECT_GT(signed_distance(all[m], {ring[0][0], ring[0][1], 0}), 0) << "one in the other";
         EXPECT_GT(signed_distance(all[n], {other[0][0], other[0][1], 0}), 0);

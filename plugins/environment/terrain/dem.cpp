@@ -33,12 +33,11 @@ namespace {
 
 using gdal::api;
 
-/// The file, and what stands beside it under its name (.hdr, .prj, .aux.xml …), which GDAL opens
-/// too.
+/// The file, and its sidecar files (.hdr, .prj, .aux.xml …), which GDAL opens too.
 std::vector<fs::path> files_of(const Params& params) {
   const fs::path file = fs::absolute(params.file.text);
   std::vector<fs::path> files{file};
-  std::error_code unknown;  // of a folder that may not be listed, which GDAL does not list either
+  std::error_code unknown;  // for an unlistable folder, which GDAL does not list either
   for (const auto& entry : fs::directory_iterator(file.parent_path(), unknown)) {
     const fs::path& beside = entry.path();
     if (beside == file || (beside.stem() != file.stem() && beside.stem() != file.filename() &&
@@ -61,7 +60,7 @@ std::vector<fs::path> files_of(const Params& params) {
   return files;
 }
 
-/// What is larger is read from the disk, so that a part of it costs no more than that part.
+/// Larger files are read from the disk, so that a part of one costs no more than that part.
 bool is_small(const std::vector<fs::path>& files) {
   constexpr std::uintmax_t kMax = 16'000'000;
   std::uintmax_t bytes = 0;
@@ -114,7 +113,8 @@ void read_size(const Params& params, void* dataset, bool may_read_a_part, Dem& d
 void* read_band(const Params& params, void* dataset) {
   const int bands = api().GDALGetRasterCount(dataset);
   if (bands != 1 && !params.band) {
-    refuse(params, "has " + std::to_string(bands) + " bands; say which one holds the heights",
+    refuse(params,
+           "has " + std::to_string(bands) + " bands; set band to the one that holds the heights",
            "band");
   }
   if (params.band.value_or(1) > bands) {
@@ -143,15 +143,15 @@ void read_crs(const Params& params, void* dataset, Dem& dem) {
     dem.crs = gdal::copy(own);
     if (asked && !api().OSRIsSame(asked.get(), dem.crs.get())) {
       refuse(params,
-             std::string("has a coordinate system of its own (") + api().OSRGetName(dem.crs.get()) +
-                 "), and crs says " + params.crs,
+             std::string("has its own coordinate system (") + api().OSRGetName(dem.crs.get()) +
+                 "), but crs is " + params.crs,
              "crs");
     }
   } else if (asked) {
     dem.crs = std::move(asked);
   } else {
     refuse(params,
-           "names no coordinate system; say which one it is in (crs: EPSG:4326 for "
+           "names no coordinate system; set crs to the one that it uses (crs: EPSG:4326 for "
            "longitude and latitude)",
            "crs");
   }
@@ -164,13 +164,13 @@ void read_crs(const Params& params, void* dataset, Dem& dem) {
   dem.unit_m = dem.geographic ? 1 : api().OSRGetLinearUnits(dem.crs.get(), nullptr);
 }
 
-// Places the posts at the cells' centres; true where the file's rows run from the north.
+// Places the posts at the cells' centres; returns true if the file's rows run from the north.
 bool read_position(const Params& params, void* dataset, Dem& dem) {
   double g[6];
   const bool known = api().GDALGetGeoTransform(dataset, g) == CE_None;
   if (!known ||
       (g[0] == 0 && g[1] == 1 && g[2] == 0 && g[3] == 0 && g[4] == 0 && std::abs(g[5]) == 1)) {
-    refuse(params, "says nowhere on the Earth (no georeference)");
+    refuse(params, "has no position on the Earth (no georeference)");
   }
   if (g[2] != 0 || g[4] != 0) {
     refuse(params, "expected rows that run west to east, found a rotated grid");

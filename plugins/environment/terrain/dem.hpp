@@ -26,38 +26,38 @@ struct Params {
   void describe(altiplan::Fields& f) {
     f("file", file)
         .doc(
-            "elevation model: GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid or ENVI; a cell's height "
-            "stands at its centre")
+            "elevation model: GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid or ENVI; heights apply at "
+            "the cells' centres")
         .required();
     f("voids", voids,
       {{"refuse", Voids::refuse}, {"fill_m", Voids::fill_m}, {"neighbours", Voids::neighbours}})
         .doc(
-            "posts without a height: the file is refused, they get the height fill_m, or the mean "
-            "of their neighbours, inward from the void's border");
+            "posts without a height: reject the file (refuse), use the height fill_m (fill_m), "
+            "or use the mean of their neighbours, inward from the void's border (neighbours)");
     f("fill_m", fill_m).unit("m").range(-1000, 10000).doc("height of voids, with voids: fill_m");
-    f("nodata", nodata).doc("the number that marks a void, where the file does not say it");
+    f("nodata", nodata).doc("the number that marks a void, if the file does not declare it");
     f("crs", crs).doc("coordinate system (EPSG:4326) of a file that has none");
-    f("band", band).at_least(1).doc("which band holds the heights, for a file that has several");
+    f("band", band).at_least(1).doc("band with the heights, for a file that has several");
     f("max_posts", max_posts)
         .at_least(4)
         .doc(
-            "a file of which more posts are needed (all, or those about the volume) is refused "
+            "a file of which more posts are needed (all, or those around the volume) is rejected "
             "before anything is allocated");
     f.check((voids == Voids::fill_m) == fill_m.has_value(),
-            voids == Voids::fill_m ? "voids: fill_m needs fill_m, the height that voids get"
+            voids == Voids::fill_m ? "voids: fill_m needs fill_m, the height of filled voids"
                                    : "fill_m is the height of voids: it needs voids: fill_m");
   }
 };
 
-/// What the ground of the Earth can be, with room to spare; beyond it a number marks a void.
+/// Lowest plausible ground of the Earth, with a margin; a number beyond it marks a void.
 inline constexpr double kLowest = -1000;
 inline constexpr double kHighest = 10000;
 
-/// Which posts of a model, its rows counted from the south.
+/// Range of a model's posts, its rows numbered from the south.
 using Part = altiplan::HeightField::Part;
 
-/// An elevation model as its file has it: posts on a grid along the axes of its coordinate system.
-/// Their heights are read where they are asked for (read_posts).
+/// An elevation model as in its file: posts on a grid along the axes of its coordinate system.
+/// Heights are read on demand (read_posts).
 struct Dem {
   int columns = 0;
   int rows = 0;
@@ -70,7 +70,7 @@ struct Dem {
 
   gdal::Dataset dataset;
   void* band = nullptr;           ///< of the dataset
-  bool from_north = true;         ///< the file's rows
+  bool from_north = true;         ///< order of the file's rows
   std::array<float, 2> nodata{};  ///< numbers that mark voids; NaN: none
   double scale = 1;               ///< metres = unit (scale number + offset)
   double offset = 0;
@@ -79,23 +79,23 @@ struct Dem {
   Part whole() const { return {0, 0, columns, rows}; }
 };
 
-/// All of a file but its heights. Throws altiplan::ParameterError, which names the parameter to
-/// blame; too many posts are left to `expect_few` where a part of them may do.
+/// Reads everything from a file except its heights. Throws altiplan::ParameterError, which names
+/// the parameter at fault; too many posts are left to `expect_few` if a part of them may suffice.
 Dem read_dem(const Params& params, bool may_read_a_part);
 
-/// Throws altiplan::ParameterError where the part has more posts than params.max_posts, or a block
-/// of the file, which is decoded as a whole, has.
+/// Throws altiplan::ParameterError if the part has more posts than params.max_posts, or if a block
+/// of the file, which is decoded as a whole, does.
 void expect_few(const Params& params, const Dem& dem, const Part& part);
 
-/// Heights in metres, rows from the south, each from the west; voids are treated as asked for.
+/// Heights in metres, rows from the south, each from the west; voids are treated as requested.
 struct Posts {
   Part part;
   std::vector<float> heights;
-  std::size_t voids = 0;  ///< that were filled
+  std::size_t voids = 0;  ///< number of filled voids
 };
 
-/// The part, or the whole model where voids in the part are refused, or filled by what lies around
-/// them. Throws altiplan::ParameterError likewise. One thread at a time.
+/// Reads the part, or the whole model if voids in the part are rejected, or filled from their
+/// surroundings. Throws altiplan::ParameterError likewise. One thread at a time.
 Posts read_posts(const Params& params, const Dem& dem, const Part& part);
 
 [[noreturn]] void refuse(const Params& params, const std::string& why, const char* key = "file");

@@ -34,8 +34,8 @@ Api open() {
   api.GDALRegister_AAIGrid();
   api.GDALRegister_DTED();
   api.GDALRegister_ENVI();
-  // Blocks of files are read once each: GDAL's own 5 % of the machine's memory would be for
-  // nothing.
+  // File blocks are read once each: GDAL's default cache of 5 % of the machine's memory would be
+  // wasted.
   api.GDALSetCacheMax64(16 << 20);
   return api;
 }
@@ -76,7 +76,7 @@ Reference reference(const std::string& crs) {
   Reference made(api().OSRNewSpatialReference(nullptr));
   if (api().OSRImportFromEPSG(made.get(), code) != OGRERR_NONE &&
       api().OSRImportFromEPSG(made.get(), code) != OGRERR_NONE) {
-    return nullptr;  // a database that could not be read is not what failed twice
+    return nullptr;  // a database that could not be read is not the cause of a second failure
   }
   api().OSRSetAxisMappingStrategy(made.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return made;
@@ -97,7 +97,7 @@ std::array<double, 2> Transform::operator()(double x, double y) const {
   if (!api().OCTTransform(transform_.get(), 1, &p[0], &p[1], nullptr) || !std::isfinite(p[0]) ||
       !std::isfinite(p[1])) {
     throw altiplan::Error("the point (" + std::to_string(x) + ", " + std::to_string(y) +
-                          ") has no place in the coordinate system asked for");
+                          ") is outside the requested coordinate system");
   }
   return p;
 }

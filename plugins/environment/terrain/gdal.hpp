@@ -16,7 +16,7 @@
 namespace gdal {
 
 /// The C functions of GDAL that an elevation model needs. The library is opened at the first call
-/// of `api()` and stays open: linking it would cost every start of a program 20 to 60 ms.
+/// of `api()` and stays open: linking it would add 20 to 60 ms to every start of a program.
 struct Api {
 #define ALTIPLAN_GDAL_FUNCTIONS(X)      \
   X(GDALRegister_GTiff)                 \
@@ -72,11 +72,11 @@ struct Api {
 #undef ALTIPLAN_GDAL_MEMBER
 };
 
-/// Throws altiplan::Error where the library cannot be opened. Registers the five drivers above and
-/// no other: a VRT may read any file, and others go to the network.
+/// Throws altiplan::Error if the library cannot be opened. Registers only the five drivers above: a
+/// VRT may read any file, and others access the network.
 const Api& api();
 
-/// Keeps GDAL's messages off stderr; they are read with `last_error`. Per thread.
+/// Keeps GDAL's messages off stderr; `last_error` reads them. Per thread.
 class Quiet {
  public:
   Quiet();
@@ -91,7 +91,7 @@ struct CloseDataset {
     api().GDALClose(dataset);
     files.reset();
   }
-  std::shared_ptr<MemoryFiles> files = nullptr;  ///< that it reads, if it does not read the disk's
+  std::shared_ptr<MemoryFiles> files = nullptr;  ///< that it reads, unless it reads from the disk
 };
 using Dataset = std::unique_ptr<void, CloseDataset>;
 
@@ -100,15 +100,15 @@ struct DestroyReference {
     api().OSRDestroySpatialReference(reference);
   }
 };
-/// A coordinate system with x east (or longitude) first, whatever its authority says.
+/// A coordinate system with x east (or longitude) first, regardless of its authority's order.
 using Reference = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, DestroyReference>;
 
-/// From "EPSG:4326"; null where that is not its form or the code is unknown.
+/// From "EPSG:4326"; null if the form is different or the code unknown.
 Reference reference(const std::string& crs);
 Reference copy(OGRSpatialReferenceH reference);
 
-/// From one coordinate system to another; one thread at a time. Throws altiplan::Error where there
-/// is no way between the two, or none for a point.
+/// From one coordinate system to another; one thread at a time. Throws altiplan::Error if there is
+/// no transformation between the two, or none for a point.
 class Transform {
  public:
   Transform(const Reference& from, const Reference& to);

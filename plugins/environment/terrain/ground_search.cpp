@@ -16,13 +16,14 @@ namespace {
 
 using altiplan::kit::GroundPiece;
 
-/// Cells are counted in the whole grid, so that a part answers as the whole does.
+/// Cells are numbered in the whole grid, so that a part gives the same results as the whole.
 class Cells {
  public:
   Cells(altiplan::kit::GroundWithin& ground, const HeightField& field)
       : ground_(ground), field_(field) {}
 
-  /// From cell i0, j0 up to, and without, i1, j1; the half of that place first.
+  /// Searches the cells from i0, j0 up to, but excluding, i1, j1; first the half with that
+  /// position.
   void search(int i0, int j0, int i1, int j1, const Vec3& towards) {
     if (i1 - i0 == 1 && j1 - j0 == 1) {
       search_cell(i0, j0);
@@ -57,7 +58,7 @@ class Cells {
   double highest_post(int i0, int j0, int i1, int j1) const {
     float highest = -std::numeric_limits<float>::infinity();
     for (int j = j0; j <= j1; ++j) {
-      for (int i = i0; i <= i1; ++i) {  // a void compares false
+      for (int i = i0; i <= i1; ++i) {  // a comparison with a void is false
         const float post = field_.post(i - field_.part().column, j - field_.part().row);
         highest = post > highest ? post : highest;
       }
@@ -83,7 +84,7 @@ class Cells {
         [&, dx = dx, dy = dy](double x0, double y0, double x1, double y1) -> GroundPiece {
           const double s = ((x0 + x1) / 2 - x) / dx;
           const double w = ((y0 + y1) / 2 - y) / dy;
-          // Bilinear: off its plane by the twist times the ways along both axes.
+          // Bilinear: deviates from its plane by the twist times the distances along both axes.
           return {(x0 + x1) / 2,
                   (y0 + y1) / 2,
                   sw + s * to_east + w * to_north + s * w * twist,

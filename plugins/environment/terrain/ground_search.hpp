@@ -5,7 +5,7 @@
 
 namespace terrain {
 
-/// Whether ground of the field is nearer than `distance` to a leg that lies nowhere below it.
+/// True if ground of the field is nearer than `distance` to a leg that lies nowhere below it.
 bool is_within(const altiplan::HeightField& field, const altiplan::Vec3& a, const altiplan::Vec3& b,
                double distance);
 }  // namespace terrain

@@ -12,11 +12,11 @@ namespace {
 using altiplan::HeightField;
 using XY = std::array<double, 2>;
 
-/// Share of a spacing within which two places are the same.
+/// Fraction of a spacing within which two positions are the same.
 constexpr double kSameShare = 1e-3;
 
-/// Highest ground of the layers, of those too that end at most `within` before the place; NaN where
-/// there is none.
+/// Highest ground of the layers, including those that end at most `within` before the position; NaN
+/// if there is none.
 double ground_about(const altiplan::World& world, double x, double y, double within) {
   double highest = NAN;
   for (const altiplan::Layer& layer : world.layers()) {
@@ -33,8 +33,8 @@ double ground_about(const altiplan::World& world, double x, double y, double wit
   return highest;
 }
 
-/// Whether some ground ends between one spacing beyond the side and the side itself; ground that
-/// goes on below the model needs no joining.
+/// True if some ground ends between one spacing beyond the side and the side itself; ground that
+/// continues below the model needs no joining.
 bool ends_before(const altiplan::World& world, int axis, double side, double outer) {
   return std::any_of(world.layers().begin(), world.layers().end(),
                      [&](const altiplan::Layer& layer) {
@@ -47,8 +47,8 @@ bool ends_before(const altiplan::World& world, int axis, double side, double out
                      });
 }
 
-/// The field with a row or column more on one side, where neighbouring ground covers all of it.
-/// A corner that no layer has yet (its tile comes later) gets the height of the post beside it.
+/// The field with an extra row or column on one side, if neighbouring ground covers all of it. A
+/// corner that no layer has yet (its tile comes later) gets the height of the adjacent post.
 std::optional<HeightField> joined(const HeightField& field, const altiplan::World& world, int axis,
                                   bool at_end) {
   const int columns = field.columns();
@@ -68,7 +68,7 @@ std::optional<HeightField> joined(const HeightField& field, const altiplan::Worl
     const XY p = axis == 0 ? XY{outer, at} : XY{at, outer};
     more.push_back(float(ground_about(world, p[0], p[1], within)));
   }
-  for (const int n : {1, 0}) {  // as many as a side may have got by joining
+  for (const int n : {1, 0}) {  // the most that joining may have added to a side
     if (along > 4 && std::isnan(more[std::size_t(n)])) {
       more[std::size_t(n)] = more[std::size_t(n) + 1];
     }
@@ -113,7 +113,7 @@ bool join(HeightField& field, const altiplan::World& world) {
   bool any = false;
   for (const int axis : {0, 1}) {
     for (const bool at_end : {false, true}) {
-      // A second time where the first row stops short of the neighbour by what rounding leaves.
+      // Twice if rounding leaves the first row short of the neighbour.
       for (int n = 0; n < 2; ++n) {
         if (auto wider = joined(field, world, axis, at_end)) {
           field = std::move(*wider);

@@ -25,9 +25,9 @@ MemoryFiles::MemoryFiles(const std::vector<std::filesystem::path>& files) : pref
   for (const std::filesystem::path& file : files) {
     contents_.push_back(altiplan::kit::read_file(file.string()));
   }
-  for (std::size_t n = 0; n < files.size(); ++n) {  // now that none of them moves any more
+  for (std::size_t n = 0; n < files.size(); ++n) {  // now that their addresses are final
     names_.push_back(name_of(files[n]));
-    constexpr int kOurs = 0;  // GDAL does not free them
+    constexpr int kOurs = 0;  // not to be freed by GDAL
     VSILFILE* const made = api().VSIFileFromMemBuffer(names_.back().c_str(),
                                                       reinterpret_cast<GByte*>(contents_[n].data()),
                                                       contents_[n].size(), kOurs);

@@ -8,11 +8,11 @@
 
 namespace gdal {
 
-/// Copies of files in memory under names that GDAL opens. GDAL does not say why a file cannot be
-/// read, takes one that cannot for damaged, and its reader of ESRI ASCII grids then never ends.
+/// Copies of files in memory under names that GDAL opens. GDAL does not report why a file cannot be
+/// read, treats an unreadable one as damaged, and its reader of ESRI ASCII grids then never ends.
 class MemoryFiles {
  public:
-  /// Throws altiplan::kit::InputError where one cannot be read. The paths are absolute.
+  /// Throws altiplan::kit::InputError if one cannot be read. The paths are absolute.
   explicit MemoryFiles(const std::vector<std::filesystem::path>& files);
   ~MemoryFiles();
   MemoryFiles(const MemoryFiles&) = delete;
@@ -26,6 +26,6 @@ class MemoryFiles {
   std::vector<std::string> contents_;
 };
 
-/// A message of GDAL with the files' own names.
+/// A GDAL message with the files' own names.
 std::string with_own_names(std::string message);
 }  // namespace gdal

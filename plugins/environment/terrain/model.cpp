@@ -21,8 +21,8 @@ bool is_bounded(const Box& volume) {
   return std::isfinite(volume.min.x() + volume.min.y() + volume.max.x() + volume.max.y());
 }
 
-/// How far about the volume questions are expected to go: hardly ever farther than a place in it is
-/// above the ground.
+/// Expected extent of queries around the volume: hardly ever farther than a position in it is above
+/// the ground.
 double margin(const Box& volume, double radius, const Layout& layout) {
   constexpr int kMinPosts = 128;
   const Vec3 size = volume.max - volume.min;
@@ -31,7 +31,7 @@ double margin(const Box& volume, double radius, const Layout& layout) {
                                             kMinPosts * layout.spacing[1]}));
 }
 
-/// First post and number of posts of the blocks that the range touches.
+/// First post and number of posts of the blocks that intersect the range.
 std::array<int, 2> blocks_about(double low, double high, double origin, double spacing, int posts) {
   constexpr int kBlock = HeightField::kBlock;
   const int last_block = (posts - 2) / kBlock;
@@ -43,9 +43,9 @@ std::array<int, 2> blocks_about(double low, double high, double origin, double s
   return {first, last - first + 1};
 }
 
-/// The posts about the volume; all where that is no great saving.
+/// The posts around the volume; all if that saves little.
 Part part_about(const Dem& dem, const Layout& layout, const altiplan::Site& site) {
-  constexpr std::int64_t kFew = 4'000'000;  // read in a blink
+  constexpr std::int64_t kFew = 4'000'000;  // read almost instantly
   const std::int64_t all = std::int64_t(dem.columns) * dem.rows;
   if (all <= kFew || layout.resampled || !is_bounded(site.volume) ||
       (site.before != nullptr &&
@@ -62,15 +62,15 @@ Part part_about(const Dem& dem, const Layout& layout, const altiplan::Site& site
 
 using XY = std::array<double, 2>;
 
-/// Horizontally between the first and the last post of a grid, so many within.
+/// Horizontally between the first and the last post of a grid, shrunk by that many posts.
 Box between(const XY& origin, const XY& spacing, int columns, int rows, int within) {
   const auto at = [&](std::size_t axis, int n) { return origin[axis] + n * spacing[axis]; };
   return {{at(0, within), at(1, within), -kInfinity},
           {at(0, columns - 1 - within), at(1, rows - 1 - within), kInfinity}};
 }
 
-/// Where the field answers as the whole would: a post's spacing within it, and beyond the sides
-/// that are the whole's too.
+/// Region where the field gives the same results as the whole: a post's spacing within it, and
+/// beyond the sides that it shares with the whole.
 Box covered_by(const HeightField& field, const Layout& layout) {
   Box box = between(field.origin(), field.spacing(), field.columns(), field.rows(), 1);
   const Part& part = field.part();
@@ -113,8 +113,8 @@ HeightField Model::read(const Part& part) {
 HeightField Model::read_whole() const {
   if (std::int64_t(dem_.columns) * dem_.rows > params_.max_posts) {
     refuse(params_,
-           "the ground is asked for beyond the part about the volume that was read, and the whole "
-           "has more than max_posts (" +
+           "a query goes beyond the part around the volume that was read, and the whole model has "
+           "more than max_posts (" +
                std::to_string(params_.max_posts) + ")",
            "max_posts");
   }
@@ -127,7 +127,7 @@ const HeightField& Model::whole() const {
     try {
       whole_ = std::make_unique<const HeightField>(read_whole());
     } catch (const altiplan::ParameterError& error) {
-      // Whoever asks, it is no parameter of theirs.
+      // The caller is not at fault for a parameter.
       throw altiplan::Error(error.what());
     }
   });

@@ -11,14 +11,14 @@
 
 namespace terrain {
 
-/// An elevation model in the world's frame. Of a large one only the posts about the scenario's
-/// volume are read at once; the whole is read where a question goes beyond them, so that every
-/// answer is the whole model's.
+/// An elevation model in the world's frame. Of a large one only the posts around the scenario's
+/// volume are read initially; the whole is read if a query goes beyond them, so that every result
+/// is the whole model's.
 class Model {
  public:
   Model(const Params& params, const altiplan::Site& site);
 
-  /// A field that knows all posts within, and about, the horizontal box.
+  /// A field that contains all posts within, and around, the horizontal box.
   const altiplan::HeightField& over(const altiplan::Box& box) const {
     return (covered_.min.array() <= box.min.array()).all() &&
                    (box.max.array() <= covered_.max.array()).all()
@@ -28,17 +28,17 @@ class Model {
   const altiplan::HeightField& over(const altiplan::Vec3& p) const {
     return over(altiplan::Box{p, p});
   }
-  /// Horizontal distance between a place and the edge of what was read at once; infinite where
+  /// Horizontal distance between a position and the edge of the part read initially; infinite if
   /// that is the whole.
   double to_edge(const altiplan::Vec3& p) const;
-  /// What was read at once.
+  /// The part read initially.
   const altiplan::HeightField& field() const { return field_; }
 
-  /// Of the whole, its heights left open.
+  /// Bounds of the whole, its heights left open.
   const altiplan::Box& bounds() const { return bounds_; }
   const Layout& layout() const { return layout_; }
   const Dem& dem() const { return dem_; }
-  std::size_t voids() const { return voids_; }  ///< that were filled, of what was read at once
+  std::size_t voids() const { return voids_; }  ///< filled, in the part read initially
   bool joined() const { return joined_; }       ///< to neighbouring ground
 
  private:
@@ -53,7 +53,7 @@ class Model {
   altiplan::HeightField field_;
   bool joined_ = false;
   altiplan::Box bounds_;
-  altiplan::Box covered_;  ///< questions within it are field_'s; infinite where that is the whole
+  altiplan::Box covered_;  ///< queries within it use field_; infinite if that is the whole
   mutable std::once_flag once_;
   mutable std::unique_ptr<const altiplan::HeightField> whole_;
 };

@@ -16,8 +16,8 @@ using altiplan::Frame;
 using altiplan::ParameterError;
 using XY = std::array<double, 2>;
 
-/// Between a coordinate system (x, y in its own units) and WGS 84. GDAL's transformations serve
-/// one thread at a time.
+/// Between a coordinate system (x, y in its own units) and WGS 84. GDAL's transformations serve one
+/// thread at a time.
 class ToWgs84 {
  public:
   explicit ToWgs84(const gdal::Reference& crs)
@@ -38,7 +38,7 @@ class ToWgs84 {
   gdal::Transform back_;
 };
 
-/// The axes of a projected system, with an origin of our own and in metres.
+/// The axes of a projected system, with a separate origin and in metres.
 class MapProjection final : public altiplan::Projection {
  public:
   MapProjection(std::shared_ptr<const ToWgs84> map, const XY& origin, double unit_m)
@@ -57,7 +57,7 @@ class MapProjection final : public altiplan::Projection {
   double unit_m_;
 };
 
-/// Longitude and latitude of another datum are shifted as a whole, by what is right in the middle.
+/// Longitude and latitude of another datum are shifted as a whole, by the shift at the centre.
 XY datum_shift(const Dem& dem) {
   if (gdal::api().OSRIsSameGeogCS(dem.crs.get(), gdal::reference("EPSG:4326").get())) {
     return {0, 0};
@@ -77,7 +77,7 @@ Layout in_own_frame(const Dem& dem) {
     const double lat = dem.south_west[1] + shift[1];
     const double height_deg = (dem.rows - 1) * dem.step[1];
     frame = Frame::geographic(lon, lat, lat + height_deg / 2);
-    // By one post's step: a model may span more than half of the Earth.
+    // By the spacing of one post: a model may span more than half of the Earth.
     spacing = frame.to_local(lon + dem.step[0], lat + dem.step[1]);
   } else {
     frame = Frame::projected(std::make_shared<MapProjection>(std::make_shared<ToWgs84>(dem.crs),
@@ -88,7 +88,7 @@ Layout in_own_frame(const Dem& dem) {
   return {frame, {0, 0}, spacing, dem.columns, dem.rows, false};
 }
 
-/// The model seen from a frame: posts are (column, row) from the south-west, as fractions.
+/// The model as seen from a frame: posts are (column, row) from the south-west, as fractions.
 class View {
  public:
   View(const Dem& dem, const Frame& frame) : dem_(dem), map_(dem.crs), frame_(frame) {}
@@ -149,7 +149,7 @@ Footprint footprint(const Dem& dem, const View& view) {
   print.spacing = {std::abs(view.local(last_i / 2 + 1, last_j / 2)[0] - middle[0]),
                    std::abs(view.local(last_i / 2, last_j / 2 + 1)[1] - middle[1])};
   const XY origin = view.local(0, 0);
-  constexpr double kSame = 1e-4;  // metres: what transformations there and back may leave
+  constexpr double kSame = 1e-4;  // metres: round-trip error of transformations
   for (const XY& share : {XY{0, 1}, XY{1, 0}, XY{1, 1}, XY{0.5, 0.5}, XY{0.25, 0.75}}) {
     const XY p = view.local(share[0] * last_i, share[1] * last_j);
     print.is_grid =
@@ -166,9 +166,9 @@ Layout in_frame(const Dem& dem, const Frame& frame, const Params& params) {
   const double height = print.high[1] - print.low[1];
   if (!(width > 2 * print.spacing[0] && height > 2 * print.spacing[1])) {
     throw ParameterError("file", params.file.text +
-                                     ": its rows are turned too far against the "
+                                     ": its rows are rotated too far from the axes of the "
                                      "world's frame (" +
-                                     frame.crs() + ") to be brought into it");
+                                     frame.crs() + ") to be resampled in it");
   }
   if (print.is_grid) {
     const XY spacing{width / (dem.columns - 1), height / (dem.rows - 1)};
@@ -184,7 +184,7 @@ Layout in_frame(const Dem& dem, const Frame& frame, const Params& params) {
   return {frame, print.low, print.spacing, int(columns), int(rows), true};
 }
 
-/// The scenario's `frame: {crs: …}`, its origin where the model's south-west corner will be.
+/// The scenario's `frame: {crs: …}`, with its origin at the model's future south-west corner.
 Frame asked_frame(const Dem& dem, const std::string& crs) {
   const gdal::Reference reference = gdal::reference(crs);
   if (!reference || !gdal::api().OSRIsProjected(reference.get())) {
@@ -215,8 +215,8 @@ Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& param
   return in_frame(dem, asked_frame(dem, site.frame_crs), params);
 }
 
-/// Exact positions are asked for every kNet posts and interpolated between: a projection bends by
-/// less than 0.001 of a post's spacing over so few, and costs a microsecond a point.
+/// Exact positions are computed every kNet posts and interpolated between: over so few posts a
+/// projection deviates by less than 0.001 of their spacing, and it costs a microsecond per point.
 std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vector<float>& own) {
   const View view(dem, layout.frame);
   constexpr int kNet = 16;

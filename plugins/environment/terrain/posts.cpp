@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The heights of an elevation model, block by block as its file has them, straight into place.
+// The heights of an elevation model, read block by block as in its file, straight into their array.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +11,8 @@ namespace {
 
 using gdal::api;
 
-/// The file's numbers in metres, NaN where they mark a void; how many those are, or -1 where a
-/// height is none that the Earth has.
+/// Converts the file's numbers to metres, NaN where they mark a void; returns the number of voids,
+/// or -1 if a height is impossible on the Earth.
 std::int64_t to_metres(const Dem& dem, float* row, int count) {
   constexpr float kMax = std::numeric_limits<float>::max();
   const auto [nodata, asked_nodata] = dem.nodata;
@@ -30,24 +30,24 @@ std::int64_t to_metres(const Dem& dem, float* row, int count) {
   return wrong > 0 ? -1 : voids;
 }
 
-/// Which rows and columns of the file.
+/// A range of the file's rows and columns.
 struct Window {
   int x, y, columns, rows;
 };
 
-/// The file's rows of a part, whichever way they run.
+/// The file's rows of a part, in either order.
 Window window_of(const Dem& dem, const Part& part) {
   return {part.column, dem.from_north ? dem.rows - part.row - part.rows : part.row, part.columns,
           part.rows};
 }
 
-/// Reads windows of a part into their places among its heights.
+/// Reads windows of a part into their positions among its heights.
 class Reader {
  public:
   Reader(const Params& params, const Dem& dem, Posts& posts)
       : params_(params), dem_(dem), posts_(posts), whole_(window_of(dem, posts.part)) {}
 
-  /// Each block is decoded once, however few GDAL's cache holds.
+  /// Decodes each block once, however few GDAL's cache holds.
   void read() {
     int width = 0;
     int height = 0;
@@ -92,7 +92,7 @@ class Reader {
         row, row + w.columns, [](float height) { return height < kLowest || height > kHighest; });
     refuse(params_, "expected heights within -1000 and 10000 m, found " + number(*found) +
                         " at column " + std::to_string(w.x + (found - row)) + ", row " +
-                        std::to_string(y) + "; where this marks a void, say so with nodata");
+                        std::to_string(y) + "; if this marks a void, set nodata");
   }
 
   const Params& params_;
@@ -109,7 +109,7 @@ Posts read(const Params& params, const Dem& dem, const Part& part) {
       api().GDALGetDataCoverageStatus(dem.band, window.x, window.y, window.columns, window.rows,
                                       GDAL_DATA_COVERAGE_STATUS_EMPTY, nullptr);
   if (missing & GDAL_DATA_COVERAGE_STATUS_EMPTY) {
-    refuse(params, "parts of the file hold no data");
+    refuse(params, "parts of the file contain no data");
   }
   Posts posts{part, {}, 0};
   posts.heights.resize(std::size_t(part.columns) * std::size_t(part.rows));
@@ -168,8 +168,8 @@ void fill(const Params& params, Posts& posts) {
     case Voids::refuse:
       refuse(params,
              "has voids (" + count +
-                 " have no height); say what becomes of them with "
-                 "voids: neighbours, or voids: fill_m with a height fill_m",
+                 " have no height); choose voids: neighbours, or voids: fill_m with a height "
+                 "fill_m",
              "voids");
     case Voids::fill_m:
       for (float& height : posts.heights) {
@@ -188,7 +188,7 @@ Posts read_posts(const Params& params, const Dem& dem, const Part& part) {
   const std::size_t all = std::size_t(dem.columns) * std::size_t(dem.rows);
   const bool by_themselves = params.voids == Voids::fill_m && posts.voids < posts.heights.size();
   if (posts.voids > 0 && posts.heights.size() < all && !by_themselves) {
-    posts = {};  // before twice as much is asked for
+    posts = {};  // before twice as much is allocated
     posts = read(params, dem, dem.whole());
   }
   if (posts.voids > 0) {

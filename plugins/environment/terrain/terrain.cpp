@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Ground from an elevation model. Heights stand at the posts and are bilinear between them; the
-// solid is what lies below, between the posts. Beyond them nothing is known, and nothing blocked.
+// Ground from an elevation model. Heights apply at the posts and are bilinear between them; the
+// solid is the volume below, between the posts. Beyond them nothing is known, and nothing blocked.
 //
-// The slope bounds every answer: where it is at most s within a distance d of a point at height v
+// The slope bounds every result: if it is at most s within a distance d of a point at height v
 // above its ground, the ground is at least min(d, v / sqrt(1 + s²)) away. A point beyond the posts,
-// e away from them, is at least hypot(e, c) from the ground, c the same bound for the nearest place
-// above the posts: that place sees any other of them at no less than a right angle.
+// at distance e from them, is at least hypot(e, c) from the ground, c the same bound for the
+// nearest position above the posts: from there any other one is seen at no less than a right angle.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,13 +36,13 @@ class Terrain final : public Environment, public Ground {
   }
 
  private:
-  /// The nearest place over the posts, at the same height.
+  /// The nearest position over the posts, at the same height.
   Vec3 over_posts(const Vec3& p) const { return p.cwiseMax(bounds_.min).cwiseMin(bounds_.max); }
-  /// Horizontal distance to the edge of the posts, for a place above them.
+  /// Horizontal distance to the edge of the posts, for a position above them.
   double to_edge(const Vec3& p) const {
     return (p - bounds_.min).cwiseMin(bounds_.max - p).head<2>().minCoeff();
   }
-  /// Of the nearest place that has ground.
+  /// Ground height at the nearest position that has ground.
   double ground_near(const HeightField& field, double x, double y) const {
     return *field.at(std::clamp(x, bounds_.min.x(), bounds_.max.x()),
                      std::clamp(y, bounds_.min.y(), bounds_.max.y()));
@@ -76,8 +76,8 @@ class Terrain final : public Environment, public Ground {
     const double clearance = beyond > 0   ? std::hypot(beyond, std::max(above, 0.0))
                              : above >= 0 ? above
                                           : std::max(above, -to_edge(p));
-    // Slope and height are those of the part that was read, or of the whole: where they change
-    // over, neither is believed farther than to there.
+    // Slope and height are those of the part that was read, or of the whole: neither is trusted
+    // beyond the distance at which they change over.
     const double known = model_.to_edge(p);
     return std::clamp(clearance, -known, known);
   }
@@ -87,7 +87,7 @@ class Terrain final : public Environment, public Ground {
     if (std::min(a.z(), b.z()) - field.max_height() >= r - kLengthTolerance) {
       return false;
     }
-    // The leg in parts that lie over the posts or beyond one side or corner of them.
+    // Divides the leg into parts that lie over the posts or beyond one side or corner of them.
     std::array<double, 6> at{0, 1, 1, 1, 1, 1};
     int count = 1;
     for (int axis = 0; axis < 2; ++axis) {
@@ -114,7 +114,7 @@ class Terrain final : public Environment, public Ground {
     return false;
   }
 
-  /// Whether a leg over the posts is too near to the ground below it.
+  /// True if a leg over the posts is too near to the ground below it.
   bool too_low(const HeightField& field, const Vec3& a, const Vec3& b, double r) const {
     const auto gap = [&](const Vec3& from, const Vec3& to, double enough) {
       return field.gap(from, to, enough);
@@ -128,7 +128,7 @@ class Terrain final : public Environment, public Ground {
     if (!low || field.gap(low->first, low->second, enough) >= enough) {
       return false;
     }
-    // From here on only what is near the leg counts.
+    // From here on only the ground near the leg counts.
     const auto meets = [&](const Vec3& from, const Vec3& to, double within) {
       return terrain::is_within(field, from, to, within);
     };
@@ -137,13 +137,13 @@ class Terrain final : public Environment, public Ground {
                                 meets);
   }
 
-  /// Whether a leg beyond one side or corner of the posts is too near to their edge or the ground
+  /// True if a leg beyond one side or corner of the posts is too near to their edge or the ground
   /// behind it: by the bound above, halving the leg where that is in doubt.
   bool too_near(const HeightField& field, const Vec3& a, const Vec3& b, double r) const {
     const double keep = r - kLengthTolerance;
     const Vec3 from = over_posts(a);
     const Vec3 to = over_posts(b);
-    // The least horizontal distance to the posts, exactly beyond a side or from a corner.
+    // The minimum horizontal distance to the posts, exactly beyond a side or from a corner.
     const Vec3 flat(1, 1, 0);
     const double beyond = from.head<2>() == to.head<2>()
                               ? point_leg_distance(from.cwiseProduct(flat), a.cwiseProduct(flat),
@@ -154,7 +154,8 @@ class Terrain final : public Environment, public Ground {
     }
     const double top = top_near(field, from, to, r);
     const double steepness = std::hypot(1, slope_near(field, from, to, r));
-    // How far below the ground is, at least, for a place so high above it and above sea level.
+    // Lower bound of the depth of the ground below a position at that height above it and above sea
+    // level.
     const auto above = [&](double height, double z) {
       return std::max({height / steepness, z - top, 0.0});
     };
@@ -179,7 +180,7 @@ class Terrain final : public Environment, public Ground {
     return slope_within(field, leg_box(a, b).grown(within));
   }
 
-  /// Highest ground within a horizontal distance of the leg, or a little farther.
+  /// Highest ground within a horizontal distance of the leg, or slightly farther.
   double top_near(const HeightField& field, const Vec3& a, const Vec3& b, double within) const {
     const Box box = leg_box(a, b).grown(std::max(within, 0.0)).intersected(bounds_);
     return field.max_height(box.min.x(), box.min.y(), box.max.x(), box.max.y());
@@ -196,11 +197,11 @@ class Terrain final : public Environment, public Ground {
         }
         return;
       }
-      // The way out is up; the depth is a lower bound, as clearance has it.
+      // The way out is up; the depth is a lower bound, as clearance requires.
       sink({{p.x(), p.y(), p.z() - gap}, do_clearance(p), {0, 0, 1}, 0});
       return;
     }
-    // Nothing is nearer than the ground below.
+    // No ground is nearer than the ground below.
     const HeightField& field = model_.over(Box{over, over}.grown(std::hypot(beyond, gap)));
     if (std::hypot(beyond, std::max(p.z() - field.max_height(), 0.0)) > reach) {
       return;
@@ -227,7 +228,7 @@ class Terrain final : public Environment, public Ground {
     });
   }
 
-  // A sphere of the vehicle's size may be kept off by the slope though the ground is a little
+  // The slope bound may reject a sphere of the vehicle's size although the ground is slightly
   // farther away than its radius.
   double do_over_approximation() const override {
     return vehicle_radius_ * (std::hypot(1, model_.field().max_slope()) - 1) + kInDoubt;
@@ -249,11 +250,11 @@ class Terrain final : public Environment, public Ground {
     notes.push_back(
         text("%d x %d posts of %.1f x %.1f m, ", is_part ? layout.columns : field.columns(),
              is_part ? layout.rows : field.rows(), field.spacing()[0], field.spacing()[1]) +
-        (is_part ? text("%d x %d of them read, about the volume, ", field.columns(), field.rows())
+        (is_part ? text("%d x %d of them read, around the volume, ", field.columns(), field.rows())
                  : "") +
         text("%.0f to %.0f m, ", field.min_height(), field.max_height()) + voids);
     if (model_.joined()) {
-      notes.push_back("joined to the ground of the layers before, a post's spacing away");
+      notes.push_back("joined to the ground of the preceding layers, a post's spacing away");
     }
     if (layout.resampled) {
       const terrain::Dem& dem = model_.dem();
@@ -267,7 +268,8 @@ class Terrain final : public Environment, public Ground {
     return notes;
   }
 
-  static constexpr double kInDoubt = 1e-4;  ///< metres of a leg that are not halved any more
+  static constexpr double kInDoubt =
+      1e-4;  ///< metres: legs below this length are not halved further
 
   terrain::Model model_;
   double vehicle_radius_;

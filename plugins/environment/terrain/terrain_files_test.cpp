@@ -11,7 +11,7 @@ namespace {
 TEST_F(MadeFiles, SpikeBetweenSamplesIsSeen) {
   const auto file = grid("10 10 10 10 10\n10 10 10 10 10\n10 10 10.01 10 10\n10 10 10 10 10\n");
   const Made layer = make_environment("terrain", file_yaml(file));
-  // Over the spike's post (200, 100); all 40 posts of the leg's line lie beside it.
+  // Over the spike's post (200, 100); all 40 posts on the leg's line lie beside it.
   const Vec3 a(0, 100, 10.009);
   const Vec3 b(400, 100, 10.009);
   EXPECT_NEAR(layer->ground()->gap(a, b), -0.001, 1e-5);
@@ -26,7 +26,7 @@ TEST_F(MadeFiles, BeyondThePostsNothingIsBlocked) {
   const Made layer = make_environment("terrain", file_yaml(grid(kFlat)));  // to (400, 300), 10 high
   EXPECT_FALSE(layer->blocked({10, 150, 30}, {900, 150, 0}, 2)) << "over the edge and down";
   EXPECT_TRUE(layer->blocked({10, 150, 13}, {500, 150, 0}, 2));
-  // Beside the solid's wall, over its upper edge and about its corner.
+  // Beside the solid's wall, over its upper edge and around its corner.
   EXPECT_FALSE(layer->blocked({402, -50, 3}, {402, 350, 3}, 2));
   EXPECT_TRUE(layer->blocked({401.9999, -50, 3}, {401.9999, 350, 3}, 2));
   EXPECT_FALSE(layer->blocked({403, -50, 14}, {403, 350, 14}, 5));
@@ -46,7 +46,7 @@ TEST_F(MadeFiles, BeyondThePostsNothingIsBlocked) {
   });
 }
 
-/// A GeoTIFF with a header alone: the one strip of its posts is not there.
+/// A GeoTIFF with only a header: the one strip of its posts is missing.
 std::string hollow_tiff(std::uint32_t columns, std::uint32_t rows) {
   std::string head("II*\0\0\0\0\0", 8);
   std::string values;
@@ -73,12 +73,12 @@ std::string hollow_tiff(std::uint32_t columns, std::uint32_t rows) {
   };
   tag(256, 4, 1, columns);
   tag(257, 4, 1, rows);
-  tag(258, 3, 1, 16);    // bits a post
+  tag(258, 3, 1, 16);    // bits per post
   tag(259, 3, 1, 1);     // not compressed
   tag(262, 3, 1, 1);     // black is zero
-  tag(273, 4, 1, 0);     // the strip stands nowhere
+  tag(273, 4, 1, 0);     // the strip has no offset
   tag(277, 3, 1, 1);     // one band
-  tag(278, 4, 1, rows);  // rows a strip
+  tag(278, 4, 1, rows);  // rows per strip
   tag(279, 4, 1, 0);     // and has no bytes
   tag(339, 3, 1, 2);     // signed
   doubles(33550, {0.001, 0.001, 0});
@@ -96,7 +96,7 @@ std::string hollow_tiff(std::uint32_t columns, std::uint32_t rows) {
 TEST_F(MadeFiles, HugeAndSparseTiffsAreRefused) {
   EXPECT_SAYS(refusal(write("huge.tif", hollow_tiff(200000, 72000))),
               "200000 x 72000 posts, more than max_posts");
-  EXPECT_SAYS(refusal(write("sparse.tif", hollow_tiff(40, 30))), "hold no data");
+  EXPECT_SAYS(refusal(write("sparse.tif", hollow_tiff(40, 30))), "contain no data");
 }
 
 TEST_F(MadeFiles, VoidsFollowTheRule) {
@@ -147,7 +147,7 @@ TEST_F(MadeFiles, DamagedAndForeignFilesAreRefused) {
               "max_posts");
   EXPECT_SAYS(refusal(grid(kFlat), "max_posts: 19"), "5 x 4 posts, more than max_posts (19)");
   EXPECT_SAYS(refusal(grid(kFlat), "band: 2"), "no band 2");
-  EXPECT_SAYS(refusal(grid(kFlat), "crs: 'EPSG:32633'"), "coordinate system of its own");
+  EXPECT_SAYS(refusal(grid(kFlat), "crs: 'EPSG:32633'"), "its own coordinate system");
   EXPECT_SAYS(refusal(grid(kFlat), "crs: UTM32"), "expected EPSG:");
   EXPECT_EQ(refusal(grid(kFlat)), "");
 }
@@ -162,6 +162,6 @@ TEST_F(MadeFiles, TruncatedTiffIsRefused) {
   }
 }
 
-// Laws ----------------------------------------------------------------------------------------
+// Contract and metamorphic properties -------------------------------------------------------------
 }  // namespace
 }  // namespace altiplan

@@ -18,7 +18,7 @@ inline std::string file_yaml(const std::filesystem::path& file, const std::strin
   return "{file: '" + file.string() + "'" + (more.empty() ? "" : ", " + more) + "}";
 }
 
-/// What the plugin says of a file that it refuses; "" where it does not.
+/// The plugin's message for a file that it rejects; "" if it accepts it.
 inline std::string refusal(const std::filesystem::path& file, const std::string& more = "",
                            const Site& site = {}) {
   try {
@@ -31,7 +31,7 @@ inline std::string refusal(const std::filesystem::path& file, const std::string&
 
 #define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
-/// Files made in a folder of their own.
+/// Files in a temporary folder.
 class MadeFiles : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Large models: what is read about the volume answers as the whole model does.
+// Large models: the part read around the volume gives the same results as the whole model.
 #include <cstdlib>
 
 #include "altiplan/check.hpp"
@@ -13,12 +13,12 @@ namespace {
 constexpr int kColumns = 2600;
 constexpr int kRows = 2100;
 constexpr double kStep = 10;
-constexpr int kNoHeight = 30000;  ///< more than the Earth has: who reads it refuses the file
+constexpr int kNoHeight = 30000;  ///< impossible on the Earth: reading it rejects the file
 constexpr int kVoid = -9999;
 
 const Box kVolume{{9003, 8001, 0}, {12007, 10509, 900}};
 
-/// Hills with a cliff or a spike here and there; rows from the south.
+/// Hills with an occasional cliff or spike; rows from the south.
 std::int16_t height(int i, int j) {
   const double hills = 300 + 150 * std::sin(i * 0.02) * std::cos(j * 0.017) + 40 * std::sin(i + j);
   const unsigned hash = unsigned(i) * 2654435761U ^ unsigned(j) * 40503U;
@@ -52,7 +52,7 @@ class PartOfAModel : public MadeFiles {
     return write(name + ".img", {reinterpret_cast<const char*>(heights.data()),
                                  heights.size() * sizeof heights[0]});
   }
-  /// A model that nobody can read whole.
+  /// A model that cannot be read as a whole.
   std::filesystem::path half_damaged(const std::string& name) const {
     return model(name, [](auto& heights) { heights[at(3, kRows - 2)] = kNoHeight; });
   }
@@ -76,7 +76,7 @@ Vec3 leg_end(RandomStream& random, const Box& box, const Vec3& from) {
   return Vec3(from + offset).cwiseMax(box.min).cwiseMin(box.max);
 }
 
-/// Everything but clearance, whose bound is the tighter the less is read.
+/// Compares everything except clearance, whose bound is the tighter the less is read.
 void expect_same_answers(const Environment& part, const Environment& whole, const Box& box,
                          double reach, int count) {
   RandomStream random(11);
@@ -112,7 +112,7 @@ TEST_F(PartOfAModel, AnswersAsTheWholeWithinTheVolume) {
   EXPECT_NE(refusal(half_damaged("damaged")), "");
   const Made part = part_of(folder_ / "damaged.img");
   EXPECT_SAYS(part->info().notes[0], "2600 x 2100 posts");
-  EXPECT_SAYS(part->info().notes[0], "of them read, about the volume");
+  EXPECT_SAYS(part->info().notes[0], "of them read, around the volume");
   EXPECT_EQ(whole->info().notes[0].find("of them"), std::string::npos);
   EXPECT_LT(part->ground()->height_field()->columns() * part->ground()->height_field()->rows(),
             500'000);
@@ -120,7 +120,7 @@ TEST_F(PartOfAModel, AnswersAsTheWholeWithinTheVolume) {
   EXPECT_EQ(part->bounds().max, whole->bounds().max);
   expect_same_answers(*part, *whole, kVolume, 60, 2000);
   expect_same_answers(*part, *whole, kVolume, 800, 300);
-  // That was the part alone: beyond it the damage shows.
+  // So far only the part was read: beyond it the damage shows.
   try {
     part->ground()->height(30, 20000);
     FAIL() << "the whole was not read";
@@ -200,7 +200,7 @@ TEST_F(PartOfAModel, VoidsAreThoseOfThePartOrAskForTheWhole) {
   EXPECT_SAYS(refusal(elsewhere), "1 of 5460000 posts");
   EXPECT_SAYS(part_of(elsewhere)->info().notes[0], "no voids");
   const auto within = model("within", [](auto& heights) {
-    for (int j = 700; j < 1500; ++j) {  // out of the part: what fills it comes from both sides
+    for (int j = 700; j < 1500; ++j) {  // out of the part: its filling comes from both sides
       heights[at(1000, j)] = heights[at(1001, j)] = heights[at(1002, j)] = kVoid;
     }
   });
@@ -229,7 +229,7 @@ TEST_F(PartOfAModel, MaxPostsCountsWhatIsRead) {
     part->ground()->height(30, 30);
     FAIL() << "more posts than allowed";
   } catch (const Error& error) {
-    EXPECT_SAYS(std::string(error.what()), "beyond the part about the volume");
+    EXPECT_SAYS(std::string(error.what()), "beyond the part around the volume");
   }
   try {
     part_of(file, "max_posts: 100000");

@@ -16,7 +16,7 @@ struct Sample {
   double height;
 };
 
-// Posts of a layer in its own frame stand at multiples of the spacing.
+// Posts of a layer in its own frame lie at multiples of the spacing.
 void expect_samples(const Environment& layer, int columns, int rows,
                     const std::vector<Sample>& samples) {
   const Box box = layer.bounds();
@@ -30,7 +30,7 @@ void expect_samples(const Environment& layer, int columns, int rows,
 
 struct RealDem {
   const char* file;
-  const char* refused_for;  // without parameters; "" where it loads
+  const char* refused_for;  // message without parameters; "" if it loads
   const char* parameters;   // with which it loads
   int columns, rows;
   std::vector<Sample> samples;
@@ -129,7 +129,7 @@ TEST(Terrain, PlacesPostsByLonLat) {
 
   ALTIPLAN_DATA_OR_SKIP(utm, "dem/elev_vinschgau.tif");
   const Made projected = make_environment("terrain", file_yaml(utm, "voids: neighbours"));
-  // Ortler, 10.5448 E 46.5090 N, stands where UTM 32 has it: 618375, 5151625 in the file.
+  // Ortler, 10.5448 E 46.5090 N, lies at its UTM 32 position: 618375, 5151625 in the file.
   const auto lonlat = projected->info().frame->to_lonlat(0, 0);
   const auto back = projected->info().frame->to_local(lonlat[0], lonlat[1]);
   EXPECT_NEAR(back[0], 0, 1e-6);
@@ -238,8 +238,8 @@ TEST(Terrain, LawsHoldOnRealGround) {
       }
     });
     EXPECT_GE(least, clearance - 1e-6);
-    // Blocked is true where the ground near a sample of the leg is nearer than r, and false where
-    // clearance is beyond r everywhere.
+    // Blocked is true if the ground near a sample of the leg is nearer than r, and false if
+    // clearance exceeds r everywhere.
     const double r = random.uniform(0, 60);
     const Vec3 b = p + random.uniform(0, 10) * (q - p);
     const bool blocked = layer->blocked(p, b, r);
@@ -284,7 +284,7 @@ TEST(Terrain, RasterLeavesNoGroundFree) {
     }
     EXPECT_GT(free, 5000u);
   }
-  // Rule centre, and no column is blocked higher than its ground asks for.
+  // Rule centre: no column is blocked higher than its ground requires.
   spec.rule = GridSpec::Rule::centre;
   spec.inflation = 0;
   VoxelGrid grid(spec);

@@ -5,7 +5,7 @@
 
 namespace terrain {
 
-/// What is missing of a file that GDAL reads as if it were whole, or "": numbers of an ESRI ASCII
-/// grid that are none (it takes them as 0), heights beyond the end of an ENVI file (likewise).
+/// The part missing from a file that GDAL reads as if it were complete, or "": invalid numbers of
+/// an ESRI ASCII grid (GDAL reads them as 0), heights beyond the end of an ENVI file (likewise).
 std::string missing_from(const std::string& file, void* dataset);
 }  // namespace terrain

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Voxel maps in the format of D. Brewer and N. Sturtevant, "Benchmarks for Pathfinding in 3D Voxel
-// Space", SoCS 2018 (.3dmap): the counts, then one blocked voxel a line.
+// Space", SoCS 2018 (.3dmap): the counts, then one blocked voxel per line.
 #include <charconv>
 
 #include "altiplan/environment.hpp"
@@ -18,14 +18,14 @@ struct Params {
 
   void describe(Fields& f) {
     f("file", file).doc("voxel map (.3dmap)").required();
-    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge of a voxel");
+    f("cell_m", cell_m).unit("m").range(0.001, 1e6).doc("edge length of a voxel");
     f("max_cells", max_cells)
         .at_least(1)
-        .doc("a file that declares more voxels is refused before anything is allocated");
+        .doc("a file that declares more voxels is rejected before anything is allocated");
   }
 };
 
-/// Three whole numbers, a space between them, and nothing else.
+/// Three integers separated by single spaces, and nothing else.
 std::optional<Cell> three(std::string_view text) {
   Cell cell{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,4 +92,4 @@ class VoxelMap final : public kit::CellLayer {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "voxel_map", VoxelMap, Params,
-                "A voxel map in the format of the Warframe benchmarks")
+                "a voxel map in the format of the Warframe benchmarks")

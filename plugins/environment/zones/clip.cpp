@@ -89,7 +89,7 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
       polygon.holes.push_back(from_boost(hole));
     }
     if (!kit::polygon_problem(polygon).empty()) {
-      return {shape};  // pieces that touch each other: whole, it is as right
+      return {shape};  // pieces that touch each other: the whole shape is equally correct
     }
     parts.emplace_back(Prism{polygon.outline, polygon.holes, prism->floor, prism->ceiling});
   }
@@ -98,7 +98,7 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
 }
 
 std::string Clip::note() const {
-  return std::to_string(dropped_) + " zones outside of the bounds dropped, " +
-         std::to_string(cut_) + " cut at them";
+  return std::to_string(dropped_) + " zones outside the bounds dropped, " + std::to_string(cut_) +
+         " cut at them";
 }
 }  // namespace altiplan::zones

@@ -9,16 +9,16 @@
 
 namespace altiplan::zones {
 
-/// Cuts shapes at the sides of a world; heights are let be.
+/// Cuts shapes at the horizontal bounds of a world; heights are unchanged.
 class Clip {
  public:
-  /// Throws ParameterError("clip", …) where nothing bounds the world to a side.
+  /// Throws ParameterError("clip", …) if the world has no horizontal bounds.
   explicit Clip(const Site& site);
 
-  /// The parts of the shape within the bounds: none outside, a prism maybe in several pieces. A
-  /// cylinder that reaches in stays whole.
+  /// The parts of the shape within the bounds: none if it lies outside, possibly several pieces of
+  /// a prism. A cylinder that intersects the bounds stays whole.
   std::vector<Shape> cut(const Shape& shape);
-  /// What was dropped and cut.
+  /// Number of zones dropped and cut.
   std::string note() const;
 
  private:

@@ -11,11 +11,11 @@ using Point2 = std::array<double, 2>;
 // Rounding of a depth, metres.
 constexpr double kRounding = 1e-9;
 
-// Of the greatest coordinate: far more than distances in plan may err.
+// Relative to the largest coordinate: far more than the error of horizontal distances.
 constexpr double kBeside = 1e-12;
 
-// Shares of the leg at which its depth in a zone may pass through `depth`: where it crosses the
-// floor and ceiling moved inward by it, and where it is as far from an edge of the outline.
+// Fractions of the leg at which its depth in a zone may pass through `depth`: where it crosses the
+// floor and ceiling moved inward by it, and where it is that far from an edge of the outline.
 class Breaks {
  public:
   Breaks(const Vec3& a, const Vec3& b, double depth)
@@ -70,7 +70,7 @@ class Breaks {
     add_share(middle - half);
     add_share(middle + half);
   }
-  // Whether the edge is farther from the leg than it would have to be for a break.
+  // True if the edge is too far from the leg to cause a break.
   bool is_far(const Point2& e, const Point2& f) const {
     const auto beside = [&](const Point2& p) {
       return across_[0] * (p[0] - a_.x()) + across_[1] * (p[1] - a_.y());
@@ -128,7 +128,7 @@ bool is_convex(const Shape& shape) {
   return prism->holes.empty() && !(left && right);
 }
 
-// Whether a convex zone is at least `depth` deep all over the box: depth is a concave function, so
+// True if a convex zone is at least `depth` deep all over the box: depth is a concave function, so
 // the corners decide.
 bool holds_box(const kit::ObstacleSet& zone, const Box& box, double depth) {
   for (int corner = 0; corner < 8; ++corner) {
@@ -151,7 +151,7 @@ bool KeepIn::blocked(const Vec3& a, const Vec3& b, double r) const {
   for (const Shape& zone : zones_.shapes()) {
     breaks.add(zone);
   }
-  // Between two breaks each zone is deep enough everywhere or nowhere: its middle tells.
+  // Between two breaks each zone is deep enough everywhere or nowhere: the middle decides.
   const std::vector<double> shares = breaks.sorted();
   for (std::size_t n = 0; n + 1 < shares.size(); ++n) {
     if (clearance(a + (shares[n] + shares[n + 1]) / 2 * (b - a)) < depth - kRounding) {

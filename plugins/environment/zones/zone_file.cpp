@@ -37,7 +37,7 @@ std::string counted(const std::map<std::string, std::size_t>& types) {
   return text;
 }
 
-/// A feature's own limits go before those of its type.
+/// A feature's own limits take precedence over those of its type.
 FileZone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* rule) {
   FileZone result;
   MissionZone& zone = result.zone;
@@ -56,7 +56,7 @@ FileZone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRu
   return result;
 }
 
-/// Limits under the names that scenarios have for them are not read by themselves.
+/// Properties that are named like a scenario's limits are not read automatically.
 void expect_limits_read(const std::string& file, const GeoJson& json, const FileRules& rules) {
   for (const auto& [name, key, property] : {std::tuple("floor_m", "floor_property", &rules.floor),
                                             {"ceiling_m", "ceiling_property", &rules.ceiling}}) {
@@ -77,7 +77,7 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
   }
   expect_limits_read(file, json, rules);
   if (json.features.empty() && !json.flat.empty()) {
-    throw Error(file + ": there is no zone in it: " + json.skipped_text());
+    throw Error(file + ": contains no zone: " + json.skipped_text());
   }
   FileZones result;
   std::map<std::string, std::size_t> types;
@@ -103,7 +103,7 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
   return result;
 }
 
-/// KML's polygons and the fences of ground stations.
+/// KML polygons and the fences of ground stations.
 FileZones read_fence(const std::string& file, const FileRules& rules) {
   for (const std::string& name :
        {rules.floor, rules.ceiling, rules.from, rules.until, rules.type}) {
@@ -113,7 +113,7 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   }
   const kit::MissionFile mission = kit::read_mission(file);
   if (mission.zones.empty()) {
-    throw Error(file + ": there is no zone in it" +
+    throw Error(file + ": contains no zone" +
                 (mission.flat.empty() ? "" : ": no area in " + kit::names_text(mission.flat)));
   }
   FileZones result;
@@ -127,7 +127,7 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   }
   result.notes.push_back(
       std::to_string(mission.zones.size()) + " zones read, " +
-      std::to_string(mission.items.size()) + " places of a route let be" +
+      std::to_string(mission.items.size()) + " waypoints of a route ignored" +
       (mission.flat.empty() ? "" : "; skipped, without an area: " + kit::names_text(mission.flat)));
   result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
   return result;
@@ -135,23 +135,25 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
 }  // namespace
 
 void TypeRule::describe(Fields& f) {
-  f("is", is).required().doc("the word");
-  f("floor_m", floor_m).unit("m").doc("floor of its zones that say none, above sea level");
-  f("ceiling_m", ceiling_m).unit("m").doc("their ceiling, likewise");
-  f("skip", skip).doc("its zones do not count");
+  f("is", is).required().doc("value of the property");
+  f("floor_m", floor_m).unit("m").doc("floor of zones of this type without one, above sea level");
+  f("ceiling_m", ceiling_m)
+      .unit("m")
+      .doc("ceiling of zones of this type without one, above sea level");
+  f("skip", skip).doc("ignore zones of this type");
   f.check(floor_m.value_or(-kInfinity) < ceiling_m.value_or(kInfinity),
           "floor_m must be below ceiling_m");
 }
 
 void FileRules::describe(Fields& f) {
   f("file_kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
-      .doc("kind of the zones of GeoJSON and KML; a fence says itself what each one is");
+      .doc("kind of the zones of GeoJSON and KML; each zone of a fence file declares its own");
   f("floor_property", floor).doc("GeoJSON's property with the floor, m above sea level");
-  f("ceiling_property", ceiling).doc("GeoJSON's property with the ceiling, likewise");
+  f("ceiling_property", ceiling).doc("GeoJSON's property with the ceiling, m above sea level");
   f("from_property", from).doc("GeoJSON's property with the start of the time window");
-  f("until_property", until).doc("GeoJSON's property with its end");
-  f("type_property", type).doc("GeoJSON's property with a word that `types` explains");
-  f("types", types).doc("what its words mean; others: closed at every height");
+  f("until_property", until).doc("GeoJSON's property with the end of the time window");
+  f("type_property", type).doc("GeoJSON's property with a type that `types` explains");
+  f("types", types).doc("meaning of the types; zones of other types are closed at every height");
   f.check(types.empty() || !type.empty(), "types needs type_property");
 }
 

@@ -13,7 +13,7 @@ namespace altiplan::zones {
 
 enum class Kind { keep_out, keep_in };
 
-/// What a word of the file's type property means.
+/// Meaning of a value of the file's type property.
 struct TypeRule {
   std::string is;
   std::optional<double> floor_m;
@@ -23,7 +23,7 @@ struct TypeRule {
   void describe(Fields& f);
 };
 
-/// How a file's features become zones; the names of properties are "" where the file has none.
+/// Rules that convert a file's features to zones; property names are "" if the file has none.
 struct FileRules {
   Kind kind = Kind::keep_out;
   std::string floor;
@@ -38,7 +38,7 @@ struct FileRules {
 
 struct FileZone {
   kit::MissionZone zone;
-  std::string from;  ///< time window, "" where it has no such end
+  std::string from;  ///< time window, "" if it is open at this end
   std::string until;
 };
 
@@ -47,7 +47,7 @@ struct FileZones {
   std::vector<std::string> notes;
 };
 
-/// Reads GeoJSON, KML, or the fence of a ground station's file. Throws Error naming the file.
+/// Reads GeoJSON, KML, or the fence from a ground station's file. Throws Error naming the file.
 FileZones read_zone_file(const std::string& file, const FileRules& rules);
 
 /// A frame for a world that has none: its origin is the south-west corner of the zones.

@@ -78,7 +78,7 @@ TEST_F(ZoneFile, TypesGiveLimitsThatTheFeatureDoesNot) {
   EXPECT_NEAR(layer->clearance(at(25.25, 60.05, 10)), 40, 1e-6);  // L: free below 50 m
   EXPECT_LT(layer->clearance(at(25.25, 60.05, 51)), 0);
   EXPECT_NEAR(layer->clearance(at(25.45, 60.05, 110)), 10, 1e-6);  // its own floor
-  EXPECT_GT(layer->clearance(at(25.65, 60.05, 10)), 1000);         // X: does not count
+  EXPECT_GT(layer->clearance(at(25.65, 60.05, 10)), 1000);         // X: ignored
   EXPECT_LT(layer->clearance(at(25.85, 60.05, 10)), 0);            // no type: closed
   EXPECT_TRUE(says(*layer,
                    "5 polygons read (1 without a type, 2 of type L, 1 of type R, 1 of "
@@ -138,7 +138,7 @@ TEST_F(ZoneFile, APolygonWithoutAnAreaIsSkippedByName) {
         *zones("f.geojson", collection({polygon("pier", flat), polygon("jetty", flat), whole})),
         "2 features without an area skipped ('pier', 'jetty')"));
     const std::string said = refusal("f.geojson", collection({polygon("pier", flat)}));
-    EXPECT_NE(said.find("f.geojson: there is no zone in it: 1 features without an area skipped "
+    EXPECT_NE(said.find("f.geojson: contains no zone: 1 features without an area skipped "
                         "('pier')"),
               std::string::npos)
         << said;
@@ -197,7 +197,7 @@ TEST_F(ZoneFile, KmlPolygonsReachUpToWhereTheyAreExtrudedFrom) {
   EXPECT_LT(inside->clearance(at(25.05, 60.05, 230)), 0);
   EXPECT_NE(refusal("p.kml", kKml, ", floor_property: low").find("properties are GeoJSON's"),
             std::string::npos);
-  EXPECT_NE(refusal("p.kml", "<kml/>").find("there is no zone in it"), std::string::npos);
+  EXPECT_NE(refusal("p.kml", "<kml/>").find("contains no zone"), std::string::npos);
 }
 
 TEST_F(ZoneFile, AKmlPolygonWithoutAnAreaIsSkippedByName) {
@@ -211,7 +211,7 @@ TEST_F(ZoneFile, AKmlPolygonWithoutAnAreaIsSkippedByName) {
     const auto layer = zones("p.kml", "<kml>" + pier + park + "</kml>");
     EXPECT_NEAR(layer->clearance(at(25.05, 60.05, 230)), 30, 1e-6);
     EXPECT_TRUE(says(*layer,
-                     "1 zones read, 0 places of a route let be; skipped, without an area: "
+                     "1 zones read, 0 waypoints of a route ignored; skipped, without an area: "
                      "'pier'"));
     EXPECT_NE(refusal("p.kml", "<kml>" + pier + "</kml>").find("no area in 'pier'"),
               std::string::npos);
@@ -244,7 +244,7 @@ TEST_F(ZoneFile, ClipDropsAndCutsWithoutChangingWhatIsInside) {
   const Site site = site_of({{0, 0, 0}, {corner.x(), corner.y(), 500}});
   const auto whole = zones("t.geojson", kTyped);
   const auto clipped = zones("t.geojson", kTyped, ", clip: true", site);
-  EXPECT_TRUE(says(*clipped, "3 zones outside of the bounds dropped, 2 cut at them"));
+  EXPECT_TRUE(says(*clipped, "3 zones outside the bounds dropped, 2 cut at them"));
   EXPECT_EQ(clipped->drawing()->shapes.size(), 2U);
   EXPECT_NEAR(clipped->bounds().max.x(), corner.x(), 1e-9);
   EXPECT_GT(whole->bounds().max.x(), 2 * corner.x());

@@ -30,7 +30,7 @@ struct CylinderParams {
   double radius_m = 0;
 
   void describe(Fields& f) {
-    f.point(at).required().doc("the axis; a height does not matter here");
+    f.point(at).required().doc("position of the axis; its height is ignored");
     f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius");
   }
 };
@@ -44,8 +44,8 @@ struct PolygonParams {
   void describe(Fields& f) {
     f("outline_m", outline_m).unit("m").doc("corners [x, y], in either sense");
     f("outline_lonlat", outline_lonlat).unit("deg").doc("corners [longitude, latitude] instead");
-    f("holes_m", holes_m).unit("m").doc("rings inside the outline that the zone leaves out");
-    f("holes_lonlat", holes_lonlat).unit("deg").doc("the same in longitude and latitude");
+    f("holes_m", holes_m).unit("m").doc("rings inside the outline that the zone excludes");
+    f("holes_lonlat", holes_lonlat).unit("deg").doc("the same as [longitude, latitude]");
     f.check(outline_m.empty() != outline_lonlat.empty(),
             "a polygon has either outline_m or outline_lonlat");
     f.check(holes_lonlat.empty() || !outline_lonlat.empty(),
@@ -68,13 +68,13 @@ struct ZoneParams {
   void describe(Fields& f) {
     f("id", id).doc("name for messages");
     f("kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
-        .doc("what is forbidden: the inside, or everything outside of all keep_in zones");
+        .doc("forbids the inside (keep_out), or everything outside all keep_in zones (keep_in)");
     f("cylinder", cylinder).doc("an upright cylinder");
     f("polygon", polygon).doc("an upright prism");
-    f("floor_m", floor_m).unit("m").doc("lowest height above sea level; left out: no floor");
-    f("ceiling_m", ceiling_m).unit("m").doc("greatest height above sea level; left out: no end");
-    f("from", from).doc("start of the time window (2026-06-17T05:00:00Z); left out: ever since");
-    f("until", until).doc("end of the time window; left out: for ever");
+    f("floor_m", floor_m).unit("m").doc("lower limit above sea level; default: no floor");
+    f("ceiling_m", ceiling_m).unit("m").doc("upper limit above sea level; default: no ceiling");
+    f("from", from).doc("start of the time window (2026-06-17T05:00:00Z); default: no start");
+    f("until", until).doc("end of the time window; default: no end");
     f.check(cylinder.has_value() != polygon.has_value(),
             "a zone is either a cylinder or a polygon");
     f.check(floor_m.value_or(-kInfinity) < ceiling_m.value_or(kInfinity),
@@ -90,25 +90,23 @@ struct Params {
   double horizon_s = 3600;
 
   void describe(Fields& f) {
-    f("list", list).doc("zones written here");
+    f("list", list).doc("zones defined in the scenario");
     f("file", file)
         .doc(
-            "more of them: GeoJSON (Polygons and MultiPolygons in WGS 84), KML (Polygons), or the "
-            "fence of a .plan or of QGC WPL 110 (.waypoints, .txt)");
+            "zones from a file: GeoJSON (Polygons and MultiPolygons in WGS 84), KML (Polygons), "
+            "or the fence of a .plan or of QGC WPL 110 (.waypoints, .txt)");
     rules.describe(f);
     f("clip", clip)
         .doc(
-            "drops keep-out zones outside of the world's bounds (the volume, else the layers "
-            "before "
-            "this one) and cuts polygons at them; what is beyond does not count then, near the "
-            "bounds "
-            "neither");
+            "drop keep-out zones outside the world's bounds (the volume, else the preceding "
+            "layers) and cut polygons at them; anything beyond the bounds is then ignored, also "
+            "when measuring clearance near them");
     f("horizon_s", horizon_s)
         .unit("s")
         .at_least(0)
         .doc(
-            "zones count that are active at some time from the scenario's start_time to this much "
-            "later");
+            "only zones that are active at some time from the scenario's start_time to this much "
+            "later are used");
     f.check(!list.empty() || file.has_value(), "give zones as list, file or both");
   }
 };
@@ -118,7 +116,7 @@ class Zones final : public Environment {
   Zones(const Params& params, const Site& site) : Zones(Reader(params, site)) {}
 
  private:
-  // All that the constructor works out, in order.
+  // Everything that the constructor computes, in order.
   struct Reader {
     Site site;
     double horizon_s;
@@ -317,4 +315,4 @@ class Zones final : public Environment {
 
 ALTIPLAN_PLUGIN(
     Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
-    "Keep-out and keep-in zones: cylinders, polygons, GeoJSON, KML, fences, time windows")
+    "keep-out and keep-in zones: cylinders, polygons, GeoJSON, KML, fences, time windows")

@@ -97,7 +97,7 @@ TEST(Zones, KeepInBlocksAllOutsideOfTheUnion) {
   EXPECT_EQ(layer->bounds().max.x(), kInfinity);
 }
 
-// Sampled depths against the exact answer, for zones with concave outlines too.
+// Sampled depths compared with the exact result, including zones with concave outlines.
 TEST(Zones, KeepInLegsAgreeWithSamples) {
   const auto layer = zones(
       "{list: [{kind: keep_in, polygon: {outline_m: [[0, 0], [90, 10], [50, 40], [100, 100],"
@@ -203,11 +203,11 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
       refused("height", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"low": "surface"})")),
       "surface"));
   EXPECT_TRUE(says(refused("type", feature("[]", "{}", "Curve")), "Curve"));
-  EXPECT_TRUE(
-      says(refused("cut", "{\n\"type\":\n"), "not JSON: it breaks off or goes wrong in line 3"));
+  EXPECT_TRUE(says(refused("cut", "{\n\"type\":\n"),
+                   "not valid JSON: it ends early or has an error in line 3"));
   EXPECT_TRUE(says(refused("large", "[1e400]"), "a number that is too large"));
   EXPECT_TRUE(says(refused("deep", std::string(100, '[') + std::string(100, ']')),
-                   "nested over 64 levels deep"));
+                   "nested more than 64 levels deep"));
   EXPECT_TRUE(
       says(refused("property", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"lower": 1})")),
            "no feature has the property 'low'; present: lower"));

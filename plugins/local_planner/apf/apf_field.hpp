@@ -8,12 +8,12 @@
 
 #include "altiplan/geometry.hpp"
 
-/// Formulas of the potential field that need no world. Every one of them commutes with a mirror to
-/// the last bit: directions are turned by (cos, sin), never by adding angles.
+/// Formulas of the potential field that need no world. Each commutes exactly, bit by bit, with
+/// mirroring: directions are rotated by (cos, sin), never by adding angles.
 namespace apf {
 using namespace altiplan;
 
-/// Horizontal part turned to the left by the angle whose cosine and sine are given.
+/// Horizontal part rotated to the left by the angle with the given cosine and sine.
 inline Vec3 turned_left(const Vec3& v, double cosine, double sine) {
   return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z()};
 }
@@ -23,16 +23,16 @@ inline double bearing_change(const Vec3& a, const Vec3& b) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
 }
 
-/// Repulsion's size at distance d of the influence d0, eq. (18), times k_r; d and d0 in the gains'
-/// unit of length.
+/// Magnitude of the repulsion at distance d for the influence d0, eq. (18), times k_r; d and d0 in
+/// the gains' unit of length.
 inline double repulsion(double k_r, double d, double d0) {
   return d < d0 ? k_r * (1 / d - 1 / d0) / (d * d) : 0;
 }
 
-/// Where the vehicle that came from p1 goes instead of p3, so that its turn at p2 is the limit
-/// exactly, eqs. (21)–(24); p3 itself where the turn is within the limit. The sine rule's ratio
-/// sin(theta) / sin(alpha) is 1 / (2 sin(alpha / 2)), which has no 0 / 0 near a full turn. Of an
-/// exact reversal the chord passes through p2, and p2 is returned.
+/// Replaces p3 for the vehicle that came from p1, so that its turn at p2 is exactly the limit, eqs.
+/// (21)–(24); returns p3 itself if the turn is within the limit. The sine rule's ratio sin(theta) /
+/// sin(alpha) is 1 / (2 sin(alpha / 2)), which has no 0 / 0 near a full turn. For an exact reversal
+/// the chord passes through p2, and p2 is returned.
 inline Vec3 clamp_turn(const Vec3& p1, const Vec3& p2, const Vec3& p3, double alpha_2) {
   const double step1 = (p2 - p1).norm();
   const double step2 = (p3 - p2).norm();
@@ -47,7 +47,7 @@ inline Vec3 clamp_turn(const Vec3& p1, const Vec3& p2, const Vec3& p3, double al
   return temp + (p3 - temp) * x1_by_x;
 }
 
-/// The direction, no steeper than the limit; where it is vertical it climbs along `heading`.
+/// The direction, no steeper than the limit; if it is vertical, it climbs along `heading`.
 inline Vec3 within_climb(Vec3 direction, double max_climb, const Vec3& heading) {
   if (climb_angle(direction) <= max_climb) {
     return direction.normalized();
@@ -66,8 +66,8 @@ inline Vec3 within_climb(Vec3 direction, double max_climb, const Vec3& heading) 
           up * std::sin(climb)};
 }
 
-/// Alternatives to a direction: headings every 5 degrees to both sides, several climbs. They come
-/// one by one, nearest first, since most often one of the first will do. Fixed in size: it
+/// Alternatives to a direction: headings every 5 degrees to both sides, at several climbs.
+/// Generated one by one, nearest first, since usually one of the first suffices. Fixed in size:
 /// allocates nothing.
 class Fan {
  public:
@@ -82,7 +82,7 @@ class Fan {
     }
   }
 
-  /// `side`: +1 or -1, which of two equally near headings comes first.
+  /// `side`: +1 or -1, selects which of two equally near headings comes first.
   void begin(const Vec3& wish, double max_climb, bool level, int side) {
     wish_ = wish;
     side_ = side;
@@ -100,8 +100,8 @@ class Fan {
     }
   }
 
-  /// The next direction; none where all have come. Along each climb they come in order, so that the
-  /// nearest of all is the first of one of them.
+  /// The next direction; empty after the last. Each climb's directions come in order, so that the
+  /// nearest overall is the first of one of them.
   std::optional<Vec3> next() {
     Row* first = nullptr;
     for (int c = 0; c < rows_; ++c) {
@@ -119,20 +119,20 @@ class Fan {
     return result;
   }
 
-  /// The vector turned by so many fives of degrees to the left, as seen from above.
+  /// The vector rotated by `fives` times 5 degrees to the left, as seen from above.
   Vec3 turned(const Vec3& v, int fives) const {
     const double sine = sine_[std::abs(fives)];
     return turned_left(v, cosine_[std::abs(fives)], fives < 0 ? -sine : sine);
   }
 
  private:
-  /// Headings of one climb: straight on, then by k fives of degrees to the one and the other side.
+  /// Headings of one climb: straight on, then k times 5 degrees to either side.
   struct Row {
     double climb = 0;
     double cosine = 1;
     double sine = 0;
-    int count = 0;         ///< that have come
-    double deviation = 0;  ///< of the next from the wish
+    int count = 0;         ///< number generated so far
+    double deviation = 0;  ///< of the next one from the wish
 
     int fives() const { return (count + 1) / 2; }
     int turn() const { return count % 2 == 1 ? fives() : -fives(); }  ///< positive: `side` first

@@ -34,19 +34,21 @@ struct Params {
   void describe(Fields& f) {
     f("variant", variant,
       {{"plain", Variant::plain}, {"modified", Variant::modified}, {"improved", Variant::improved}})
-        .doc("the bare field, the repulsion that fades toward the goal, or the four repairs");
+        .doc(
+            "the bare field (plain), the repulsion that fades toward the goal (modified), or "
+            "the four repairs (improved)");
     f("influence_m", influence_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("d_0: obstacles farther away do not act; the host hands over within it");
+        .doc("d_0: obstacles farther away have no effect; the host hands over within it");
     f("ground_influence_m", ground_influence_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("the same of ground, over the ground clearance; auto: a tenth of influence_m");
+        .doc("the same for ground, above the ground clearance; auto: a tenth of influence_m");
     f("target_m", target_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("a target farther away is drawn in to this distance; auto: 2/3 of influence_m");
+        .doc("a target farther away is pulled in to this distance; auto: 2/3 of influence_m");
     f("attraction", attraction).range(0, 1e9).doc("k_a, for distances in length_unit_m");
     f("repulsion", repulsion).range(0, 1e9).doc("k_r, for distances in length_unit_m");
     f("length_unit_m", length_unit_m)
@@ -57,34 +59,36 @@ struct Params {
         .range(1, 8)
         .doc("m of the modified repulsion, scaled by (distance to goal / start to goal)^m");
     f("turned_repulsion", turned_repulsion)
-        .doc("repair 1: the repulsion of what stands before the target is turned by 45 degrees");
+        .doc("repair 1: rotate the repulsion of obstacles in front of the target by 45 degrees");
     f("small_angle_deg", small_angle_deg)
         .unit("deg")
         .range(0, 90)
-        .doc("bearings of obstacle and target closer than this are turned");
+        .doc("rotate if the bearings of obstacle and target differ by less than this");
     f("stronger_goal", stronger_goal).doc("repair 2: stronger attraction near the goal");
-    f("goal_factor", goal_factor).range(1, 1e6).doc("by which the attraction grows there");
+    f("goal_factor", goal_factor).range(1, 1e6).doc("factor by which the attraction grows there");
     f("goal_zone_m", goal_zone_m)
         .unit("m")
         .range(0.001, 1e9)
         .doc("within this distance of the goal; auto: influence_m");
     f("two_steps", two_steps)
-        .doc("repair 3: step_far_m while the nearest edge is over reaction_s away");
+        .doc("repair 3: use step_far_m while the nearest edge is more than reaction_s away");
     f("step_far_m", step_far_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("L1; auto: influence_m / 6; never more than is flown in the host's time step");
+        .doc(
+            "L1; auto: influence_m / 6; never more than the distance flown in the host's time "
+            "step");
     f("step_near_m", step_near_m).unit("m").range(0.001, 1e9).doc("L2; auto: influence_m / 30");
     f("reaction_s", reaction_s)
         .unit("s")
         .at_least(0)
-        .doc("reaction time; so far ahead paths and moving obstacles are looked at");
-    f("turn_limit", turn_limit).doc("repair 4: no turn above max_turn_deg, but for safety");
-    f("max_turn_deg", max_turn_deg).unit("deg").range(1, 180).doc("alpha_2, in space, a step");
+        .doc("reaction time; lookahead for paths and moving obstacles");
+    f("turn_limit", turn_limit).doc("repair 4: no turn above max_turn_deg, except for safety");
+    f("max_turn_deg", max_turn_deg).unit("deg").range(1, 180).doc("alpha_2, per step, in 3-D");
     f("side", side, {{"field", Side::field}, {"predicted", Side::predicted}})
         .doc(
-            "of what lies before the target: the field's push alone, or the one that leads there "
-            "sooner as both fly, kept until passed");
+            "side on which to pass obstacles in front of the target: by the field's push alone, "
+            "or the one predicted to reach the target sooner as both fly, kept until passed");
   }
 };
 }  // namespace apf

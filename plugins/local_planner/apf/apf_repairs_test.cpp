@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each of the four repairs on its own, against the field with none of them.
+// Each of the four repairs on its own, compared with the field without repairs.
 #include <gtest/gtest.h>
 
 #include "support/support.hpp"
@@ -52,7 +52,7 @@ TEST(ApfRepairs, TurnedRepulsionPushesAsideAndToTheSideOfTheTarget) {
     EXPECT_LT(std::abs(bearing_deg(once.step(with_only("")))), 5);
     const double turned = bearing_deg(once.step(with_only("turned_repulsion")));
     EXPECT_GT(-side * turned, 5) << turned;
-    // What stands well off the bearing to the target is not turned.
+    // An obstacle well off the bearing to the target is not rotated.
     Once off({Cylinder{6500, 15000 + side * 700, 500}});
     EXPECT_EQ(off.step(with_only("turned_repulsion")), off.step(with_only("")));
   }
@@ -63,7 +63,7 @@ TEST(ApfRepairs, StrongerGoalHoldsTheCourseNearTheGoalOnly) {
   Once near(beside, {7000, 15000, 500});
   const double plain = bearing_deg(near.step(with_only("")));
   const double strong = bearing_deg(near.step(with_only("stronger_goal")));
-  EXPECT_LT(plain, -1);  // pushed off, to the south
+  EXPECT_LT(plain, -1);  // pushed away, to the south
   EXPECT_GT(strong, plain + 1);
   EXPECT_LT(strong, 0);
   Once far(beside);
@@ -72,7 +72,7 @@ TEST(ApfRepairs, StrongerGoalHoldsTheCourseNearTheGoalOnly) {
 
 TEST(ApfRepairs, TwoStepsAreLongOnlyAwayFromWhatIsNear) {
   const std::string lengths = ", step_far_m: 60, step_near_m: 20";
-  Once open({Cylinder{5600, 16500, 500}});  // its edge over 10 s of flight away
+  Once open({Cylinder{5600, 16500, 500}});  // its edge more than 10 s of flight away
   open.seen.max_dt_s = 10;
   EXPECT_NEAR(open.step(with_only("two_steps", lengths)).norm(), 60, 1e-6);
   EXPECT_NEAR(open.step(with_only("", lengths)).norm(), 20, 1e-6);

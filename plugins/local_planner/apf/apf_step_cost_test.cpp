@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step may cost: no allocations, and a search for a way out of bounded length.
+// Cost limits of a step: no allocations, and a bounded search for an escape.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -49,7 +49,7 @@ TEST(Apf, AllocatesNothingInAStep) {
 }
 
 TEST(Apf, LeavesAClosingRingThroughItsGapWithoutAllocating) {
-  // Ten of twelve places on a circle around the vehicle, the gap behind it and to the side.
+  // Ten of twelve points on a circle around the vehicle, the gap behind it and to the side.
   std::array<SensedObstacle, 10> ring;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const double angle = radians(30 * double(i) - 120);
@@ -108,7 +108,7 @@ TEST(Apf, AllocatesNothingWhereNothingEscapes) {
   EXPECT_EQ(allocations, 0);
 }
 
-/// Nothing, and how often it was asked.
+/// An empty layer that counts its queries.
 class Asked final : public Environment {
  public:
   mutable int legs = 0;
@@ -150,7 +150,7 @@ TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
     seen.state = pilot->step(seen).next;
     return asked->legs;
   };
-  constexpr int kMaxLooks = 128;  // each but the first is one leg away from another
+  constexpr int kMaxLooks = 128;  // each except the first is one leg away from another
   int most = 0;
   int least = std::numeric_limits<int>::max();
   for (int step = 0; step < 12; ++step) {

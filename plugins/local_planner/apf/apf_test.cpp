@@ -62,9 +62,9 @@ Flown flight(const Request& request, std::string_view yaml, int max_steps = 4000
       break;
     }
     if (moving) {
-      flown.min_separation = std::min(flown.min_separation,
-                                        separation(*moving, seen.state.position, seen.state.time_s,
-                                                   step.next.position, step.next.time_s));
+      flown.min_separation =
+          std::min(flown.min_separation, separation(*moving, seen.state.position, seen.state.time_s,
+                                                    step.next.position, step.next.time_s));
     }
     flown.route.push_back(step.next.position);
     seen.state = step.next;
@@ -176,7 +176,8 @@ TEST(Apf, GroundRepels) {
   request.limits.min_ground_clearance = 20;
   const Flown flown = flight(request, "{}");
   expect_arrives(request, flown);
-  // The straight line sinks to 50 m above ground only at the start; level flight would cut it.
+  // The straight line descends to 50 m above ground only at the start; level flight would hit the
+  // ground.
   Observation seen;
   seen.state = {0, {5000, 15000, 630}, {30, 0, 0}};
   seen.goal = request.goal;

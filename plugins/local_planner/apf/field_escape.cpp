@@ -35,7 +35,7 @@ bool Escape::find(const Outlook& outlook, const Instant& here, double speed, con
   aside_ = aside;
   here_ = here;
   speed_ = speed;
-  // As long as what the sensor shows could take to meet the vehicle twice over.
+  // Until the visible movers could have met the vehicle twice over.
   double farthest = speed * outlook.reaction_s();
   for (const Mover& mover : outlook.movers()) {
     farthest = std::max(farthest, (mover.position - here.at).norm() + mover.radius);
@@ -75,7 +75,7 @@ bool Escape::learns(const Outlook& outlook) {
 
 Escape::Outcome Escape::search(const Search& what) {
   step_s_ = std::max(2.0, 2 * horizon_s_ / kMaxLegs) * what.share;
-  // Ways of two legs first: depth first, those that begin otherwise would come late.
+  // Paths of two legs first: depth first, those with another first leg would come late.
   const Outcome outcome = look_on(what.aim, 0, 1);
   return outcome == Outcome::none ? look_on(what.aim, 2, kMaxLegs - 2) : outcome;
 }

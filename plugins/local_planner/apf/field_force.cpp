@@ -15,11 +15,11 @@ Vec3 FieldPilot::wished_direction(const Observation& seen) {
     to_target_ = way_around(seen);
   }
   sum_up(seen);
-  if (steep_goal_) {  // on and up, or down, until the way back is no steeper than the limit
+  if (steep_goal_) {  // on and up, or down, until the path back is no steeper than the limit
     force_ = heading_ * step_ + Vec3(0, 0, to_goal_.z());
   }
   if (!(force_.norm() > 1e-9)) {
-    force_ = to_target_;  // all cancels: the loss of way will tell
+    force_ = to_target_;  // everything cancels: the lack of progress will show
   }
   return within_climb(force_, max_climb(), heading_);
 }
@@ -42,7 +42,7 @@ void FieldPilot::sum_up(const Observation& seen) {
 
 void FieldPilot::add(const Layer& layer, const Nearby& nearby) {
   if (layer.environment->ground() != nullptr) {
-    // Stretched, so that the gains that hold at d_0 hold here too.
+    // Scaled, so that the gains that hold at d_0 also hold here.
     const double room = nearby.distance - std::max(room_of_ground(), required_);
     repel(nearby.normal, room * (p_.influence_m / ground_influence_));
   } else {
@@ -64,7 +64,7 @@ void FieldPilot::add(const Mover& mover) {
   const double then = closest.norm() - mover.radius;
   Vec3 away = closest.norm() > 1e-6 ? closest : r;
   if (const Vec3& v = mover.velocity; v.squaredNorm() > 0) {
-    // Out of its way, never along it: as fast as the vehicle it would take it along for ever.
+    // Out of its path, never along it: a mover as fast as the vehicle would push it along forever.
     const Vec3 aside = away - v * (std::max(0.0, away.dot(v)) / v.squaredNorm());
     away = aside.norm() > 0.01 * away.norm() ? aside : away;
   }

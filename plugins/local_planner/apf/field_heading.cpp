@@ -7,13 +7,13 @@
 
 namespace apf {
 
-/// What a step must keep; each row of kStages gives up more than the row before.
+/// Requirements on a step; each row of kStages relaxes more than the row before.
 struct Stage {
   bool turn;       ///< the turn limit of repair 4
-  bool rules;      ///< every rule of check.hpp, else obstacles, volume and level alone
-  bool ahead;      ///< nothing in the way for the reaction time
-  double horizon;  ///< moving obstacles over this share of it; 0: for this step alone
-  bool escape;     ///< after the step, a straight way to where nothing moving comes remains
+  bool rules;      ///< every constraint of check.hpp, else obstacles, volume and level alone
+  bool ahead;      ///< no obstacle ahead for the reaction time
+  double horizon;  ///< moving obstacles over this fraction of it; 0: for this step alone
+  bool escape;     ///< after the step, a straight path to where no mover comes remains
 };
 
 namespace {
@@ -25,7 +25,7 @@ constexpr std::array<Stage, 8> kStages{{{true, true, true, 1, true},
                                         {false, true, false, 0.4, true},
                                         {false, true, false, 0, true},
                                         {false, false, false, 0, true}}};
-/// Of the last leg: no need to look beyond the goal.
+/// For the last leg: no need to look beyond the goal.
 constexpr Stage kLastLeg{true, true, false, 0, false};
 }  // namespace
 
@@ -59,7 +59,7 @@ std::optional<FieldPilot::Leg> FieldPilot::choose(const Observation& seen, const
   }
   begin_prospects(wish);
   for (const Stage& stage : kStages) {
-    if (!stage.rules) {  // a way out that keeps them comes first
+    if (!stage.rules) {  // an escape that satisfies them comes first
       if (const auto leg = escape(seen)) {
         return leg;
       }

@@ -49,7 +49,8 @@ void Outlook::see_world(const World& world, const Vec3& here) {
   for (const Layer& layer : world.layers()) {
     if (layers_size_ < kMaxLayers) {
       const Environment& environment = *layer.environment;
-      layers_[layers_size_++] = {&layer, environment.clearance(here) - environment.over_approximation()};
+      layers_[layers_size_++] = {&layer,
+                                 environment.clearance(here) - environment.over_approximation()};
     }
   }
 }
@@ -67,7 +68,7 @@ bool Outlook::is_blocked(const Vec3& a, const Vec3& b, double room) const {
                  environment.blocked(a, b, environment.ground() != nullptr ? required_ : room);
         });
   } catch (...) {
-    return world_->blocked(a, b, room);  // which says of what layer it is
+    return world_->blocked(a, b, room);  // which distinguishes the layers
   }
 }
 
@@ -91,7 +92,7 @@ double Outlook::seconds_to_contact(const Vec3& from, double after_s, const Vec3&
     const Vec3 w = velocity - mover.velocity;
     const double closing = -r.dot(w);
     if (closing <= 0) {
-      continue;  // they part
+      continue;  // they move apart
     }
     const double core = mover.radius + room;
     const double apart = r.squaredNorm() - core * core;
@@ -129,7 +130,7 @@ std::optional<double> Outlook::seconds_to_safety(const Vec3& from, double after_
     const Span& span = spans[i];
     const bool inside = span.begins <= until && until < span.ends;
     until = inside ? span.ends : until;
-    i = inside ? 0 : i + 1;  // now it may be in the way of one looked at before
+    i = inside ? 0 : i + 1;  // it may now block one examined earlier
   }
   return until < meets && is_open(from, from + velocity * until) ? std::optional(until)
                                                                  : std::nullopt;
@@ -146,7 +147,7 @@ Outlook::Span Outlook::seconds_in_the_way(const Mover& mover, const Vec3& from, 
   const double ahead = r.dot(onward);
   const double gains = velocity.dot(onward) - pace;
   if (ahead <= 0 && gains <= 0) {
-    return kNever;  // behind it for good
+    return kNever;  // behind it permanently
   }
   const Vec3 off = r - onward * ahead;
   const Vec3 aside = velocity - onward * velocity.dot(onward);

@@ -11,65 +11,65 @@
 namespace apf {
 using namespace altiplan;
 
-/// A moving obstacle: a sphere that is taken to fly on as it does.
+/// A moving obstacle: a sphere that is assumed to keep its velocity.
 struct Mover {
   Vec3 position{0, 0, 0};
   Vec3 velocity{0, 0, 0};
-  double radius = 0;  ///< with what the vehicle keeps off anything
+  double radius = 0;  ///< including the vehicle's distance from obstacles
   std::size_t id = 0;
   double pace = 0;       ///< of the velocity,
   Vec3 onward{0, 0, 0};  ///< and its direction
 };
 
-/// What is seen in one step, and what it means for a straight flight.
+/// The observations of one step, and their consequences for a straight flight.
 class Outlook {
  public:
-  static constexpr std::size_t kMaxMovers = 256;  ///< the nearest of more
+  static constexpr std::size_t kMaxMovers = 256;  ///< the nearest, if there are more
 
-  /// `margin`: metres kept off what moves, beyond the clearance required.
+  /// `margin`: distance in metres from movers, beyond the required clearance.
   Outlook(const Request& request, double required, double margin, double reaction_s)
       : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
 
-  /// First what stands still, then, at the speed that follows of it, what moves.
+  /// First the static world, then, at the speed that follows from it, the movers.
   void see_world(const World& world, const Vec3& here);
   void see_movers(const Observation& seen, double speed);
 
   std::span<const Mover> movers() const { return {movers_.data(), count_}; }
-  /// Of what stands still.
+  /// Of the static world.
   std::uint64_t revision() const { return world_->revision(); }
-  /// Least clearance of what stands still, here.
+  /// Minimum clearance from the static world, here.
   double clearance() const { return clearance_; }
   double margin() const { return margin_; }
   double reaction_s() const { return reaction_s_; }
 
   /// Seconds that a straight flight, begun `after_s` seconds from now, takes until it comes within
-  /// `room` of a mover that it does not part from; infinite where it never does. Any time of at
-  /// most `enough` will do once one is known.
+  /// `room` of a mover from which it does not move away; infinite if it never does. May return any
+  /// time of at most `enough` once one is known.
   double seconds_to_contact(const Vec3& from, double after_s, const Vec3& velocity, double room,
                             double enough = 0) const;
-  /// Whether something that stands still is nearer to the leg than `room`; ground, nearer than what
-  /// is required: the ground clearance keeps the flight off that, and a way along a valley or below
-  /// a ceiling may be narrower than any room. A layer too far from here is not asked.
+  /// True if a static obstacle is nearer to the leg than `room`; for ground, nearer than required:
+  /// the ground clearance keeps the flight off it, and a path along a valley or below a ceiling may
+  /// be narrower than any room. Layers too far away are not queried.
   bool is_blocked(const Vec3& a, const Vec3& b, double room) const;
-  /// Whether nothing that stands still is nearer than `room` to the leg, and none of it too near to
-  /// the ground.
+  /// True if no static obstacle is nearer than `room` to the leg, and no part of the leg is too
+  /// near to the ground.
   bool is_open(const Vec3& a, const Vec3& b, double room) const;
   bool is_open(const Vec3& a, const Vec3& b) const { return is_open(a, b, required_); }
-  /// Seconds, no fewer than `min_s`, that such a flight takes to a safe place: where no mover
-  /// comes any more, as long as all fly on as they do. None where it leads to none, or meets
-  /// something before.
+  /// Seconds, at least `min_s`, that such a flight takes to a safe position: where no mover comes
+  /// any more if all keep their velocities. Empty if it leads to none, or hits something first.
   std::optional<double> seconds_to_safety(const Vec3& from, double after_s, const Vec3& velocity,
                                           double room, double min_s) const;
 
  private:
-  /// Where it is not observed: from where it was seen last.
+  /// If the velocity is not observed: from the last seen position.
   Vec3 velocity_of(const SensedObstacle& moving, std::size_t id) const;
   struct Span {
     double begins;
     double ends;
   };
   static constexpr Span kNever{kInfinity, kInfinity};
-  /// From when to when, in seconds of the flight, it is where the mover will come later.
+  /// Time span, in seconds of the flight, during which the vehicle is where the mover will come
+  /// later.
   Span seconds_in_the_way(const Mover& mover, const Vec3& from, double after_s,
                           const Vec3& velocity, double room) const;
 
@@ -77,12 +77,12 @@ class Outlook {
   double required_;
   double margin_;
   double reaction_s_;
-  /// A layer, and so far from here it blocks nothing.
+  /// A layer, and the distance from here within which it blocks nothing.
   struct Near {
     const Layer* layer;
     double free_m;
   };
-  static constexpr std::size_t kMaxLayers = 256;  ///< of more, none is known to be far
+  static constexpr std::size_t kMaxLayers = 256;  ///< of further ones, none is known to be far
 
   const World* world_ = nullptr;
   Vec3 here_{0, 0, 0};

@@ -5,7 +5,7 @@
 
 namespace apf {
 namespace {
-constexpr double kProgress = 0.1;  ///< of the way flown; less is none
+constexpr double kProgress = 0.1;  ///< fraction of the distance flown; less is none
 }
 
 FieldPilot::FieldPilot(const Params& params, const Request& request)
@@ -71,7 +71,7 @@ Counters FieldPilot::do_counters() const {
 }
 
 void FieldPilot::observe(const Observation& seen) {
-  // Shares without owning, and so without allocating: the world outlives the step.
+  // Non-owning, so that it does not allocate: the world outlives the step.
   request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), seen.world);
   request_.goal = seen.goal;
   seen_s_ = seen.state.time_s;
@@ -100,7 +100,7 @@ void FieldPilot::observe(const Observation& seen) {
   const bool close = to_goal_.norm() < 3 * step_;
   steep_goal_ = close && climb_angle(to_goal_) > max_climb();
   if (p_.turn_limit && close && !steep_goal_ && turn_to(to_goal_) > max_turn()) {
-    step_ = std::min(step_, to_goal_.norm() / 2);  // shorter steps turn in less room
+    step_ = std::min(step_, to_goal_.norm() / 2);  // shorter steps need less space to turn
   }
 }
 

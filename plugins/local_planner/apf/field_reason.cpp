@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why no step is flown, in words. Like a step it allocates nothing.
+// Explains why no step is flown. Like a step it allocates nothing.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,17 +9,17 @@
 namespace apf {
 namespace {
 
-/// Cosine: directions farther apart (45 degrees) are different sides.
+/// Cosine: directions farther apart than 45 degrees are different sides.
 constexpr double kOtherSide = 0.7;
 
-/// What pushes, how far off it is, and whither.
+/// An obstacle that pushes, its distance and its direction.
 struct Pushing {
   std::string_view id;
   double distance = kInfinity;
   Vec3 away{0, 0, 0};
 };
 
-/// A sentence in a buffer that was there before.
+/// A sentence in a preallocated buffer.
 class Words {
  public:
   explicit Words(std::span<char> to) : to_(to) {}
@@ -83,7 +83,7 @@ std::string_view FieldPilot::why_trapped(const Observation& seen) {
     words.add(" and ");
     name(other, words);
   }
-  words.add(": many steps, hardly any way");
+  words.add(": many steps, hardly any progress");
   return words.text();
 }
 
@@ -123,7 +123,7 @@ std::string_view FieldPilot::why_no_heading(const Observation& seen) {
     words.add(", %d leave the volume", outside);
   }
   if (unknown > 0) {
-    words.add(", %d have no ground of known height below", unknown);
+    words.add(", %d are over ground of unknown height", unknown);
   }
   return words.text();
 }

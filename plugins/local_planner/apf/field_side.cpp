@@ -6,11 +6,11 @@
 
 namespace apf {
 namespace {
-/// Another side than the one chosen is taken where the way past it is no longer than this share: a
-/// choice for good may be wrong, one that follows every change goes to and fro.
+/// Switches to another side if the path past it is no longer than this fraction: a permanent choice
+/// may be wrong, and one that follows every change oscillates.
 constexpr double kMuchShorter = 0.8;
 constexpr int kMaxParts = 32;
-constexpr int kParts = 8;  ///< of the way aside, after each of which the rest may be straight
+constexpr int kParts = 8;  ///< of the detour, after each of which the rest may be straight
 
 Passing opposite(Passing passing) {
   switch (passing) {
@@ -63,7 +63,7 @@ double FieldPilot::length_along(Passing passing) const {
     if (is_free_way(at, flown / speed_, way)) {
       return flown + left.norm();
     }
-    turn = std::max(1, turn - 3);  // beside what is passed the turns follow each other closely
+    turn = std::max(1, turn - 3);  // beside an obstacle the turns follow each other closely
     std::optional<Vec3> aside;
     while (turn <= Fan::kHalf &&
            !(aside = free_way(at, flown / speed_, fan_.turned(way, sign * turn), true))) {
@@ -85,7 +85,7 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
       chosen.passing == Passing::nothing || !(is_level(chosen.passing) || chosen.aside);
   const double most = first ? kInfinity : kMuchShorter * chosen.length;
   if (most <= way.norm()) {
-    return chosen;  // straight through would not be so much shorter
+    return chosen;  // straight through would not be much shorter
   }
   const Detour left = past(way, Passing::left, most);
   const Detour right = past(way, Passing::right, first ? most : std::min(most, left.length));
@@ -167,7 +167,7 @@ std::optional<Vec3> FieldPilot::min_turned(const Vec3& way, Passing passing, dou
       }
       turned = Vec3(way.x(), way.y(), flat * std::tan(climb)).normalized() * way.norm();
     }
-    // The shortest that a flight so far aside can be; farther aside it is no shorter.
+    // The shortest possible flight at such an offset; farther aside it is no shorter.
     if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > most) {
       return std::nullopt;
     }

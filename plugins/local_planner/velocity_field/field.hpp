@@ -12,14 +12,14 @@ using altiplan::radians;
 
 using Vec2 = Eigen::Vector2d;
 
-/// A threat in the plane.
+/// A threat in 2-D.
 struct Disc {
   Vec2 centre{0, 0};
   double radius = 0;
 };
 
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-/// Turned by +90 degrees.
+/// Rotated by +90 degrees.
 inline Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 
 /// The velocity field of paper 001, section 1. `pull` is omega, `edge_ratio` alpha,
@@ -33,10 +33,10 @@ struct Field {
 
   /// L, from |V_P| (r + ring) = alpha omega; infinite for equal ratios.
   double length() const { return ring / std::sqrt(surface_ratio / edge_ratio - 1); }
-  /// L2 - r: that far from a threat's edge its push equals the pull.
+  /// L2 - r: at that distance from a threat's edge its push equals the pull.
   double balance() const { return length() * std::sqrt(std::max(surface_ratio - 1, 0.0)); }
 
-  /// |V_P| at distance d from the centre of a threat of radius r, eq. (3). No reach is looked at.
+  /// |V_P| at distance d from the centre of a threat of radius r, eq. (3). Ignores the reach.
   double push(double d, double r) const {
     const double surface = surface_ratio * pull;
     if (d < r) {
@@ -47,7 +47,7 @@ struct Field {
     return surface / (1 + outer * outer);
   }
 
-  /// V_P + V_G of a threat, eqs. (3) and (6): away from it, and beside it toward the target.
+  /// V_P + V_G of a threat, eqs. (3) and (6): away from it, and alongside it toward the target.
   Vec2 of_threat(const Vec2& here, const Disc& threat, const Vec2& to_target) const {
     const Vec2 away = here - threat.centre;
     const double d = away.norm();
@@ -65,31 +65,30 @@ struct Field {
     return d > 0 ? Vec2(pull / d * to_target) : Vec2(0, 0);
   }
 
-  /// In a threat's very middle the push is not infinite.
+  /// Keeps the push finite at a threat's centre.
   static constexpr double kMin = 1e-12;
 };
 
-/// The greatest change of heading, eq. (13): of a step that is a chord of the least circle.
+/// The largest change of heading, eq. (13), for a step that is a chord of the smallest circle.
 inline double max_turn(double step, double min_radius) {
   const double half = step / (2 * min_radius);
   return half < 1 ? 2 * std::asin(half) : kPi;
 }
 
-/// The least circle of whose chords steps of that length are made: of R_min, and wide enough that
-/// the judge's fillet between two steps has the radius of a turn_radius constraint (0: there is
-/// none).
+/// Radius of the smallest circle that has steps of that length as chords: at least R_min, and large
+/// enough that the judge's fillet between two steps has the radius of a turn_radius constraint (0:
+/// there is none).
 inline double min_circle(double step, double min_radius, double min_fillet) {
-  return min_fillet > 0 ? std::max(min_radius, std::hypot(min_fillet, step / 2))
-                          : min_radius;
+  return min_fillet > 0 ? std::max(min_radius, std::hypot(min_fillet, step / 2)) : min_radius;
 }
 
-/// A bound on the change of heading, made once for many steps.
+/// A bound on the change of heading, computed once for many steps.
 class TurnLimit {
  public:
   explicit TurnLimit(double most) : most_(most), cos_(std::cos(most)), sin_(std::sin(most)) {}
   double most() const { return most_; }
-  /// `wish` where it is at most that far from `heading`, else the heading turned toward it by just
-  /// that. Unit vectors. A wish straight back turns left.
+  /// `wish` if it is at most the limit away from `heading`, else the heading turned toward it by
+  /// the limit. Unit vectors. A wish straight back turns left.
   Vec2 held(const Vec2& heading, const Vec2& wish) const {
     if (heading.dot(wish) >= cos_) {
       return wish;

@@ -35,41 +35,44 @@ struct Params {
 
   void describe(Fields& f) {
     f("variant", variant, {{"paper", Variant::paper}, {"robust", Variant::robust}})
-        .doc("paper: the method as published; robust: along a guide, never without a way out");
+        .doc("paper: the method as published; robust: along a guide, never without an escape path");
     f("pull_weight", pull_weight).range(0, 1e9).doc("omega: speed toward the target");
     f("edge_ratio", edge_ratio)
         .greater_than(0)
         .at_most(1e9)
-        .doc("alpha: push at the outer edge of a threat's ring, of the pull");
+        .doc("alpha: push at the outer edge of a threat's ring, as a multiple of the pull");
     f("surface_ratio", surface_ratio)
         .greater_than(0)
         .at_most(1e9)
-        .doc("beta: push at a threat's edge, of the pull");
+        .doc("beta: push at a threat's edge, as a multiple of the pull");
     f("ring_m", ring_m)
         .unit("m")
         .range(0.001, 1e9)
         .doc("Delta R: width of the ring around a threat in which it acts");
     f("guide_ratio", guide_ratio)
         .range(0, 1e9)
-        .doc("epsilon: speed beside a threat, toward the target, of its push");
+        .doc("epsilon: speed alongside a threat, toward the target, as a multiple of its push");
     f("step_s", step_s)
         .unit("s")
         .range(1e-3, 1e6)
-        .doc("Delta T: time of a step; never more than the host's");
+        .doc("Delta T: duration of a step; never more than the host's");
     f("min_turn_radius_m", min_turn_radius_m)
         .unit("m")
         .range(1e-3, 1e9)
         .doc(
-            "R_min: the heading changes by at most 2 asin(v Delta T / (2 R_min)) a step; auto: "
+            "R_min: the heading changes by at most 2 asin(v Delta T / (2 R_min)) per step; auto: "
             "min_speed_mps^2 / (g tan(max_bank_deg))");
-    f("min_speed_mps", min_speed_mps).unit("m/s").range(1e-3, 1e6).doc("V_min of level flight");
-    f("max_bank_deg", max_bank_deg).unit("deg").range(0.1, 89).doc("gamma_max, greatest bank");
+    f("min_speed_mps", min_speed_mps)
+        .unit("m/s")
+        .range(1e-3, 1e6)
+        .doc("V_min, minimum level speed");
+    f("max_bank_deg", max_bank_deg).unit("deg").range(0.1, 89).doc("gamma_max, maximum bank angle");
     describe_flight(f);
     f.check(edge_ratio < surface_ratio, "edge_ratio must be less than surface_ratio");
     f.check(variant == Variant::paper || toward == Toward::goal,
-            "toward: route is of variant: paper; robust finds its own way to the goal");
+            "toward: route requires variant: paper; robust finds its own path to the goal");
     f.check(variant == Variant::paper || terrain == Terrain::ignore,
-            "terrain: sections is of variant: paper; robust flies level and sees no ground");
+            "terrain: sections requires variant: paper; robust flies level and ignores ground");
     const bool by_bank = min_speed_mps && max_bank_deg;
     f.check(by_bank != min_turn_radius_m.value.has_value() &&
                 min_speed_mps.has_value() == max_bank_deg.has_value(),
@@ -77,37 +80,41 @@ struct Params {
             "max_bank_deg");
   }
 
-  /// What draws, what is seen of the ground, and when a flight ends.
+  /// Attraction, visibility of the ground, and the end of a flight.
   void describe_flight(Fields& f) {
     f("release_m", release_m)
         .unit("m")
         .range(1e-3, 1e9)
-        .doc("a virtual target that close is reached");
+        .doc("distance at which a virtual target counts as reached");
     f("toward", toward, {{"goal", Toward::goal}, {"route", Toward::route}})
         .doc(
-            "what draws: the goal, as published, or the place of the route that a flight is to "
-            "come back to");
+            "source of the attraction: the goal, as published, or the point of the route to "
+            "which the flight is to return");
     f("terrain", terrain, {{"ignore", Terrain::ignore}, {"sections", Terrain::sections}})
         .doc(
-            "ignore: ground is not seen, as published; sections: flown round where it is higher "
-            "than the flight, and over where that leads nowhere");
+            "ignore: ground is ignored, as published; sections: fly around ground higher than "
+            "the flight, and over it if that leads nowhere");
     f("max_climb_deg", max_climb_deg)
         .unit("deg")
         .range(0.1, 80)
-        .doc("terrain: steepest climb and descent");
+        .doc("terrain: maximum climb and descent angle");
     f("detour_m", detour_m)
         .unit("m")
         .range(1, 1e9)
-        .doc("terrain: flown round ground so far without coming a tenth of it nearer, it climbs");
+        .doc(
+            "terrain: after flying around ground for this distance without coming nearer by a "
+            "tenth of it, climb");
     f("section_cell_m", section_cell_m)
         .unit("m")
         .range(0.1, 1e6)
-        .doc("terrain: cells that ground is looked at by; auto: the volume's longer side / 512");
+        .doc(
+            "terrain: edge of the cells that sample the ground; auto: the volume's longer side "
+            "/ 512");
     f("max_steps", max_steps).range(1, 1'000'000).doc("steps after which the pilot gives up");
   }
 
   Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }
-  /// R_min, eq. (10) where it is not given.
+  /// R_min, by eq. (10) if it is not given.
   double min_radius() const {
     constexpr double kGravity = 9.80665;
     return min_turn_radius_m.value

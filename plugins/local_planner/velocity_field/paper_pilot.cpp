@@ -37,8 +37,8 @@ PilotStep PaperPilot::do_step(const Observation& seen) {
   if (terrain_ && terrain_->is_kept_above()) {
     return stuck(
         seen,
-        "the goal lies lower than the flight can go and climb out again, and no straight leg "
-        "leads down to it");
+        "the goal lies lower than the flight can descend and climb out again, and no straight "
+        "leg leads down to it");
   }
   const Vec2 here = seen.state.position.head<2>();
   const Vec3& target = p_.toward == Toward::goal ? seen.goal.position : seen.local_target;
@@ -96,8 +96,8 @@ Vec2 PaperPilot::flyable(const Vec2& wish, double step) {
     return wish;
   }
   if (step != limit_step_) {
-    turn_limit_ = TurnLimit(
-        std::min(max_turn(step, min_circle(step, min_radius_, min_fillet_)), max_turn_));
+    turn_limit_ =
+        TurnLimit(std::min(max_turn(step, min_circle(step, min_radius_, min_fillet_)), max_turn_));
     limit_step_ = step;
   }
   const Vec2 held = turn_limit_.held(*heading_, wish);
@@ -124,7 +124,7 @@ PilotStep PaperPilot::fly(const Observation& seen, const Vec3& ahead, double spe
 }
 
 std::string_view PaperPilot::why_not_reached(const Observation& seen) {
-  constexpr std::string_view kGivenUp = "max_steps steps are flown, and the goal is not reached";
+  constexpr std::string_view kGivenUp = "max_steps steps were flown without reaching the goal";
   const double v = speed(seen);
   const double half_step = v * step_time(seen, v) / 2;
   if (seen.goal.tolerance_m >= half_step) {

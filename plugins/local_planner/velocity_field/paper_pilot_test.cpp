@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of a pilot and of the method's updates, beyond the conformance suite.
+// Contract of a pilot and properties of the method's updates, beyond the conformance suite.
 #include <gtest/gtest.h>
 
 #include "field.hpp"
@@ -48,7 +48,7 @@ TEST(PaperPilot, AllocatesNothingInAStepOverGround) {
   EXPECT_EQ(allocated_in(request, "{terrain: sections}"), 0);
 }
 
-/// Through narrow gaps too, where ways out are long.
+/// Also through narrow gaps, where escape paths are long.
 TEST(RobustPilot, AllocatesNothingInAStep) {
   EXPECT_EQ(allocated_in(table1(), "{variant: robust}"), 0);
   for (const char kind : {'A', 'B', 'C'}) {
@@ -155,13 +155,12 @@ TEST(PaperPilot, GivesUpAfterMostStepsAndKeepsTheRoute) {
   const Flown flown = flight(table1(), "{max_steps: 500}");
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
   EXPECT_EQ(flown.route.size(), 501U);
-  EXPECT_EQ(flown.why.back(), "max_steps steps are flown, and the goal is not reached");
+  EXPECT_EQ(flown.why.back(), "max_steps steps were flown without reaching the goal");
   Request request = problem(World(), {5005, 0, 1000});  // between two steps of 30 m
   request.goal.tolerance_m = 0;
-  EXPECT_EQ(
-      flight(request, "{max_steps: 500}").why.back(),
-      "max_steps steps are flown, and the goal is not reached; the goal's tolerance of 0 m is "
-      "less than half a step, 15 m");
+  EXPECT_EQ(flight(request, "{max_steps: 500}").why.back(),
+            "max_steps steps were flown without reaching the goal; the goal's tolerance of 0 m is "
+            "less than half a step, 15 m");
   EXPECT_EQ(allocated_in(request, "{max_steps: 500}"), 0);
 }
 
@@ -206,7 +205,7 @@ TEST(PaperPilot, TowardTheRoute) {
   EXPECT_GT(flight(request, "{}", 10, east).route.back().y(), 200);
 }
 
-/// A third party's layer, whose threat is what it is told to be.
+/// A third party's layer with a configurable threat.
 class Odd final : public Environment {
  public:
   explicit Odd(const Threat& threat) { info_.threats = {threat}; }
@@ -228,7 +227,7 @@ TEST(PaperPilot, NamesAThreatThatIsNoDisc) {
       make_local_planner("velocity_field")->begin(request);
       FAIL() << "a threat of radius " << odd.radius << " is taken";
     } catch (const std::exception& error) {
-      EXPECT_NE(std::string(error.what()).find("'odd' is no disc"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("'odd' is not a disc"), std::string::npos);
     }
   }
 }

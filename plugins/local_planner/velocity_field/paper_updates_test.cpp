@@ -8,7 +8,7 @@ namespace velocity_field {
 namespace {
 using altiplan::testing::make_local_planner;
 
-/// Table 3, in the order of the figures 10 and 11, on top of table 1.
+/// Table 3, in the order of figures 10 and 11, in addition to table 1.
 struct Update {
   std::vector<Cylinder> threats;
   Vec3 goal;
@@ -23,13 +23,13 @@ std::vector<Update> table3() {
   threats.push_back({20089, 40198, 4000});
   updates.push_back({threats, goal});
   updates.push_back({threats, {50797, 64301, 1000}});
-  threats.pop_back();  // and, beyond the table, a threat that goes
+  threats.pop_back();  // and, beyond the table, a threat that disappears
   updates.push_back({threats, {50797, 64301, 1000}});
   return updates;
 }
 
 TEST(PaperUpdates, AnUpdatedPilotFliesAsOneBegunAfresh) {
-  // In particular, no virtual target lives on.
+  // In particular, no virtual target remains active.
   for (const int every : {150, 400, 700}) {
     const std::vector<Update> updates = table3();
     std::vector<Request> requests;

@@ -14,8 +14,7 @@ inline PilotStep stuck(const Observation& seen, std::string_view why) {
   return {seen.state, PilotStep::Outcome::stuck, why};
 }
 
-/// The answer where nothing is left to fly: at the goal, and where a level flight cannot come to
-/// it.
+/// The result if nothing is left to fly: at the goal, or where a level flight cannot reach it.
 inline std::optional<PilotStep> end_of_flight(const Observation& seen, bool level) {
   if (seen.goal.reached_at(seen.state.position)) {
     return PilotStep{{seen.state.time_s + std::min(seen.max_dt_s, 1e-3), seen.state.position,

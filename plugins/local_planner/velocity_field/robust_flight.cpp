@@ -5,17 +5,17 @@
 
 namespace velocity_field {
 namespace {
-/// The virtual target's way ahead on the guide, in least turn radii, and in steps. A shorter one
-/// swings, a longer one cuts corners.
+/// Lead of the virtual target on the guide, in minimum turn radii, and in steps. A shorter lead
+/// oscillates, a longer one cuts corners.
 constexpr double kAhead = 1.8;
 constexpr double kStepsAhead = 3;
-/// The guide's length, of the shortest one's, at most, for a wider berth.
+/// Maximum length of the guide, relative to the shortest one, for a wider berth.
 constexpr double kDetour = 1.2;
-/// Steps that the place beside the vehicle moves along the guide in one step, at most.
+/// Maximum number of steps that the point beside the vehicle moves along the guide per step.
 constexpr double kCatchUp = 10;
-/// Steps of a way out, at most: a few hundred lead through the longest narrows.
+/// Maximum number of steps of an escape path: a few hundred lead through the longest narrows.
 constexpr std::size_t kLongest = 1000;
-/// Steps of one manoeuvre, at most: two tightest turns all around.
+/// Maximum number of steps of one manoeuvre: two full tightest turns.
 constexpr std::size_t kManoeuvre = 210;
 }  // namespace
 
@@ -34,8 +34,8 @@ void RobustFlight::set_world(const Vec2& goal, double tolerance_m, const Vec2& a
   check_way_out(at, course);
 }
 
-/// Threats are given the widest berth that makes the way little longer than the least does: what a
-/// chord of the tightest turn cuts off.
+/// Gives threats the widest berth that makes the path little longer than the smallest does: the
+/// amount that a chord of the tightest turn cuts off.
 void RobustFlight::find_guide(const Vec2& at, const std::optional<Vec2>& course) {
   const double radius = steps().radius_m();
   const double least = steps().length_m() * steps().length_m() / (8 * radius);
@@ -91,7 +91,7 @@ void RobustFlight::begin_way_out(const Pose& from) {
   known_ = safe_;
 }
 
-/// Where the guide comes back beside itself it must not be left out: along it goes with the steps.
+/// Does not skip loops where the guide comes back beside itself: `along` advances with the steps.
 double RobustFlight::follow(const Vec2& at, double along) const {
   return std::min(guide_.beside(at, along), along + kCatchUp * steps().length_m());
 }
@@ -103,7 +103,7 @@ Vec2 RobustFlight::pull(const Vec2& at, const std::optional<Vec2>& course, doubl
   const Vec2 target = guide_.at(ahead);
   const Vec2 to_target = target - at;
   if (course && ahead >= guide_.length_m()) {
-    // The goal inside the tightest turn would be circled for ever: leave it behind first.
+    // A goal inside the tightest turn would be circled forever: leave it behind first.
     const int side = cross(*course, to_target) >= 0 ? 1 : -1;
     const Vec2 centre = steps().circle_centre({at, *course}, side);
     if ((target - centre).norm() < steps().radius_m()) {
@@ -115,12 +115,12 @@ Vec2 RobustFlight::pull(const Vec2& at, const std::optional<Vec2>& course, doubl
   if (from_beside.norm() < step) {
     return to_target.normalized();
   }
-  // On the guide this is its own next chord, and beside it that chord turned back to the guide.
+  // On the guide this is its next chord, and beside it that chord rotated back to the guide.
   return turned_as(guide_.at(along + step) - beside, from_beside, to_target).normalized();
 }
 
 Vec2 RobustFlight::wish(const Vec2& at, const Vec2& pull, const Vec2& push) const {
-  // A push would lead past the goal, and past a gap that is narrower than its ring.
+  // A push would lead past the goal, and past a gap narrower than its ring.
   if (!pushed_ || along_ + field_.ring > guide_.length_m()) {
     return pull;
   }
@@ -153,7 +153,7 @@ Pose RobustFlight::step(const Vec2& at, const std::optional<Vec2>& course, const
     ++counts_.circle_steps;
     circling_ += steps().length_m();
     if (!guide_.empty() && circling_ > 2 * kPi * steps().radius_m()) {
-      find_guide(at, course);  // all around in vain
+      find_guide(at, course);  // a full circle without result
     }
     return steps().turned({at, *course}, way_out_.circle);
   }
@@ -182,7 +182,7 @@ std::optional<Pose> RobustFlight::follow_field(const Vec2& at, const std::option
   return next;
 }
 
-/// Degree by degree to both sides.
+/// In steps of one degree to both sides.
 std::optional<Pose> RobustFlight::begin_flight(const Vec2& at, const Vec2& wish) {
   for (int n = 0; n < 360; ++n) {
     const double turn = radians(n % 2 == 0 ? -n / 2 : (n + 1) / 2);
@@ -219,7 +219,7 @@ bool RobustFlight::find_way_out(const Pose& from) {
   tried_.courses.clear();
   Pose pose = from;
   if (!follow_pull(pose)) {
-    // On from the goal, where the way there leads to no circle; else from here.
+    // Onward from the goal, if the path there leads to no circle; else from here.
     const bool arrives = is_goal(pose.at);
     if (!arrives) {
       tried_.courses.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flights of the robust variant while threats and goals change, in the plane.
+// Flights of the robust variant while threats and goals change, in 2-D.
 #include "robust_flight.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 const Steps kSteps(30, 500, kPi);
 constexpr double kArrival = 15;
 
-/// Threats and a goal that change at random while a vehicle flies among them.
+/// Threats and a goal that change randomly while a vehicle flies among them.
 class Sequence {
  public:
   Sequence(char kind, std::uint64_t number)
@@ -26,7 +26,7 @@ class Sequence {
     return !is_inside_one(discs_, at_) && !is_inside_one(discs_, goal_);
   }
 
-  /// Until the goal is reached after the last update, or it is known that there is no way to it.
+  /// Until the goal is reached after the last update, or it is known that no path leads to it.
   void fly(int updates, int steps_between, bool spares_way_out) {
     flight_.set_world(goal_, kArrival, at_, course_);
     for (int n = 0; n < 60'000; ++n) {
@@ -63,7 +63,7 @@ class Sequence {
     return std::abs(std::atan2(cross(a, b), a.dot(b)));
   }
 
-  /// Half of all places are near the vehicle.
+  /// Half of all positions are near the vehicle.
   Vec2 place() {
     if (draw_.below(2) == 0) {
       return {draw_(0, 90000), draw_(0, 90000)};
@@ -77,8 +77,8 @@ class Sequence {
                           : draw_(1000, 5000);
   }
 
-  /// One threat added, removed, moved, or the goal moved; none onto the vehicle or the goal, and
-  /// where the way out is to be spared, none onto it. Whether one was found.
+  /// Adds, removes or moves one threat, or moves the goal; nothing onto the vehicle or the goal,
+  /// nor, if the escape path is to be spared, onto it. Returns true if an update was found.
   bool update(bool spares_way_out) {
     for (int tries = 0; tries < 100; ++tries) {
       std::vector<Disc> discs = discs_;
@@ -110,13 +110,14 @@ class Sequence {
     return false;
   }
 
-  /// A way out that ends at the goal is taken away where the goal moves.
+  /// An escape path that ends at the goal is lost when the goal moves.
   bool spares(const Threats& threats, const Vec2& goal) const {
     return !course_ || (flight_.way_out().is_free(Freedom(threats, kSteps), {at_, *course_}) &&
                         (flight_.way_out().circle != 0 || goal == goal_));
   }
 
-  /// At the goal the flight goes on to another, where a way out is known that does not end there.
+  /// At the goal the flight continues to another one, if an escape path is known that does not end
+  /// there.
   bool moves_goal_on() {
     if (flight_.way_out().circle == 0) {
       return false;
@@ -145,7 +146,7 @@ struct Tally {
   int flown = 0;
   int arrived = 0;
   int no_way = 0;
-  int lost = 0;  ///< sequences in which a way out was taken away
+  int lost = 0;  ///< sequences in which an escape path was lost
   int penetrations_with_way_out = 0;
   int penetrations = 0;
 };
@@ -178,7 +179,7 @@ Tally fly_sequences(int maps, int updates, int steps_between, bool spares_way_ou
   return tally;
 }
 
-/// Updates that spare the stored way out: it is never lost, and no threat is ever entered.
+/// Updates that spare the stored escape path: it is never lost, and no threat is ever entered.
 void expect_spared(int maps, int updates, int steps_between) {
   const Tally tally = fly_sequences(maps, updates, steps_between, true);
   EXPECT_GT(tally.flown, maps);
@@ -187,8 +188,8 @@ void expect_spared(int maps, int updates, int steps_between) {
   EXPECT_GE(tally.arrived, 0.995 * (tally.flown - tally.no_way));
 }
 
-/// Any updates that leave the vehicle itself outside: what is entered was entered for want of a way
-/// out.
+/// Any updates that leave the vehicle itself outside: threats are entered only for lack of an
+/// escape path.
 void expect_any(int maps, int updates, int steps_between) {
   const Tally tally = fly_sequences(maps, updates, steps_between, false);
   EXPECT_EQ(tally.penetrations_with_way_out, 0);
@@ -203,7 +204,7 @@ TEST(NightlyRobustUpdates, ThatSpareTheWayOutLeadIntoNoThreat) { expect_spared(1
 TEST(NightlyRobustUpdates, EveryFewSteps) { expect_spared(150, 300, 10); }
 TEST(NightlyRobustUpdates, OfAnyKind) { expect_any(1000, 20, 200); }
 
-/// A guide that lies in the vehicle's course, or is found anew where that is not so.
+/// A guide that continues the vehicle's course, or is searched anew where it does not.
 TEST(RobustFlight, CirclesWhereNoWayLeadsToTheGoal) {
   std::vector<Disc> discs = {{{20000, 0}, 3000}};
   Threats threats(discs, 2000);

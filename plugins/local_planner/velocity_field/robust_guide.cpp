@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Shortest ways among discs: they run along common tangents and along the rims between them. A*
-// over the rims, each with a sense; a tangent is looked at only when its turn comes.
+// Shortest paths among discs: they run along common tangents and along the rims between them. A*
+// over the rims, each with a sense; a tangent is checked only when it is popped.
 #include "robust_guide.hpp"
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 namespace velocity_field {
 namespace {
 constexpr double kTurn = 2 * kPi;
-constexpr double kTouch = 1e-6;  ///< metres that a tangent may be inside by rounding
-/// Among more discs the way may be longer than the shortest by that factor, and is found sooner.
+constexpr double kTouch = 1e-6;  ///< metres that rounding may put a tangent inside
+/// With more discs the path may be longer than the shortest by that factor, and is found sooner.
 constexpr std::size_t kMany = 200;
 constexpr double kHaste = 1.02;
-/// Given up then, by which it holds 1 GB; 80 discs have fewer.
+/// Gives up at this number, which uses 1 GB; 80 discs have fewer.
 constexpr std::size_t kMaxTangents = 10'000'000;
 
 double angle_of(const Vec2& v) { return std::atan2(v.y(), v.x()); }
@@ -27,15 +27,15 @@ double length_of_turn(double from, double to, int sense) {
   return turn > kTurn - 1e-9 ? 0 : turn;
 }
 
-/// Where a way comes to a rim: it may follow it in that sense from there.
+/// Where a path comes to a rim: it may follow the rim in that sense from there.
 struct Contact {
   std::size_t disc = 0;
   int sense = 1;
-  double angle = 0;  ///< of the place, seen from the centre
+  double angle = 0;  ///< of the contact, seen from the centre
   double length = 0;
-  Vec2 from{0, 0};  ///< where its leg left the rim before
+  Vec2 from{0, 0};  ///< where its leg left the previous rim
   Vec2 at{0, 0};
-  double turned = 0;  ///< along the rim before
+  double turned = 0;  ///< along the previous rim
   std::size_t before = 0;
 };
 
@@ -89,19 +89,19 @@ class TangentSearch {
     Contact contact;
     bool operator<(const Open& other) const { return estimate > other.estimate; }
   };
-  /// Where another disc covers a rim: around `middle`, `half` to either side.
+  /// Section of a rim covered by another disc: around `middle`, `half` to either side.
   struct Overlap {
     double middle = 0;
     double half = 0;
   };
 
-  /// A rim that the way may begin on; it is in the way of nothing.
+  /// A rim on which the path may begin; it obstructs nothing.
   void add_start(const Vec2& at, const Vec2& to_centre, int sense) {
     contacts_.push_back({discs_.size(), sense, angle_of(-to_centre), 0, at, at});
     discs_.push_back({at + to_centre, to_centre.norm()});
   }
 
-  /// Of each rim with those threats that are not too far east or west.
+  /// For each rim, with the threats that are not too far east or west.
   void note_overlaps() {
     overlaps_.resize(discs_.size());
     std::vector<std::size_t> eastward(goal_);
@@ -140,7 +140,7 @@ class TangentSearch {
     return 2 * contact.disc + (contact.sense > 0 ? 1 : 0);
   }
 
-  /// How far the rim can be followed before another disc covers it.
+  /// Angle over which the rim can be followed before another disc covers it.
   double free_turn(const Contact& contact) const {
     double free = kTurn;
     for (const Overlap& overlap : overlaps_[contact.disc]) {
@@ -150,7 +150,7 @@ class TangentSearch {
     return free;
   }
 
-  /// Whether a shorter way to that rim leads past the place.
+  /// True if a shorter path to that rim passes the contact.
   bool is_behind(const Contact& contact) const {
     return std::any_of(
         reached_[rim(contact)].begin(), reached_[rim(contact)].end(), [&](std::size_t n) {
@@ -193,7 +193,7 @@ class TangentSearch {
     const Vec2 way = b.centre - a.centre;
     const double across = sense * b.radius - from.sense * a.radius;
     const double square = way.squaredNorm() - across * across;
-    // By rounding an end that lies on a rim may seem inside.
+    // Rounding may make an end on a rim appear inside.
     if (square < -kTouch * way.norm() || way.isZero(0)) {
       return;
     }
@@ -238,7 +238,7 @@ class TangentSearch {
   }
 
   std::vector<Disc> discs_;
-  std::size_t goal_;        ///< after the threats, before the rims that the way may begin on
+  std::size_t goal_;        ///< after the threats, before the rims on which the path may begin
   std::size_t starts_ = 0;  ///< the first contacts
   std::vector<std::vector<Overlap>> overlaps_;     ///< of each disc
   std::vector<std::vector<std::size_t>> reached_;  ///< contacts of each rim and sense

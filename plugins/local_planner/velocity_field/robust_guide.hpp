@@ -17,12 +17,12 @@ struct GuidePiece {
   Vec2 centre{0, 0};
   double radius = 0;
   int sense = 0;
-  double begins_m = 0;  ///< of the whole guide
+  double begins_m = 0;  ///< position on the whole guide
   double length_m = 0;
 };
 
-/// A line of legs and arcs that touch each other in one direction; the virtual target moves along
-/// it before the vehicle.
+/// A line of legs and arcs with continuous direction; the virtual target moves along it ahead of
+/// the vehicle.
 class Guide {
  public:
   void add_leg(const Vec2& from, const Vec2& to);
@@ -31,7 +31,7 @@ class Guide {
   bool empty() const { return pieces_.empty(); }
   double length_m() const;
   Vec2 at(double metres) const;
-  /// How far along the point of the guide beside `p` lies, looked for from `metres` on.
+  /// Position along the guide of its point beside `p`, searched from `metres` on.
   double beside(const Vec2& p, double metres) const;
   std::span<const GuidePiece> pieces() const { return pieces_; }
 
@@ -41,25 +41,25 @@ class Guide {
   std::vector<GuidePiece> pieces_;
 };
 
-/// Where a guide begins. With a course it begins with a turn, or none, from that course.
+/// Start of a guide. With a course it begins with a turn, or none, from that course.
 struct GuideStart {
   Vec2 at{0, 0};
   std::optional<Vec2> course;
   double turn_radius_m = 0;
 };
 
-/// What a search of a guide may use up, and whether that was too little.
+/// Limits of a guide search; records if they were too low.
 struct GuideEffort {
   altiplan::Budget budget;  ///< its deadline and its stop token
   bool given_up = false;
 };
 
-/// The shortest line from start to goal that enters none of the discs; none where there is none, or
-/// where the search was given up. Among more than 200 discs it may be 2 % longer.
+/// The shortest line from start to goal that enters none of the discs; empty if there is none, or
+/// if the search was given up. With more than 200 discs it may be 2 % longer.
 std::optional<Guide> shortest_guide(std::span<const Disc> discs, const GuideStart& start,
                                     const Vec2& goal, GuideEffort* effort = nullptr);
 
-/// v turned as x must be to point as y does, and stretched as much.
+/// v rotated and scaled as x must be to become y.
 inline Vec2 turned_as(const Vec2& v, const Vec2& x, const Vec2& y) {
   const Vec2 z = Vec2(x.dot(y), cross(x, y)) / x.squaredNorm();
   return z.x() * v + z.y() * left_of(v);

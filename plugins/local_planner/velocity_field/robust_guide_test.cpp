@@ -11,7 +11,7 @@ namespace {
 const Vec2 kStart(0, 0);
 const Vec2 kGoal(90000, 90000);
 
-/// Direction at the piece's end (or begin).
+/// Direction at the piece's end (or beginning).
 Vec2 direction(const GuidePiece& piece, bool at_end) {
   return piece.sense == 0
              ? Vec2((piece.to - piece.from).normalized())
@@ -19,7 +19,7 @@ Vec2 direction(const GuidePiece& piece, bool at_end) {
                     left_of((at_end ? piece.to : piece.from) - piece.centre).normalized());
 }
 
-/// It goes on where it ends, in the same direction, and enters no disc.
+/// Each piece continues where the last one ends, in the same direction, and enters no disc.
 void expect_sound(const Guide& guide, const std::vector<Disc>& discs, const std::string& map) {
   const auto pieces = guide.pieces();
   for (std::size_t n = 0; n < pieces.size(); ++n) {
@@ -71,7 +71,7 @@ TEST(Guide, IsMissingWhereTheGoalIsEnclosed) {
   EXPECT_FALSE(shortest_guide(ring, {kStart, {}, 0}, ring.front().centre)) << "inside a disc";
 }
 
-/// Of many discs it need not be the very shortest.
+/// With many discs it need not be exactly the shortest.
 TEST(Guide, AmongManyIsNearlyTheShortest) {
   oracle::Draw draw(9);
   std::vector<Disc> discs;
@@ -87,7 +87,7 @@ TEST(Guide, AmongManyIsNearlyTheShortest) {
   expect_sound(*guide, discs, "many");
 }
 
-/// With a course it begins in that course, with an arc of the radius given or straight.
+/// With a course it begins in that course, with an arc of the given radius or straight.
 TEST(Guide, BeginsInTheCourse) {
   for (int degree = 0; degree < 360; degree += 15) {
     const Vec2 course(std::cos(radians(degree)), std::sin(radians(degree)));
@@ -99,7 +99,7 @@ TEST(Guide, BeginsInTheCourse) {
     EXPECT_TRUE(first.sense == 0 || std::abs(first.radius - 500) < 1e-9) << degree;
     expect_sound(*guide, discs, std::to_string(degree));
   }
-  // A goal inside the tightest turn: around and back to it.
+  // A goal inside the tightest turn: a loop back to it.
   const auto around = shortest_guide({}, {kStart, Vec2(1, 0), 500}, {0, 300});
   ASSERT_TRUE(around);
   EXPECT_GT(around->length_m(), 2000);

@@ -7,7 +7,7 @@
 
 namespace velocity_field {
 namespace {
-/// How far from the goal's place a level flight at height z has arrived.
+/// Distance from the goal at which a level flight at height z has arrived.
 double tolerance_at(const Goal& goal, double z) {
   const double off = goal.position.z() - z;
   return std::sqrt(std::max(0.0, goal.tolerance_m * goal.tolerance_m - off * off));
@@ -18,14 +18,14 @@ std::string_view what(RobustFlight::Kind kind, bool has_guide) {
     case RobustFlight::Kind::field:
       return "follows the field along the guide";
     case RobustFlight::Kind::way_out:
-      return "flies its way out, through where no circle is free";
+      return "flies its escape path, through where no circle is free";
     case RobustFlight::Kind::circle:
       return has_guide ? "circles: the next step toward the goal is not known to be safe"
-                       : "circles: no way to the goal is known";
+                       : "circles: no path to the goal is known";
     case RobustFlight::Kind::unproven:
       break;
   }
-  return "keeps away from threats: no way out is known";
+  return "keeps away from threats: no escape path is known";
 }
 
 std::optional<Vec2> course_of(const State& state) {
@@ -74,13 +74,13 @@ PilotStep RobustPilot::do_step(const Observation& seen) {
   const double dt = std::min({p_.step_s, seen.max_dt_s, max_step_ / speed_});
   take_news(seen, here, course, dt);
   if (steps_ == 0 && !flight_.is_safe()) {
-    return stuck(seen, course ? "from the course here no turn is known that enters no threat"
+    return stuck(seen, course ? "no turn from the current course is known that enters no threat"
                               : "no course from here is known that enters no threat");
   }
   if (steps_ == 0 && !flight_.has_guide()) {
     return stuck(seen, flight_.gave_up()
-                           ? "the search for a way between so many threats was given up"
-                           : "there is no way to the goal between the threats");
+                           ? "the search for a path between so many threats was given up"
+                           : "there is no path to the goal between the threats");
   }
   ++steps_;
   return fly(seen, flight_.step(here, course, push_of_movers(seen, here)), dt);

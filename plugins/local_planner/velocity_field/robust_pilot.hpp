@@ -20,10 +20,10 @@ class RobustPilot final : public Pilot {
   Counters do_counters() const override;
 
   Steps steps_of(double step_s) const;
-  /// Takes over what has changed: threats, the goal, the step, or where the vehicle is.
+  /// Adopts what has changed: threats, the goal, the step, or the vehicle's position.
   void take_news(const Observation& seen, const Vec2& here, const std::optional<Vec2>& course,
                  double dt);
-  /// V_P + V_G of what moves; where it will be is not known.
+  /// V_P + V_G of moving obstacles; their future positions are unknown.
   Vec2 push_of_movers(const Observation& seen, const Vec2& here) const;
   PilotStep fly(const Observation& seen, const Pose& next, double dt);
 
@@ -36,7 +36,7 @@ class RobustPilot final : public Pilot {
   double max_step_;
   ThreatFeed feed_;
   RobustFlight flight_;
-  Pose expected_;  ///< where the last step led to
+  Pose expected_;  ///< where the last step led
   double dt_;
   std::int64_t steps_ = 0;
 };

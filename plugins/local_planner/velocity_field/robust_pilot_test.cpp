@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flights of `variant: robust` through the pilot: random maps against the shortest ways.
+// Flights of `variant: robust` through the pilot: random maps compared with the shortest paths.
 #include <gtest/gtest.h>
 
 #include "robust_test_maps.hpp"
@@ -80,7 +80,7 @@ TEST(RobustPilot, FliesTable1) {
   EXPECT_EQ(flown.counter("unproven_steps"), 0);
 }
 
-/// Through a gap in which no circle is free: its way out leads to the other side.
+/// Through a gap in which no circle is free: its escape path leads to the other side.
 TEST(RobustPilot, PassesNarrowGaps) {
   for (const double gap : {2.0, 20.0, 200.0, 800.0}) {
     std::vector<Cylinder> wall;
@@ -118,13 +118,13 @@ TEST(RobustPilot, IsStuckWhereItCannotBegin) {
   }
   const Flown enclosed = flight(problem(world_of(ring), {50000, 0, 1000}), kRobust);
   EXPECT_EQ(enclosed.outcome, PilotStep::Outcome::stuck);
-  EXPECT_EQ(enclosed.why.back(), "there is no way to the goal between the threats");
+  EXPECT_EQ(enclosed.why.back(), "there is no path to the goal between the threats");
 
   Request into = problem(world_of({{3050, 0, 3000}}), {-20000, 0, 1000});
   into.start.velocity = {30, 0, 0};
   const Flown doomed = flight(into, kRobust);
   EXPECT_EQ(doomed.outcome, PilotStep::Outcome::stuck);
-  EXPECT_EQ(doomed.why.back(), "from the course here no turn is known that enters no threat");
+  EXPECT_EQ(doomed.why.back(), "no turn from the current course is known that enters no threat");
 
   Request above = problem(world_of({}), {20000, 0, 1200});
   EXPECT_EQ(flight(above, kRobust).outcome, PilotStep::Outcome::stuck);
@@ -166,7 +166,7 @@ TEST(RobustPilot, Table3AtAnyTime) {
   }
 }
 
-/// Thrown off by gusts it comes back to the guide, or finds another.
+/// Blown off by gusts it returns to the guide, or finds another.
 TEST(RobustPilot, ArrivesThroughGusts) {
   RandomStream random(3);
   const Request request = table1();

@@ -3,7 +3,7 @@
 
 namespace velocity_field {
 namespace {
-/// Kept from the edge of a threat, so that rounding never decides.
+/// Distance kept from the edge of a threat, so that rounding never decides.
 constexpr double kRounding = 1e-6;
 /// The same for a circle, which may be flown many times.
 constexpr double kDrift = 1e-3;
@@ -11,8 +11,7 @@ constexpr double kDrift = 1e-3;
 
 Steps::Steps(double length_m, double min_radius_m, double max_turn)
     : length_m_(length_m),
-      radius_m_(
-          std::max(min_radius_m, length_m / (2 * std::sin(std::min(max_turn, kPi / 2) / 2)))),
+      radius_m_(std::max(min_radius_m, length_m / (2 * std::sin(std::min(max_turn, kPi / 2) / 2)))),
       limit_(velocity_field::max_turn(length_m, radius_m_)),
       half_(limit_.most() / 2) {}
 

@@ -8,14 +8,14 @@
 
 namespace velocity_field {
 
-/// A place, and the course of the step that led to it: a unit vector.
+/// A position, and the course of the step that led to it: a unit vector.
 struct Pose {
   Vec2 at{0, 0};
   Vec2 course{1, 0};
 };
 
-/// Steps of one length; the corners of the tightest turn, at most a right angle a step, lie on a
-/// circle of the least radius.
+/// Steps of one length; the corners of the tightest turn, at most a right angle per step, lie on a
+/// circle of the minimum radius.
 class Steps {
  public:
   Steps(double length_m, double min_radius_m, double max_turn);
@@ -27,7 +27,7 @@ class Steps {
   Pose after(const Vec2& at, const Vec2& course) const { return {at + length_m_ * course, course}; }
   /// After the tightest turn to that side, +1 left or -1 right.
   Pose turned(const Pose& pose, int side) const;
-  /// Of the circle whose inside holds all further steps of that turn.
+  /// Centre of the circle that contains all further steps of that turn.
   Vec2 circle_centre(const Pose& pose, int side) const;
 
  private:
@@ -37,7 +37,7 @@ class Steps {
   TurnLimit half_;
 };
 
-/// Which moves enter no threat: exact, no samples.
+/// Checks which moves enter no threat: exactly, without sampling.
 class Freedom {
  public:
   /// The threats' reach must be at least reach_m(steps).
@@ -46,9 +46,9 @@ class Freedom {
 
   const Steps& steps() const { return steps_; }
   bool is_leg_free(const Vec2& a, const Vec2& b) const;
-  /// Whether the tightest turn to that side can be flown for ever.
+  /// True if the tightest turn to that side can be flown forever.
   bool is_circle_free(const Pose& pose, int side) const;
-  /// The side of a free circle, the one toward `target` before the other; 0 where there is none.
+  /// The side of a free circle, preferring the one toward `target`; 0 if there is none.
   int free_circle(const Pose& pose, const Vec2& target) const;
 
  private:
@@ -56,8 +56,8 @@ class Freedom {
   Steps steps_;
 };
 
-/// Steps that end where a circle is free: while they are flown no threat is entered, and on the
-/// circle none ever.
+/// Steps that end where a circle is free: while they are flown no threat is entered, nor ever on
+/// the circle.
 struct WayOut {
   std::vector<Vec2> courses;  ///< of the steps, the next one last
   int circle = 0;             ///< its side; 0: it ends at the goal instead

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guarantee's parts, each on its own: exact legs, circles flown for ever, ways out.
+// The parts of the guarantee separately: exact legs, circles flown forever, escape paths.
 #include "robust_safety.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,8 @@ TEST(Freedom, JudgesLegsAndCirclesExactly) {
         around = next;
       }
     } else {
-      // Refused for a reason: a threat less than the kept room from the circle's inside.
+      // The rejection is justified: a threat is nearer to the circle's inside than the distance
+      // kept.
       const Vec2 centre = kSteps.circle_centre(pose, side);
       EXPECT_TRUE(std::any_of(discs.begin(), discs.end(), [&](const Disc& disc) {
         return (disc.centre - centre).norm() < disc.radius + 500 + 0.002;
@@ -83,8 +84,8 @@ TEST(Freedom, JudgesLegsAndCirclesExactly) {
   EXPECT_GT(free_circles, 500);
 }
 
-/// From any place whatever and in any course: where a way out is said to be known, the vehicle that
-/// only flies it enters no threat, and goes on so on its circle.
+/// From any position and in any course: if an escape path is reported, the vehicle that only
+/// follows it enters no threat, also while it continues on its circle.
 TEST(WayOut, EntersNoThreat) {
   oracle::Draw draw(6);
   int with_steps = 0;

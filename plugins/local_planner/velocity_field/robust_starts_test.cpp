@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flights of `variant: robust` from starts beside threats, and to goals that are hard to end at.
+// Flights of `variant: robust` from starts beside threats, and to goals that are difficult to end
+// at.
 #include <gtest/gtest.h>
 
 #include "altiplan/random.hpp"
@@ -37,7 +38,7 @@ TEST(RobustStart, TakesACourseThatHasAWayOut) {
   expect_sound(cleft, request);
 }
 
-/// A course is taken, or the first step says that none is known; nothing is tried blindly.
+/// A course is taken, or the first step reports that none is known; nothing is tried blindly.
 TEST(RobustStart, AmongSmallThreatsNothingIsEntered) {
   int arrived = 0;
   int stuck = 0;
@@ -67,7 +68,7 @@ TEST(RobustStart, OnAnEdgeIsRefused) {
   EXPECT_EQ(flown.why.back(), "no course from here is known that enters no threat");
 }
 
-/// The goal's tolerance is a ball, of which the flight's level cuts a smaller disc.
+/// The goal's tolerance is a ball, from which the flight's level cuts a smaller disc.
 TEST(RobustGoal, InACleftAtAnotherHeight) {
   const std::vector<Cylinder> cleft{{0, 0, 5000}, {7500, 0, 2500}};
   Request request = problem(world_of(cleft), {4990, 1600, 1014});
@@ -86,7 +87,7 @@ TEST(RobustGoal, IsReachedWithTurnsShorterThanAStep) {
   }
 }
 
-/// The host's step counts, from the first guide on.
+/// The host's step applies, from the first guide on.
 TEST(RobustGoal, TheHostsStepIsTheStep) {
   const std::vector<Cylinder> threats{{10000, 500, 3000}};
   const Request request = problem(world_of(threats), {20000, 0, 1000});

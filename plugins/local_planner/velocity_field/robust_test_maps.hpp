@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random maps of discs in the plane, for tests of the robust variant.
+// Random maps of discs in 2-D, for tests of the robust variant.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ inline reference::CircleVisibility reference_of(const std::vector<Disc>& discs) 
 
 inline bool enters_one(const std::vector<Disc>& discs, const Vec2& a, const Vec2& b) {
   return std::any_of(discs.begin(), discs.end(), [&](const Disc& disc) {
-    // Said otherwise than in the code: by the nearest of both ends and the foot between them.
+    // An independent formulation: by the nearest of both ends and the foot between them.
     const Vec2 ab = b - a;
     const Vec2 ac = disc.centre - a;
     double least = std::min(ac.norm(), (disc.centre - b).norm());

@@ -6,13 +6,13 @@
 namespace velocity_field {
 namespace {
 
-/// Cells along the longer side of the volume where no size is given.
+/// Cells along the longer side of the volume if no size is given.
 constexpr double kCells = 512;
-/// A goal that needs so much of the steepest climb is flown to directly.
+/// A goal that needs this fraction of the steepest climb is flown to directly.
 constexpr double kSteepEnough = 0.8;
-/// Half the width of bays and passes that are not flown into, in least radii.
+/// Half the width of bays and passes that are not entered, in minimum radii.
 constexpr double kTurns = 2;
-/// Circling above the goal is within so many least radii.
+/// Circling above the goal stays within this many minimum radii.
 constexpr double kNear = 4;
 /// Climbs tried between the wished one and the steepest.
 constexpr int kClimbs = 4;
@@ -47,7 +47,7 @@ TerrainFlight::TerrainFlight(const Params& params, const Request& request)
       min_fillet_(request.limits.min_turn_radius),
       max_turn_level_(request.limits.max_turn_horizontal),
       max_turn_space_(request.limits.max_turn_space),
-      // A hair less, so that rounding keeps the judge's limit.
+      // Slightly less, so that rounding respects the judge's limit.
       max_climb_(std::min(radians(params.max_climb_deg), request.limits.max_climb) * (1 - 1e-9)),
       slope_(request.level_m ? 0 : std::tan(max_climb_)),
       detour_(params.detour_m),
@@ -165,11 +165,10 @@ double TerrainFlight::wished_climb(const Vec3& here, double radius) const {
 
 TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& wish, double climb,
                                               double most) const {
-  // cos of the turn in space = cos(change of climb) - cos cos (1 - cos of the turn of heading)
+  // cos of the turn in 3-D = cos(change of climb) - cos cos (1 - cos of the turn of heading)
   const double flat = std::cos(now.climb) * std::cos(climb);
   const double room = std::cos(climb - now.climb) - std::cos(most);
-  const double cosine =
-      std::clamp(std::max(1 - room / flat, std::cos(max_turn_level_)), -1.0, 1.0);
+  const double cosine = std::clamp(std::max(1 - room / flat, std::cos(max_turn_level_)), -1.0, 1.0);
   if (now.heading.dot(wish) >= cosine) {
     return {wish, climb};
   }
@@ -179,8 +178,8 @@ TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& w
 
 TerrainFlight::Attitude TerrainFlight::within_radius(const Vec3& here, const Attitude& now,
                                                      const Vec2& wish, double length) {
-  const double most = std::min(
-      max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
+  const double most =
+      std::min(max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
   if (!climbs()) {
     return turned(now, wish, 0, most);
   }
@@ -225,8 +224,8 @@ Vec3 TerrainFlight::step(const State& state, const std::vector<Disc>& threats, c
   const Attitude now = fast > 0
                            ? Attitude{velocity.head<2>() / fast, std::atan2(velocity.z(), fast)}
                            : Attitude{wish, 0};
-  const double most = std::min(
-      max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
+  const double most =
+      std::min(max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
   last_leg_ = climbs() && is_last_leg(here, threats, now, most);
   Attitude next;
   if (last_leg_) {
@@ -244,7 +243,7 @@ Vec3 TerrainFlight::step(const State& state, const std::vector<Disc>& threats, c
 
 std::string_view TerrainFlight::why() const {
   return last_leg_    ? "flies straight to the goal"
-         : goes_over_ ? "flies over the ground that it did not get round"
+         : goes_over_ ? "flies over the ground that it did not get around"
                       : std::string_view();
 }
 }  // namespace velocity_field

@@ -9,15 +9,15 @@ namespace velocity_field {
 using namespace altiplan;
 
 namespace {
-/// A walk over the eight neighbours is at most that much longer than the straight line.
+/// A path over the eight neighbours is at most that factor longer than the straight line.
 constexpr double kWalk = 1.0823922;
-/// What reading between centres may miss, in cells times slope: the top of the cell that p is in by
-/// 0.8, the straight line's rise by 0.7.
+/// Maximum error of interpolation between centres, in cells times slope: 0.8 for the top of the
+/// cell that contains p, 0.7 for the rise of the straight line.
 constexpr double kBetween = 1.5;
 constexpr double kMaxCells = 16e6;
-/// Of closed ground, before its surroundings say more.
+/// For closed ground, before its surroundings determine it.
 constexpr float kLowest = -1e9F;
-/// So near to the middle of a disc, of its radius, the field takes a place that is in deep.
+/// Fraction of a disc's radius from its centre at which the field places a deeply enclosed point.
 constexpr double kDeepest = 0.1;
 }  // namespace
 
@@ -26,7 +26,7 @@ TerrainSections::TerrainSections(const World& world, const GroundRules& rules)
   const Vec3 size = rules.box.max - rules.box.min;
   if (!((size.x() / cell_ + 1) * (size.y() / cell_ + 1) <= kMaxCells)) {
     throw Error(
-        "velocity_field: section_cell_m makes more than 16,000,000 cells of the volume; "
+        "velocity_field: section_cell_m gives more than 16,000,000 cells for the volume; "
         "expected larger cells");
   }
   columns_ = std::max(1, int(std::ceil(size.x() / cell_)));
@@ -124,7 +124,7 @@ double TerrainSections::between(const std::vector<float>& values, const Vec2& p)
 double TerrainSections::safe_height(const Vec2& p) const { return between(safe_, p); }
 
 bool TerrainSections::is_above(const Vec3& a, const Vec3& b) const {
-  // Places a quarter of a cell apart, and for each the cells that the leg touches until the next.
+  // Points a quarter of a cell apart, and for each the cells that the leg touches up to the next.
   const int count = 1 + int(4 * (b - a).head<2>().norm() / cell_);
   const double fall = std::abs(b.z() - a.z()) / count;
   for (int n = 0; n <= count; ++n) {
@@ -145,7 +145,7 @@ bool TerrainSections::is_above(const Vec3& a, const Vec3& b) const {
 
 template <class Far>
 std::vector<float> TerrainSections::distances(const Far& far) const {
-  // Each cell learns the nearest one that its neighbours know of.
+  // Each cell adopts the nearest one that its neighbours know.
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::vector<std::uint32_t> nearest(safe_.size());
   for (std::uint32_t n = 0; n < nearest.size(); ++n) {
@@ -159,7 +159,7 @@ std::vector<float> TerrainSections::distances(const Far& far) const {
     const double y = double(row_a) - double(row_b);
     return x * x + y * y;
   };
-  // Where there is none, as far as the grid is wide.
+  // If there is none, as far as the grid is wide.
   std::vector<float> squares(safe_.size(), float(apart(0, safe_.size() - 1) + 1));
   for (std::size_t n = 0; n < nearest.size(); ++n) {
     squares[n] = nearest[n] == kNone ? squares[n] : 0;
@@ -180,7 +180,7 @@ std::vector<float> TerrainSections::distances(const Far& far) const {
 }
 
 std::vector<float> TerrainSections::gaps(double level) const {
-  // Grown by the bay and shrunk again, a section has its bays filled.
+  // Dilated by the bay and eroded again, a section has its bays filled.
   const float bay = float(bay_);
   const std::vector<float> off =
       distances([&](std::size_t n) { return closed_[n] == 0 && !(safe_[n] > level); });

@@ -57,7 +57,7 @@ TEST(TerrainSections, SafeHeightKeepsAboveGroundAndIsNowhereTooSteep) {
                        .cwiseMin(1e5);
     const double here = sections.safe_height(p);
     ASSERT_GE(here, *world.ground(p.x(), p.y()) + 100) << p.transpose();
-    // Between the centres it may be steeper, by no more than what it was raised by.
+    // Between the centres it may be steeper, by no more than the amount by which it was raised.
     ASSERT_LE(sections.safe_height(q), here + 0.25 * (q - p).norm() + 1.5 * 0.25 * 400);
   }
   EXPECT_EQ(sections.safe_height({-1, 500}), sections.safe_height({0, 500}));
@@ -112,7 +112,7 @@ TEST(Terrain, GoesRoundAPeakAtItsLevel) {
   EXPECT_FALSE(check(flight(request).route, request).ok()) << "ignored, the ground is in the way";
 }
 
-/// The ridge goes on at both ends of the volume: there is no way round.
+/// The ridge reaches both ends of the volume: there is no path around it.
 Flown over_ridge(Request& request, double radius) {
   request.limits.min_turn_radius = radius;
   return flight(request,

@@ -27,8 +27,8 @@ void Threats::choose_cells() {
     high = high.cwiseMax(Vec2(disc.centre.array() + grown));
     squares += grown * grown;
   }
-  // Half a mean reach (of the squares, so that the lists' length is bounded by the discs' number),
-  // unless that makes more than a few cells a disc.
+  // Half the mean reach (root mean square, so that the number of discs bounds the length of the
+  // lists), unless that gives more than a few cells per disc.
   const double count = double(discs_.size());
   const Vec2 size = high - low_;
   const double max_cells = 4 * count + 60;
@@ -48,7 +48,7 @@ std::pair<int, int> Threats::span_of(const Disc& disc, double by, int axis) cons
 
 template <class Call>
 bool Threats::any_cell(const Disc& disc, double by, const Call& call) const {
-  // A hair more, so that rounding leaves out none that is touched.
+  // Slightly more, so that rounding omits no touched cell.
   const double grown = (disc.radius + by) * (1 + 1e-9) + 1e-6;
   const auto [column0, column1] = span_of(disc, by, 0);
   const auto [row0, row1] = span_of(disc, by, 1);
@@ -86,7 +86,7 @@ void Threats::list_discs() {
 }
 
 bool Threats::has_partner(std::uint32_t disc) const {
-  // Whoever overlaps it reaches into a cell that it touches.
+  // Any disc that overlaps it reaches into a cell that it touches.
   return any_cell(discs_[disc], 0, [&](std::size_t cell) {
     return std::any_of(cells_.begin() + cells_from_[cell], cells_.begin() + cells_from_[cell + 1],
                        [&](std::uint32_t other) { return other != disc && overlap(disc, other); });
@@ -143,7 +143,7 @@ void ThreatFeed::load(const World& world) {
   for (const Threat& threat : world.threats()) {
     if (!is_finite(threat.centre) || !(threat.radius >= 0 && threat.radius < kInfinity)) {
       throw Error("velocity_field: the threat '" + threat.id +
-                  "' is no disc; expected a finite centre, and a finite radius of at least 0");
+                  "' is not a disc; expected a finite centre, and a finite radius of at least 0");
     }
     discs.push_back({threat.centre.head<2>(), threat.radius + room_});
   }

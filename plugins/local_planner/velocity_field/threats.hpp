@@ -11,8 +11,8 @@
 
 namespace velocity_field {
 
-/// The discs of a world, found by place: a grid whose cells list the discs that reach into them.
-/// A query costs as much as there are discs near, not as there are at all.
+/// The discs of a world, indexed by position: a grid whose cells list the discs that reach into
+/// them. The cost of a query depends on the number of nearby discs, not on the total.
 class Threats {
  public:
   Threats() = default;
@@ -21,14 +21,14 @@ class Threats {
 
   const std::vector<Disc>& all() const { return discs_; }
   double reach() const { return reach_; }
-  /// Numbers of discs among which are all that act at p; ascending.
+  /// Indices of discs that include all that act at p; ascending.
   std::span<const std::uint32_t> near(const Vec2& p) const;
-  /// Whether the circles of two discs overlap; touching is no overlap.
+  /// True if the circles of two discs overlap; touching does not count.
   bool overlap(std::uint32_t i, std::uint32_t j) const {
     const double touch = discs_[i].radius + discs_[j].radius;
     return (discs_[i].centre - discs_[j].centre).squaredNorm() < touch * touch;
   }
-  /// Whether another disc overlaps this one.
+  /// True if another disc overlaps this one.
   bool has_partner(std::uint32_t disc) const;
 
  private:
@@ -36,7 +36,7 @@ class Threats {
   void list_discs();
   /// The first and last column (axis 0) or row (axis 1) that the disc grown by `by` touches.
   std::pair<int, int> span_of(const Disc& disc, double by, int axis) const;
-  /// Calls with each cell that the disc grown by `by` touches, until a call returns true.
+  /// Calls `call` with each cell that the disc grown by `by` touches, until a call returns true.
   template <class Call>
   bool any_cell(const Disc& disc, double by, const Call& call) const;
 
@@ -46,16 +46,16 @@ class Threats {
   double side_ = 1;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint32_t> cells_from_;  ///< one entry a cell, and one more
+  std::vector<std::uint32_t> cells_from_;  ///< one entry per cell, plus one
   std::vector<std::uint32_t> cells_;
 };
 
-/// Keeps the threats of the known world as they are observed to change.
+/// Tracks the observed changes of the known world's threats.
 class ThreatFeed {
  public:
-  /// Radii are grown by `room`, the clearance asked for.
+  /// Radii are grown by `room`, the required clearance.
   ThreatFeed(const altiplan::Request& request, double reach);
-  /// Takes over what is observed; whether threats were added, removed or moved, or the goal was.
+  /// Adopts an observation; returns true if threats were added, removed or moved, or the goal was.
   /// Allocates only then.
   bool update(const altiplan::Observation& seen);
   const Threats& threats() const { return threats_; }
@@ -68,7 +68,7 @@ class ThreatFeed {
   double room_;
   double reach_;
   altiplan::Vec3 goal_;
-  const altiplan::World* world_ = nullptr;  ///< only to be compared
+  const altiplan::World* world_ = nullptr;  ///< only for comparison
   std::uint64_t revision_ = 0;
   std::vector<std::shared_ptr<const altiplan::Environment>> layers_;
   Threats threats_;

@@ -57,7 +57,7 @@ TEST(Threats, NearHoldsWhateverActs) {
     for (int n = 0; n < 500; ++n) {
       const double side = 1.2 * spread.side + 30000;
       look(side * Vec2(random.uniform() - 0.5, random.uniform() - 0.5));
-      // On a ring's very edge, and at an extreme of it.
+      // Exactly on a ring's edge, and at an extreme of it.
       const Disc& disc = threats.all()[std::size_t(n) % spread.count];
       const double angle = n % 2 == 0 ? altiplan::kPi / 2 * n : random.uniform() * 7;
       look(disc.centre +
@@ -96,7 +96,7 @@ TEST(Threats, TouchingIsNoOverlap) {
 }
 
 TEST(Threats, FewAreLookedAtHoweverManyThereAre) {
-  // Ten times the threats over ten times the ground.
+  // Ten times the threats over ten times the area.
   for (const std::size_t count : {1000U, 10000U}) {
     const double side = 3000 * std::sqrt(double(count));
     const Threats threats(drawn({count, side, 500, 1500}, 3), 2000);

@@ -4,17 +4,17 @@
 // velocity vector field", Journal of Nanjing University of Aeronautics & Astronautics 44(3), 2012,
 // 340-346 (paper 001).
 //
-// Guarantees of `paper`: the step is v Delta T, and no turn is tighter than R_min. None of arrival,
-//   and none of keeping out of threats, whatever the paper says of completeness.
+// Guarantees of `paper`: the step is v Delta T, and no turn is tighter than R_min. No guarantee of
+//   arrival or of avoiding threats, despite the paper's claim of completeness.
 //   `robust`: the same, and no threat is entered after a safe start while none moves onto the
-//   vehicle or its stored way out (README.md).
-// Complexity: in a step, the threats whose rings the vehicle is in and the overlapping pairs among
+//   vehicle or its stored escape path (README.md).
+// Complexity: per step, the threats whose rings contain the vehicle and the overlapping pairs among
 //   them; before the first step and after a change of the world, O(n) cells and the pairs.
 // Deviations: 1. eq. (5) is read as L = Delta R / sqrt(beta / alpha - 1). 2. The wedge of a trap is
-//   on the far side of its chord: on the near side, as drawn, it never arrives. 3. A virtual target
-//   is given up on leaving that wedge, or near it, not as soon as the trap is left. 4. Threats
-//   grow by the clearance asked for; moving obstacles push as threats where they are. 5. Beyond the
-//   paper, and only on request: ground (terrain_flight.hpp).
+//   on the far side of its chord: on the near side, as in the figure, it never arrives. 3. A
+//   virtual target is dropped on leaving that wedge, or near it, not as soon as the trap is left.
+//   4. Threats grow by the required clearance; moving obstacles push as threats at their current
+//   positions. 5. Beyond the paper, and only on request: ground (terrain_flight.hpp).
 // Symbols: omega pull, alpha and beta push at the ring's and the threat's edge, epsilon guidance,
 //   Delta R ring, T target, L1 from it to a threat's centre, L2 from there to the virtual target.
 #include "altiplan/local_planner.hpp"
@@ -38,7 +38,7 @@ class VelocityField final : public LocalPlanner {
   }
   Traits do_traits() const override {
     Traits traits;
-    traits.spatial = false;  // a threat is a disc at every height, over ground too
+    traits.spatial = false;  // a threat is a disc at every height, also above ground
     traits.avoids_obstacles = false;
     return traits;
   }
@@ -48,4 +48,4 @@ class VelocityField final : public LocalPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(LocalPlanner, "velocity_field", VelocityField, velocity_field::Params,
-                "Velocity vector field around discs in level flight, with virtual targets")
+                "velocity vector field around discs in level flight, with virtual targets")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The published figures of paper 001, and the laws of its field.
+// The published figures of paper 001, and the properties of its field.
 #include <gtest/gtest.h>
 
 #include "field.hpp"

@@ -5,13 +5,13 @@
 //   Agents. IEEE Transactions on Systems, Man, and Cybernetics B 26(1), 1996, 29-41,
 //   doi:10.1109/3477.484436; on grids as the baseline of paper 004 (Li Rongsheng, Yang Xiaolong,
 //   Yan Xijun, Ren Tianzhu: Path planning for flight vehicles based on improved ACO), section 1.
-// Guarantees: every leg keeps every rule; more budget never gives a longer route; one result for
-//   any number of threads. Neither complete nor optimal.
-// Complexity: O(1) a step, whatever has evaporated; 224 bytes a cell.
-// Deviations: an ant beside the goal goes there (with eta = 1/d_j it would be certain anyway);
-//   beside `leg` and `goal`, the two readings of eta that are printed and with which no ant ever
-//   arrives on the paper's map, `goal_scaled`, which behaves as the published baseline does.
-//   Diagonal legs cut no corners.
+// Guarantees: every leg satisfies every constraint; a larger budget never gives a longer route; the
+//   result does not depend on the number of threads. Neither complete nor optimal.
+// Complexity: O(1) per step, also after evaporation; 224 bytes per cell.
+// Deviations: an ant next to the goal moves to it (with eta = 1/d_j that would be certain anyway);
+//   besides `leg` and `goal`, the two published readings of eta, with which no ant ever arrives on
+//   the paper's map, there is `goal_scaled`, which behaves as the published baseline does. Diagonal
+//   legs cut no corners.
 // Symbols: tau the pheromone of a leg, eta its heuristic, alpha and beta their powers, L_k the
 //   length of ant k's route, rho the evaporation.
 #include "altiplan/kit/scratch.hpp"
@@ -33,9 +33,9 @@ struct Params : kit::ColonyParams {
     f("heuristic", heuristic,
       {{"goal_scaled", Heuristic::goal_scaled}, {"goal", Heuristic::goal}, {"leg", Heuristic::leg}})
         .doc(
-            "eta of a neighbour: 1 over how much farther from the goal it is than the nearest "
-            "free neighbour, and a cell (goal_scaled); 1 over its distance to the goal (goal); or "
-            "1 over the length of the leg (leg), as printed");
+            "eta of a neighbour: 1 over its extra distance to the goal, compared with the "
+            "nearest free neighbour, plus one cell (goal_scaled); 1 over its distance to the "
+            "goal (goal); or 1 over the length of the leg (leg), as published");
   }
 };
 
@@ -56,4 +56,4 @@ class AntColony final : public kit::ColonyPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "ant_colony", AntColony, Params,
-                "ants on a grid of eight neighbours, the baseline of paper 004")
+                "ant colony on an eight-connected grid, the baseline of paper 004")

@@ -53,7 +53,7 @@ TEST(AntColony, RoulettesStayNumbersForHundredsOfIterations) {
   testing::expect_roulettes_sound("ant_colony", "cell_m: [10, 10, 10], ants: 10, iterations: 400");
 }
 
-// Without a bias to the goal ants wander until they are stuck.
+// Without a goal bias the ants wander until they are stuck.
 TEST(AntColony, TheHeuristicAsPrintedLeadsNowhereOnLargeMaps) {
   Request request =
       testing::request_in(World(), {5, 5, 50}, {1995, 1995, 50}, {{0, 0, 50}, {2000, 2000, 50}});

@@ -11,13 +11,13 @@ namespace altiplan::ant_colony {
 
 enum class Heuristic { goal_scaled, goal, leg };
 
-/// A colony whose pheromone lies on the legs between neighbouring cells, on each way of a leg.
+/// A colony whose pheromone lies on the legs between neighbouring cells, separately per direction.
 class LegColony final : public kit::Colony {
  public:
   static constexpr std::size_t kNeighbours = 8;
   static constexpr std::size_t kBytesPerCell = kNeighbours * (3 * sizeof(double) + sizeof(float));
 
-  /// What outlives a plan; a leg is number kNeighbours * cell + direction.
+  /// Persists between plans; a leg has the index kNeighbours * cell + direction.
   struct Memory {
     kit::Pheromone tau;
     std::vector<float> eta_beta;  ///< eta^beta, 0 where the leg is closed
@@ -43,7 +43,7 @@ class LegColony final : public kit::Colony {
   }
 
  private:
-  using Direction = std::size_t;  // 0 to 7, west first, from the row south on; 7 - k leads back
+  using Direction = std::size_t;  // 0 to 7, from the southern row on, west first; 7 - k is opposite
 
   static int direction_of(Direction k) {
     const int flat = int(k) < 4 ? int(k) : int(k) + 1;  // 4 is the cell itself
@@ -111,7 +111,7 @@ class LegColony final : public kit::Colony {
     follow(walker, [&](std::uint32_t at) { return choose(walker, at); });
   }
 
-  /// The roulette of eq. (1) over the neighbours that the ant has not been at.
+  /// Roulette selection of eq. (1) among the neighbours that the ant has not visited.
   Step choose(Walker& walker, std::uint32_t at) const {
     const double* const weights = memory_.weights.data() + leg(at, 0);
     unsigned closed = walker.visited.around(at);
@@ -139,12 +139,12 @@ class LegColony final : public kit::Colony {
     return {neighbour(at, chosen), metres_[chosen]};
   }
 
-  /// The direction of the goal where it is a neighbour, else kNeighbours.
+  /// Direction of the goal if it is a neighbour, else kNeighbours.
   Direction toward_goal(std::uint32_t at) const {
     const std::uint32_t reach = columns() + 1;
     return goal_ - at + reach <= 2 * reach ? direction_to(at, goal_) : kNeighbours;
   }
-  /// On levels of one or two columns cells in two directions have one number: one leg is open.
+  /// On levels of one or two columns, cells in two directions share an index: only one leg is open.
   Direction direction_to(std::uint32_t from, std::uint32_t to) const {
     Direction k = 0;
     while (k < kNeighbours &&

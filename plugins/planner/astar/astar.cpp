@@ -6,15 +6,15 @@
 //   doi:10.1109/TSSC.1968.300136. Weights f = w_g g + w_h h: I. Pohl, Artificial Intelligence 1,
 //   1970, doi:10.1016/0004-3702(70)90007-X.
 // Guarantees: complete and optimal on its lattice while the heuristic is octile, euclidean or zero,
-//   w_h <= w_g (manhattan: w_h sqrt(axes) <= w_g) and costs are summed; under limits on turns too,
-//   by (cell, heading).
+//   w_h <= w_g (manhattan: w_h sqrt(axes) <= w_g) and costs are summed; under turn limits too, when
+//   searching by (cell, heading).
 // Complexity: O(n log n) time, O(n) memory in the cells of the lattice; by (cell, heading) in the
 //   steps between them.
-// Deviations: moves are judged, not only cells; start and goal join the lattice by straight links;
-//   limits on turns are held against the single parent of a cell first, which is incomplete; a
-//   closed node is never opened again; where cells decide alone (cell_search.hpp) lengths are whole
-//   numbers (kit::StepCosts), and successors that another way reaches as cheaply are left out.
-// Symbols: g travelled cost, h heuristic, f = w_g g + w_h h.
+// Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
+//   turn limits are first checked against the single parent of a cell, which is incomplete; closed
+//   nodes are never reopened; where cells decide alone (cell_search.hpp) lengths are integers
+//   (kit::StepCosts), and successors that another path reaches as cheaply are pruned.
+// Symbols: g cost-to-come, h heuristic, f = w_g g + w_h h.
 #include <memory>
 
 #include "altiplan/kit/lattice/heading_search.hpp"
@@ -27,8 +27,8 @@
 namespace {
 
 using namespace altiplan;
-using kit::SearchResult;
 using kit::MoveCheck;
+using kit::SearchResult;
 using kit::SearchSettings;
 
 struct Params : kit::SearchParams {
@@ -37,14 +37,14 @@ struct Params : kit::SearchParams {
     f("costs", search.costs,
       {{"exact", kit::StepCosts::Scale::fine}, {"integer", kit::StepCosts::Scale::ratio}})
         .doc(
-            "where cells decide alone: lengths of steps as they are (to 1e-7 on cubes and "
-            "squares), or in the ratios 41 : 58 : 71 on cubes and 70 : 99 on squares, which make "
-            "more ways equal (routes up to 0.05 % and 0.006 % longer; on other cells 2.5 %)");
+            "where cells decide alone: step lengths exact (to 1e-7 on cubes and squares), or in "
+            "the ratios 41 : 58 : 71 on cubes and 70 : 99 on squares, which gives more paths "
+            "equal length (routes up to 0.05 % and 0.006 % longer; on other cells 2.5 %)");
   }
 };
 
-/// Of a step's cost, where lengths are to be exact and where they are ratios: beyond it the search
-/// is left to real numbers.
+/// Largest error of a step's cost, for exact lengths and for ratios; beyond it the search uses real
+/// numbers.
 constexpr double kGreatestError[] = {1e-4, 0.02};
 
 class AStar final : public Planner {
@@ -65,7 +65,7 @@ class AStar final : public Planner {
 
   enum class By { cells, one_parent, heading };
 
-  /// The search that is the quickest of those that the problem allows.
+  /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
     if (settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request) &&
         settings.cost.length_alone() && settings.cost.length == 1) {
@@ -74,8 +74,9 @@ class AStar final : public Planner {
     return kit::begins_by_heading(settings, request) ? By::heading : By::one_parent;
   }
 
-  /// One search for a route that costs less than `best_cost`.
-  SearchResult search(const SearchSettings& settings, const Request& request, double best_cost) const {
+  /// Searches once for a route that costs less than `best_cost`.
+  SearchResult search(const SearchSettings& settings, const Request& request,
+                      double best_cost) const {
     switch (quickest(settings, request)) {
       case By::cells:
         if (auto found = by_cells(request, settings)) {
@@ -83,7 +84,8 @@ class AStar final : public Planner {
         }
         [[fallthrough]];
       case By::one_parent: {
-        SearchResult found = on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
+        SearchResult found =
+            on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
         if (!kit::heading_may_help(settings, best_cost, sizeof(kit::HeadingCell) + 1, found)) {
           return found;
         }
@@ -96,14 +98,15 @@ class AStar final : public Planner {
     return by_heading(request, settings, best_cost);
   }
 
-  SearchResult by_heading(const Request& request, const SearchSettings& settings, double best_cost) const {
+  SearchResult by_heading(const Request& request, const SearchSettings& settings,
+                          double best_cost) const {
     return on_lattice<kit::HeadingSearch, kit::HeadingCell>(request, settings, best_cost,
                                                             heading_memory_);
   }
 
   template <class Search, class Node, class Memory>
   SearchResult on_lattice(const Request& request, const SearchSettings& settings, double best_cost,
-                   kit::ScratchPool<Memory>& pool) const {
+                          kit::ScratchPool<Memory>& pool) const {
     constexpr std::size_t kBytes = sizeof(Node) + 1;
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), kBytes});
@@ -114,8 +117,9 @@ class AStar final : public Planner {
     return Search(request, settings, lattice, best_cost, *memory).run();
   }
 
-  /// Nothing where the costs would become too coarse.
-  std::optional<SearchResult> by_cells(const Request& request, const SearchSettings& settings) const {
+  /// Empty if the costs would be too coarse.
+  std::optional<SearchResult> by_cells(const Request& request,
+                                       const SearchSettings& settings) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), astar::CellMemory::kBytesPerCell});
     if (auto refused =
@@ -124,7 +128,7 @@ class AStar final : public Planner {
     }
     const auto memory = cell_memory_.take();
     const Box box = lattice.spec().box();
-    // Few ways are longer than four times this, but in a maze they are.
+    // few paths are longer than four times this, except in mazes
     const auto scale = kit::StepCosts::between(settings.costs, lattice, request.start.position,
                                                request.goal.position);
     double longest_m = 4 * (box.max - box.min).sum();
@@ -153,5 +157,5 @@ class AStar final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "astar", AStar, Params,
-                "A* on a 3-D or level lattice, every move judged, with angle limits and a "
+                "A* on a 3-D or level lattice that checks every move, with angle limits and a "
                 "multi-term cost")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The multi-term cost against a Dijkstra search written for it, and the anytime search.
+// The multi-term cost compared with a Dijkstra search written for it, and the anytime search.
 #include <gtest/gtest.h>
 
 #include <queue>
@@ -13,7 +13,7 @@ constexpr const char* kPlanners[] = {"astar", "bidirectional_astar"};
 
 std::int64_t expanded(const PlanResult& result) { return result.counters.front().value; }
 
-/// 8 × 7 × 5 cells of 10 m with balls in them, which are the threats too.
+/// 8 × 7 × 5 cells of 10 m with balls in them, which are also the threats.
 Request among_balls(SplitMix64& random) {
   std::vector<Shape> balls;
   for (int i = 0; i < 5; ++i) {
@@ -53,7 +53,7 @@ double cost(const Request& request, const Route& route, const Weights& weights) 
   return sum;
 }
 
-/// Least cost of a way over the cells, by Dijkstra's algorithm; infinite where there is none.
+/// Minimum cost of a path over the cells, by Dijkstra's algorithm; infinite if there is none.
 double min_cost(const Request& request, const Weights& weights) {
   const auto at = [](int node) {
     return Vec3(5 + 10 * (node % 8), 5 + 10 * (node / 8 % 7), 5 + 10.0 * (node / 56));
@@ -109,7 +109,7 @@ TEST(AStarCosts, SummedCostsEqualDijkstra) {
           << name << result.message;
       if (expected < kInfinity) {
         ++solved;
-        // The sum of the oracle is not exact: near a centre the trapezoids are coarse.
+        // The oracle's sum is not exact: near a centre the trapezoids are coarse.
         EXPECT_NEAR(cost(request, result.route, w), expected, 2e-3 * expected) << name << yaml;
         longer += length(result.route) > shortest + 1;
       }
@@ -119,7 +119,7 @@ TEST(AStarCosts, SummedCostsEqualDijkstra) {
   EXPECT_GT(longer, 5);
 }
 
-/// Two ways around a wall, one as long as the other; a threat lies beside the eastern one.
+/// Two paths of equal length around a wall; a threat lies beside the eastern one.
 TEST(AStarCosts, ValuesAtAPlaceOrderTheSearchAndChooseNoWay) {
   Request request =
       testing::request_in(testing::world_of({BoxShape{{{-15, 15, -10}, {15, 35, 10}}},
@@ -142,8 +142,8 @@ TEST(AStarCosts, ValuesAtAPlaceOrderTheSearchAndChooseNoWay) {
   const PlanResult values = plan("weight_threat: 1, length_unit_m: 10, accumulate: none");
   ASSERT_EQ(plain.status, PlanStatus::solved);
   EXPECT_LT(east(summed), 0);
-  // As printed the way there does not matter, so the route is as short as without threats; that it
-  // leads west is because cells there come first.
+  // As published, the cost of the path there does not count, so the route is as short as without
+  // threats; it leads west because cells there come first.
   EXPECT_NEAR(length(values.route), length(plain.route), 1e-9);
   EXPECT_LT(east(values), 0);
   EXPECT_FALSE(testing::make_planner("astar", "{weight_threat: 1}")->traits().optimal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lengths of astar against Dijkstra's algorithm, and as laws have them.
+// Lengths of astar compared with Dijkstra's algorithm, and metamorphic properties of lengths.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -20,7 +20,7 @@ using testing::random_balls;
 using testing::random_levels;
 using testing::shortest;
 
-/// Whether every cell that the step's box (or only its ends) spans is free.
+/// True if every cell that the step's box (or only its ends) spans is free.
 bool cells_free(const VoxelGrid& grid, const Cell& a, const Cell& b, bool box) {
   if (grid.blocked(a) || grid.blocked(b)) {
     return false;
@@ -136,7 +136,7 @@ TEST(AStar, ExactMovesEqualDijkstraUnderTheJudge) {
     } else {
       EXPECT_TRUE(result.proved);
     }
-    // Whole cells only: never shorter, and still sound.
+    // Whole cells only: never shorter, and still valid.
     const PlanResult blocky =
         make_planner("astar", "{cell_m: [10, 10, 5], moves: cells}")->plan(request);
     if (blocky.status == PlanStatus::solved) {

@@ -11,9 +11,9 @@
 
 namespace altiplan::astar {
 
-/// What a search knows of a cell.
+/// State of a cell in the search.
 struct Node {
-  double g;  ///< cost of the way from the start
+  double g;  ///< cost-to-come from the start
   kit::MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
   std::uint8_t in;  ///< the step that led here; kHere: linked to the start
@@ -24,14 +24,14 @@ inline constexpr Node kFresh = {kInfinity, {}, 0, 0, false};
 struct Memory {
   kit::NodeStore<Node> nodes;
   kit::OpenList open;
-  std::vector<double> lengths;  ///< of the ways, where costs are others
+  std::vector<double> lengths;  ///< lengths of the paths, where costs are not lengths
 };
 
 /// One A* search from request.start to request.goal over the cells of a lattice.
 ///
-/// Start and goal join the lattice by straight links (Lattice::links), so neither has to be the
-/// centre of a cell. A closed cell stays closed: with limits on turns its parent then never changes
-/// under its successors, and without them a consistent heuristic never asks for it.
+/// Straight links (Lattice::links) join start and goal to the lattice, so neither has to be the
+/// centre of a cell. A closed cell is never reopened: under turn limits its parent then never
+/// changes under its successors, and without them a consistent heuristic never requires it.
 class Search : kit::GoalSearch {
  public:
   Search(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
@@ -63,7 +63,7 @@ class Search : kit::GoalSearch {
       return with(route_to(fallback_, false), fallback_g_, false, status != PlanStatus::no_route);
     }
     progress_.memory_full = memory_full();
-    // Beyond this a cell may have been closed by a parent, or at a length, that was not the best.
+    // Otherwise a cell may have been closed by a parent, or at a length, that was not the best.
     return without(status, !rules_.parent_mattered() && lengths_prove());
   }
 
@@ -117,7 +117,8 @@ class Search : kit::GoalSearch {
       add_to_trace(index, node, c, here);
     }
     try_goal(index, node.g, length_here, c, here, from);
-    // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
+    // A first step after a heading, or after a link, forms no pair of steps: it is checked as a
+    // whole.
     const bool judged_whole = rules_.is_first(node.in) && from;
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
@@ -141,7 +142,7 @@ class Search : kit::GoalSearch {
     }
   }
 
-  /// Of this search, not of what the pool's memory has grown to.
+  /// Memory of this search, not the size to which the pool has grown.
   bool memory_full() const {
     return lattice_.size() * sizeof(Node) + open_.size() * sizeof(kit::OpenList::Entry) >
            settings_.max_bytes;

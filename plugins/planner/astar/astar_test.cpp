@@ -30,7 +30,7 @@ TEST(AStar, KeepsTurnAndClimbLimits) {
     request.limits.max_turn_horizontal = radians(55);
     request.limits.max_climb = radians(30);
     request.start.velocity = {10, 2, 0};
-    request.goal.position = {93, 82, 33};  // no centre of a cell
+    request.goal.position = {93, 82, 33};  // not the centre of a cell
     const PlanResult result = make_planner("astar", "{cell_m: [10, 10, 5]}")->plan(request);
     if (result.status == PlanStatus::solved) {
       ++solved;

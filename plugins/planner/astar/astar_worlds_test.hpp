@@ -12,7 +12,7 @@
 
 namespace altiplan::testing {
 
-/// Length of the shortest way over cells by Dijkstra's algorithm; infinite where there is none.
+/// Length of the shortest path over cells by Dijkstra's algorithm; infinite if there is none.
 inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, const Cell& goal,
                        int neighbours,
                        const std::function<bool(const Cell&, const Cell&)>& step_free) {

@@ -18,24 +18,24 @@ using kit::Heuristic;
 using Settings = kit::SearchSettings;
 
 struct CellMemory {
-  kit::ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 where the cell was not reached
-  kit::ScratchArray<std::uint64_t> closed;      ///< a bit a cell, laid out like the occupancy
+  kit::ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 if the cell was not reached
+  kit::ScratchArray<std::uint64_t> closed;      ///< one bit per cell, laid out like the occupancy
   kit::BucketQueue open;
 
   /// Without the open list, rounded up.
   static constexpr std::size_t kBytesPerCell = 5;
 };
 
-/// The same search where the cells that a step leads through, and its direction, decide alone
-/// whether it is free (MoveRules::cells_decide). A cell then does with 4 bytes and two bits: g is a
-/// whole number, parents are found again from it, and bits hold what is blocked and what is closed.
+/// The same search for when the cells that a step passes through, and its direction, decide alone
+/// if it is free (MoveRules::cells_decide). A cell then needs only 4 bytes and two bits: g is an
+/// integer, parents are recovered from it, and bits store which cells are blocked and closed.
 ///
-/// A successor that the cell before reaches as cheaply on another way is left out: on a plane
-/// everywhere, in space where nothing around the cell is blocked (kit/pruning.hpp). Most successors
-/// otherwise are reached from many sides first, each time a little better.
+/// A successor that the preceding cell reaches as cheaply on another path is pruned: everywhere in
+/// 2-D, in 3-D where nothing around the cell is blocked (kit/pruning.hpp). Most successors would
+/// otherwise be reached from many sides first, each time slightly more cheaply.
 class CellSearch {
  public:
-  /// `costs` are of the lattice. All of it must outlive the search.
+  /// `costs` are those of the lattice. All arguments must outlive the search.
   CellSearch(const Request& request, const Settings& settings, const kit::Lattice& lattice,
              const kit::StepCosts& costs, CellMemory& memory)
       : request_(request),
@@ -67,12 +67,12 @@ class CellSearch {
     }
   }
 
-  /// Nothing where a way is too long for costs as fine as these.
+  /// Empty if a path is too long for costs as fine as these.
   std::optional<PlanResult> run() { return level_ ? search<true>() : search<false>(); }
 
  private:
   struct Move {
-    std::uint32_t stride;  ///< difference of index, modulo 2^32
+    std::uint32_t stride;  ///< index difference, modulo 2^32
     std::uint32_t cost;
     int x, y, z;
   };
@@ -84,7 +84,7 @@ class CellSearch {
   };
 
   std::uint32_t g(std::uint32_t index) const { return ~complement_[index]; }
-  /// Of a cell's bit; on a plane the level of the border below it is left out.
+  /// Position of a cell's bit; in 2-D the border level below it is omitted.
   std::size_t closed_bit(std::size_t bit) const { return level_ ? bit - grid_.level_bits() : bit; }
   bool is_closed(std::size_t bit) const {
     const std::size_t at = closed_bit(bit);
@@ -117,7 +117,7 @@ class CellSearch {
     }
   }
 
-  /// Lower bound of the cost from the cell to the goal (but for `manhattan`).
+  /// Lower bound of the cost from the cell to the goal (except for `manhattan`).
   template <bool kLevel>
   std::uint32_t heuristic(int x, int y, int z) const {
     if (near_goal_ != nullptr) {
@@ -196,7 +196,7 @@ class CellSearch {
         try_goal(entry.node);
       }
       const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
-      // Of equals the last one is taken first: the step along most axes, as kit::kNatural has it.
+      // Among equals the last one is taken first: the step along most axes, as in kit::kNatural.
       for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
         for (kit::DirectionMask rest = open & kit::kAlongAxes[axes - 1]; rest != 0;
              rest &= rest - 1) {
@@ -213,7 +213,7 @@ class CellSearch {
     return without_goal(std::move(result));
   }
 
-  /// Directions in which to look from a cell, reached by the step `from`.
+  /// Directions to examine from a cell that was reached by the step `from`.
   template <bool kLevel>
   kit::DirectionMask successors(std::size_t bit, std::uint32_t from) const {
     const kit::DirectionMask blocked = kit::bits_around<kLevel>(grid_, grid_.words().data(), bit);
@@ -224,7 +224,7 @@ class CellSearch {
       return kit::kNatural[from];
     }
     const kit::DirectionMask free = steps_ & kit::free_steps(blocked, settings_.corner);
-    // On a plane it is as quick to find that a closed cell was reached at less cost.
+    // In 2-D it is as fast to find that a closed cell was reached at less cost.
     return kLevel && consistent_
                ? free
                : free & ~kit::bits_around<kLevel>(grid_, closed_.data(), closed_bit(bit));
@@ -245,7 +245,7 @@ class CellSearch {
 
   bool memory_full() const { return open_.bytes() > max_open_bytes_; }
 
-  /// The direction of a step that led to the cell; kHere: it is linked to the start.
+  /// Direction of the step that led to the cell; kHere: it is linked to the start.
   int step_to(std::uint32_t index, int likely) const {
     const kit::DirectionMask free =
         kit::free_steps(kit::blocked_around(grid_, lattice_.cell(index)), settings_.corner);
@@ -275,7 +275,7 @@ class CellSearch {
     }
     PlanResult result = kit::solved(std::move(route), progress_, lattice_, rules_);
     if (settings_.costs == kit::StepCosts::Scale::ratio) {
-      result.message += ", lengths by ratios of whole numbers, up to " +
+      result.message += ", lengths by ratios of integers, up to " +
                         std::to_string(100 * costs_.error()) + " % off";
     }
     return result;
@@ -351,7 +351,7 @@ class CellSearch {
   bool level_;
   const kit::LevelSuccessors& level_successors_;
   kit::DirectionMask steps_;
-  bool prune_;   ///< the ways around a cell that pruning counts on are those of all steps
+  bool prune_;   ///< the paths around a cell on which pruning relies consist of all steps
   bool is_sum_;  ///< f is g + h
   double weight_g_;
   double weight_h_;
@@ -359,9 +359,9 @@ class CellSearch {
   Vec3 goal_;
   std::array<Move, kit::kDirections> moves_{};
   std::vector<GoalLink> goal_links_;
-  std::uint32_t first_link_ = ~std::uint32_t{0};  ///< least and greatest index of them
+  std::uint32_t first_link_ = ~std::uint32_t{0};  ///< minimum and maximum index of them
   std::uint32_t last_link_ = 0;
-  const GoalLink* near_goal_ = nullptr;  ///< where the octile distance to it is the heuristic
+  const GoalLink* near_goal_ = nullptr;  ///< set if the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;
   kit::SearchStats progress_;

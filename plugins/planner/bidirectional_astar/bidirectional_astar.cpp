@@ -5,13 +5,13 @@
 //   Econometric Institute Report EI 2009-10, Erasmus University Rotterdam, 2009. With limits on
 //   angles: reference [13] of paper 002.
 // Guarantees: complete and optimal on its lattice while the heuristic is octile, euclidean or zero,
-//   w_h <= w_g (manhattan: w_h sqrt(axes) <= w_g) and costs are summed; under limits on turns too,
-//   by (cell, heading).
+//   w_h <= w_g (manhattan: w_h sqrt(axes) <= w_g) and costs are summed; under turn limits too, when
+//   searching by (cell, heading).
 // Complexity: O(n log n) time, O(n) memory in the cells of the lattice; by (cell, heading) in the
 //   steps between them.
-// Deviations: moves are judged, not only cells; start and goal join the lattice by straight links;
-//   where the sides meet the turn is judged; a closed node is never opened again.
-// Symbols: g travelled cost of a side, h its heuristic, f = w_g g + w_h h.
+// Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
+//   the turn is checked where the sides meet; closed nodes are never reopened.
+// Symbols: g cost-to-come of a side, h its heuristic, f = w_g g + w_h h.
 #include <memory>
 
 #include "altiplan/kit/lattice/search_params.hpp"
@@ -23,8 +23,8 @@ namespace {
 
 using namespace altiplan;
 using bidirectional::Node;
-using kit::SearchResult;
 using kit::SearchParams;
+using kit::SearchResult;
 using kit::SearchSettings;
 
 class BidirectionalAStar final : public Planner {
@@ -43,8 +43,9 @@ class BidirectionalAStar final : public Planner {
                         });
   }
 
-  /// One search for a route that costs less than `best_cost`.
-  SearchResult search(const SearchSettings& settings, const Request& request, double best_cost) const {
+  /// Searches once for a route that costs less than `best_cost`.
+  SearchResult search(const SearchSettings& settings, const Request& request,
+                      double best_cost) const {
     if (kit::begins_by_heading(settings, request)) {
       return run(settings, request, best_cost, true);
     }
@@ -57,7 +58,7 @@ class BidirectionalAStar final : public Planner {
   }
 
   SearchResult run(const SearchSettings& settings, const Request& request, double best_cost,
-            bool by_heading) const {
+                   bool by_heading) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), sizeof(Node) + 1});
     if (auto refused = kit::beyond_budget(lattice, sizeof(Node) + 1, request.budget)) {
@@ -76,4 +77,4 @@ class BidirectionalAStar final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "bidirectional_astar", BidirectionalAStar, SearchParams,
-                "A* from both ends at once, with the options of astar")
+                "A* from both ends simultaneously, with the options of astar")

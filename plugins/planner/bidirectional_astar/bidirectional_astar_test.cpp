@@ -31,7 +31,7 @@ TEST(BidirectionalAStar, RoutesAreAsLongAsFromOneEnd) {
   for (int world = 0; world < 60; ++world) {
     Request request = among_balls(random, 3 + world % 25);
     if (world % 2 == 0) {
-      request.goal.position = {93, 82, 33};  // no centre of a cell
+      request.goal.position = {93, 82, 33};  // not the centre of a cell
     }
     if (world % 3 == 0) {
       request.limits.max_route_length = 140;
@@ -81,7 +81,7 @@ TEST(BidirectionalAStar, TurnsAreKeptAtBothEndsAndWhereTheSidesMeet) {
   EXPECT_GT(solved, 60);
 }
 
-/// Admits a leg after one before it only where both lead up, or both down or level.
+/// Allows a leg after another only if both climb, both descend or both are level.
 class NoPorpoising final : public Constraint {
   bool do_admits(const Leg& leg) const override {
     return !leg.before || (leg.from.z() > leg.before->z()) == (leg.to.z() > leg.from.z());

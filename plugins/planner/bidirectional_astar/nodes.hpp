@@ -14,21 +14,21 @@ namespace altiplan::bidirectional {
 /// A node of one side: a cell, and the step that leads to it (forward) or away from it (backward)
 /// on the path to that side's end.
 struct Arrival {
-  double g;       ///< cost of the way to that end
-  double length;  ///< of that way
+  double g;       ///< cost of the path to that end
+  double length;  ///< length of that path
   std::uint32_t cell;
-  std::uint32_t from;    ///< the arrival before, toward that end
+  std::uint32_t from;    ///< the preceding arrival, toward that end
   std::uint32_t beside;  ///< another arrival of this side at the cell
   std::uint8_t along;    ///< that step; kHere: linked to the end
 };
 
-/// What one side knows of a cell.
+/// State of a cell on one side.
 struct Reached {
   double g;              ///< of its cheapest arrival
-  kit::StepMask taken;   ///< steps on from the cell that need no further arrival
+  kit::StepMask taken;   ///< outgoing steps that need no further arrival
   std::uint32_t newest;  ///< of its arrivals
   std::uint8_t along;    ///< of the cheapest
-  bool is_open;          ///< steps that no arrival may take are among `taken`
+  bool is_open;          ///< `taken` includes steps that no arrival may take
 };
 
 struct Node {

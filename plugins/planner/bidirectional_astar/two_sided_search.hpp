@@ -13,13 +13,14 @@ namespace altiplan::bidirectional {
 /// A* from both ends at once, by W. Pijls, H. Post: Yet Another Bidirectional Algorithm for Finding
 /// the Shortest Path (NBA*), Erasmus University Rotterdam, EI 2009-10.
 ///
-/// The sides take turns, each until its least f rises. A node is opened by one of them at most; one
-/// that no better route can lead through, by what its own side estimates or by how far the other
-/// side has come, is left out. The search ends when the least f of a side is no better than the
-/// best meeting.
+/// The sides take turns, each until its minimum f rises. At most one of them expands a node; a node
+/// is pruned if no better route can pass through it, by its own side's estimate or by the other
+/// side's progress. The search ends when the minimum f of a side is no better than the best
+/// meeting.
 ///
 /// `by_heading`: nodes are cells with a direction, so that what lies beyond a node depends on the
-/// node alone, where rules look at two legs too; else a cell has its cheapest arrival only.
+/// node alone, for constraints on two consecutive legs; else only the cheapest arrival at a cell is
+/// kept.
 class TwoSidedSearch : kit::LatticeSearch {
  public:
   TwoSidedSearch(const Request& request, const kit::SearchSettings& settings,
@@ -69,20 +70,20 @@ class TwoSidedSearch : kit::LatticeSearch {
 
   void begin();
 
-  /// Of the way that a side has to go.
+  /// Estimate of the path that a side still has to cover.
   const kit::Estimate& estimate(Side side) const { return side == forward ? to_goal_ : to_start_; }
-  /// Steps that may go on from an arrival.
+  /// Steps that may follow an arrival.
   kit::StepMask steps_on(Side side, int along) const {
     return side == forward ? rules_.after(along) : rules_.before(along);
   }
 
-  /// The side to go on with; nothing once there is no better meeting.
+  /// The side to continue with; empty once no better meeting is possible.
   std::optional<Side> next_side() {
     if (open_[forward].empty()) {
       return std::nullopt;
     }
     if (open_[backward].empty()) {
-      // Only a cell within the goal's tolerance is left to be found.
+      // Only a cell within the goal's tolerance remains to be found.
       const bool may_fall_back = meeting_[forward] == kNone && request_.goal.tolerance_m > 0;
       return may_fall_back ? std::optional(forward) : std::nullopt;
     }
@@ -92,18 +93,19 @@ class TwoSidedSearch : kit::LatticeSearch {
         return std::nullopt;
       }
     }
-    // A side goes on while its f stays the same: in the open one of them gets there alone.
+    // A side continues while its f stays the same: in open air one of them gets there alone.
     if (open_[side_].top().f > level_) {
       side_ = open_[forward].size() <= open_[backward].size() ? forward : backward;
     }
     level_ = open_[side_].top().f;
     return side_;
   }
-  /// Whether a route of that f is better than the best, by more than sums of costs are rounded.
+  /// True if a route of cost f is better than the best one by more than the rounding of summed
+  /// costs.
   bool is_better(double f) const {
     return best_cost_ == kInfinity || f < settings_.weight_g * best_cost_ - 2 * quantum_;
   }
-  /// Least f on a side's open list.
+  /// Minimum f on a side's open list.
   double least(Side side) const { return open_[side].top().f * quantum_; }
 
   double evaluation_of(Side side, double g, const Cell& c, const Vec3& at) const {
@@ -148,8 +150,8 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
   }
 
-  /// Whether the vehicle may go on from an arrival of the forward side as one of the backward side
-  /// says.
+  /// True if the vehicle can continue from an arrival of the forward side along one of the backward
+  /// side.
   bool join(const Arrival& to, const Arrival& away, const Vec3& here) {
     if (away.along == kit::kHere && centred_[backward]) {
       return true;
@@ -164,16 +166,16 @@ class TwoSidedSearch : kit::LatticeSearch {
            rules_.admits(from, here, here + lattice_.step(kit::direction_of(away.along)));
   }
 
-  /// Whether the leg of a backward arrival may be flown by a vehicle that comes to it so; and,
-  /// while it has no heading by its steps, those after it, to the first that has one.
+  /// True if a vehicle that arrives so may fly the leg of a backward arrival and, while its steps
+  /// give it no heading, the following legs up to the first that has one.
   bool first_legs_ok(std::optional<Approach> from, Arrival away, Vec3 here);
 
-  /// How the vehicle comes to an arrival of the forward side.
+  /// Approach of the vehicle to an arrival of the forward side.
   std::optional<Approach> before(const Arrival& arrival, const Vec3& here) const {
     return rules_.approach(arrival.along, here, centred_[forward]);
   }
 
-  /// Whether nothing is left that the arrival may take, or the other side has opened its node.
+  /// True if the arrival has no step left to take, or the other side has expanded its node.
   bool is_settled(Side side, std::uint32_t index) const {
     const Arrival& arrival = arrivals_[side][index];
     const Node& node = nodes_[arrival.cell];
@@ -182,7 +184,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     if (own.is_open && (steps_on(side, arrival.along) & ~own.taken) == 0) {
       return true;
     }
-    // What the other side has opened has met this arrival, in a route that may be too long.
+    // This arrival has met what the other side has expanded, in a route that may be too long.
     if (!there.is_open || arrival.along == kit::kHere || meeting_[forward] == kNone) {
       return false;
     }
@@ -190,7 +192,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     return (opened >> arrival.along & 1) != 0;
   }
 
-  /// Whether no route through the arrival is better than the best meeting.
+  /// True if no route through the arrival is better than the best meeting.
   bool leads_nowhere(Side side, std::uint32_t index) const {
     if (best_cost_ == kInfinity || open_[other(side)].empty()) {
       return false;
@@ -198,14 +200,14 @@ class TwoSidedSearch : kit::LatticeSearch {
     const Arrival& arrival = arrivals_[side][index];
     const Cell c = lattice_.cell(arrival.cell);
     const double at = costs_.at(lattice_.position(c));
-    // What the other side has not opened costs it at least this.
+    // Lower bound of the other side's cost to nodes that it has not expanded.
     const double beyond = least(other(side)) - settings_.weight_h * estimate(other(side))(c) -
                           settings_.weight_g * at;
     return !is_better(settings_.weight_g * arrival.g + beyond);
   }
 
   void expand(Side side, std::uint32_t index) {
-    const Arrival arrival = arrivals_[side][index];  // pushes move it
+    const Arrival arrival = arrivals_[side][index];  // copied: pushes move it
     Node& node = nodes_[arrival.cell];
     Reached& own = node.by[side];
     const Cell c = lattice_.cell(arrival.cell);
@@ -233,7 +235,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
   }
 
-  /// Goes on from an arrival along a step, which the backward side takes back.
+  /// Extends an arrival by a step, which the backward side reverses.
   void take(Side side, std::uint32_t index, const Arrival& arrival, Node& node, const Cell& c,
             const Vec3& here, int step) {
     const int sign = side == forward ? 1 : -1;
@@ -274,8 +276,8 @@ class TwoSidedSearch : kit::LatticeSearch {
     return beyond;
   }
 
-  /// What two legs in a row must keep beside the turn: forward the leg to `there` comes after the
-  /// arrival, backward the leg of the arrival comes after the one from `there`.
+  /// Constraints on two consecutive legs other than the turn: forward, the leg to `there` follows
+  /// the arrival; backward, the leg of the arrival follows the one from `there`.
   bool admits(Side side, const Arrival& arrival, const Vec3& here, const Vec3& there, int step) {
     if (side == forward) {
       const std::optional<Approach> from = before(arrival, here);
@@ -283,14 +285,14 @@ class TwoSidedSearch : kit::LatticeSearch {
              (!rules_.is_first(arrival.along) || !from || rules_.any_leg_ok(from, here, there));
     }
     if (arrival.along == kit::kHere) {
-      // Of a vehicle without a heading by its steps it is judged where the sides meet.
+      // Without a heading given by its steps, the vehicle is checked where the sides meet.
       return centred_[backward] || rules_.is_first(step) ||
              rules_.any_leg_ok(rules_.approach(step, here, false), here, goal_);
     }
     return rules_.admits(there, here, here + lattice_.step(kit::direction_of(arrival.along)));
   }
 
-  /// Whether another arrival at the cell can do all that this one can, as cheaply.
+  /// True if another arrival at the cell offers every step that this one does, as cheaply.
   bool is_needless(Side side, const Reached& reached, const Arrival& arrival) const {
     if (!by_heading_) {
       return reached.g <= arrival.g || reached.is_open;
@@ -308,7 +310,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
   }
 
-  /// Of this search, not of what the pool's memory has grown to.
+  /// Memory of this search, not the size to which the pool has grown.
   bool memory_full() const {
     std::size_t bytes = lattice_.size() * sizeof(Node);
     for (const Side side : {forward, backward}) {
@@ -331,7 +333,7 @@ class TwoSidedSearch : kit::LatticeSearch {
 
   kit::Estimate to_start_;
   bool by_heading_;
-  double quantum_;  ///< of f
+  double quantum_;  ///< quantum of f
   kit::NodeStore<Node>& nodes_;
   std::array<kit::OpenList, 2>& open_;
   std::array<std::vector<Arrival>, 2>& arrivals_;
@@ -339,6 +341,6 @@ class TwoSidedSearch : kit::LatticeSearch {
   double level_ = 0;               ///< f of that side, in quanta
   std::array<bool, 2> centred_{};  ///< the side's end is the centre of its cell
   std::array<std::uint32_t, 2> meeting_ = {kNone, kNone};  ///< arrivals that the best route joins
-  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal is out of reach
+  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, if the goal is out of reach
 };
 }  // namespace altiplan::bidirectional

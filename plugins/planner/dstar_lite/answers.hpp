@@ -10,7 +10,7 @@
 
 namespace altiplan::dstar_lite {
 
-/// The rule that a leg of the route does not keep, or "".
+/// The constraint that a leg of the route violates, or "".
 inline std::string first_broken(const Route& route, const Request& request) {
   std::optional<Approach> before = request.before_start();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
@@ -22,7 +22,7 @@ inline std::string first_broken(const Route& route, const Request& request) {
   return "";
 }
 
-/// Says why there is no route: how far the search came, and what stopped it.
+/// Explains why there is no route: the search's progress and what stopped it.
 inline std::string explanation(PlanStatus status, const kit::SearchStats& progress,
                                const Problem& problem, const kit::MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"

@@ -11,13 +11,13 @@
 
 namespace altiplan::dstar_lite {
 
-/// A way to or from the lattice: a node, and what the leg there costs.
+/// A link to or from the lattice: a node and the cost of the leg.
 struct Link {
   std::uint32_t node;
   std::uint32_t cost;
 };
 
-/// Few links among many nodes.
+/// A few links among many nodes.
 class Links {
  public:
   void clear() {
@@ -33,7 +33,7 @@ class Links {
   }
   const std::vector<Link>& all() const { return all_; }
   bool may_hold(std::uint32_t node) const { return node - first_ <= span_; }
-  /// Of the node, kNever where it has none.
+  /// Cost of the node's link, kNever if it has none.
   std::uint32_t cost(std::uint32_t node) const {
     std::uint32_t least = kNever;
     if (may_hold(node)) {
@@ -73,7 +73,7 @@ void for_each_goal_link(const Problem& problem, Legs& legs, bool within, const V
   });
 }
 
-/// Calls visit(link) for those of the links that the vehicle may fly from where it is.
+/// Calls visit(link) for the links that the vehicle may fly from its current position.
 template <class Visit>
 void for_each_start_link(const Problem& problem, Legs& legs,
                          const std::vector<kit::Lattice::Link>& links, const Visit& visit) {
@@ -106,12 +106,12 @@ class CellGraph {
   std::uint32_t estimate(const Cell& c) const { return to_start_(c); }
 
   /// Calls visit(s, c(s, u), cell of s) for the vertices from which a leg leads to u, at cell c,
-  /// but for those in the directions `without`.
+  /// except in the directions `without`.
   template <class Visit>
   void predecessors(std::uint32_t u, const Cell& c, kit::DirectionMask without,
                     const Visit& visit) {
     const kit::DirectionMask free = legs_.into(u, c) & ~without;
-    // Of equals the last one is taken first: the step along most axes.
+    // Among equals the last one is taken first: the step along most axes.
     for (const kit::DirectionMask along : kit::kAlongAxes) {
       for (kit::DirectionMask open = free & along; open != 0; open &= open - 1) {
         const Move& move = moves_[std::size_t(std::countr_zero(open))];
@@ -119,8 +119,9 @@ class CellGraph {
       }
     }
   }
-  /// Calls visit(n, c(s, n), is_free) for the vertices that a leg from s may lead to; is_free()
-  /// says whether it does. That in direction `likely` comes first; ends when a visit returns false.
+  /// Calls visit(n, c(s, n), is_free) for the vertices to which a leg from s may lead; is_free()
+  /// checks the leg. The vertex in direction `likely` comes first; stops when a visit returns
+  /// false.
   template <class Visit>
   void successors(std::uint32_t s, int likely, const Visit& visit) {
     const Cell c = lattice_.cell(s);
@@ -134,7 +135,7 @@ class CellGraph {
       }
     }
   }
-  /// Of the leg from s to its successor n.
+  /// Direction of the leg from s to its successor n.
   int direction(std::uint32_t s, std::uint32_t n) const {
     int d = 0;
     while (moves_[std::size_t(d)].stride != n - s) {
@@ -142,11 +143,11 @@ class CellGraph {
     }
     return d;
   }
-  /// Of the leg from a vertex to the goal, kNever where there is none.
+  /// Cost of the leg from a vertex to the goal, kNever if there is none.
   std::uint32_t goal_cost(std::uint32_t s) const { return goal_.cost(s); }
-  /// The vertices that the vehicle may fly to from where it is.
+  /// The vertices to which the vehicle may fly from its current position.
   const Links& start() const { return start_; }
-  /// Calls visit(s) for the vertices that are one leg from the goal, or may have been.
+  /// Calls visit(s) for the vertices that are, or may have been, one leg from the goal.
   template <class Visit>
   void for_each_at_goal(const Visit& visit) {
     for (const kit::Lattice::Link& link : lattice_.links(problem_.request.goal.position)) {
@@ -182,7 +183,7 @@ class CellGraph {
 
  private:
   struct Move {
-    std::uint32_t stride;  ///< difference of index, modulo 2^32
+    std::uint32_t stride;  ///< index difference, modulo 2^32
     std::uint32_t cost;
     int x, y, z;
   };

@@ -12,7 +12,7 @@
 
 namespace altiplan::dstar_lite {
 
-/// Calls visit(n) for the words, from `first` to `end`, in which two occupancies differ.
+/// Calls visit(n) for the words from `first` to `end` in which two occupancies differ.
 template <class Visit>
 void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::size_t first,
                            std::size_t end, const Visit& visit) {
@@ -23,7 +23,7 @@ void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::s
     const std::size_t stop = std::min(n + kAtOnce, end);
     std::uint64_t changed = 0;
     if (stop - n == kAtOnce) {
-      for (std::size_t w = 0; w < kAtOnce; ++w) {  // without a branch: many words, few changes
+      for (std::size_t w = 0; w < kAtOnce; ++w) {  // branch-free: many words, few changes
         changed |= a[n + w] ^ b[n + w];
       }
     } else {
@@ -37,9 +37,9 @@ void for_each_changed_word(const VoxelGrid& before, const VoxelGrid& now, std::s
   }
 }
 
-/// The cells in which two occupancies of one layout differ, looked for inside the changes' boxes
-/// alone, each grown by what grows obstacles, and of these inside known(level). Where boxes
-/// overlap, more than once.
+/// The cells in which two occupancies of the same layout differ. Searches only inside the changes'
+/// boxes, each grown by the obstacle inflation, and within known(level). Where boxes overlap, a
+/// cell may occur more than once.
 template <class Known>
 std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
                                 std::span<const Change> changes, const Known& known,
@@ -59,7 +59,7 @@ std::vector<Cell> changed_cells(const VoxelGrid& before, const VoxelGrid& now,
       }
       const std::size_t first = std::size_t(low[0] + 1) / 64;
       const std::size_t last = std::size_t(high[0] + 1) / 64;
-      const auto look = [&](int j0, int j1) {  // rows j0 to j1 are one piece of memory
+      const auto look = [&](int j0, int j1) {  // rows j0 to j1 are contiguous in memory
         const std::size_t base = now.bit(-1, j0, k) / 64;
         const std::size_t end = now.bit(-1, j1, k) / 64 + last + 1;
         for_each_changed_word(before, now, base + first, end, [&](std::size_t n) {

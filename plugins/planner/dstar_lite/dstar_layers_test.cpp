@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions of dstar_lite while layers come, move and go.
+// Sessions of dstar_lite while layers appear, move and disappear.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,8 +13,8 @@ namespace {
 using testing::make_planner;
 using testing::request_in;
 
-/// A session that is told of solids coming, moving and going, beside plans made afresh. The start
-/// stays: a plan made afresh would lay its cells around another one.
+/// A session that is notified of solids that appear, move and disappear, compared with new plans.
+/// The start is fixed: a new plan would otherwise place its cells around another one.
 class Beside {
  public:
   Beside(Request request, const std::string& with, const std::string& afresh)
@@ -100,7 +100,7 @@ class Beside {
   int solved_ = 0;
 };
 
-/// How many plans of all found a route.
+/// Number of plans that found a route.
 int run(const Request& request, const std::string& with, const std::string& afresh, double size,
         std::uint64_t seed) {
   Beside beside(request, with, afresh);
@@ -189,7 +189,7 @@ TEST(DStarLiteLayers, AGroundComesAndGoes) {
   }
 }
 
-/// No legs to the east in the north, and no turns to the left in the south.
+/// No eastward legs in the north, and no left turns in the south.
 class OneWay final : public Constraint {
   bool do_admits(const Leg& leg) const override {
     const Vec3 way = leg.to - leg.from;

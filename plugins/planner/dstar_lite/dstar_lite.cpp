@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// D* Lite: a shortest way, repaired where the world changes while the vehicle flies.
+// D* Lite: a shortest path, repaired where the world changes while the vehicle flies.
 //
 // Citation: S. Koenig, M. Likhachev: D* Lite. AAAI 2002; Fast Replanning for Navigation in Unknown
 //   Terrain. IEEE Transactions on Robotics 21(3), 2005, doi:10.1109/TRO.2004.838026 (the optimized
-//   version). Raises that wait for a route: D. Ferguson, A. Stentz: The Delayed D* Algorithm for
-//   Efficient Path Replanning. ICRA 2005.
-// Guarantees: complete and optimal on its lattice, after every update too; under rules that look at
-//   two legs by (cell, heading).
+//   version). Delayed raises: D. Ferguson, A. Stentz: The Delayed D* Algorithm for Efficient Path
+//   Replanning. ICRA 2005.
+// Guarantees: complete and optimal on its lattice, also after every update; under constraints on
+//   two consecutive legs when searching by (cell, heading).
 // Complexity: O(n log n) time, O(n) memory in the cells of the lattice for a plan; a repair takes
-//   what the change moves, the length of the route, and a look at the words of the occupancy inside
-//   the changes' boxes.
-// Deviations: costs are whole numbers (kit::StepCosts); start and goal are places off the cells,
-//   each with links to some, and the start's g is never stored; keys have one part, and among equal
-//   ones a raise comes first, then what was pushed last: the cells of equal ways are not all
-//   opened; vertices to be raised on account of a change wait until a route leads over them; stale
-//   entries of the open list are skipped when they are taken.
-// Symbols: g, rhs cost of the way to the goal, as known and by one leg's look ahead; h estimate of
-//   the way to the start; k_m what keys on the open list may be behind by.
+//   time in the number of affected vertices, the length of the route, and the occupancy words
+//   inside the changes' boxes.
+// Deviations: costs are integers (kit::StepCosts); start and goal lie off the cells, each linked to
+//   some of them, and the start's g is never stored; keys have one part, and among equal ones a
+//   raise comes first, then the last one pushed, so that not all cells of equal paths are expanded;
+//   vertices to be raised because of a change wait until a route passes over them; stale entries of
+//   the open list are skipped when popped.
+// Symbols: g, rhs cost of the path to the goal, as known and by one-step lookahead; h estimate of
+//   the path to the start; k_m the amount by which keys on the open list may lag.
 #include <memory>
 
 #include "altiplan/planner.hpp"
@@ -35,9 +35,10 @@ struct Params : kit::SearchParams {
        {"parent", kit::SearchState::parent},
        {"cell_and_heading", kit::SearchState::cell_and_heading}})
         .doc(
-            "what rules that look at two legs (limits on turns, constraints) are held against: the "
-            "shortest way over cells alone (parent), every direction in which a cell is reached "
-            "(cell_and_heading), or auto: the second where the first does not keep them");
+            "where constraints on two consecutive legs (turn limits, constraint plugins) are "
+            "checked: on the shortest path over cells alone (parent), for every direction in "
+            "which a cell is reached (cell_and_heading), or auto: the second if the first "
+            "violates them");
     describe_memory(f);
   }
 };

@@ -77,7 +77,7 @@ TEST(DStarLite, BudgetAndCancellation) {
 }
 
 TEST(DStarLite, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
-  // A thin wall between the goal and the only column of cells that is free.
+  // A thin wall between the goal and the only column of free cells.
   Request request = request_in(testing::world_of({BoxShape{{{10.2, -1, -1}, {10.4, 101, 11}}}}),
                                {5, 5, 5}, {12, 85, 5}, {{0, 0, 0}, {20, 100, 10}});
   request.level_m = 5;
@@ -113,7 +113,7 @@ TEST(DStarLite, TurnsAreHeldByHeadingOrGivenUp) {
   EXPECT_EQ(given_up.status, PlanStatus::no_route);
   EXPECT_FALSE(given_up.proved);
   EXPECT_NE(given_up.message.find("turn"), std::string::npos) << given_up.message;
-  Drawn near = drawn;  // and where a search for ends near the goal follows
+  Drawn near = drawn;  // also where a search for ends near the goal follows
   near.request.goal.position += Vec3(0.3, 0, 0);
   near.request.goal.tolerance_m = 0.2;
   const PlanResult still = make_planner("dstar_lite", "{state: parent}")->plan(near.request);
@@ -150,7 +150,7 @@ TEST(DStarLite, MemoryIsCheckedBeforeItIsTaken) {
   }
 }
 
-/// Keeps what a search tells.
+/// Records the events of a search.
 class Kept final : public Trace {
  public:
   void add(const TraceEvent& event) override { events.push_back(event); }

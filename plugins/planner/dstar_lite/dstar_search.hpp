@@ -18,18 +18,18 @@ struct Memory {
   Heap raised;
 };
 
-/// The incremental search, from the goal to the start, on a graph whose legs come and go.
+/// Incremental search from the goal to the start, on a graph whose legs appear and disappear.
 ///
-/// rhs(s) is what g of the vertices after s says of s: the least of c(s, n) + g(n). Vertices whose
-/// g is not rhs are inconsistent. One with g > rhs is on the open list, under a key that is never
-/// above min(g, rhs) + h(start, s) + k_m, and taking it from there lowers g to rhs. One with g <
-/// rhs (what came after it was blocked) is harmless unless a route leads over it, as values that
-/// are too low hide no better way. So where something is blocked, no rhs is found anew: the route
-/// found is walked, and where it comes to such a vertex, g is raised.
+/// rhs(s) is the one-step lookahead value of s: the minimum of c(s, n) + g(n) over its successors
+/// n. Vertices with g != rhs are inconsistent. One with g > rhs is on the open list, under a key
+/// that is never above min(g, rhs) + h(start, s) + k_m, and popping it lowers g to rhs. One with g
+/// < rhs (its onward path was blocked) is harmless unless a route passes over it, as values that
+/// are too low hide no better path. So where something is blocked, no rhs is recomputed: the route
+/// found is walked, and where it meets such a vertex, g is raised.
 template <class Graph>
 class Search {
  public:
-  /// All of it must outlive the search.
+  /// All arguments must outlive the search.
   Search(const Problem& problem, Graph& graph, ToStart& to_start, const VoxelGrid& layout,
          Memory& memory)
       : problem_(problem),
@@ -42,8 +42,8 @@ class Search {
     raised_.clear();
   }
 
-  /// procedure Initialize: what is one leg away from the goal; again where these legs may have
-  /// changed.
+  /// procedure Initialize: the vertices one leg away from the goal; called again where these legs
+  /// may have changed.
   void initialize() {
     fresh_ = max_entries_ == 0;
     graph_.for_each_at_goal([&](std::uint32_t s) {
@@ -53,9 +53,9 @@ class Search {
     });
   }
 
-  /// The start has moved: `links` join its new place to the lattice. All keys on the open list stay
-  /// lower bounds, as k_m grows by what the heuristic may have fallen anywhere. Whether keys are
-  /// still far from what 32 bits hold.
+  /// The start has moved: `links` join its new position to the lattice. All keys on the open list
+  /// remain lower bounds, as k_m grows by the largest possible decrease of the heuristic. Returns
+  /// true while keys are still far from the 32-bit limit.
   bool move_start(const std::vector<kit::Lattice::Link>& links) {
     std::uint32_t fall = 0;
     for (const kit::Lattice::Link& link : moved_ ? links : std::vector<kit::Lattice::Link>()) {
@@ -69,7 +69,8 @@ class Search {
     return k_m_ < kMaxKm;
   }
 
-  /// A vertex that cannot be any more. What relied on it is found by the walk, where it matters.
+  /// Removes a vertex that no longer exists. The walk finds the vertices that relied on it where it
+  /// matters.
   void remove(std::uint32_t s) {
     fresh_ = false;
     vertices_.forget(s);
@@ -81,7 +82,7 @@ class Search {
   }
   const Vertices& vertices() const { return vertices_; }
 
-  /// procedure Main, one round: the cheapest way from the start's place to the goal's.
+  /// procedure Main, one round: the cheapest path from the start to the goal.
   PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes) {
     watch_ = &watch;
     max_list_bytes_ = max_list_bytes;
@@ -106,7 +107,7 @@ class Search {
     }
     return best_ == kNever ? PlanStatus::no_route : PlanStatus::solved;
   }
-  /// Whether a way is longer than whole numbers hold.
+  /// True if a path is longer than the integers can represent.
   bool too_long() const { return too_long_; }
   /// The vertices of the route, from the start's neighbour to the goal's.
   const std::vector<std::uint32_t>& way() const { return way_; }
@@ -118,14 +119,14 @@ class Search {
 
   using Values = Vertices::Values;
 
-  /// procedure CalculateKey, of a vertex at the cell whose lesser value is `cost`.
+  /// procedure CalculateKey, for a vertex at the cell whose smaller value is `cost`.
   Entry entry(std::uint32_t s, std::uint32_t cost, const Cell& c) const {
     const std::uint32_t h = graph_.estimate(c);
     return {cost + h + k_m_, h, s};
   }
 
-  /// procedure UpdateVertex. A vertex whose g is to be raised waits on a list only if it comes of a
-  /// raise (`rising`): no vertex after it is lowered before, on account of values that will not do.
+  /// procedure UpdateVertex. A vertex whose g is to be raised waits on a list only if a raise
+  /// caused it (`rising`): no later vertex is lowered before that on account of invalid values.
   void update_vertex(std::uint32_t s, const Values& now, const Cell& c, bool rising) {
     if (now.rhs < now.g) {
       ++progress_.generated;
@@ -135,7 +136,7 @@ class Search {
     }
   }
 
-  /// Finds rhs anew, which is known not to be below `least`.
+  /// Recomputes rhs, which is known not to be below `least`.
   void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t least, bool rising) {
     const Values old = vertices_[s];
     std::uint32_t rhs = graph_.goal_cost(s);
@@ -152,7 +153,7 @@ class Search {
     }
   }
 
-  /// procedure ComputeShortestPath: until no vertex may lie on a cheaper way than the start's.
+  /// procedure ComputeShortestPath: until no vertex can lie on a cheaper path than the start's.
   void compute_shortest_path() {
     find_best();
     while (!open_.empty()) {
@@ -175,7 +176,7 @@ class Search {
       open_.pop();
       const Values old = vertices_[first.node];
       if (old.rhs >= old.g) {
-        continue;  // lowered since
+        continue;  // lowered in the meantime
       }
       const Entry now = entry(first.node, old.rhs, graph_.cell(first.node));
       if (first.key < now.key) {
@@ -196,7 +197,7 @@ class Search {
     ++progress_.expanded;
     const std::uint32_t g = old.rhs;
     const Cell at = graph_.cell(u);
-    // What was opened before is not improved, while no leg has come or gone.
+    // Vertices expanded earlier cannot improve while no leg has changed.
     const kit::DirectionMask closed =
         fresh_ && Graph::kPerCell == 1 ? vertices_.opened_around(at) : 0;
     vertices_.open(at);
@@ -229,8 +230,8 @@ class Search {
       find_best();
     }
   }
-  /// Finds rhs of s anew if it was that of a leg to a vertex whose g has been. Where s is to be
-  /// raised anyway it need not be exact until then, only not too high.
+  /// Recomputes rhs of s if it relied on a leg to a vertex whose g has changed. If s is to be
+  /// raised anyway, rhs need not be exact until then, only not too high.
   void update_if_relied(std::uint32_t s, const Cell& c, std::uint32_t g, std::uint32_t cost,
                         bool rising) {
     const Values now = vertices_[s];
@@ -239,7 +240,7 @@ class Search {
     }
   }
 
-  /// rhs of the start.
+  /// Computes rhs of the start.
   void find_best() {
     best_ = kNever;
     for (const Link& link : graph_.start().all()) {
@@ -249,9 +250,9 @@ class Search {
     }
   }
 
-  /// Follows the route from the start. A vertex on it whose g is not rhs, or whose rhs is that of a
-  /// leg which is no more, is raised, and so is what came before it for as long as its g relied on
-  /// that. Whether all of the route was consistent.
+  /// Follows the route from the start. Raises each vertex on it whose g is not rhs, or whose rhs
+  /// relies on a leg that no longer exists, and the preceding vertices for as long as their g
+  /// relied on that. Returns true if the whole route was consistent.
   bool walk() {
     way_.clear();
     bool sound = true;
@@ -289,7 +290,7 @@ class Search {
     }
     return kNever;
   }
-  /// Straight on where that will do: little memory is looked at then.
+  /// Prefers to go straight on: that touches little memory.
   std::uint32_t next_vertex() {
     const std::uint32_t s = way_.back();
     const int likely =
@@ -354,8 +355,8 @@ class Search {
   Heap& raised_;
   std::uint32_t k_m_ = 0;
   std::uint32_t best_ = kNever;
-  bool moved_ = false;  ///< the start has a place
-  bool fresh_ = true;   ///< all legs are as they were at first
+  bool moved_ = false;  ///< the start has a position
+  bool fresh_ = true;   ///< all legs are as they were initially
   bool ended_ = false;
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;

@@ -15,7 +15,7 @@
 
 namespace altiplan::dstar_lite {
 
-/// Plans, and repairs the plan for as long as lattice and goal stay.
+/// Plans, and repairs the plan for as long as lattice and goal are unchanged.
 class Replanner {
  public:
   /// Parameters and pools must outlive it.
@@ -46,9 +46,9 @@ class Replanner {
     const kit::MoveCheck moves = settings_.moves;
     settings_ = params_.settings(request_);
     goes_on = goes_on && moves == settings_.moves;
-    auto plan = std::exchange(plan_, nullptr);  // what ends amid a change is planned afresh
+    auto plan = std::exchange(plan_, nullptr);  // an interrupted change leaves none
     if (goes_on && !(same_world && same_start)) {
-      // From elsewhere, or in another world, a leg may lead to the goal itself.
+      // From another position, or in another world, a leg may lead to the goal itself.
       goes_on = !plan->within() && (same_world || plan->take(changes)) && plan->find_start();
     }
     if (goes_on) {
@@ -61,9 +61,9 @@ class Replanner {
   }
 
  private:
-  static constexpr double kGreatestError = 1e-4;  ///< of a step's cost
+  static constexpr double kGreatestError = 1e-4;  ///< largest relative error of a step's cost
 
-  /// What needs no search.
+  /// The result if no search is needed.
   std::optional<PlanResult> settled() const {
     if (auto impossible = impossible_ends(request_)) {
       return impossible;
@@ -89,12 +89,11 @@ class Replanner {
       return *std::move(refused);
     }
     const Box box = lattice.spec().box();
-    // Few ways are longer than four times this, but in a maze they are.
+    // Few paths are longer than four times this, except in mazes.
     return plan_on(lattice, 4 * (box.max - box.min).sum(), false, {});
   }
 
-  /// A new plan for ways up to that length, after another one that has used up a part of the
-  /// budget.
+  /// Plans anew for paths up to that length, after a plan that has used part of the budget.
   PlanResult plan_on(const kit::Lattice& lattice, double longest_m, bool within,
                      const Counters& spent) {
     const auto scale = kit::StepCosts::between(settings_.costs, lattice, request_.start.position,
@@ -103,13 +102,13 @@ class Replanner {
     if (costs.error() > kGreatestError) {
       PlanResult result;
       result.status = PlanStatus::invalid_problem;
-      result.message = "dstar_lite cannot tell the lengths of ways up to " +
-                       std::to_string(longest_m) + " m apart on such cells: use astar";
+      result.message = "dstar_lite cannot distinguish the lengths of paths up to " +
+                       std::to_string(longest_m) + " m on such cells: use astar";
       result.counters = spent;
       return result;
     }
     request_.budget = kit::after(request_, spent).budget;
-    plan_.reset();  // its memory serves again
+    plan_.reset();  // its memory is reused
     plan_ = std::make_unique<Plan>(request_, settings_, lattice, costs, within, pools_);
     PlanResult result = finish(plan_->run());
     if (!spent.empty()) {
@@ -119,7 +118,7 @@ class Replanner {
   }
 
   /// The result, or that of a new plan: with coarser lengths, or to the cells within the goal's
-  /// tolerance where no leg leads to the goal itself.
+  /// tolerance if no leg leads to the goal itself.
   PlanResult finish(PlanResult result) {
     if (plan_->too_long()) {
       const kit::Lattice lattice = plan_->lattice();
@@ -144,7 +143,7 @@ class Replanner {
   kit::SearchSettings settings_;
   Pools& pools_;
   std::unique_ptr<Plan> plan_;
-  PlanResult to_goal_;  ///< why no leg leads to the goal itself, of a plan within its tolerance
+  PlanResult to_goal_;  ///< why no leg leads to the goal itself, for a plan within its tolerance
 };
 
 class DStarSession final : public Session {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions of dstar_lite: a repaired plan is as long as one made afresh.
+// Sessions of dstar_lite: a repaired plan is as long as a new one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,24 +17,24 @@ using testing::random_cell;
 using testing::random_cells;
 using testing::spec_of;
 
-/// What is random about a sequence of edits.
+/// Random parameters of a sequence of edits.
 struct Setting {
   Cell counts{12, 10, 6};
   Vec3 cell{10, 10, 10};
   bool level = false;
   const char* with = "{moves: cells}";
-  double max_turn = kPi;  ///< in space
+  double max_turn = kPi;  ///< in 3-D
   const char* afresh = "{moves: cells}";
 };
 
-/// The repaired plan is as good as astar's, or both find none.
+/// Expects the repaired plan to be as good as astar's, or both to find none.
 void expect_as_afresh(Flown& flown, const Planner& afresh, const std::string& what) {
   const PlanResult& repaired = flown.result();
   const PlanResult fresh = afresh.plan(flown.request());
   ASSERT_EQ(repaired.status, fresh.status)
       << what << ": " << repaired.message << "; afresh: " << fresh.message;
   if (fresh.status == PlanStatus::solved) {
-    // Links off the centres are whole numbers of small lengths.
+    // Links off the centres are rounded to integers of small lengths.
     const double edge = flown.cells().spec().cell.minCoeff();
     ASSERT_NEAR(length(repaired.route), length(fresh.route), 2e-5 * edge) << what;
     ASSERT_TRUE(check(repaired.route, flown.request()).ok()) << what;
@@ -67,7 +67,7 @@ void run_sequence(const Setting& setting, std::uint64_t seed) {
     if (random.uniform() < 0.4) {
       flown.move_on(0.5 * random.uniform());
       const Route& route = flown.result().route;
-      if (turns && route.size() >= 2) {  // it cannot turn at once any more
+      if (turns && route.size() >= 2) {  // it can no longer turn at once
         flown.request().start.velocity = (route[1] - route[0]).normalized();
       }
     }
@@ -183,7 +183,7 @@ TEST(DStarLiteSession, ABudgetThatEndsInARepairIsMadeUpForByTheNext) {
 }
 
 TEST(DStarLiteSession, GoesOnForAsLongAsOneLikes) {
-  // Many moves, after which keys have to start low again; many edits, in little memory for lists.
+  // Many moves, after which keys have to restart low; many edits, with little memory for lists.
   SplitMix64 random(11);
   const GridSpec spec = spec_of({12, 10, 6}, Vec3::Constant(10));
   const auto afresh = make_planner("astar", "{moves: cells}");
@@ -207,7 +207,7 @@ TEST(DStarLiteSession, GoesOnForAsLongAsOneLikes) {
 }
 
 TEST(DStarLiteSession, AWayThatCloses) {
-  // A wall with one gap, which is shut and opened again.
+  // A wall with one gap, which is closed and opened again.
   const GridSpec spec = spec_of({15, 9, 5}, Vec3::Constant(10));
   VoxelGrid cells(spec);
   for (int k = 0; k < 5; ++k) {
@@ -235,7 +235,7 @@ TEST(DStarLiteSession, FromAnotherPlaceALegMayLeadToTheGoalItself) {
   Request& request = drawn.request;
   request.level_m = 0.5;
   request.goal.position += Vec3(0.3, 0, 0);
-  request.goal.tolerance_m = 0.2;  // holds no cell's centre
+  request.goal.tolerance_m = 0.2;  // contains no cell's centre
   const auto planner = testing::make_planner("dstar_lite");
   const auto session = planner->begin(request);
   EXPECT_EQ(session->result().status, PlanStatus::no_route);

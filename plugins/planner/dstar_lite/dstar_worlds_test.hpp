@@ -21,7 +21,7 @@ inline std::int64_t expanded(const PlanResult& result) {
   return -1;
 }
 
-/// A world of cells that change, and a session that is told.
+/// A world of cells that change, and a session that is notified.
 class Flown {
  public:
   Flown(const std::string& with, const VoxelGrid& cells, const Cell& start, const Cell& goal,
@@ -56,7 +56,7 @@ class Flown {
     return session_->update(request_.start, request_.goal, request_.world, changes,
                             request_.budget);
   }
-  /// Flies on over a share of the route's legs, to between two waypoints.
+  /// Flies along a fraction of the route's legs, to a point between two waypoints.
   void move_on(double share) {
     const Route& route = result().route;
     if (route.size() >= 2) {
@@ -105,7 +105,7 @@ inline VoxelGrid random_cells(const GridSpec& spec, double density, SplitMix64& 
   return cells;
 }
 
-/// A city of paper 003, 80 x 80 x 100 cells of 10 m, and the way across it.
+/// A city of paper 003, 80 x 80 x 100 cells of 10 m, and a request across it.
 inline Request city_request(const char* kind, int seed) {
   const GridSpec spec = spec_of({80, 80, 100}, Vec3::Constant(10));
   const bool simple = std::string(kind) == "simple";

@@ -11,10 +11,10 @@
 
 namespace altiplan::dstar_lite {
 
-/// The graph whose vertices are cells with the step that led there, for rules that look at two
-/// legs; kHere: the vehicle has come there from where it is now. Steps straight up or down without
-/// a heading are those of the vehicle before any other: in the columns of the cells that it is
-/// linked to.
+/// The graph whose vertices are cells with the step that led there, for constraints on two
+/// consecutive legs; kHere: the vehicle has come there from its current position. Vertical steps
+/// without a heading exist only for the vehicle's first steps: in the columns of the cells to which
+/// it is linked.
 class HeadingGraph {
  public:
   static constexpr std::uint32_t kPerCell = kit::kSteps;
@@ -87,7 +87,7 @@ class HeadingGraph {
     }
     visit_step(c, kit::kHere, visit);
   }
-  /// Calls visit(s) for the vertices whose legs depend on where the vehicle is.
+  /// Calls visit(s) for the vertices whose legs depend on the vehicle's position.
   template <class Visit>
   void for_each_first(const Visit& visit) const {
     for (const Link& link : start_.all()) {
@@ -123,7 +123,7 @@ class HeadingGraph {
     return cell * kPerCell + std::uint32_t(step);
   }
 
-  /// Calls visit(s) for the vertex of a cell and step, if it is one.
+  /// Calls visit(s) for the vertex of a cell and step, if there is one.
   template <class Visit>
   void visit_step(const Cell& c, int step, const Visit& visit) const {
     const std::uint32_t s = node(lattice_.index(c), step);
@@ -141,8 +141,8 @@ class HeadingGraph {
     });
   }
 
-  /// Calls visit(s, cell, step) for the vertices from which a step `in` to the cell keeps the
-  /// limits on turns.
+  /// Calls visit(s, cell, step) for the vertices from which a step `in` to the cell satisfies the
+  /// turn limits.
   template <class Visit>
   void visit_before(const Cell& c, int in, const Visit& visit) {
     const Cell o = kit::offset(kit::direction_of(in));
@@ -153,13 +153,13 @@ class HeadingGraph {
       visit_step(from, before, [&](std::uint32_t s) { visit(s, from, before); });
     }
   }
-  /// How the vehicle comes to a cell by a step.
+  /// Approach of the vehicle to a cell by a step.
   std::optional<Approach> before(const Cell& c, int in) const {
     const bool at_start = lattice_.nearest(problem_.request.start.position).length == 0;
     return legs_.rules().approach(in, lattice_.position(c), at_start);
   }
-  /// Whether the step `out` keeps what depends on the leg before, beside limits on turns where that
-  /// was a step.
+  /// True if the step `out` satisfies the constraints that depend on the preceding leg, except turn
+  /// limits if that leg was a step.
   bool follows(const Cell& c, int in, int out) {
     if (!legs_.rules().is_first(in) && !legs_.rules().looks_beyond_turns()) {
       return true;

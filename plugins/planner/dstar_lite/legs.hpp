@@ -10,7 +10,7 @@
 
 namespace altiplan::dstar_lite {
 
-/// What is known of legs beside what the occupancy says.
+/// Cached information about legs beyond the occupancy.
 struct LegMemory {
   struct Near {
     kit::MoveRules::KnownClearance clearance;
@@ -22,7 +22,7 @@ struct LegMemory {
   static constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(Near);
 };
 
-/// Which legs between neighbouring cells a vehicle may fly, whatever was before.
+/// The legs between neighbouring cells that a vehicle may fly, whatever the preceding leg.
 class Legs {
  public:
   Legs(const Problem& problem, LegMemory& memory)
@@ -36,7 +36,7 @@ class Legs {
     }
     renew();
   }
-  /// Takes in the request's world; what legs within a box were said to be has to be forgotten.
+  /// Adopts the request's world; cached legs within a box must be invalidated separately.
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
     steps_ = rules_->steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
@@ -49,7 +49,7 @@ class Legs {
       memory_.judged.at(index) = 0;
     }
   }
-  /// Whether the legs to a cell are asked for one by one, and one way only.
+  /// True if the legs to a cell are checked one by one, in one direction only.
   bool judges() const { return judges_; }
   kit::DirectionMask steps() const { return steps_; }
   kit::MoveRules& rules() { return *rules_; }
@@ -59,7 +59,7 @@ class Legs {
   kit::DirectionMask into(std::uint32_t index, const Cell& c) {
     return judges_ ? judged(index, c) : by_cells(c);
   }
-  /// Whether the leg from the cell in that direction is free; there has to be a cell.
+  /// True if the leg from the cell in that direction is free; the neighbour must exist.
   bool leads(std::uint32_t index, const Cell& c, int d) {
     const Cell o = kit::offset(d);
     return (into(std::uint32_t(index + lattice_.stride(d)),
@@ -113,7 +113,7 @@ class Legs {
   kit::DirectionMask steps_ = 0;
 };
 
-/// Takes a direction from a mask that has some, the likely one if it can.
+/// Takes a direction from a non-empty mask, the likely one if possible.
 inline int take_direction(kit::DirectionMask& mask, int likely) {
   const int d = (mask >> likely & 1) != 0 ? likely : std::countr_zero(mask);
   mask &= ~(kit::DirectionMask{1} << d);

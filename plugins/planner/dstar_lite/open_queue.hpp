@@ -12,12 +12,12 @@ namespace altiplan::dstar_lite {
 /// A vertex on a list.
 struct Entry {
   std::uint32_t key;
-  std::uint32_t h;  ///< the estimate that is a part of the key
+  std::uint32_t h;  ///< the estimate contained in the key
   std::uint32_t node;
 };
 
-/// Entries in a heap, the least key first, among equals the one nearest to the start; one whose key
-/// has changed is pushed again.
+/// A heap of entries, minimum key first, among equals the one nearest to the start; an entry whose
+/// key has changed is pushed again.
 class Heap {
  public:
   void clear() { list_.clear(1); }
@@ -35,8 +35,8 @@ class Heap {
   kit::OpenList list_;
 };
 
-/// The open list. A first search takes keys that never fall, from buckets; a repair puts keys below
-/// the last one taken, few of them, into a heap, and leaves the buckets as they are.
+/// The open list. A first search pops keys in non-decreasing order, from buckets; a repair puts the
+/// few keys below the last one popped into a heap and leaves the buckets as they are.
 class OpenQueue {
  public:
   void clear() {
@@ -55,7 +55,7 @@ class OpenQueue {
       buckets_.push(entry.key, entry.node, entry.h);
     }
   }
-  /// Neither is to be called on an empty queue.
+  /// Neither may be called on an empty queue.
   Entry top() {
     if (!below_.empty()) {
       return below_.top();
@@ -79,7 +79,7 @@ class OpenQueue {
  private:
   kit::BucketQueue buckets_;
   Heap below_;                 ///< keys below least_
-  std::optional<Entry> next_;  ///< taken from the buckets already
+  std::optional<Entry> next_;  ///< already taken from the buckets
   std::uint32_t least_ = 0;    ///< the last key taken from the buckets
 };
 }  // namespace altiplan::dstar_lite

@@ -15,13 +15,13 @@
 
 namespace altiplan::dstar_lite {
 
-/// Work memory that outlives a session.
+/// Work memory that persists between sessions.
 struct Pools {
   kit::ScratchPool<Memory> searches;
   kit::ScratchPool<LegMemory> legs;
 };
 
-/// A search, and the graph that it runs on.
+/// A search and the graph on which it runs.
 template <class Graph>
 struct Incremental {
   Incremental(const Problem& problem, Legs& legs, const VoxelGrid& bits, Pools& pools)
@@ -36,12 +36,12 @@ struct Incremental {
   Search<Graph> search;
 };
 
-/// The searches for one goal on one lattice: over cells, and where the route that this gives breaks
-/// a rule that looks at two legs, over cells with headings.
+/// The searches for one goal on one lattice: over cells and, if the resulting route violates a
+/// constraint on two consecutive legs, over cells with headings.
 class Plan {
  public:
-  /// `request` and `settings` are the session's own and change under the plan; `within`: routes end
-  /// at any cell within the goal's tolerance.
+  /// `request` and `settings` belong to the session and change during the plan's life; `within`:
+  /// routes end at any cell within the goal's tolerance.
   Plan(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
        const kit::StepCosts& costs, bool within, Pools& pools)
       : lattice_(lattice),
@@ -64,12 +64,12 @@ class Plan {
   const kit::Lattice& lattice() const { return lattice_; }
   const kit::StepCosts& costs() const { return costs_; }
   bool within() const { return within_; }
-  /// Whether a way was longer than whole numbers hold: coarser ones are needed.
+  /// True if a path was longer than the integers can represent: coarser ones are needed.
   bool too_long() const {
     return by_cell_->search.too_long() || (by_heading_ && by_heading_->search.too_long());
   }
 
-  /// Takes in that the request's world is another one; whether the plan can go on.
+  /// Adopts the request's new world; returns true if the plan can continue.
   bool take(std::span<const Change> changes) {
     const World& world = *problem_.request.world;
     if (world.has_ground() != has_ground_ ||
@@ -77,7 +77,8 @@ class Plan {
       return false;
     }
     const auto before = grid_;
-    slack_ = std::max(std::exchange(last_slack_, world.over_approximation()), world.over_approximation());
+    slack_ = std::max(std::exchange(last_slack_, world.over_approximation()),
+                      world.over_approximation());
     legs_.renew();
     if (legs_.rules().grid() != nullptr) {
       grid_ = kit::occupancy(problem_.request, lattice_);
@@ -88,7 +89,7 @@ class Plan {
     if (legs_.judges()) {
       return take_legs(changes);
     }
-    const auto known = [&](int level) {  // what changes elsewhere nobody has looked at
+    const auto known = [&](int level) {  // changes elsewhere touch nothing that was examined
       CellRange range;
       for_each_search([&](const auto& at) { range.add(at.search.vertices().known(level)); });
       return range;
@@ -96,7 +97,7 @@ class Plan {
     return take_cells(changed_cells(*before, *grid_, changes, known, lattice_));
   }
 
-  /// Takes in where the vehicle is; whether the plan can go on.
+  /// Adopts the vehicle's position; returns true if the plan can continue.
   bool find_start() {
     bool goes_on = true;
     for_each_search([&](auto& at) { goes_on = find_start(at) && goes_on; });
@@ -187,7 +188,7 @@ class Plan {
     });
     return true;
   }
-  /// Asks the memory for what a changed cell will need: cells change anywhere.
+  /// Prefetches what a changed cell will need: cells change anywhere.
   template <class Graph>
   void fetch(const Incremental<Graph>& at, const Cell& c) const {
     if (at.search.vertices().opened_around(c) != 0) {
@@ -200,12 +201,12 @@ class Plan {
       }
     }
   }
-  /// Whether it is better to plan afresh, which keeps the budget, than to look at as many cells.
+  /// True if planning anew, which respects the budget, is better than examining that many cells.
   bool too_many(std::size_t cells) const {
     return cells > (1 << 18) && cells > lattice_.size() / 8;
   }
 
-  /// A cell that has become blocked, or free.
+  /// Updates a cell that has become blocked or free.
   template <class Graph>
   void take_cell(Incremental<Graph>& at, const Cell& c) {
     if (at.search.vertices().opened_around(c) == 0) {
@@ -221,13 +222,13 @@ class Plan {
     }
   }
 
-  /// The cells at both ends of the legs that what is in the box may block.
+  /// The cells at both ends of the legs that the contents of the box may block.
   CellRange cells_near(const Box& box) const {
     const Request& request = problem_.request;
     const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) + slack_ +
                         kLengthTolerance;
     Box grown = box.grown(near);
-    if (has_ground_) {  // what is above has another ground below it
+    if (has_ground_) {  // cells above have another ground below them
       grown.min.z() = -kInfinity;
       grown.max.z() = kInfinity;
     }
@@ -258,7 +259,7 @@ class Plan {
     return true;
   }
 
-  /// What is left for the lists of a search, beside what others hold.
+  /// Memory left for the lists of a search, after other uses.
   template <class Graph>
   std::size_t max_list_bytes(std::size_t others) const {
     const std::size_t fixed = others + bytes_of<Graph>();
@@ -336,7 +337,7 @@ class Plan {
 
   template <class Graph>
   PlanResult without_route(const Search<Graph>& search, PlanStatus status) {
-    if (status == PlanStatus::no_route) {  // counts what refused the moves
+    if (status == PlanStatus::no_route) {  // counts the reasons for rejected moves
       search.vertices().for_each_opened([&](const Cell& c) { legs_.rules().out_of(c); });
     }
     PlanResult result;
@@ -354,11 +355,11 @@ class Plan {
   Pools& pools_;
   kit::ScratchPool<LegMemory>::Lease leg_memory_;
   Legs legs_;
-  std::shared_ptr<const VoxelGrid> grid_;  ///< with moves by cells, what is blocked
+  std::shared_ptr<const VoxelGrid> grid_;  ///< with moves by cells: the blocked cells
   std::shared_ptr<const VoxelGrid> bits_;  ///< for its layout
   bool has_ground_;
-  double last_slack_;  ///< of the world
-  double slack_ = 0;   ///< of that and the one before
+  double last_slack_;  ///< over-approximation of the world
+  double slack_ = 0;   ///< maximum of the current one and the previous one
   bool within_;
   std::optional<Incremental<CellGraph>> by_cell_;
   std::optional<Incremental<HeadingGraph>> by_heading_;

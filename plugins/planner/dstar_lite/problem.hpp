@@ -10,9 +10,9 @@
 
 namespace altiplan::dstar_lite {
 
-inline constexpr std::uint32_t kNever = ~std::uint32_t{0};  ///< the cost of no way
+inline constexpr std::uint32_t kNever = ~std::uint32_t{0};  ///< the cost if there is no path
 
-/// What a plan is about. All of it outlives what is made of it.
+/// The inputs of a plan. All of them outlive everything built from it.
 struct Problem {
   const Request& request;
   const kit::SearchSettings& settings;
@@ -24,16 +24,16 @@ struct Problem {
   }
 };
 
-/// Whether the cells that a step leads through, and its direction, say if it is free.
+/// True if the cells that a step passes through, and its direction, decide alone if it is free.
 inline bool cells_decide(const Request& request, const kit::SearchSettings& settings) {
-  Request each_leg = request;  // what whole routes have to keep is asked in the end
+  Request each_leg = request;  // constraints on whole routes are checked at the end
   each_leg.limits.max_turn_horizontal = each_leg.limits.max_turn_space = kPi;
   each_leg.limits.min_turn_radius = 0;
   each_leg.limits.max_route_length = kInfinity;
   return settings.moves == kit::MoveCheck::cells && kit::MoveRules::cells_decide(each_leg);
 }
 
-/// Cells from low to high, both included.
+/// Cells from low to high, both inclusive.
 struct CellRange {
   Cell low{1, 1, 1};
   Cell high{0, 0, 0};  ///< below low on an axis: no cells
@@ -74,7 +74,7 @@ inline CellRange around(const Cell& c, const kit::Lattice& lattice) {
   return range;
 }
 
-/// The cells that a box reaches into, and those beside them.
+/// The cells that a box intersects, and their neighbours.
 inline CellRange cells_in(const Box& box, const kit::Lattice& lattice) {
   const GridSpec& spec = lattice.spec();
   CellRange range;
@@ -90,18 +90,18 @@ inline CellRange cells_in(const Box& box, const kit::Lattice& lattice) {
   return range;
 }
 
-/// The heuristic: the least cost between the start and a cell, were none blocked.
+/// The heuristic: minimum cost between the start and a cell if no cell were blocked.
 class ToStart {
  public:
   explicit ToStart(const Problem& problem) : costs_(problem.costs) {}
 
-  /// Not to be called without any link.
+  /// Must not be called without any link.
   void move(const std::vector<kit::Lattice::Link>& links, const Problem& problem) {
     others_.clear();
     for (const kit::Lattice::Link& link : links) {
       others_.push_back({link.cell, problem.link_cost(link)});
     }
-    first_ = others_.back();  // most often the only one
+    first_ = others_.back();  // usually the only one
     others_.pop_back();
   }
   std::uint32_t operator()(const Cell& c) const {

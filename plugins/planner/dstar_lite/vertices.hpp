@@ -13,13 +13,13 @@ namespace altiplan::dstar_lite {
 
 struct VertexMemory {
   kit::ScratchArray<std::uint64_t> values;  ///< g and rhs by vertex, complements: 0 is never
-  kit::ScratchArray<std::uint64_t> opened;  ///< a bit a cell, laid out like an occupancy
+  kit::ScratchArray<std::uint64_t> opened;  ///< one bit per cell, laid out like an occupancy
 
-  /// Rounded up, for one vertex a cell.
+  /// Rounded up, for one vertex per cell.
   static constexpr std::size_t kBytesPerCell = 9;
 };
 
-/// What a search knows of vertices, and where on the lattice it has been.
+/// State of the vertices, and the region of the lattice that the search has visited.
 class Vertices {
  public:
   struct Values {
@@ -27,7 +27,7 @@ class Vertices {
     std::uint32_t rhs;
   };
 
-  /// `layout` lays out the bits of cells; all of it must outlive the vertices.
+  /// `layout` defines the layout of the cells' bits; all arguments must outlive the vertices.
   Vertices(std::size_t count, const VoxelGrid& layout, VertexMemory& memory)
       : values_(memory.values), opened_(memory.opened), layout_(layout) {
     values_.reset(count);
@@ -43,7 +43,7 @@ class Vertices {
   void set(std::uint32_t s, const Values& values) {
     values_.at(s) = std::uint64_t{~values.rhs} << 32 | std::uint32_t(~values.g);
   }
-  /// Asks the memory for what is known of a vertex.
+  /// Prefetches the state of a vertex.
   void fetch(std::uint32_t s) const { __builtin_prefetch(values_.data() + s); }
   void forget(std::uint32_t s) {
     if (values_[s] != 0) {
@@ -51,7 +51,7 @@ class Vertices {
     }
   }
 
-  /// Notes that vertices of the cell have values.
+  /// Records that vertices of the cell have values.
   void know(const Cell& c) {
     CellRange& range = known_[std::size_t(c[2])];
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -59,18 +59,18 @@ class Vertices {
       range.high[axis] = std::max(range.high[axis], c[axis]);
     }
   }
-  /// Notes that a vertex of the cell was opened.
+  /// Records that a vertex of the cell was expanded.
   void open(const Cell& c) {
     know(c);
     const std::size_t bit = layout_.bit(c);
     opened_.at(bit / 64) |= std::uint64_t{1} << bit % 64;
   }
-  /// No vertex of another cell on that level has any values.
+  /// No vertex of any cell outside this range on that level has a value.
   CellRange known(int level) const {
     CellRange range{layout_.spec().counts, {-1, -1, -1}};
     const int top = int(known_.size()) - 1;
     for (int k = std::max(level - 1, 0); k <= std::min(level + 1, top); ++k) {
-      for (std::size_t axis = 0; axis < 2; ++axis) {  // what was opened has given values around it
+      for (std::size_t axis = 0; axis < 2; ++axis) {  // neighbours of expanded cells have values
         range.low[axis] = std::min(range.low[axis], known_[std::size_t(k)].low[axis] - 1);
         range.high[axis] = std::max(range.high[axis], known_[std::size_t(k)].high[axis] + 1);
       }
@@ -78,7 +78,7 @@ class Vertices {
     range.low[2] = range.high[2] = level;
     return range;
   }
-  /// The cells that were opened, among one and those around it.
+  /// The expanded cells among a cell and its neighbours.
   kit::DirectionMask opened_around(const Cell& c) const {
     return kit::bits_around(layout_, opened_.data(), layout_.bit(c));
   }
@@ -101,6 +101,6 @@ class Vertices {
   kit::ScratchArray<std::uint64_t>& values_;
   kit::ScratchArray<std::uint64_t>& opened_;
   const VoxelGrid& layout_;
-  std::vector<CellRange> known_;  ///< by level, but for the cells around those that were opened
+  std::vector<CellRange> known_;  ///< by level, without the neighbours of the expanded cells
 };
 }  // namespace altiplan::dstar_lite

@@ -12,10 +12,10 @@
 
 namespace altiplan::improved_ant_colony {
 
-/// Lengths of the shortest ways from the goal on, E. W. Dijkstra, 1959, by moves of up to three
-/// cells on each axis: 1.3 % too long at most. By the eight neighbours they are up to 8 % too long,
-/// enough to send all ants around the wrong side of a zone. `distance(cell)`, infinite for all
-/// cells before, is a reference to that of one, in metres.
+/// Lengths of the shortest paths from the goal, E. W. Dijkstra, 1959, by moves of up to three cells
+/// on each axis: at most 1.3 % too long. With eight neighbours they are up to 8 % too long, enough
+/// to send all ants around the wrong side of a zone. `distance(cell)`, infinite for all cells
+/// initially, returns a reference to that of a cell, in metres.
 template <class Distance>
 void measure_over_cells(const kit::Lattice& lattice, const VoxelGrid& grid, std::uint32_t goal,
                         kit::BucketQueue& open, const Distance& distance) {
@@ -25,7 +25,7 @@ void measure_over_cells(const kit::Lattice& lattice, const VoxelGrid& grid, std:
     int dy;
     std::uint32_t length;
   };
-  // Lengths are whole numbers of a unit; the longest way has some 4e9 of them.
+  // Lengths are integer multiples of a unit; the longest path has about 4e9 of them.
   const Vec3& edge = lattice.spec().cell;
   const double unit = 1.5 * (edge.x() + edge.y()) * double(lattice.size()) / 4e9;
   std::vector<Move> moves;

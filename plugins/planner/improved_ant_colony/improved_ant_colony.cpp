@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The improved ant colony: wide steps over fine cells, pheromone of regions, trimmed routes.
+// The improved ant colony: wide steps over fine cells, regional pheromone, trimmed routes.
 //
 // Citation: Li Rongsheng, Yang Xiaolong, Yan Xijun, Ren Tianzhu: Path planning for flight vehicles
 //   based on improved ACO (paper 004).
-// Guarantees: every leg keeps every rule; more budget never gives a longer route; one result for
-//   any number of threads. Neither complete nor optimal.
-// Complexity: O(k) a step for k candidates, whatever has evaporated; O(r^2) a place of pheromone.
-//   32 bytes a cell, and one for each candidate whose leg is remembered.
-// Deviations: eta_min and eta_max are taken over the candidates that are allowed, not over all of
-//   them (with which most ants die); an ant that sees the goal within its neighbourhood goes there;
-//   the candidates of a cell are remembered, the nearest to the goal first; pheromone is laid every
+// Guarantees: every leg satisfies every constraint; a larger budget never gives a longer route; the
+//   result does not depend on the number of threads. Neither complete nor optimal.
+// Complexity: O(k) per step for k candidates, also after evaporation; O(r^2) per pheromone deposit.
+//   32 bytes per cell, plus one for each candidate whose leg is remembered.
+// Deviations: eta_min and eta_max are taken over the allowed candidates, not over all of them (with
+//   which most ants die); an ant that sees the goal within its neighbourhood moves to it; the
+//   candidates of a cell are remembered, nearest to the goal first; pheromone is deposited every
 //   l_c along the trimmed legs (`deposit`: on every cell, or on nodes alone, is worse); `heuristic:
-//   geodesic` is ours. The paper's last part, smoothing, is a step of its own: hermite.
+//   geodesic` is ours. The paper's last part, smoothing, is a separate step: hermite.
 // Symbols: l_c the reach of a step and l_s the spacing of candidates in cells, C the tilt of the
 //   roulette, r and mu radius and decay of the region, tau^equ its pheromone; alpha, beta, rho, Q
 //   as in ant_colony.
@@ -43,41 +43,45 @@ struct Params : kit::ColonyParams {
     ColonyParams::describe(f);
     f("reach_cells", settings.reach)
         .range(1, 1000)
-        .doc("l_c: a step leads to the border of the square of this half side around the ant");
+        .doc("l_c: a step leads to the border of the square of this half-width around the ant");
     f("min_steps", min_steps)
         .range(1, 1'000'000)
-        .doc("N_c of eq. (6): steps from start to goal in the open, in place of reach_cells");
+        .doc("N_c of eq. (6): steps from start to goal in open air, in place of reach_cells");
     f("spacing_cells", settings.spacing)
         .range(0, 1000)
-        .doc("l_s: cells left out between candidates, from each corner to the middle of a side");
+        .doc("l_s: cells skipped between candidates, from each corner to the middle of a side");
     f("leg_test", settings.leg_test,
       {{"remembered", LegTest::remembered},
        {"guard_zone", LegTest::guard_zone},
        {"always", LegTest::always}})
         .doc(
-            "when a leg is held to the cells: always; near blocked ones alone (guard_zone); there, "
-            "once a plan (remembered). The route is the same");
+            "when legs are tested against the cells: every time (always); only near blocked "
+            "cells (guard_zone); there, and once per plan (remembered); the route is the same");
     f("tilt", settings.tilt)
         .range(0, 0.999)
-        .doc("C of eq. (8): candidates below that share of the range of eta do not enter; 0: all");
+        .doc(
+            "C of eq. (8): candidates below this fraction of the range of eta are excluded; 0: "
+            "none");
     f("region_radius", settings.region_radius)
         .range(0, 20)
-        .doc("r of eq. (10): rings of cells whose pheromone counts; 0: a cell's own alone");
-    f("region_decay", settings.region_decay).range(0, 1).doc("mu of eq. (10), from ring to ring");
+        .doc("r of eq. (10): rings of cells whose pheromone counts; 0: only the cell's own");
+    f("region_decay", settings.region_decay)
+        .range(0, 1)
+        .doc("mu of eq. (10): decay from ring to ring");
     f("heuristic", settings.heuristic,
       {{"euclidean", Heuristic::euclidean}, {"geodesic", Heuristic::geodesic}})
         .doc(
-            "eta is 1 over the distance to the goal: straight, eq. (9), or over the free cells "
-            "(geodesic)");
-    f("trim", settings.trims).doc("routes are trimmed before pheromone is laid, eq. (11)");
+            "eta is 1 over the distance to the goal: the straight line, eq. (9), or over the "
+            "free cells (geodesic)");
+    f("trim", settings.trims).doc("trim routes before pheromone is deposited, eq. (11)");
     settings.trim.describe(f);
     f("deposit", settings.deposit,
       {{"resampled", Deposit::resampled}, {"cells", Deposit::cells}, {"nodes", Deposit::nodes}})
         .doc(
-            "where pheromone is laid: every reach_cells along the legs, on every cell of them, or "
-            "on the nodes alone");
+            "where pheromone is deposited: every reach_cells along the legs, on every cell of "
+            "them, or on the nodes alone");
     f.check(has_room(settings.reach, settings.spacing),
-            "reach_cells and spacing_cells together make more than 56 candidates");
+            "reach_cells and spacing_cells together give more than 56 candidates");
   }
 };
 
@@ -103,9 +107,9 @@ class ImprovedAntColony final : public kit::ColonyPlanner {
                          (min_steps * lattice.spec().cell.x());
     const int reach = std::max(1, int(std::min(std::ceil(cells), 1e6)));
     if (!has_room(reach, params_.settings.spacing)) {
-      throw ParameterError("min_steps", "comes to a reach of " + std::to_string(reach) +
-                                              " cells, and with spacing_cells to more than 56 "
-                                              "candidates: choose more steps or wider spacing");
+      throw ParameterError("min_steps", "gives a reach of " + std::to_string(reach) +
+                                            " cells, and with spacing_cells more than 56 "
+                                            "candidates: choose more steps or wider spacing");
     }
     return reach;
   }
@@ -116,4 +120,4 @@ class ImprovedAntColony final : public kit::ColonyPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "improved_ant_colony", ImprovedAntColony, Params,
-                "ants with wide steps, pheromone of regions and trimmed routes, paper 004")
+                "ant colony with wide steps, regional pheromone and trimmed routes, paper 004")

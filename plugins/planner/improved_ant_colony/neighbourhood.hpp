@@ -9,7 +9,7 @@
 
 namespace altiplan::improved_ant_colony {
 
-/// How many candidates a neighbourhood has; what eq. (7) means.
+/// Number of candidates in a neighbourhood; our reading of eq. (7).
 constexpr std::int64_t candidates(int reach, int spacing) {
   return 8 * ((std::int64_t(reach) - 1) / std::max(std::int64_t(spacing) + 1, std::int64_t{1}) + 1);
 }

@@ -15,7 +15,7 @@
 
 namespace altiplan::improved_ant_colony {
 
-/// A colony whose pheromone lies on cells and counts around them.
+/// A colony whose pheromone lies on cells and counts in the region around them.
 class RegionColony final : public kit::Colony {
  public:
   static constexpr std::size_t kMaxCandidates = 56;
@@ -24,19 +24,19 @@ class RegionColony final : public kit::Colony {
   static constexpr std::size_t kBytesPerCell =
       sizeof(double) + 16 + 2 * sizeof(std::uint32_t) + kMaxCandidates + 1;
 
-  /// What an ant sees of a cell.
+  /// A candidate cell as an ant evaluates it.
   struct Place {
     double weight;   ///< tau^alpha eta^beta
     float distance;  ///< to the goal, metres: 1 / eta
   };
-  /// What outlives a plan.
+  /// Persists between plans.
   struct Memory {
     kit::Pheromone tau_equ;  ///< of regions, eq. (10): sums of amounts evaporate as these do
     std::vector<Place> places;
-    std::vector<std::uint8_t> candidates;  ///< by cell: one more than their number, and they
+    std::vector<std::uint8_t> candidates;  ///< by cell: their number plus one, then the candidates
     kit::Deposits<float> laid;             ///< on cells
-    std::vector<std::uint32_t> weighed;    ///< by cell: in which iteration
-    std::vector<std::uint64_t> sights;     ///< legs and, in the last bit, whether they are free
+    std::vector<std::uint32_t> weighed;    ///< by cell: iteration of the last weighing
+    std::vector<std::uint64_t> sights;     ///< legs and, in the last bit, 1 if they are free
     kit::BucketQueue open;
   };
 
@@ -78,15 +78,15 @@ class RegionColony final : public kit::Colony {
 
   // --- Candidates ------------------------------------------------------------------------------
 
-  /// The candidates that the straight leg is free to, the nearest to the goal first.
+  /// The candidates with a free straight leg, nearest to the goal first.
   struct Candidates {
     const std::uint8_t* k = nullptr;
     std::size_t count = 0;
-    std::array<std::uint8_t, kMaxCandidates> own;  ///< where they are if not remembered
+    std::array<std::uint8_t, kMaxCandidates> own;  ///< storage if not remembered
   };
 
-  /// Made once for a cell if legs are remembered. While one thread does so for a cell, others make
-  /// the same for themselves.
+  /// Built once per cell if legs are remembered. While one thread builds a cell's list, others
+  /// build the same list for themselves.
   void list_candidates(std::uint32_t cell, Candidates& all) const {
     if (settings_.leg_test != LegTest::remembered) {
       find_candidates(cell, all);
@@ -129,7 +129,7 @@ class RegionColony final : public kit::Colony {
               });
   }
 
-  /// Whether a blocked cell is so near that a leg from here may meet it: the blocked cells, dilated
+  /// True if a blocked cell is so near that a leg from here may hit it: the blocked cells, dilated
   /// by the reach of a step, cover this one.
   bool in_guard_zone(const Cell& here) const {
     const Cell& counts = lattice_.spec().counts;
@@ -181,8 +181,8 @@ class RegionColony final : public kit::Colony {
     follow(walker, [&](std::uint32_t at) { return choose(walker, at); });
   }
 
-  /// The biased roulette: those of the allowed candidates enter whose distance is within the limit,
-  /// which are the first of them.
+  /// The biased roulette selection among the allowed candidates whose distance is within the limit;
+  /// these come first in the list.
   Step choose(Walker& walker, std::uint32_t at) const {
     if (const double metres = metres_to_goal(walker, at); metres > 0) {
       return {goal_, metres};
@@ -218,7 +218,7 @@ class RegionColony final : public kit::Colony {
       }
     }
     if (sum == 0) {
-      return {};  // the goal can be reached from none of them
+      return {};  // no candidate leads to the goal
     }
     const double drawn = walker.random.uniform() * sum;
     std::size_t chosen = 0;
@@ -229,14 +229,14 @@ class RegionColony final : public kit::Colony {
     return {at + strides_[k], metres_[k]};
   }
 
-  /// Eqs. (8) and (9): eta = 1 / distance is no less than eta_min + C (eta_max - eta_min).
+  /// Eqs. (8) and (9): eta = 1 / distance is at least eta_min + C (eta_max - eta_min).
   float distance_limit(float nearest, float farthest) const {
     const float limit =
         nearest * farthest / (nearest + float(settings_.tilt) * (farthest - nearest));
     return limit > nearest ? limit : nearest;
   }
 
-  /// Length of the leg to the goal where that is within reach and the leg keeps every rule; else 0.
+  /// Length of the leg to the goal if it is within reach and satisfies every constraint; else 0.
   double metres_to_goal(Walker& walker, std::uint32_t at) const {
     if (std::uint32_t(goal_ - at + rows_in_reach_) > 2 * rows_in_reach_) {
       return 0;
@@ -251,8 +251,8 @@ class RegionColony final : public kit::Colony {
     return (position(goal_) - position(at)).norm();
   }
 
-  /// Whether the straight leg between two cells is free. Ants that follow each other ask for the
-  /// same few legs: the last answers are kept, and which thread gave them does not matter.
+  /// True if the straight leg between two cells is free. Ants that follow each other request the
+  /// same few legs: the last results are cached, and it does not matter which thread computed them.
   bool sees(std::uint32_t from, std::uint32_t to) const {
     const std::uint64_t leg = std::uint64_t{from} << 33 | std::uint64_t{to} << 1;
     const std::size_t at = (leg * 0x9e3779b97f4a7c15ULL) >> (64 - kSightBits);
@@ -266,7 +266,8 @@ class RegionColony final : public kit::Colony {
     return free;
   }
 
-  /// Most legs that trimming asks for are blocked along a good part of them: seven cells tell so.
+  /// Most legs that trimming tests are blocked along much of their length: seven cells suffice to
+  /// tell.
   bool tests_free(const Cell& a, const Cell& b) const {
     for (const int eighths : {4, 2, 6, 1, 3, 5, 7}) {
       const int x = (8 * a[0] + eighths * (b[0] - a[0]) + 4) / 8;
@@ -297,7 +298,7 @@ class RegionColony final : public kit::Colony {
     }
   }
 
-  /// Along the legs, from node to node in equal parts.
+  /// Along the legs, from node to node at equal spacing.
   void list_places(Ant& ant) const {
     const double every = settings_.deposit == Deposit::resampled ? settings_.reach
                          : settings_.deposit == Deposit::cells   ? 1
@@ -328,7 +329,7 @@ class RegionColony final : public kit::Colony {
     }
   }
 
-  /// Adds what has been laid to the regions, eq. (10), and weighs them anew.
+  /// Adds the deposits to the regions, eq. (10), and recomputes their weights.
   void settle() override {
     for (const std::uint32_t middle : memory_.laid.places()) {
       const double amount = memory_.laid[middle];
@@ -354,7 +355,7 @@ class RegionColony final : public kit::Colony {
     memory_.laid.clear();
   }
 
-  /// Calls `visit(cell, ring)` for the cells whose region the cell is in.
+  /// Calls `visit(cell, ring)` for the cells whose region contains the cell.
   template <class Visit>
   void for_region(std::uint32_t middle, const Visit& visit) const {
     const int r = settings_.region_radius;
@@ -382,7 +383,7 @@ class RegionColony final : public kit::Colony {
   std::array<std::uint32_t, kMaxCandidates> strides_;
   std::array<double, kMaxCandidates> metres_;
   std::vector<std::size_t> strides_of_rounds_;
-  std::vector<double> shares_;  ///< by ring, of the pheromone of a region at first
+  std::vector<double> shares_;  ///< by ring, of the initial pheromone of a region
   kit::Power tau_alpha_;
   kit::Power distance_beta_;
   std::uint32_t settled_ = 0;        ///< iterations

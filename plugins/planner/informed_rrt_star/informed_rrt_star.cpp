@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Informed RRT*: RRT* that, once it has a route, samples only where a shorter one may lead.
+// Informed RRT*: RRT* that, once it has a route, samples only where a shorter one may lie.
 //
 // Citation: J. D. Gammell, S. S. Srinivasa, T. D. Barfoot: Informed RRT*: Optimal Sampling-based
 //   Path Planning Focused via Direct Sampling of an Admissible Ellipsoidal Heuristic. IEEE/RSJ
@@ -7,8 +7,8 @@
 //   doi:10.1109/IROS.2014.6942976
 // Guarantees: those of planner rrt_star.
 // Complexity: that of rrt_star.
-// Deviations: those of rrt_star; where the volume is less than the ellipsoid, points are drawn from
-//   the volume and those outside of the ellipsoid left out; nodes outside are forgotten when the
+// Deviations: those of rrt_star; where the volume is smaller than the ellipsoid, samples are drawn
+//   from the volume and those outside the ellipsoid rejected; nodes outside are removed when the
 //   route has become shorter by 1 %.
 // Symbols: those of rrt_star; the foci are start and goal, the sum of distances the best length
 //   (with the goal's tolerance).
@@ -40,4 +40,4 @@ class InformedRrtStar final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "informed_rrt_star", InformedRrtStar, kit::StarParams,
-                "RRT* that samples only where a shorter route may lead")
+                "Informed RRT*: RRT* that samples only where a shorter route may lie")

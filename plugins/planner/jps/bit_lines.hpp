@@ -12,12 +12,12 @@
 
 namespace altiplan::jps {
 
-/// Cells of a level as lines of bits, 1 blocked: its rows, or its columns. Lines and the cells in
+/// Cells of a level as lines of bits, 1 blocked: its rows or its columns. Lines and the cells in
 /// them are numbered from -1, which is the border, as is everything after the last. Does not own
-/// the words; a word before the first line and one after the last can be read.
+/// the words; a word before the first line and one after the last must be readable.
 class BitLines {
  public:
-  /// How many bits from the first of a window on are the line's.
+  /// Number of bits, from the first of a window, that belong to the line.
   static constexpr int kWindow = 57;
 
   BitLines() = default;
@@ -27,7 +27,7 @@ class BitLines {
     static_assert(std::endian::native == std::endian::little);
   }
 
-  /// Bits of a line, and how far on those of the next are.
+  /// Bits of a line, and the offset to those of the next.
   const unsigned char* line(int number) const { return line_0_ + number * bytes_per_line_; }
   std::ptrdiff_t bytes_per_line() const { return bytes_per_line_; }
 
@@ -50,7 +50,7 @@ class BitLines {
   std::ptrdiff_t bytes_per_line_ = 0;
 };
 
-/// Windows from one cell on: of its line and of the two beside it.
+/// Windows starting at one cell: of its line and of the two adjacent lines.
 template <kit::CornerRule kRule, bool kAhead>
 struct Strip {
   std::uint64_t own = 0;
@@ -59,20 +59,20 @@ struct Strip {
 
   static std::uint64_t next(std::uint64_t window) { return kAhead ? window >> 1 : window << 1; }
   static std::uint64_t previous(std::uint64_t window) { return kAhead ? window << 1 : window >> 1; }
-  /// Of the n-th cell.
+  /// State of the n-th cell.
   static bool blocked(std::uint64_t window, int n) {
     return (window << (kAhead ? 63 - n : n) >> 63) != 0;
   }
-  /// Blocked cells of a line that a free one follows.
+  /// Blocked cells of a line that precede a free one.
   static std::uint64_t ends(std::uint64_t window) { return window & ~next(window); }
 
-  /// Scan of the cells after the first: n > 0 where the n-th is a jump point, -n where it is
-  /// blocked and none before it is a jump point, 0 where kCells of them are neither. One more of
-  /// each window is looked at.
+  /// Scans the cells after the first: n > 0 if the n-th is a jump point, -n if it is blocked and
+  /// none before it is a jump point, 0 if kCells of them are neither. Reads one more cell of each
+  /// window.
   ///
-  /// A cell is a jump point where a line beside has a blocked cell followed by a free one: under
-  /// `any` beside the blocked one (the free one is then a diagonal step away, and no other way
-  /// there is as short), under free_box beside the free one.
+  /// A cell is a jump point if an adjacent line has a blocked cell followed by a free one: under
+  /// `any` next to the blocked one (the free one is then a diagonal step away, and no other path
+  /// there is as short), under free_box next to the free one.
   template <int kCells>
   int scan() const {
     constexpr std::uint64_t kLow = (std::uint64_t{1} << kCells) - 1;
@@ -88,8 +88,8 @@ struct Strip {
   }
 };
 
-/// The scan of a Strip from a cell on, as far as it goes; `skipped` cells after it are known to be
-/// free and no jump points.
+/// The scan of a Strip from a cell on, to its end; `skipped` cells after it are known to be free
+/// and no jump points.
 template <kit::CornerRule kRule, bool kAhead>
 int scan(const BitLines& lines, int line, int at, int skipped = 0) {
   constexpr int kCells = BitLines::kWindow - 2;
@@ -105,12 +105,12 @@ int scan(const BitLines& lines, int line, int at, int skipped = 0) {
   }
 }
 
-/// The strip that goes along with a diagonal run, a line on with every step: two of its windows are
-/// those of the step before, a cell on.
+/// The strip that moves along with a diagonal run, one line per step: two of its windows are those
+/// of the previous step, shifted by one cell.
 template <kit::CornerRule kRule, bool kAhead>
 class MovingStrip {
  public:
-  /// At a cell, to move to the line after its own, or (-1) to the one before.
+  /// Positioned at a cell, to move to the line after its own, or (-1) to the one before.
   MovingStrip(const BitLines& lines, int line, int at, int side)
       : lines_(lines),
         fore_(lines.line(line + side)),
@@ -118,21 +118,21 @@ class MovingStrip {
         strip_{BitLines::window<kAhead>(lines.line(line), at), BitLines::window<kAhead>(fore_, at),
                0} {}
 
-  /// To a cell of the next line.
+  /// Moves to a cell of the next line.
   void step(int at) {
     fore_ += to_next_;
     strip_.right = S::next(strip_.own);
     strip_.own = S::next(strip_.left);
     strip_.left = BitLines::window<kAhead>(fore_, at);
   }
-  /// Whether the cell on the line that the run came from is blocked, and the one after it free.
+  /// True if the cell on the line that the run came from is blocked, and the one after it free.
   bool ends_behind() const { return S::blocked(S::ends(strip_.right), 0); }
-  /// Whether the neighbour straight on, or that of the next line, is blocked.
+  /// True if the neighbour straight ahead, or that of the next line, is blocked.
   bool blocked_straight() const { return S::blocked(strip_.own, 1); }
   bool blocked_fore() const { return S::blocked(strip_.left, 1); }
 
   int scan(int line, int at) const {
-    constexpr int kCells = BitLines::kWindow - 4;  // a window lasts for three steps
+    constexpr int kCells = BitLines::kWindow - 4;  // a window suffices for three steps
     const int n = strip_.template scan<kCells>();
     return n != 0 ? n : jps::scan<kRule, kAhead>(lines_, line, at, kCells);
   }
@@ -145,7 +145,7 @@ class MovingStrip {
   S strip_;  // left: the next line
 };
 
-/// Turns a square of bits about its diagonal: bit j of word i becomes bit i of word j.
+/// Transposes a square of bits: bit j of word i becomes bit i of word j.
 inline void transpose(std::array<std::uint64_t, 64>& square) {
   std::uint64_t low = 0x00000000FFFFFFFF;
   for (std::size_t half = 32; half != 0; half /= 2, low ^= low << half) {
@@ -157,11 +157,11 @@ inline void transpose(std::array<std::uint64_t, 64>& square) {
   }
 }
 
-/// The columns of an occupancy's only level, kept for as long as the same occupancy is asked about.
+/// The columns of an occupancy's only level, cached while the same occupancy is used.
 class Columns {
  public:
   BitLines of(const std::shared_ptr<const VoxelGrid>& grid) {
-    // By owner: another occupancy may come to lie where one was.
+    // Compares owners: another occupancy may be allocated at the same address.
     if (grid_.owner_before(grid) || grid.owner_before(grid_)) {
       build(*grid);
       grid_ = grid;

@@ -6,12 +6,11 @@
 //   diagonal run turns: the same, Improving Jump Point Search. ICAPS 2014,
 //   doi:10.1609/icaps.v24i1.13633.
 // Guarantees: complete and optimal on its lattice.
-// Complexity: O(n log n) time, O(n) memory in the cells of the level; nothing is worked out ahead
-//   but a copy of the occupancy with rows and columns exchanged.
-// Deviations: costs are whole numbers (kit::StepCosts); cells where a diagonal run turned keep
-//   their g, by which runs over a worse way end, and the route is found again without parents;
-//   start and goal join the lattice by straight links, and every cell linked to the goal ends a
-//   run.
+// Complexity: O(n log n) time, O(n) memory in the cells of the level; nothing is precomputed except
+//   a transposed copy of the occupancy.
+// Deviations: costs are integers (kit::StepCosts); cells where a diagonal run turned keep their g,
+//   which ends runs over a worse path, and the route is recovered without parents; straight links
+//   join start and goal to the lattice, and every cell linked to the goal ends a run.
 // Symbols: g length so far, h octile distance to the goal, f = g + h.
 #include <memory>
 
@@ -36,22 +35,24 @@ struct Params {
     f("cell_m", cell_m)
         .unit("m")
         .at_least(0.001)
-        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+        .doc("cell edge length on each axis; a layer with its own cells overrides it");
     f("corner", corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
         .doc(
-            "a diagonal step needs its two cells free (any), or also the two beside it (free_box)");
+            "a diagonal step requires its two cells to be free (any), or also the two beside it "
+            "(free_box)");
     f("costs", costs, {{"exact", StepCosts::Scale::fine}, {"integer", StepCosts::Scale::ratio}})
         .doc(
-            "costs of straight and diagonal steps: as fine as 28 bits hold a way's, or, on square "
-            "cells, 70 to 99, by which a route may be 1e-4 longer than the shortest");
+            "costs of straight and diagonal steps: as fine as 28 bits allow for the length of a "
+            "path, or, on square cells, 70 to 99, which makes routes at most 1e-4 longer than "
+            "the shortest");
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
-        .doc("a lattice that needs more is refused before anything is allocated");
+        .doc("memory limit of the lattice; a larger one is refused before allocation");
   }
 };
 
-/// The rule of the request that this search cannot hold steps to, or "".
+/// The constraint of the request that this search cannot check per step, or "".
 std::string beyond_cells(const Request& request) {
   const Limits& limits = request.limits;
   if (limits.turns()) {
@@ -72,7 +73,7 @@ std::string beyond_cells(const Request& request) {
         return band.datum == AltitudeBand::Datum::ground;
       });
   if (over_ground) {
-    return "rules on the ground below";
+    return "constraints on the ground below";
   }
   return request.constraints.empty() ? ""
                                      : "the constraint '" + request.constraints.front().name + "'";
@@ -92,7 +93,7 @@ class Jps final : public Planner {
  private:
   PlanResult do_plan(const Request& request) const override {
     if (const std::string rule = beyond_cells(request); !rule.empty()) {
-      return refused("cannot hold its steps to " + rule);
+      return refused("cannot satisfy " + rule);
     }
     const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
     const std::size_t bytes_per_cell = sizeof(std::uint32_t) + 1;
@@ -104,7 +105,7 @@ class Jps final : public Planner {
     const std::size_t allowed = std::min(most, request.budget.max_memory_bytes);
     if (const int levels = lattice.spec().counts[2]; levels > 1) {
       return refused("searches one level of cells, this lattice has " + std::to_string(levels) +
-                     " (no level flight is asked for)");
+                     " (the request does not ask for level flight)");
     }
     return params_.corner == CornerRule::any
                ? search<CornerRule::any>(request, lattice, allowed)
@@ -123,9 +124,10 @@ class Jps final : public Planner {
     for (double longest = 2 * (size.x() + size.y());; longest *= 4) {
       const StepCosts costs(lattice, scale, kSpare * longest);
       if (costs.error() > (scale == StepCosts::Scale::ratio ? 0.02 : 1e-4)) {
-        return refused("cannot tell the lengths of ways over " + std::to_string(lattice.size()) +
-                       " cells of " + std::to_string(lattice.spec().cell.x()) + " x " +
-                       std::to_string(lattice.spec().cell.y()) + " m apart");
+        return refused("cannot distinguish the lengths of paths over " +
+                       std::to_string(lattice.size()) + " cells of " +
+                       std::to_string(lattice.spec().cell.x()) + " x " +
+                       std::to_string(lattice.spec().cell.y()) + " m");
       }
       if (auto result = jps::Search<kRule>(request, lattice, costs, grid, allowed, *memory).run()) {
         return *std::move(result);
@@ -147,4 +149,4 @@ class Jps final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "jps", Jps, Params,
-                "jump point search on one level of cells, by many cells at once")
+                "jump point search on one level of cells, scanning many cells at once")

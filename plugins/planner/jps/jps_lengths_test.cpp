@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lengths of jps against Dijkstra's algorithm and against astar.
+// Lengths of jps compared with Dijkstra's algorithm and with astar.
 #include <gtest/gtest.h>
 
 #include "jps_maps_test.hpp"
@@ -14,13 +14,13 @@ using testing::random_map;
 using testing::serpentine;
 using testing::shortest;
 
-/// Plans between random free cells of maps, and counts what came out.
+/// Plans between random free cells of maps, and counts the outcomes.
 class Against {
  public:
   explicit Against(std::uint64_t seed) : random_(seed) {}
 
-  /// Under both rules: the length is Dijkstra's, every leg lies in the free cells, and where there
-  /// is no way, that is proved.
+  /// Under both corner rules: the length is Dijkstra's, every leg lies in the free cells, and if
+  /// there is no path, that is proved.
   void dijkstra(const Map& map, int goals) {
     const std::vector<int> free = map.free_cells();
     if (free.empty()) {
@@ -144,7 +144,7 @@ TEST(JpsLengths, MazesWithWaysLongerThanTheFirstCostsAllow) {
   against.dijkstra(square, 3);
   EXPECT_EQ(against.unreachable(), 0);
 
-  // From end to end: 130 rows of 259 steps and 129 ways round a wall's end.
+  // From end to end: 130 rows of 259 steps and 129 turns around a wall's end.
   const int last = 260 * 261 - 1;
   const Request request = square.request(0, last);
   const double expected = shortest(square, 0, true)[std::size_t(last)];

@@ -14,7 +14,7 @@
 
 namespace altiplan::testing {
 
-/// A level of cells to plan on, row 0 southernmost.
+/// A level of cells for planning, row 0 southernmost.
 struct Map {
   int width = 1;
   int height = 1;
@@ -91,7 +91,7 @@ inline Map random_map(SplitMix64& random, int width, int height, double density)
   return map;
 }
 
-/// A wall in every other row, with one gap, east and west in turn.
+/// A wall in every other row, with one gap, east and west alternately.
 inline Map serpentine(int width, int height) {
   Map map(width, height);
   for (int y = 1; y < height; y += 2) {
@@ -102,7 +102,7 @@ inline Map serpentine(int width, int height) {
   return map;
 }
 
-/// Lengths of the shortest ways from a cell by Dijkstra's algorithm; infinite where there is none.
+/// Lengths of the shortest paths from a cell by Dijkstra's algorithm; infinite if there is none.
 inline std::vector<double> shortest(const Map& map, int from, bool free_box) {
   std::vector<double> best(map.blocked.size(), kInfinity);
   using Entry = std::pair<double, int>;

@@ -21,7 +21,7 @@ namespace altiplan::jps {
 template <kit::CornerRule kRule>
 class Search {
  public:
-  /// All of it must outlive the search.
+  /// All arguments must outlive the search.
   Search(const Request& request, const kit::Lattice& lattice, const kit::StepCosts& costs,
          const std::shared_ptr<const VoxelGrid>& grid, std::size_t max_bytes, Memory& memory)
       : request_(request),
@@ -38,7 +38,7 @@ class Search {
         goal_node_(std::uint32_t(lattice.size())),
         level_costs_(costs) {}
 
-  /// Nothing where a way became longer than the costs allow.
+  /// Empty if a path became longer than the costs allow.
   std::optional<PlanResult> run() {
     begin();
     while (!open_.empty()) {
@@ -47,7 +47,7 @@ class Search {
         return found(index == goal_node_ ? goal_parent_ : index, true);
       }
       if (nodes_[index] != word) {
-        continue;  // reached by a shorter way since
+        continue;  // reached by a shorter path in the meantime
       }
       if (watch_.spent(expanded_) || memory_full()) {
         return ended(watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out);
@@ -83,7 +83,7 @@ class Search {
 
   std::uint32_t index(int x, int y) const { return std::uint32_t(y) * width_ + std::uint32_t(x); }
 
-  /// Cost of the way to the goal if no cell were blocked.
+  /// Cost of the path to the goal if no cell were blocked.
   std::uint32_t heuristic(int x, int y) const {
     std::uint32_t least = kNone;
     for (const GoalCell& goal : goals_) {
@@ -103,8 +103,8 @@ class Search {
     }
   }
 
-  /// Notes where a diagonal run turned, for the route alone: what can be reached from there in the
-  /// run's directions is found by the run itself. Whether the run is worth going on.
+  /// Records where a diagonal run turned, only for the route: the run itself finds what is
+  /// reachable from there in its directions. Returns true if the run is worth continuing.
   bool turn(int x, int y, std::uint32_t g, int in) {
     too_long_ = too_long_ || g >= NodeWord::kMax;
     const std::uint32_t at = index(x, y);
@@ -184,8 +184,8 @@ class Search {
     }
   }
 
-  /// From a cell whose first step is free: reaches what lies straight on, in the two directions
-  /// that the diagonal is made of, of each of its cells.
+  /// From a cell whose first step is free: reaches what lies straight on from each cell of the
+  /// diagonal, in the diagonal's two component directions.
   template <bool kEast, bool kNorth>
   void run_diagonal(int x, int y, std::uint32_t g) {
     constexpr int kX = kEast ? 1 : -1;
@@ -222,7 +222,7 @@ class Search {
                                      !(row.blocked_straight() || column.blocked_straight())));
   }
 
-  /// The goal, reached from a cell that has a link to it; or else that cell, where it will do.
+  /// Reaches the goal from a cell linked to it; otherwise that cell, if it is within the tolerance.
   void try_goal(const GoalCell& goal, std::uint32_t g) {
     const Vec3 here = lattice_.position({goal.x, goal.y, 0});
     if (leg_ok(std::nullopt, here, request_.goal.position, request_)) {
@@ -242,8 +242,8 @@ class Search {
            double(max_bytes_);
   }
 
-  /// The cell where the run that led to a cell began. Nothing where that cell has been reached by a
-  /// shorter way since and the other has not, which is then on no shortest way.
+  /// The cell where the run that led to a cell began. Empty if that cell has been reached by a
+  /// shorter path in the meantime and the other has not, which is then on no shortest path.
   std::optional<std::uint32_t> parent(std::uint32_t index) const {
     const std::uint32_t word = nodes_[index];
     const int in = NodeWord::in(word);
@@ -259,7 +259,7 @@ class Search {
     return std::nullopt;
   }
 
-  /// How many steps that led to a cell can have been on the level.
+  /// Maximum number of steps to a cell that stay on the level.
   int steps_back(const Cell& c, const Cell& step) const {
     int most = std::numeric_limits<int>::max();
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -283,7 +283,7 @@ class Search {
       in = before;
     }
     if (start_is_centre_) {
-      route.pop_back();  // the start itself, but for rounding
+      route.pop_back();  // the start itself, except for rounding
     }
     route.push_back(request_.start.position);
     std::reverse(route.begin(), route.end());
@@ -298,7 +298,7 @@ class Search {
     result.route = route_to(last);
     if (at_goal) {
       if (last == goal_cell_) {
-        result.route.back() = request_.goal.position;  // the cell's centre, but for rounding
+        result.route.back() = request_.goal.position;  // the cell's centre, except for rounding
       } else {
         result.route.push_back(request_.goal.position);
       }
@@ -336,11 +336,11 @@ class Search {
       const Vec3 at = lattice_.position(lattice_.cell(nearest_cell_));
       result.message += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) +
                         ", " + whole(at.z()) + "), " + whole((at - request_.goal.position).norm()) +
-                        " m from it" + (budget_hit ? "" : "; blocked cells close the way on");
+                        " m from it" + (budget_hit ? "" : "; blocked cells bar every path on");
     } else if (status == PlanStatus::no_route) {
       result.message += ", the start cannot join the lattice";
     }
-    // Cells farther from the goal than its links are were not looked at.
+    // Cells farther from the goal than its links reach were not examined.
     result.proved = status == PlanStatus::no_route &&
                     request_.goal.tolerance_m < lattice_.spec().cell.head<2>().minCoeff();
     return result;
@@ -369,11 +369,11 @@ class Search {
   LevelCosts level_costs_;
   GoalCells goals_;
   bool start_is_centre_ = false;
-  std::uint32_t goal_cell_ = kNone;  ///< whose centre the goal is
+  std::uint32_t goal_cell_ = kNone;  ///< the cell whose centre is the goal
   std::uint32_t goal_g_ = kNone;
   std::uint32_t goal_parent_ = kNone;
   std::uint32_t fallback_g_ = kNone;
-  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
+  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, if the goal has no link
   std::uint64_t expanded_ = 0;
   std::int64_t generated_ = 0;
   std::uint32_t nearest_ = kNone;

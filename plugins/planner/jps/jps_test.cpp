@@ -84,7 +84,7 @@ TEST(Jps, AWorldThatComesToLieWhereAnotherWasIsScannedAnew) {
   const auto other_rule = jps(false);
   int solved = 0;
   for (int n = 0; n < 300; ++n) {
-    // Of one size twice in a row, then of another: each world is gone before the next is made.
+    // Two of one size in a row, then another: each world is destroyed before the next is created.
     const int width = 20 + n / 2 % 7 * 17;
     const Map map = random_map(random, width, 150 - width, 0.25);
     const std::vector<int> free = map.free_cells();
@@ -141,7 +141,7 @@ TEST(Jps, KeepsTheVehiclesRadius) {
 }
 
 TEST(Jps, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
-  // A thin wall between the goal and the only column of cells that is free.
+  // A thin wall between the goal and the only column of free cells.
   Request request =
       testing::request_in(testing::world_of({BoxShape{{{10.2, -1, -1}, {10.4, 101, 11}}}}),
                           {5, 5, 5}, {12, 85, 5}, {{0, 0, 0}, {20, 100, 10}});
@@ -155,7 +155,7 @@ TEST(Jps, EndsWithinTheToleranceWhereNoLegJoinsTheGoal) {
   ASSERT_EQ(within.status, PlanStatus::solved) << within.message;
   EXPECT_EQ(within.route.back(), Vec3(5, 85, 5));
   EXPECT_TRUE(check(within.route, request).ok());
-  // Cells farther away than a link were not looked at.
+  // Cells farther away than a link were not examined.
   request.goal = {{17, 85, 5}, 11};
   const PlanResult beyond = planner->plan(request);
   EXPECT_EQ(beyond.status, PlanStatus::no_route);
@@ -179,7 +179,7 @@ TEST(Jps, RefusesRulesThatCellsCannotHoldAndNamesThem) {
       {"limits on turns", [](Request& r) { r.limits.max_turn_horizontal = 1; }},
       {"limits on the length of legs", [](Request& r) { r.limits.max_leg = 2; }},
       {"a limit on the route's length", [](Request& r) { r.limits.max_route_length = 9; }},
-      {"rules on the ground below",
+      {"constraints on the ground below",
        [](Request& r) {
          r.limits.altitude.push_back({AltitudeBand::Datum::ground, -kInfinity, kInfinity});
        }},
@@ -192,7 +192,7 @@ TEST(Jps, RefusesRulesThatCellsCannotHoldAndNamesThem) {
     set(request);
     const PlanResult result = jps(true)->plan(request);
     EXPECT_EQ(result.status, PlanStatus::invalid_problem) << name;
-    EXPECT_EQ(result.message, "jps cannot hold its steps to " + name + ": use astar");
+    EXPECT_EQ(result.message, "jps cannot satisfy " + name + ": use astar");
   }
   Request bounded = plain;
   bounded.limits.min_leg = 0.1;
@@ -224,7 +224,7 @@ TEST(Jps, CellsTooUnlikeForTheCostsAreRefused) {
   EXPECT_NE(result.message.find("100000"), std::string::npos) << result.message;
 }
 
-/// Keeps what a search tells.
+/// Records the events of a search.
 class Kept final : public Trace {
  public:
   void add(const TraceEvent& event) override { events.push_back(event); }
@@ -270,7 +270,7 @@ TEST(Jps, TracedParentsAreWhereRunsBegan) {
       EXPECT_TRUE(run.x() == 0 || run.y() == 0 || run.x() == run.y()) << run.transpose();
     }
   }
-  // The starts, and the few cells that were reached by a detour only.
+  // The starts, and the few cells that only a detour reached.
   EXPECT_GE(orphans, 100u);
   EXPECT_LT(orphans, 100 + events / 50);
 }

@@ -18,22 +18,22 @@ struct Memory {
   kit::BucketQueue open;
   Columns columns;
 
-  /// Bytes a cell without the open list.
+  /// Bytes per cell without the open list.
   static constexpr double kBytesPerCell = 4.3;
 };
 
-/// What is known of a cell, in four bytes: g as what is left of the most that fits, above the
+/// State of a cell in four bytes: g as the remainder to the largest value that fits, above the
 /// direction of the straight run of steps that led there. 0: not reached; greater: nearer.
 class NodeWord {
  public:
-  static constexpr std::uint32_t kMax = (std::uint32_t{1} << 28) - 1;  ///< g is below
+  static constexpr std::uint32_t kMax = (std::uint32_t{1} << 28) - 1;  ///< upper bound of g
 
   static std::uint32_t of(std::uint32_t g, int in) {
     return (kMax - g) << 4 | std::uint32_t(in - kFirst);
   }
   static std::uint32_t g(std::uint32_t word) { return kMax - (word >> 4); }
   static int in(std::uint32_t word) { return int(word & 15) + kFirst; }
-  /// Whether a is a shorter way than b.
+  /// True if a is a shorter path than b.
   static bool nearer(std::uint32_t a, std::uint32_t b) { return a >> 4 > b >> 4; }
 
  private:
@@ -47,7 +47,7 @@ struct GoalCell {
   std::uint32_t cost;  ///< of the leg
 };
 
-/// Those cells; every run stops at one.
+/// Set of goal cells; every run stops at one.
 class GoalCells {
  public:
   void add(const GoalCell& cell) {
@@ -66,7 +66,7 @@ class GoalCells {
                        [&](const GoalCell& cell) { return cell.x == x && cell.y == y; });
   }
 
-  /// What a straight run from a cell comes to that without these cells came to `found` (see
+  /// Result of a straight run from a cell that would give `found` without these cells (see
   /// Strip::scan).
   template <bool kAlongX, bool kAhead>
   int stopped(int x, int y, int found) const {
@@ -99,7 +99,7 @@ struct LevelCosts {
       : x(costs[kit::direction(1, 0, 0)]),
         y(costs[kit::direction(0, 1, 0)]),
         xy(costs[kit::direction(1, 1, 0)]) {}
-  /// Of the cheapest way between cells so far apart if none were blocked.
+  /// Cost of the cheapest path between cells so far apart if none were blocked.
   std::uint32_t apart(int along_x, int along_y) const {
     const auto nx = std::uint32_t(std::abs(along_x));
     const auto ny = std::uint32_t(std::abs(along_y));

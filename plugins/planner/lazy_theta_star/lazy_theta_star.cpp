@@ -3,16 +3,16 @@
 //
 // Citation: A. Nash, S. Koenig, C. Tovey: Lazy Theta*: Any-Angle Path Planning and Path Length
 //   Analysis in 3D. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
-// Guarantees: every leg keeps every rule; a route over free cells is found where there is one
-//   (angle_rule: complete: under limits on turns and climb too), and where cells alone decide it is
-//   never longer than the shortest over the grid.
-// Complexity: O(n log n) time, O(n) memory in the cells, and a line of sight each time that a cell
-//   is taken from the open list, over as many cells as the leg meets.
-// Deviations: a cell that its parent does not see waits for its turn again, with the length that it
-//   has by its best closed neighbour; a leg is held to every rule of the judge; where it breaks a
-//   limit at the parent's parent the cell is reached by way of the expanded cell; ways are sums of
-//   whole numbers (kit/any_angle.hpp); f that falls along a step counts as the last f.
-// Symbols: g length of the way from the start, h straight line to the goal, f = g + h.
+// Guarantees: every leg satisfies every constraint; finds a route over free cells if there is one
+//   (angle_rule: complete: also under limits on turns and climb), and where cells alone decide, the
+//   route is never longer than the shortest over the grid.
+// Complexity: O(n log n) time, O(n) memory in the cells, and one line of sight each time a cell is
+//   popped from the open list, over as many cells as the leg intersects.
+// Deviations: a cell that its parent does not see is queued again, with its length via its best
+//   closed neighbour; a leg is checked against every constraint of the judge; where it violates a
+//   limit at the parent's parent, the cell is reached via the expanded cell; path lengths are sums
+//   of integers (kit/any_angle.hpp); an f that falls along a step is replaced by the last f.
+// Symbols: g length of the path from the start, h straight line to the goal, f = g + h.
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
@@ -29,5 +29,5 @@ class LazyThetaStar final : public kit::EveryCellPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "lazy_theta_star", LazyThetaStar, kit::AnyAngleParams,
-                "Lazy Theta*: straight legs between cells that see each other, each looked at when "
+                "Lazy Theta*: straight legs between cells that see each other, each checked when "
                 "its end is expanded")

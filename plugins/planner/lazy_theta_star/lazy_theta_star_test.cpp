@@ -31,8 +31,8 @@ TEST(LazyThetaStar, WaysFarLongerThanTheMapIsWide) {
   testing::expect_long_ways_found("lazy_theta_star");
 }
 
-/// A cell that got a longer way than it waited for must not take its turn at a place where it had
-/// waited before that.
+/// A cell that got a longer path than the one it was queued for must not be popped in an older
+/// position of the queue.
 TEST(LazyThetaStar, ACellWhoseLegIsRefusedWaitsForTheLengthItHas) {
   const testing::Drawn drawn =
       testing::draw({"....\n....\n....\n....\n..S.\n#.##", "...#\n....\n.#..\n....\n.#..\n#...",

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometric planners of OMPL on our world.
+// The geometric planners of OMPL in our world.
 //
 // Citation: I. A. Sucan, M. Moll, L. E. Kavraki: The Open Motion Planning Library. IEEE Robotics &
 //   Automation Magazine 19(4), 2012, 72-82, doi:10.1109/MRA.2012.2205651. Each planner's own paper
 //   is named on OMPL's pages.
-// Guarantees: a route returned keeps every rule. None is found by a rule that needs the leg before
-//   (turns, the heading at the start) but by luck: OMPL asks for legs alone.
-// Complexity: that of the planner named.
-// Deviations: PRM and PRM* look for a way between turns of building the roadmap, not in a second
-//   thread (ompl_planners.hpp). Motions are judged exactly, not sampled. Nothing is simplified:
-//   that is a smoother's work.
+// Guarantees: a returned route satisfies every constraint. Constraints on two consecutive legs
+//   (turns, the heading at the start) are satisfied only by chance: OMPL checks single legs.
+// Complexity: that of the selected planner.
+// Deviations: PRM and PRM* alternate between extending the roadmap and searching for a path, rather
+//   than using a second thread (ompl_planners.hpp). Motions are checked exactly, not sampled. No
+//   simplification: that is a smoother's work.
 // Symbols: as in OMPL; a state is a point, a motion a leg.
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/ScopedState.h>
@@ -32,11 +32,11 @@ namespace {
 using namespace altiplan;
 using namespace altiplan::ompl_planner;
 
-/// OMPL to oneself: the seeds that it gives to new generators of random numbers, and its console,
-/// belong to the whole process.
+/// Exclusive access to OMPL: its seeds of new random number generators and its console belong to
+/// the whole process.
 class Turn {
  public:
-  /// Waits until no other plan has it, or the questions are spent.
+  /// Waits until no other plan has it, or the budget of queries is spent.
   explicit Turn(Questions& questions) {
     while (!mine_.try_lock() && !questions.spent()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -99,17 +99,19 @@ struct Params {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("longest extension of the planner's tree, its parameter range; auto: as OMPL has it");
+        .doc("longest extension of the planner's tree, its parameter range; auto: OMPL's default");
     f("parameters", parameters)
-        .doc("a map of the planner's other parameters, by OMPL's names of them");
+        .doc("the planner's other parameters: a map from their OMPL names to values");
     f("max_iterations", max_iterations)
         .at_least(1)
-        .doc("questions that it may ask; one that goes on to better routes ends there");
+        .doc(
+            "queries that the planner may make; a planner that keeps improving its route stops "
+            "there");
     const std::string wrong = f.reading() ? problem() : "";
     f.check(wrong.empty(), wrong);
   }
 
-  /// Hands the parameters to a planner; what is wrong with them, "" where nothing is.
+  /// Sets the parameters on a planner; returns what is wrong with them, or "".
   std::string apply(ob::Planner& to) const {
     if (range_m.value) {
       char text[32];  // not printf: a locale may write decimals with a comma
@@ -124,11 +126,11 @@ struct Params {
       if (!to.params().hasParam(entry.key)) {
         return name + to.getName() + " has no such parameter, it has " + names(to);
       }
-      // OMPL reads truth as 1 and 0.
+      // OMPL represents booleans as 1 and 0.
       const bool scalar = entry.value.kind == Value::Kind::scalar;
       const std::string read = text == "true" ? "1" : text == "false" ? "0" : text;
       if (!scalar || !set(to, entry.key, read)) {
-        return name + "what OMPL takes is not " + entry.value.what();
+        return name + "OMPL does not accept " + entry.value.what();
       }
     }
     return "";
@@ -174,13 +176,15 @@ class Ompl final : public Planner {
     if (axes.count() < 2) {
       PlanResult result;
       result.status = PlanStatus::invalid_problem;
-      result.message = "OMPL plans in a plane or in space, this volume has no two extents";
+      result.message =
+          "OMPL plans in 2-D or 3-D, but this volume extends along fewer than two "
+          "axes";
       return result;
     }
     Questions questions(request.budget, std::uint64_t(params_.max_iterations));
     const Turn turn(questions);
     if (!turn) {
-      return without_route(questions, "another plan had OMPL for as long as there was time");
+      return without_route(questions, "another plan used OMPL until the time limit");
     }
     RandomStream seeds = request.random.sub("ompl");
     ompl::RNG::setSeed(std::uint_fast32_t(seeds.integer(1, 1'000'000'000)));
@@ -198,8 +202,8 @@ class Ompl final : public Planner {
     planner->setup();
     planner->solve(ob::PlannerTerminationCondition([&] { return !questions.take(); }));
     if (!problem->hasExactSolution()) {
-      return without_route(questions, planner->getName() + " found no route, having asked " +
-                                          std::to_string(questions.asked()) + " questions");
+      return without_route(questions, planner->getName() + " found no route after " +
+                                          std::to_string(questions.asked()) + " queries");
     }
     return judged(route_of(*problem, axes, request), request, questions, planner->getName());
   }
@@ -229,13 +233,13 @@ class Ompl final : public Planner {
     return without_repeats(route);
   }
 
-  /// Rules of two legs and of whole routes have the last word.
+  /// Constraints on two consecutive legs and on whole routes are checked last.
   static PlanResult judged(Route route, const Request& request, const Questions& questions,
                            const std::string& planner) {
     const std::vector<Violation> broken = check(route, request).violations;
     if (!broken.empty()) {
-      return without_route(questions, "the route that " + planner +
-                                          " found breaks a rule that it does not know of, " +
+      return without_route(questions, "the route found by " + planner +
+                                          " violates a constraint that OMPL cannot check, " +
                                           broken.front().constraint + " at waypoint " +
                                           std::to_string(broken.front().at) + ": " +
                                           broken.front().message);
@@ -243,8 +247,8 @@ class Ompl final : public Planner {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.budget_hit = questions.budget_spent();
-    result.message = planner + ": " + std::to_string(route.size()) + " waypoints, having asked " +
-                     std::to_string(questions.asked()) + " questions";
+    result.message = planner + ": " + std::to_string(route.size()) + " waypoints after " +
+                     std::to_string(questions.asked()) + " queries";
     result.counters = questions.counters();
     result.route = std::move(route);
     return result;
@@ -268,4 +272,4 @@ class Ompl final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "ompl", Ompl, Params,
-                "a geometric planner of the Open Motion Planning Library, by its name")
+                "a geometric planner of the Open Motion Planning Library, selected by name")

@@ -35,9 +35,9 @@ namespace altiplan::ompl_planner {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-/// PRM and PRM*. OMPL's own look for a way in a second thread, and go from growing the roadmap to
-/// expanding it by the clock: the same seed would not give the same route. Here all of that takes
-/// turns, which are counted.
+/// PRM and PRM*. OMPL's own versions search for a path in a second thread, and switch from growing
+/// the roadmap to expanding it by the clock: the same seed would not give the same route. Here
+/// these phases alternate in counted turns.
 template <bool kStar>
 class RoadMap final : public og::PRM {
  public:
@@ -64,7 +64,7 @@ class RoadMap final : public og::PRM {
   }
 
  private:
-  static constexpr int kTurn = 20;  ///< questions of OMPL whether the turn ends
+  static constexpr int kTurn = 20;  ///< OMPL's termination queries per turn
 };
 
 using MakePlanner = ob::PlannerPtr (*)(const ob::SpaceInformationPtr&);

@@ -130,7 +130,7 @@ TEST(OmplPlugin, ATurnThatItDoesNotKnowOfIsSaid) {
   const PlanResult result = make_planner("ompl", "{planner: RRT, range_m: 50}")->plan(request);
   EXPECT_EQ(result.status, PlanStatus::no_route);
   EXPECT_TRUE(result.route.empty());
-  EXPECT_NE(result.message.find("does not know of, turn_angle at waypoint"), std::string::npos)
+  EXPECT_NE(result.message.find("OMPL cannot check, turn_angle at waypoint"), std::string::npos)
       << result.message;
   request.limits.max_turn_space = kPi;
   EXPECT_EQ(make_planner("ompl", "{planner: RRT, range_m: 50}")->plan(request).status,
@@ -148,7 +148,7 @@ TEST(OmplPlugin, WithoutAWayItEndsWithItsQuestions) {
   }
 }
 
-/// Open air that, asked for the hundredth time, has something else done in another thread.
+/// An empty world that, at the hundredth query, runs something in another thread.
 class Interruption final : public Environment {
  public:
   explicit Interruption(std::function<void()> by) : by_(std::move(by)) {}
@@ -176,7 +176,7 @@ TEST(OmplPlugin, APlanWaitsForTheOneBeforeAsLongAsItHasTime) {
       testing::world_of(std::make_shared<Interruption>([&] { beside = planner->plan(hurried); })));
   EXPECT_EQ(planner->plan(request).status, PlanStatus::solved);
   EXPECT_EQ(beside.status, PlanStatus::timed_out);
-  EXPECT_NE(beside.message.find("another plan had OMPL"), std::string::npos) << beside.message;
+  EXPECT_NE(beside.message.find("another plan used OMPL"), std::string::npos) << beside.message;
 }
 
 TEST(OmplPlugin, AStopEndsThoseThatGoOn) {

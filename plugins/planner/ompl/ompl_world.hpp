@@ -16,17 +16,17 @@
 
 #include "altiplan/check.hpp"
 
-// A request as OMPL sees it: a space of coordinates, in which states and legs are free or not.
+// A request as OMPL sees it: a space of coordinates whose states and legs are free or not.
 namespace altiplan::ompl_planner {
 namespace ob = ompl::base;
 
-/// What OMPL asks while it plans, counted: each question is an iteration of the budget. Once that
-/// is spent, nothing is free any more, so that whatever OMPL is about comes to its end soon.
+/// Counts OMPL's queries (states, legs, termination); each is one iteration of the budget. Once
+/// that is spent, nothing is free any more, so that OMPL's current activity ends soon.
 class Questions {
  public:
   Questions(const Budget& budget, std::uint64_t most) : watch_(budget), most_(most) {}
 
-  /// Counts a question; whether it is to be answered.
+  /// Counts a query; returns true if it is to be answered.
   bool take() {
     if (spent()) {
       return false;
@@ -58,7 +58,8 @@ class Questions {
   bool budget_spent_ = false;
 };
 
-/// Our points and OMPL's states: a state has the axes along which the volume has an extent.
+/// Converts between our points and OMPL states: a state has the axes along which the volume
+/// extends.
 class Axes {
  public:
   explicit Axes(const Request& request) : fixed_(request.start.position) {
@@ -71,7 +72,7 @@ class Axes {
   }
   unsigned count() const { return unsigned(free_.size()); }
 
-  /// The volume, and the ends, which may lie beyond it by rounding.
+  /// The volume and the ends, which may lie outside it by rounding errors.
   ob::RealVectorBounds bounds(const Request& request) const {
     ob::RealVectorBounds bounds(count());
     for (unsigned i = 0; i < count(); ++i) {
@@ -101,9 +102,9 @@ class Axes {
   std::vector<int> free_;
 };
 
-/// Where planners that spread over cells (KPIECE1, SBL, PDST, …) have them: on the first two axes.
-/// OMPL's own in space is a plane drawn at random, and its own of a level ends the process: an
-/// assertion in it does not hold (1.5.2).
+/// Projection for planners that spread over cells (KPIECE1, SBL, PDST, …): the first two axes.
+/// OMPL's default in 3-D is a random plane, and its default for a level aborts the process by a
+/// failed assertion (1.5.2).
 class OnPlane final : public ob::ProjectionEvaluator {
  public:
   explicit OnPlane(const ob::StateSpace* space) : ProjectionEvaluator(space) {}
@@ -116,7 +117,8 @@ class OnPlane final : public ob::ProjectionEvaluator {
   }
 };
 
-/// Two or three coordinates. Keeps its states until it ends: some planners forget to free theirs.
+/// Two or three coordinates. Keeps its states until destruction: some planners forget to free
+/// theirs.
 class Space final : public ob::RealVectorStateSpace {
  public:
   using RealVectorStateSpace::RealVectorStateSpace;
@@ -148,13 +150,13 @@ class Space final : public ob::RealVectorStateSpace {
   mutable std::vector<ob::State*> idle_;
 };
 
-/// Whether the vehicle can be at a place, whatever leg leads there.
+/// True if the vehicle can be at a position, regardless of the legs that lead there.
 class FreeStates final : public ob::StateValidityChecker {
  public:
   FreeStates(const ob::SpaceInformationPtr& info, const Axes& axes, const Request& request,
              Questions& questions)
       : StateValidityChecker(info), axes_(axes), places_(request), questions_(questions) {
-    places_.limits.min_leg = 0;  // a place is a leg of no length
+    places_.limits.min_leg = 0;  // a position is a leg of zero length
     places_.constraints.clear();
   }
   bool isValid(const ob::State* state) const override {  // NOLINT(readability-identifier-naming)
@@ -168,7 +170,7 @@ class FreeStates final : public ob::StateValidityChecker {
   Questions& questions_;
 };
 
-/// Whether a leg by itself keeps the rules: what leads to it OMPL does not tell.
+/// True if a leg by itself satisfies the constraints: OMPL does not provide the preceding leg.
 class FreeLegs final : public ob::MotionValidator {
  public:
   FreeLegs(const ob::SpaceInformationPtr& info, const Axes& axes, const Request& request,
@@ -180,7 +182,7 @@ class FreeLegs final : public ob::MotionValidator {
     return questions_.take_leg() &&
            leg_ok(std::nullopt, axes_.point(from), axes_.point(to), request_);
   }
-  /// Where the leg is not free, one that is and that leads along it, by bisection.
+  /// If the leg is not free, finds a free part of it from its beginning, by bisection.
   // NOLINTNEXTLINE(readability-identifier-naming)
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {

@@ -5,16 +5,17 @@
 //   Planning Algorithm Based on RRT. Computer Science 50(6A), 2023. The basic tree: S. M. LaValle:
 //   Rapidly-Exploring Random Trees: A New Tool for Path Planning. TR 98-11, Iowa State University,
 //   1998.
-// Guarantees: every leg keeps the rules; no route is ever proved absent. Without limits on turns,
-//   and with random_share > 0, a route that steps can make is found sooner or later.
+// Guarantees: every leg satisfies the constraints; the absence of a route is never proved. Without
+//   turn limits, and with random_share > 0, a route that consists of steps is found eventually.
 // Complexity: O(n log n) for n nodes with weight_goal 0; with both weights the choice of a node
-//   grows about as n^0.65.
-// Deviations: eqs. (2) to (5) alone make the same child for ever, so a node grows toward the goal
-//   once, and rests after max_failures; when all have rested, extensions are bent to the limits
-//   on turn and climb. The last leg is up to two steps long. With cut_off: reconnect the tree
-//   grows along a way past the threat (rrt_repair.hpp), and takes back what was cut off.
-// Symbols: q_rand a random place, q_near the chosen node, w_1 weight_random, w_2 weight_goal,
-//   p random_share, L step_m.
+//   grows roughly as n^0.65.
+// Deviations: eqs. (2) to (5) alone would generate the same child forever, so a node grows toward
+//   the goal once, and rests after max_failures; when all nodes have rested, extensions are bent to
+//   satisfy the limits on turn and climb. The last leg is up to two steps long. With cut_off:
+//   reconnect the tree grows along a path past the threat (rrt_repair.hpp) and reconnects what was
+//   cut off.
+// Symbols: q_rand a random position, q_near the chosen node, w_1 weight_random, w_2 weight_goal, p
+//   random_share, L step_m.
 #include <memory>
 
 #include "altiplan/kit/scratch.hpp"
@@ -44,27 +45,29 @@ struct Params {
         .unit("m")
         .at_least(0.001)
         .doc(
-            "L, length of a leg; auto: a hundredth of the volume's diagonal, within the limits on "
-            "legs");
+            "L, length of a leg; auto: a hundredth of the volume's diagonal, within the limits "
+            "on leg length");
     f("weight_random", weight_random)
         .range(0, 1000)
-        .doc("w_1: the node with the least w_1 |q - q_rand| + w_2 |q - goal| is extended");
+        .doc("w_1: the node with the minimum w_1 |q - q_rand| + w_2 |q - goal| is extended");
     f("weight_goal", weight_goal).range(0, 1000).doc("w_2; 0 with w_1 = 1 is the basic tree");
     f("random_share", random_share)
         .range(0, 1)
-        .doc("p: share of extensions toward q_rand, the others go toward the goal; 1: basic");
-    f("goal_bias", goal_bias).range(0, 1).was("goal_share").doc("probability of sampling the goal as q_rand");
-    f("toward_goal_once", toward_goal_once)
-        .doc("whether a node is extended toward the goal only once");
+        .doc("p: fraction of extensions toward q_rand, the others go toward the goal; 1: basic");
+    f("goal_bias", goal_bias)
+        .range(0, 1)
+        .was("goal_share")
+        .doc("probability of sampling the goal as q_rand");
+    f("toward_goal_once", toward_goal_once).doc("extend a node toward the goal only once");
     f("max_failures", max_failures)
         .range(0, 60000)
-        .doc("failed extensions after which a node rests until all others do; 0: never");
-    f("max_iterations", max_iterations).at_least(1).doc("extensions tried before it gives up");
+        .doc("failed extensions after which a node rests until all others rest too; 0: never");
+    f("max_iterations", max_iterations).at_least(1).doc("maximum number of extensions");
     f("cut_off", cut_off,
       {{"drop", CutOff::drop}, {"reconnect", CutOff::reconnect}, {"afresh", CutOff::afresh}})
         .doc(
-            "what becomes of branches that a change cuts off: they are forgotten (drop), or taken "
-            "back where the tree comes by (reconnect); afresh forgets the whole tree, to compare");
+            "branches that a change cuts off are removed (drop), or reconnected when the tree "
+            "grows near them (reconnect); afresh removes the whole tree, for comparison");
     f.check(weight_random > 0 || weight_goal > 0, "one of weight_random, weight_goal must be > 0");
   }
 
@@ -115,4 +118,5 @@ class Rrt final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "rrt", Rrt, Params,
-                "RRT with a goal heuristic under flight constraints, and a tree that lives on")
+                "RRT with a goal heuristic under flight constraints and a tree that persists "
+                "between plans")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the tree of `rrt` grows to the goal.
+// Growth of the tree of `rrt` to the goal.
 #pragma once
 
 #include <algorithm>
@@ -27,13 +27,13 @@ struct Settings {
   std::uint64_t max_iterations = 0;
 };
 
-/// Where samples are drawn and what the tree grows to, after a change has cut it.
+/// Region to sample and nodes to grow to, after a change has cut the tree.
 struct Damage {
   Box box = Box::empty();  ///< empty: there is none
-  std::vector<Node> tail;  ///< loose nodes of the old route's end
+  std::vector<Node> tail;  ///< loose nodes at the end of the old route
 };
 
-/// Grows the tree of a request; between two starts both may change.
+/// Grows the tree of a request; start and goal may change between two calls of start().
 class Growth {
  public:
   Growth(const Settings& settings, const Request& request, Tree& tree)
@@ -41,27 +41,27 @@ class Growth {
 
   Node root() const { return root_; }
   void set_root(Node root) { root_ = root; }
-  /// Where the route ends, loose or not; kNone while there is none.
+  /// End of the route, loose or not; kNone while there is none.
   Node end() const { return end_; }
   bool is_done() const { return end_ != kNone && tree_.is_rooted(end_); }
   double step() const { return settings_.step; }
 
-  /// A budget begins.
+  /// Starts a new budget.
   void start() {
     watch_.emplace(request_.budget);
     iterations_ = 0;
     stopped_.reset();
     refused_.clear();
     if (tree_.count(Tree::Place::growing) == 0) {
-      tree_.wake();  // what is left rested
+      tree_.wake();  // remaining nodes had rested
     }
     if (is_done() && !keeps_route_rules(tree_.way_to(end_))) {
-      drop_end();  // by the way to what comes next
+      drop_end();  // on the way to the new goal
     }
     reach_out(root_);
   }
 
-  /// Counts an iteration; false where none is left.
+  /// Counts an iteration; false if none is left.
   bool next_iteration() {
     if (watch_->spent(iterations_) ||
         tree_.size() * Tree::kBytesPerNode > request_.budget.max_memory_bytes) {
@@ -86,20 +86,20 @@ class Growth {
     return is_done() ? with_route() : without_route(*stopped_);
   }
 
-  /// A new node one step from `near` as straight toward a place as turns and climbs allow; kNone
-  /// where a rule forbids the leg.
+  /// Adds a node one step from `near`, as straight toward a position as turns and climbs allow;
+  /// kNone if a constraint forbids the leg.
   Node steer(Node near, const Vec3& toward) {
     const Vec3& from = tree_.point(near);
     return extend(near,
                   kit::bent(before(near), from, toward - from, settings_.step, request_.limits));
   }
 
-  /// Hangs a branch under a node, if the leg between them and a leg after it keep the rules.
-  /// Branches that cannot follow there are cut off, and added to `cut`.
+  /// Attaches a branch to a node if the leg between them and the following legs satisfy the
+  /// constraints. Sub-branches that cannot follow there are cut off and added to `cut`.
   bool hang(Node branch, Node under, std::vector<Node>& cut) {
     const Vec3& from = tree_.point(under);
     const Vec3& at = tree_.point(branch);
-    // A leg without length would hide the turn into the next one.
+    // A leg of zero length would hide the turn into the next one.
     const std::optional<Approach> to_under = before(under);
     if (at == from || !leg_ok(to_under, from, at, request_)) {
       return false;
@@ -128,7 +128,7 @@ class Growth {
     return true;
   }
 
-  /// Forgets where the route ends.
+  /// Discards the end of the route.
   void drop_end() {
     if (end_ != kNone && end_is_goal_ && tree_.place(end_) != Tree::Place::removed) {
       tree_.move(end_, kNone);
@@ -137,7 +137,7 @@ class Growth {
     end_ = kNone;
   }
 
-  /// After the goal has moved: ends at a node that has it in reach already.
+  /// After the goal has moved: ends at a node from which it is already within reach.
   void close_near_goal() {
     const Vec3& goal = request_.goal.position;
     const Vec3 reach = Vec3::Constant(2 * settings_.step + request_.goal.tolerance_m);
@@ -182,8 +182,8 @@ class Growth {
     return tree_.approach(node, root_, request_.before_start());
   }
 
-  /// Whether the leg to a child may be flown by a vehicle that comes to its parent by `to_node`,
-  /// and past a leg without a heading those after it.
+  /// True if the leg to a child may be flown by a vehicle that comes to its parent by `to_node`,
+  /// and past a leg without a heading the following legs.
   bool follows(const Approach& to_node, Node node, Node child) const {
     const Vec3& at = tree_.point(node);
     if (!leg_ok(to_node, at, tree_.point(child), request_)) {
@@ -197,7 +197,7 @@ class Growth {
                        [&](Node below) { return follows(onward(to_node, at), child, below); });
   }
 
-  /// A new node one step from `near` in a direction, or kNone where a rule forbids the leg.
+  /// Adds a node one step from `near` in a direction; kNone if a constraint forbids the leg.
   Node extend(Node near, const Vec3& way) {
     const Vec3& from = tree_.point(near);
     const double length = way.norm();
@@ -213,7 +213,7 @@ class Growth {
     return kNone;
   }
 
-  /// Ends at the goal, or takes loose branches back, where a leg of up to two steps does.
+  /// Ends at the goal, or reconnects loose branches, where a leg of up to two steps suffices.
   void reach_out(Node node) {
     if (tree_.count(Tree::Place::loose) > 0) {
       tree_.loose_within(tree_.point(node), 2 * settings_.step, near_);
@@ -253,7 +253,7 @@ class Growth {
     }
   }
 
-  /// The rules that legs cannot tell.
+  /// Checks the constraints that single legs cannot decide.
   bool keeps_route_rules(const Route& route) const {
     const double most = request_.limits.max_route_length;
     return (most == kInfinity && request_.constraints.empty()) ||
@@ -307,10 +307,10 @@ class Growth {
   std::optional<BudgetWatch> watch_;
   std::uint64_t iterations_ = 0;
   std::optional<PlanStatus> stopped_;
-  std::string refused_;  ///< why the first route to the goal was
+  std::string refused_;  ///< why the first route to the goal was rejected
   Node root_ = kNone;
   Node end_ = kNone;
-  bool end_is_goal_ = false;  ///< a node of its own at the goal, not one within its tolerance
+  bool end_is_goal_ = false;  ///< a node at the goal itself, not only within its tolerance
   std::vector<Node> near_;
   std::vector<Node> cut_;
 };

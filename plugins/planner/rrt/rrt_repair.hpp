@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the tree of `rrt` gets past a threat to what is left of its old route.
+// Repair of the tree of `rrt`: from a threat to the rest of its old route.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,18 @@
 
 namespace altiplan::rrt {
 
-/// A way with few corners and free turns past the damage: trees from both sides that reach for each
-/// other (J. J. Kuffner, S. M. LaValle: RRT-Connect. ICRA 2000, doi:10.1109/ROBOT.2000.844730),
-/// with legs as long as they come.
+/// A path with few corners and unconstrained turns past the damage: trees from both sides that grow
+/// toward each other (J. J. Kuffner, S. M. LaValle: RRT-Connect. ICRA 2000,
+/// doi:10.1109/ROBOT.2000.844730), with legs of any length.
 class Detour {
  public:
   struct Way {
     Node from = kNone;
     Node to = kNone;
-    Route line;  ///< empty: none was found
+    Route line;  ///< empty if none was found
   };
 
-  /// From one of the nodes `from` to one of `to`, by places drawn in the box.
+  /// From one of the nodes `from` to one of `to`, by random points in the box.
   Detour(const Request& request, const Tree& tree, const std::vector<Node>& from,
          const std::vector<Node>& to, const Box& box)
       : request_(request), box_(box), sides_{Side(tree, from), Side(tree, to)} {}
@@ -47,7 +47,7 @@ class Detour {
  private:
   static constexpr std::size_t kDraws = 300;
 
-  /// A tree of its own, whose roots are nodes of the tree that grows.
+  /// A separate tree whose roots are nodes of the growing tree.
   struct Side {
     Side(const Tree& tree, const std::vector<Node>& from) : roots(from) {
       for (const Node node : roots) {
@@ -55,7 +55,7 @@ class Detour {
       }
     }
     Node add(const Vec3& p, Node parent) {
-      points.insert(p);  // under the same number
+      points.insert(p);  // under the same index
       return legs.add(p, parent);
     }
     Node nearest(const Vec3& p) const { return Node(points.nearest(p)); }
@@ -97,7 +97,7 @@ class Detour {
   Side sides_[2];
 };
 
-/// Grows along detours until the tail of the old route hangs on the tree again.
+/// Grows along detours until the tail of the old route is attached to the tree again.
 class Repair {
  public:
   Repair(const Request& request, Growth& growth, Tree& tree)
@@ -122,7 +122,7 @@ class Repair {
         continue;
       }
       add_rest_of_tail(way.to, way.line);
-      // Where the turn at its beginning is too sharp, some nodes before that.
+      // If the turn at its beginning is too sharp, tries a few nodes before that.
       for (int back = 0; back < kBack && way.from != kNone && !growth_.is_done(); ++back) {
         follow(way.line, way.from);
         way.from = tree_.parent(way.from);
@@ -134,7 +134,7 @@ class Repair {
   static constexpr int kDetours = 5;
   static constexpr int kBack = 5;
 
-  /// The old route from a node of its tail on.
+  /// Appends the old route from a node of its tail on.
   void add_rest_of_tail(Node node, Route& line) const {
     const std::size_t first = line.size();
     for (Node n = growth_.end(); n != kNone && n != node; n = tree_.parent(n)) {
@@ -143,11 +143,11 @@ class Repair {
     std::reverse(line.begin() + std::ptrdiff_t(first), line.end());
   }
 
-  /// One step after another along the line, as far as turns allow; the tail hangs itself on where
-  /// it is near.
+  /// Grows step by step along the line, as far as turns allow; the tail attaches itself when it is
+  /// near.
   void follow(const Route& line, Node node) {
     std::size_t next = 1;
-    double left = 0;  // metres, so that it does not circle
+    double left = 0;  // metres, to prevent circling
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
       left += 1.5 * (line[i + 1] - line[i]).norm();
     }

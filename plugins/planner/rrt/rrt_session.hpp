@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of `rrt` that lives on: what changes of the world break is cut off, the tree is rooted
-// where the vehicle is, and grows on.
+// The persistent tree of `rrt`: legs broken by a change of the world are cut off, the tree is
+// rooted at the vehicle, and grows on.
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,11 @@
 
 namespace altiplan::rrt {
 
-/// What becomes of nodes that a change cuts off.
+/// Treatment of nodes that a change cuts off.
 enum class CutOff {
   drop,       ///< they are removed
-  reconnect,  ///< they stay, and are taken back where the tree comes by
-  afresh,     ///< so are all others: for comparison
+  reconnect,  ///< they stay, and are reconnected when the tree grows near them
+  afresh,     ///< all nodes are removed: for comparison
 };
 
 class TreeSession final : public Session {
@@ -57,7 +57,7 @@ class TreeSession final : public Session {
     }
     cut_.clear();
     if (goal_moved || result_.status == PlanStatus::solved) {
-      damage_ = Box::empty();  // else it waits to be mended still
+      damage_ = Box::empty();  // otherwise it still awaits repair
     }
     forget_waiting();
     prune(changes);
@@ -73,7 +73,7 @@ class TreeSession final : public Session {
     const bool had_end = old_end != kNone && tree_.place(old_end) != Place::removed;
     result_ = solve(goal_moved);
     if (had_end && tree_.place(old_end) == Place::removed) {
-      --kept;  // for another end
+      --kept;  // for the new end
     }
     result_.counters.push_back({"nodes_kept", std::int64_t(kept)});
     result_.counters.push_back({"nodes_pruned", std::int64_t(nodes_before - kept)});
@@ -84,7 +84,7 @@ class TreeSession final : public Session {
 
   RandomStream stream() const { return request_.random.sub("growth"); }
 
-  /// What makes start or goal impossible, else the way from one to the other.
+  /// The result if start or goal is impossible, else the path between them.
   PlanResult solve(bool goal_moved) {
     if (auto impossible = impossible_ends(request_)) {
       impossible->counters = {{"expanded", 0}, {"nodes", std::int64_t(tree_.in_use())}};
@@ -100,8 +100,8 @@ class TreeSession final : public Session {
     return growth_.run(damage, random_);
   }
 
-  /// Where more nodes wait than the tree has, they are forgotten, so that a long flight does not
-  /// gather them. The branch of the old route's end stays.
+  /// If more nodes are loose than the tree has, removes them, so that they do not accumulate on a
+  /// long flight. Keeps the branch with the old route's end.
   void forget_waiting() {
     const std::size_t waiting = tree_.count(Place::loose);
     if (waiting > std::max(kMaxWaiting, tree_.in_use() - waiting)) {
@@ -113,7 +113,7 @@ class TreeSession final : public Session {
     }
   }
 
-  /// Cuts the legs that the changes break, and removes the nodes in forbidden places.
+  /// Cuts the legs that the changes block, and removes the nodes at forbidden positions.
   void prune(std::span<const Change> changes) {
     const kit::LegRules rules(request_);
     std::vector<Node> near;
@@ -143,7 +143,7 @@ class TreeSession final : public Session {
     }
   }
 
-  /// Where nodes may be whose legs the box touches; ground matters to all that is above it.
+  /// Region of the nodes whose legs the box touches; ground affects everything above it.
   Box reach_of(const Box& box, bool ground) const {
     const double reach =
         tree_.longest_leg() + std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
@@ -166,8 +166,8 @@ class TreeSession final : public Session {
     cut_.push_back(node);
   }
 
-  /// The vehicle becomes the root: the old route goes on from the first of its next nodes that the
-  /// vehicle can fly to.
+  /// Makes the vehicle the root: the old route continues from the first of its next nodes that the
+  /// vehicle can reach.
   void take_root(std::size_t next) {
     cut_.push_back(growth_.root());
     const Node root = tree_.add(request_.start.position, kNone);
@@ -182,7 +182,7 @@ class TreeSession final : public Session {
         return;
       }
     }
-    if (damage_.is_empty()) {  // what is missing is the way back to the old route
+    if (damage_.is_empty()) {  // the gap is the path back to the old route
       damage_ = damage_.with(request_.start.position);
       for (std::size_t i = next; i < last; ++i) {
         damage_ = damage_.with(tree_.point(route_[i]));
@@ -190,7 +190,7 @@ class TreeSession final : public Session {
     }
   }
 
-  /// The index in the old route of the end of the leg nearest to the vehicle.
+  /// Index, in the old route, of the end of the leg nearest to the vehicle.
   std::size_t next_of_route() const {
     const Vec3& p = request_.start.position;
     std::size_t next = 1;
@@ -208,12 +208,12 @@ class TreeSession final : public Session {
     return next;
   }
 
-  /// All that does not hang below the root any more.
+  /// Cuts off everything that is no longer attached to the root.
   void cut_off() {
     const Place place = cut_off_ == CutOff::reconnect ? Place::loose : Place::removed;
     for (const Node top : cut_) {
       if (tree_.parent(top) != kNone || top == growth_.root()) {
-        continue;  // hangs again
+        continue;  // attached again
       }
       for (const Node node : tree_.below(top)) {
         if (tree_.place(node) != Place::removed) {
@@ -223,8 +223,8 @@ class TreeSession final : public Session {
     }
   }
 
-  /// What is left of the old route's end, where the tree does not reach it: its nodes in the box,
-  /// or at least the first.
+  /// The rest of the old route that the tree does not reach: its nodes in the box, or at least the
+  /// first.
   std::vector<Node> tail(const Box& box) const {
     std::vector<Node> tail;
     Node first = kNone;
@@ -253,7 +253,7 @@ class TreeSession final : public Session {
     return Box{damage_.min - half, damage_.max + half}.intersected(kit::sampled_box(request_));
   }
 
-  /// Notes the route, and how much of what was ahead of the vehicle on the last one is part of it.
+  /// Records the route, and the fraction of the last route ahead of the vehicle that it contains.
   void keep_route(Node first_new, std::size_t next) {
     const auto leg = [&](Node a, Node b) { return (tree_.point(b) - tree_.point(a)).norm(); };
     double ahead = 0;
@@ -292,8 +292,8 @@ class TreeSession final : public Session {
   Growth growth_;
   RandomStream random_;
   PlanResult result_;
-  std::vector<Node> route_;  ///< from the root to the end, when last solved
-  std::vector<Node> cut_;    ///< roots of what may have been cut off by this update
+  std::vector<Node> route_;  ///< from the root to the end, at the last solution
+  std::vector<Node> cut_;    ///< roots of what this update may have cut off
   Box damage_ = Box::empty();
 };
 }  // namespace altiplan::rrt

@@ -32,7 +32,7 @@ std::map<std::string, std::int64_t> counters(const PlanResult& result) {
   return all;
 }
 
-/// A sphere about the middle of a route, as a change of the request's world.
+/// A sphere around the middle of a route, as a change of the request's world.
 Change pop_up_on(const Route& route, Request& request) {
   const auto shape =
       std::make_shared<kit::ShapeLayer>(std::vector<Shape>{Sphere{route[route.size() / 2], 25}});
@@ -41,7 +41,7 @@ Change pop_up_on(const Route& route, Request& request) {
   return {Change::Kind::add, "pop_up", shape->bounds()};
 }
 
-/// The nodes that are in the tree after all that happened to them.
+/// The nodes in the tree after all its events.
 struct Nodes : Trace {
   void add(const TraceEvent& event) override {
     if (event.kind == TraceEvent::Kind::added) {
@@ -66,7 +66,7 @@ TEST(RrtSession, AnUpdateWithoutAChangeKeepsTheTree) {
   EXPECT_EQ(counters(same)["nodes_kept"], counters(first)["nodes"]);
   EXPECT_EQ(counters(same)["route_kept_percent"], 100);
 
-  // Half-way along the second leg the rest of the route is flown as it was.
+  // Half-way along the second leg the rest of the route is flown unchanged.
   const State state =
       testing::on_route(first.route, 1.5 * (first.route[1] - first.route[0]).norm(), 20);
   request.start = state;
@@ -77,7 +77,8 @@ TEST(RrtSession, AnUpdateWithoutAChangeKeepsTheTree) {
   EXPECT_TRUE(std::equal(rest.route.begin() + 1, rest.route.end(), first.route.begin() + 2));
 }
 
-// Of a flight with threats that come and go, a goal that moves, and the vehicle off its route.
+// During a flight with threats that appear and disappear, a moving goal, and the vehicle off its
+// route.
 TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
   for (const char* cut_off : {"drop", "reconnect"}) {
     for (std::uint64_t seed = 0; seed < 25; ++seed) {
@@ -134,7 +135,7 @@ TEST(RrtSession, KeptNodesAreTheSameAndTheCountersAddUp) {
   }
 }
 
-// From far beside its route the vehicle has a sound leg to it, but not the length.
+// From far off its route the vehicle has a valid leg to it, but not the length.
 TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
   for (const char* cut_off : {"drop", "reconnect"}) {
     SCOPED_TRACE(cut_off);
@@ -151,7 +152,7 @@ TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
     request.start.position = {5, 190, 50};
     const PlanResult& result = session->update(request.start, request.goal, request.world, {}, {});
     EXPECT_TRUE(result.status == PlanStatus::no_route || check(result.route, request).ok());
-    // The end that was given up was not kept.
+    // The discarded end was not kept.
     const auto kept = std::count_if(nodes.at.begin(), nodes.at.end(),
                                     [&](const auto& node) { return known.count(node.first) > 0; });
     EXPECT_EQ(counters(result)["nodes_kept"], kept);
@@ -159,7 +160,7 @@ TEST(RrtSession, TheLimitOnLengthHoldsWhereTheVehicleIsOffItsRoute) {
   }
 }
 
-// Nothing has changed but the vehicle's place: what is left of its route is near.
+// Only the vehicle's position has changed: the rest of its route is near.
 TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
   std::int64_t back = 0;
   std::int64_t planned = 0;
@@ -180,7 +181,7 @@ TEST(RrtSession, TheWayBackToTheRouteTakesLessThanAPlan) {
   EXPECT_LT(back, planned / 2);
 }
 
-// Ways past a threat are looked for with legs of any length, and grown along with short ones.
+// Searches for paths past a threat with legs of any length, and grows along them with short ones.
 TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
   std::int64_t repaired = 0;
   std::int64_t planned = 0;
@@ -200,7 +201,7 @@ TEST(RrtSession, ALimitOnLegsLeavesTheRepairQuick) {
   EXPECT_LT(repaired, planned / 2);
 }
 
-// The old root waits at the place of the new one.
+// The old root is loose at the position of the new one.
 TEST(RrtSession, AVehicleThatTurnsOnTheSpotIsHeldToItsHeading) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Request request = over_the_plain(seed);
@@ -238,7 +239,7 @@ TEST(RrtSession, AnUpdateMendsWhatTheOneBeforeHadNoBudgetFor) {
   }
 }
 
-// To and fro between two goals: what is cut off behind the vehicle does not gather.
+// Back and forth between two goals: what is cut off behind the vehicle does not accumulate.
 TEST(RrtSession, ALongFlightDoesNotGatherNodes) {
   Request request = over_the_plain(1);
   const auto session = make_planner("rrt")->begin(request);

@@ -10,7 +10,7 @@ namespace {
 
 using testing::make_planner;
 
-/// What a plan adds to its tree.
+/// The nodes that a plan adds to its tree.
 struct Grown : Trace {
   void add(const TraceEvent& event) override {
     if (event.kind == TraceEvent::Kind::added) {
@@ -20,7 +20,7 @@ struct Grown : Trace {
   std::vector<TraceEvent> nodes;
 };
 
-/// Balls about the way; the goal lies behind a shell of them if it is not to be reached.
+/// Balls around the direct path; the goal lies behind a shell of them unless it is reachable.
 Request among_balls(std::uint64_t seed, bool reachable) {
   SplitMix64 random(seed);
   std::vector<Shape> balls;
@@ -42,7 +42,7 @@ Request among_balls(std::uint64_t seed, bool reachable) {
   return request;
 }
 
-/// The paper's loop with a look at every node: eqs. (2) to (5) and the readings of its README.
+/// The paper's loop examining every node: eqs. (2) to (5) and the readings of its README.
 struct PlainTree {
   const Request& request;
   double step, w_random, w_goal, random_share;
@@ -168,7 +168,7 @@ TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
   EXPECT_NE(result.message.find("m from the goal; on the next leg"), std::string::npos)
       << result.message;
 
-  // A rule of the whole route stands in the way.
+  // A constraint on the whole route prevents it.
   request = testing::request_in(testing::world_of(std::vector<Shape>{Sphere{{50, 50, 50}, 5}}),
                                 {5, 50, 50}, {95, 50, 50}, {{0, 0, 0}, {100, 100, 100}});
   request.limits.max_route_length = 80;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree of `rrt`: legs, an index of the nodes that may grow, and what has been cut off. Nodes
-// are never renumbered: one that is kept through changes is the same node.
+// are never renumbered: a node that is kept through changes keeps its index.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class Tree {
     growing,  ///< may be chosen
     resting,  ///< failed too often
     end,      ///< at the goal
-    loose,    ///< cut off, waits for the tree to come by
+    loose,    ///< cut off, until the tree grows near
     removed,
   };
   static constexpr std::size_t kBytesPerNode = 160;
@@ -41,7 +41,7 @@ class Tree {
     clear_loose();
   }
 
-  /// Numbers given.
+  /// Number of indices assigned.
   std::size_t size() const { return legs_.size(); }
   std::size_t count(Place place) const { return counts_[std::size_t(place)]; }
   /// Nodes that are not removed.
@@ -51,17 +51,17 @@ class Tree {
   Place place(Node node) const { return marks_[std::size_t(node)].place; }
   bool is_rooted(Node node) const { return place(node) < Place::loose; }
   Route way_to(Node node) const { return legs_.way_to(node); }
-  /// How the vehicle comes to a node from `root`, to which it comes by `to_root`.
+  /// Approach of the vehicle to a node from `root`, which it approaches by `to_root`.
   std::optional<Approach> approach(Node node, Node root,
                                    const std::optional<Approach>& to_root) const {
     return legs_.approach(node, root, to_root);
   }
-  /// No leg is longer.
+  /// Upper bound of the length of every leg.
   double longest_leg() const { return longest_leg_; }
 
   Node add(const Vec3& p, Node parent, Place place = Place::growing) {
     const Node node = legs_.add(p, parent);
-    growing_.insert(p);  // under the same number
+    growing_.insert(p);  // under the same index
     marks_.push_back({});
     ++counts_[std::size_t(Place::growing)];
     put(node, place);
@@ -70,8 +70,8 @@ class Tree {
     return node;
   }
 
-  /// The growing node q with the least w_random |q - random| + w_goal |q - goal|
-  /// (paper 000, eqs. (2) to (4)).
+  /// The growing node q with minimum w_random |q - random| + w_goal |q - goal| (paper 000, eqs. (2)
+  /// to (4)).
   Node choose(const Vec3& random, double w_random, const Vec3& goal, double w_goal) const {
     return Node(w_goal == 0 ? growing_.nearest(random)
                             : growing_.min_sum(random, w_random, goal, w_goal));
@@ -82,7 +82,7 @@ class Tree {
   bool has_grown_to_goal(Node node) const { return marks_[std::size_t(node)].grown_to_goal; }
   void set_grown_to_goal(Node node) { marks_[std::size_t(node)].grown_to_goal = true; }
 
-  /// Counts a failed extension. A node that has `most` of them rests, until none is left to grow.
+  /// Counts a failed extension. A node that has `most` of them rests until none is left to grow.
   void count_failure(Node node, int most) {
     if (++marks_[std::size_t(node)].failures < most) {
       return;
@@ -93,7 +93,7 @@ class Tree {
       wake();
     }
   }
-  /// Whether all nodes have rested.
+  /// True if all nodes have rested.
   bool has_woken() const { return has_woken_; }
   void wake() {
     has_woken_ = true;
@@ -106,7 +106,7 @@ class Tree {
     resting_.clear();
   }
 
-  /// Hangs a node, with all below it, under another: no change of place.
+  /// Attaches a node, with all below it, to another parent; positions are unchanged.
   void move(Node node, Node parent) {
     legs_.move(node, parent);
     if (parent != kNone) {
@@ -119,7 +119,7 @@ class Tree {
     legs_.below(node, below_);
     return below_;
   }
-  /// The children of a node, of which some may be moved meanwhile.
+  /// A copy of the children of a node, as some may be moved meanwhile.
   std::vector<Node> children(Node node) const {
     std::vector<Node> found;
     for (Node child = legs_.first_child(node); child != kNone; child = legs_.sibling(child)) {
@@ -154,7 +154,7 @@ class Tree {
     }
   }
 
-  /// Removes the loose nodes but for those of one branch; of none where that is kNone.
+  /// Removes the loose nodes, except those of one branch unless that is kNone.
   void remove_loose(Node branch) {
     std::vector<Node> kept;
     if (branch != kNone) {
@@ -170,7 +170,7 @@ class Tree {
     }
   }
 
-  /// Nodes in the box that are not removed, but for the end; `found` is emptied first.
+  /// Nodes in the box that are not removed, except the end; `found` is cleared first.
   void within(const Box& box, std::vector<Node>& found) {
     growing_.within(box, numbers_);
     found.assign(numbers_.begin(), numbers_.end());
@@ -185,7 +185,7 @@ class Tree {
       }
     }
   }
-  /// Loose nodes at most `radius` from p; `found` is emptied first.
+  /// Loose nodes at most `radius` from p; `found` is cleared first.
   void loose_within(const Vec3& p, double radius, std::vector<Node>& found) {
     found.clear();
     loose_.within(p, radius, numbers_);
@@ -199,7 +199,7 @@ class Tree {
     std::uint16_t failures = 0;
     bool grown_to_goal = false;
     Place place = Place::growing;
-    std::int32_t loose = 0;  ///< number in loose_
+    std::int32_t loose = 0;  ///< index in loose_
   };
 
   void clear_loose() {
@@ -220,9 +220,9 @@ class Tree {
   kit::LegTree legs_;
   kit::KdTree growing_;
   kit::KdTree loose_;
-  std::vector<Node> loose_nodes_;  ///< by number in loose_
+  std::vector<Node> loose_nodes_;  ///< by index in loose_
   std::vector<Mark> marks_;        ///< one entry per node
-  std::vector<Node> resting_;      ///< some may be elsewhere by now
+  std::vector<Node> resting_;      ///< may contain nodes that have since changed state
   std::array<std::size_t, 5> counts_{};
   double longest_leg_ = 0;
   bool has_woken_ = false;

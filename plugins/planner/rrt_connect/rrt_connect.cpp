@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// RRT-Connect: two rapidly growing random trees that reach for each other.
+// RRT-Connect: two rapidly-exploring random trees that grow toward each other.
 //
 // Citation: J. J. Kuffner, S. M. LaValle: RRT-Connect: An Efficient Approach to Single-Query Path
 //   Planning. IEEE International Conference on Robotics and Automation, 2000, pp. 995-1001.
 //   doi:10.1109/ROBOT.2000.844730
-// Guarantees: every leg keeps every rule; finds a route with a probability that goes to 1 (without
-//   limits that look at two legs). Not the shortest one, nor nearly.
+// Guarantees: every leg satisfies every constraint; probabilistically complete (without limits on
+//   two consecutive legs). Not optimal, nor near-optimal.
 // Complexity: O(log n) for the nearest of n nodes spread over a volume, O(n) memory.
-// Deviations: the other root is the first sample, so that a straight way is found at once; what is
-//   left of the way to connect is split into equal legs, as a short last one might break the least
-//   leg; where limits on turn and climb would be broken, a leg is bent until they are kept; a node
-//   within the goal's tolerance ends the search.
+// Deviations: the other root is the first sample, so that a straight path is found at once; the
+//   remaining distance to connect is split into equal legs, as a short last one might violate the
+//   minimum leg length; where limits on turn and climb would be violated, a leg is bent until they
+//   are satisfied; a node within the goal's tolerance ends the search.
 // Symbols: q_rand the sample, q_near the nearest node, q_new the end of the new leg.
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/params.hpp"
@@ -30,8 +30,8 @@ struct Params {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("longest leg that a tree grows by; auto: a tenth of the volume's diagonal");
-    f("max_iterations", max_iterations).at_least(1).doc("legs that are tried, then it gives up");
+        .doc("longest leg by which a tree grows; auto: a tenth of the volume's diagonal");
+    f("max_iterations", max_iterations).at_least(1).doc("maximum number of legs tried");
   }
 };
 
@@ -54,4 +54,4 @@ class RrtConnect final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "rrt_connect", RrtConnect, Params,
-                "Random trees from both ends that reach for each other")
+                "RRT-Connect: random trees from both ends that grow toward each other")

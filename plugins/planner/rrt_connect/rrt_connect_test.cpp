@@ -58,7 +58,7 @@ TEST(RrtConnect, FindsWaysAmongBallsInLegsOfTheRange) {
   EXPECT_GE(solved, 38);
 }
 
-/// Each leg of a route was judged in one direction; all of it must hold in the other.
+/// Each leg of a route was checked in one direction; the whole route must be valid in the other.
 TEST(RrtConnect, TurnsHoldAtBothEndsAndWhereTheTreesMeet) {
   int solved = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -80,7 +80,7 @@ TEST(RrtConnect, TurnsHoldAtBothEndsAndWhereTheTreesMeet) {
   EXPECT_GE(solved, 36);
 }
 
-/// Admits a leg after one before it only where both lead up, or both down or level.
+/// Allows a leg after another only if both climb, both descend or both are level.
 class NoPorpoising final : public Constraint {
   bool do_admits(const Leg& leg) const override {
     return !leg.before || (leg.from.z() > leg.before->z()) == (leg.to.z() > leg.from.z());

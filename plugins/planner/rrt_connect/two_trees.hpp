@@ -18,11 +18,11 @@ namespace altiplan::rrt_connect {
 
 using Node = kit::LegTree::Node;
 
-/// One tree, its points under the same numbers in both of its indices.
+/// One tree, its points under the same indices in both of its search structures.
 struct Tree {
   kit::LegTree legs;
   kit::PointGrid points;
-  std::vector<double> metres;  ///< from the root, one entry a node
+  std::vector<double> metres;  ///< distance from the root, one entry per node
 
   void clear() {
     legs.clear();
@@ -37,12 +37,13 @@ struct Memory {
 };
 
 struct Settings {
-  double range = 0;  ///< longest leg that a tree grows by
+  double range = 0;  ///< longest leg by which a tree grows
   std::uint64_t max_iterations = 0;
 };
 
-/// One search. A leg of the goal's tree is flown from child to parent: it is judged as it is flown,
-/// with the turn at its end; the turn at its beginning is judged when the next one joins it.
+/// One search. A leg of the goal's tree is flown from child to parent: it is checked in flight
+/// direction, with the turn at its end; the turn at its beginning is checked when the next leg
+/// joins it.
 class TwoTrees {
  public:
   TwoTrees(const Request& request, const Settings& settings, Memory& memory)
@@ -61,7 +62,7 @@ class TwoTrees {
     add(kGoal, request.goal.position, kit::LegTree::kNone);
   }
 
-  /// RRT_CONNECT_PLANNER; the first sample is the other root, and the smaller tree's turn is next.
+  /// RRT_CONNECT_PLANNER; the first sample is the other root, and the smaller tree grows next.
   PlanResult run() {
     int a = kStart;
     if (may_go_on() && connect(a, 0) != Growth::reached) {
@@ -88,7 +89,7 @@ class TwoTrees {
   Node newest(int side) { return Node(tree(side).legs.size()) - 1; }
   bool is_done() const { return !route_.empty(); }
 
-  /// RANDOM_CONFIG: of a few draws the first that is free.
+  /// RANDOM_CONFIG: the first free one of a few samples.
   Vec3 sample() {
     Vec3 q_rand = random_.in(box_);
     for (int tries = 1; tries < kDraws && !rules_.point_ok(q_rand); ++tries) {
@@ -97,22 +98,22 @@ class TwoTrees {
     return q_rand;
   }
 
-  /// Asked before each extension.
+  /// Checked before each extension.
   bool may_go_on() {
     ended_ = ended_ || watch_.spent(expanded_) || expanded_ >= settings_.max_iterations;
     return !ended_;
   }
 
-  /// How a leg from the node comes to it, where a rule asks for it: of the start's tree as the
-  /// vehicle does, of the goal's as one that flies back from the goal.
+  /// Approach to the node by a leg from it, if a constraint requires it: in the start's tree as the
+  /// vehicle flies, in the goal's as if flying back from the goal.
   std::optional<Approach> behind(int side, Node node) {
     return rules_.looks_back()
                ? tree(side).legs.approach(node, 0, side == kStart ? before_start_ : std::nullopt)
                : std::nullopt;
   }
 
-  /// Whether a vehicle that comes to a node of the goal's tree by `before` may turn into the leg
-  /// from it, and past a leg without a heading into those after it.
+  /// True if a vehicle that comes to a node of the goal's tree by `before` may turn into the leg
+  /// from it, and past a leg without a heading into the following legs.
   bool goes_on(std::optional<Approach> before, Node node) {
     for (Node next = tree(kGoal).legs.parent(node);
          rules_.looks_back() && next != kit::LegTree::kNone;
@@ -146,7 +147,7 @@ class TwoTrees {
     return q_new == q ? Growth::reached : Growth::advanced;
   }
 
-  /// CONNECT: extends this side's tree, as long as it can be, toward a node of the other.
+  /// CONNECT: extends this side's tree as far as possible toward a node of the other.
   Growth connect(int side, Node target) {
     const Vec3 q = point(1 - side, target);
     Node tip = Node(tree(side).points.nearest(q));
@@ -168,13 +169,13 @@ class TwoTrees {
     }
   }
 
-  /// Where the first of equal legs to q ends: no rest shorter than legs may be is left over.
+  /// End of the first of equal legs to q: leaves no rest shorter than the minimum leg.
   Vec3 even_part(const Vec3& from, const Vec3& q, double left) const {
     const double legs = std::ceil(left / settings_.range);
     return legs <= 1 ? q : Vec3(from + (q - from) / legs);
   }
 
-  /// The leg between a node of this side and one of the other, and so a route.
+  /// Adds the leg between a node of this side and one of the other, which completes a route.
   bool join(int side, Node node, Node other) {
     ++joins_tried_;
     const Node from = side == kStart ? node : other;
@@ -195,7 +196,7 @@ class TwoTrees {
     return true;
   }
 
-  /// Whether a route through such a new node may be short enough.
+  /// True if a route through such a new node may be short enough.
   bool may_add(int side, Node parent, const Vec3& p) {
     if (request_.limits.max_route_length == kInfinity) {
       return true;
@@ -248,7 +249,7 @@ class TwoTrees {
     return result;
   }
 
-  /// How near the start's tree came, and what was in the way.
+  /// Reports how near the start's tree came, and what was in the way.
   std::string reason(std::int64_t nodes) {
     const Vec3& goal = request_.goal.position;
     const Node nearest = Node(tree(kStart).points.nearest(goal));

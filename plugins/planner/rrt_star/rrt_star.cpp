@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// RRT*: a random tree whose ways grow shorter while it grows.
+// RRT*: asymptotically optimal, rewires as it grows.
 //
 // Citation: S. Karaman, E. Frazzoli: Sampling-based Algorithms for Optimal Motion Planning.
 //   International Journal of Robotics Research 30(7), 2011, pp. 846-894.
 //   doi:10.1177/0278364911406761
 //   `bound`: S. Karaman, M. R. Walter, A. Perez, E. Frazzoli, S. Teller: Anytime Motion Planning
 //   using the RRT*. IEEE International Conference on Robotics and Automation, 2011.
-// Guarantees: every leg keeps every rule; more iterations never give a longer route; without limits
-//   that look at two legs the length goes to the shortest with probability 1.
-// Complexity: O(log n) neighbours a node, found in O(log n); O(n) memory.
-// Deviations: the volume stands for its free part in gamma (a larger radius, on the safe side);
-//   neighbours by radius, not by number: buckets find them in a fraction of the time; legs from
-//   possible parents are judged from the cheapest on until one is kept; a node in range of the goal
-//   reaches for it until it is in the tree; legs are bent to the limits on turn and climb; under
-//   limits on turns a node is rewired only where its children's turns hold, so the length then goes
-//   to no known bound.
+// Guarantees: every leg satisfies every constraint; more iterations never give a longer route;
+//   without limits on two consecutive legs the length converges to the shortest with probability 1.
+// Complexity: O(log n) neighbours per node, found in O(log n); O(n) memory.
+// Deviations: gamma uses the whole volume instead of its free part (a larger radius, on the safe
+//   side); neighbours by radius, not by number: buckets find them in a fraction of the time; legs
+//   from possible parents are checked in order of cost until one is valid; a node in range of the
+//   goal tries to connect to it until it is in the tree; legs are bent to the limits on turn and
+//   climb; under turn limits a node is rewired only if its children's turns remain valid, so the
+//   length then converges to no known bound.
 // Symbols: x_rand the sample, x_new the new node, eta the range, d the axes, n the nodes, gamma =
 //   radius_scale (2 (1 + 1/d) volume / unit ball)^(1/d), the radius min(eta, gamma (log
 //   n/n)^(1/d)).
@@ -33,7 +33,7 @@ struct Params : kit::StarParams {
   void describe(Fields& f) {
     StarParams::describe(f);
     f("bound", bound)
-        .doc("once there is a route, leave out samples through which none can be shorter");
+        .doc("once there is a route, reject samples through which none can be shorter");
   }
 };
 
@@ -56,4 +56,4 @@ class RrtStar final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "rrt_star", RrtStar, Params,
-                "A random tree whose ways grow shorter while it grows")
+                "RRT*: asymptotically optimal, rewires as it grows")

@@ -8,14 +8,14 @@
 
 namespace altiplan::slicing {
 
-/// The planes between start and goal, counted from the start.
+/// The planes between start and goal, numbered from the start.
 struct Planes {
-  int axis = 0;   ///< they are upright to it
+  int axis = 0;   ///< they are perpendicular to it
   int first = 0;  ///< cell of plane 0 on that axis
-  int step = 1;   ///< cells from a plane to the next, toward the goal
+  int step = 1;   ///< cells from one plane to the next, toward the goal
   int count = 0;
 
-  /// Through the centres that lie between the two, every `apart`-th.
+  /// Through every `apart`-th cell centre between the two.
   Planes(const Request& request, const kit::Lattice& lattice, int upright_to, int apart)
       : axis(upright_to) {
     const GridSpec& spec = lattice.spec();

@@ -19,18 +19,18 @@
 
 namespace altiplan::slicing {
 
-/// A point of a plane, and how long the way over it is.
+/// A point of a plane, and the length of the path through it.
 struct Candidate {
   double cost;
-  std::uint32_t index;  ///< of its cell
+  std::uint32_t index;  ///< index of its cell
 
-  /// For a heap whose top has the least cost, among equals the least index.
+  /// For a heap whose top has the minimum cost, among equals the minimum index.
   friend bool operator<(const Candidate& a, const Candidate& b) {
     return a.cost != b.cost ? a.cost > b.cost : a.index > b.index;
   }
 };
 
-/// One plan. All that the constructor is given must outlive it.
+/// One plan. All constructor arguments must outlive it.
 class Search {
  public:
   Search(const Request& request, const kit::Lattice& lattice, const Planes& planes,
@@ -72,7 +72,8 @@ class Search {
  private:
   bool is_last(int plane) const { return plane + 1 >= planes_.count; }
 
-  /// Where the line from the last point to the goal meets a plane; after the last one, the goal.
+  /// Intersection of the line from the last point to the goal with a plane; after the last one, the
+  /// goal.
   Vec3 on_line(int plane) const {
     if (plane >= planes_.count) {
       return goal_;
@@ -87,7 +88,7 @@ class Search {
     return p;
   }
 
-  /// Whether the route may go on to a point of the plane, from the last plane's also to the goal.
+  /// True if the route may continue to a point of the plane, from the last plane also to the goal.
   bool look_at(const Vec3& p, int plane) {
     spent_ = spent_ || watch_.spent(std::uint64_t(looked_at_));
     if (spent_) {
@@ -121,8 +122,8 @@ class Search {
     return is;
   }
 
-  /// Whether a leg keeps every rule, and where it joins the centres of two cells meets no blocked
-  /// one.
+  /// True if a leg satisfies every constraint and, if it joins the centres of two cells, intersects
+  /// no blocked one.
   bool leg_free(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     const kit::Lattice::Link from = lattice_.nearest(a);
     const kit::Lattice::Link to = lattice_.nearest(b);
@@ -133,14 +134,14 @@ class Search {
     return rules_.ok(before, a, b);
   }
 
-  /// The point of the plane that can be reached and makes |p_(i-1) p_i| + |p_i p_(i+1)| least,
-  /// where p_(i+1) is the line's on the next plane. Where no point of the last plane leads on to
-  /// the goal, the least one within its tolerance.
+  /// The reachable point of the plane that minimises |p_(i-1) p_i| + |p_i p_(i+1)|, where p_(i+1)
+  /// is the line's on the next plane. If no point of the last plane leads on to the goal, the
+  /// minimum one within its tolerance.
   std::optional<Vec3> min_way_round(int plane) {
     const Way way{route_.back(), on_line(plane + 1)};
     const double farthest = farthest_on(plane, way);
     free_cells_ = 0;
-    // The points in between are few where the plane is free: rings of them, ever wider.
+    // Few points need checking where the plane is free: rings of them, ever wider.
     double inner = 0;
     double outer = way.straight();
     for (double wider = lattice_.spec().cell.norm(); inner < farthest; wider *= 4) {
@@ -161,7 +162,7 @@ class Search {
     return ends_early_ ? within_tolerance_ : std::nullopt;
   }
 
-  /// The way from one point to another, over a third.
+  /// The path from one point to another via a third.
   struct Way {
     Vec3 from;
     Vec3 to;
@@ -169,7 +170,7 @@ class Search {
     double straight() const { return (to - from).norm(); }
   };
 
-  /// Cells of a plane, the first and the one after the last on each axis.
+  /// Cells of a plane: the first, and one past the last, on each axis.
   std::pair<Cell, Cell> cells_of(int plane) const {
     const auto axis = std::size_t(planes_.axis);
     std::pair<Cell, Cell> cells{{0, 0, 0}, lattice_.spec().counts};
@@ -178,7 +179,7 @@ class Search {
     return cells;
   }
 
-  /// The longest way over a point of the plane: as ways over points are convex, over a corner.
+  /// The longest path via a point of the plane: as path lengths are convex, via a corner.
   double farthest_on(int plane, const Way& way) const {
     const auto [low, high] = cells_of(plane);
     double farthest = 0;
@@ -192,11 +193,11 @@ class Search {
     return farthest;
   }
 
-  /// The plane's free cells over which the way is longer than `inner`, and not longer than `outer`.
+  /// The plane's free cells via which the path is longer than `inner`, and not longer than `outer`.
   void gather(int plane, const Way& way, double inner, double outer) {
     auto [low, high] = cells_of(plane);
     const GridSpec& spec = lattice_.spec();
-    // No such way leads farther from the middle of its ends than half its length.
+    // No such path leads farther from the middle of its ends than half its length.
     const Vec3 middle = ((way.from + way.to) / 2 - spec.origin).cwiseQuotient(spec.cell);
     const Vec3 reach = Vec3::Constant(outer / 2).cwiseQuotient(spec.cell);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -223,8 +224,8 @@ class Search {
     return approach(route_, route_.size() - 1, request_.before_start());
   }
 
-  /// Leaves out the points that lie on the straight way from the point before to the one after,
-  /// where the legs that change keep every rule.
+  /// Removes points on the straight line from the point before to the one after, if the changed
+  /// legs satisfy every constraint.
   void straighten() {
     Route kept = {route_.front()};
     for (std::size_t i = 1; i + 1 < route_.size(); ++i) {
@@ -287,7 +288,7 @@ class Search {
       text += ", and the straight leg is not free";
     } else {
       text += " none of " + std::to_string(free_cells_) + " free cells can be reached";
-      text += is_last(plane) ? " and left for the goal" : "";
+      text += is_last(plane) ? " and continued to the goal" : "";
     }
     std::string refusals =
         out_of_sight_ == 0 ? "" : "blocked cells (" + std::to_string(out_of_sight_) + ")";
@@ -314,13 +315,13 @@ class Search {
   const Vec3 goal_;
   std::vector<Candidate>& candidates_;
   Route route_;        ///< p_0 … p_(i-1)
-  double length_ = 0;  ///< of it
+  double length_ = 0;  ///< its length
   std::int64_t looked_at_ = 0;
-  std::int64_t node_ = -1;                ///< of the trace: the point looked at last,
+  std::int64_t node_ = -1;                ///< in the trace: the last point examined,
   std::int64_t parent_ = -1;              ///< and the last of the route
-  std::int64_t out_of_sight_ = 0;         ///< legs between centres that blocked cells closed
+  std::int64_t out_of_sight_ = 0;         ///< legs between centres that blocked cells obstruct
   std::int64_t moved_ = 0;                ///< planes on which the line's point was not free
-  std::size_t free_cells_ = 0;            ///< of the last plane on which it was not
+  std::size_t free_cells_ = 0;            ///< of the last plane where it was not
   std::optional<Vec3> within_tolerance_;  ///< first point of the last plane that is an end
   bool ends_early_ = false;               ///< at that point
   bool spent_ = false;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spatial slicing: from plane to plane toward the goal, round what is in the way.
+// Spatial slicing: from plane to plane toward the goal, around obstacles.
 //
 // Citation: the stratification that paper 003 starts from.
-// Guarantees: every leg keeps the rules, and on each plane the way round is the least. Neither
-//   complete nor optimal: a point once taken is never taken back.
+// Guarantees: every leg satisfies the constraints, and on each plane the detour is the shortest.
+//   Neither complete nor optimal: a chosen point is never revised.
 // Complexity: O(m n log n) time at most for m planes of n cells on which the line is blocked, less
-//   where points near the line are free; O(n) memory beside the occupancy.
-// Deviations: the line's own points are kept where they are, off the centres of cells; the last
-//   plane's point must lead on to the goal; points on a straight stretch are left out in the end.
+//   where points near the line are free; O(n) memory in addition to the occupancy.
+// Deviations: the line's own points are kept off the centres of cells; the last plane's point must
+//   lead on to the goal; points on a straight stretch are removed at the end.
 // Symbols: p_i the route's point on plane i, p_0 the start.
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/planner.hpp"
@@ -30,14 +30,16 @@ struct Params {
     f("cell_m", cell_m)
         .unit("m")
         .at_least(0.001)
-        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+        .doc("cell edge length on each axis; a layer with its own cells overrides it");
     f("axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}, {"auto", Axis::automatic}})
-        .doc("planes are upright to it; auto: the axis on which start and goal lie farthest apart");
-    f("plane_cells", plane_cells).range(1, 1000000).doc("cells from a plane to the next");
+        .doc(
+            "axis perpendicular to the planes; auto: the axis on which start and goal lie "
+            "farthest apart");
+    f("plane_cells", plane_cells).range(1, 1000000).doc("cells from one plane to the next");
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
-        .doc("a lattice that needs more is refused before anything is allocated");
+        .doc("memory limit of the lattice; a larger one is refused before allocation");
   }
 };
 
@@ -52,7 +54,7 @@ class SpatialSlicing final : public Planner {
     allowed.max_memory_bytes = std::min(most, allowed.max_memory_bytes);
     const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all, {most, 1});
     const int axis = axis_of(request);
-    // The occupancy, at most a byte a cell, and the candidates of one plane.
+    // The occupancy, at most one byte per cell, and the candidates of one plane.
     const std::size_t planes = std::size_t(lattice.spec().counts[std::size_t(axis)]);
     const std::size_t bytes_per_cell = 1 + (sizeof(slicing::Candidate) + planes - 1) / planes;
     if (auto over = kit::beyond_budget(lattice, bytes_per_cell, allowed)) {
@@ -81,4 +83,5 @@ class SpatialSlicing final : public Planner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "spatial_slicing", SpatialSlicing, Params,
-                "from plane to plane toward the goal, round what is in the way")
+                "slices the volume into planes toward the goal and moves each plane's point "
+                "around obstacles")

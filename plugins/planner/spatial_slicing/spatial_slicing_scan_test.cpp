@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The choice of points beside one that looks at every cell of a plane.
+// The choice of points compared with one that examines every cell of a plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace altiplan {
 namespace {
 
-/// A world of boxes of cells, or of balls that are no cells.
+/// A world of boxes of cells, or of balls that do not align with cells.
 Request drawn_world(SplitMix64& random, bool cells, bool is_level) {
   const int size[3] = {16, 14, is_level ? 1 : 9};
   std::vector<std::string> levels(is_level ? 1 : 9);
@@ -48,8 +48,8 @@ Request drawn_world(SplitMix64& random, bool cells, bool is_level) {
   return request;
 }
 
-/// The same by the judge's own questions and a look at every cell of a plane; empty where a plane
-/// has no point. With a waypoint on every plane.
+/// The same with the judge's own checks and a scan of every cell of a plane; empty if a plane has
+/// no point. With a waypoint on every plane.
 Route full_scan(const Request& request, int axis, int apart) {
   const kit::Lattice lattice(request, {1, 1, 1}, kit::Neighbourhood::all, {});
   const auto grid = kit::occupancy(request, lattice);
@@ -147,7 +147,7 @@ TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {
                               std::string("{cell_m: [1, 1, 1], axis: ") + "xy"[axis] +
                                   ", plane_cells: " + std::to_string(apart) + "}")
             ->plan(request);
-    if (result.status == PlanStatus::invalid_problem) {  // an end in a drawn obstacle
+    if (result.status == PlanStatus::invalid_problem) {  // an end in a random obstacle
       continue;
     }
     const Route expected = full_scan(request, axis, apart);

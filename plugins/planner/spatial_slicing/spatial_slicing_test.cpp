@@ -34,7 +34,7 @@ TEST(SpatialSlicing, KeepsToTheLineWhereItIsFree) {
 TEST(SpatialSlicing, MovesAPointOnItsPlaneAndAimsAtTheGoalAgain) {
   const Drawn wall = level(".......\n.......\nS..#..G\n...#...");
   const PlanResult result = plan(wall.request);
-  // From (2.5, 1.5) the leg runs along the wall up to half way: only (3.5, 3.5) is beyond it.
+  // From (2.5, 1.5) the leg runs along the wall half way: only (3.5, 3.5) is beyond it.
   EXPECT_EQ(result.route,
             (Route{{0.5, 1.5, 0.5}, {2.5, 1.5, 0.5}, {3.5, 3.5, 0.5}, {6.5, 1.5, 0.5}}));
   EXPECT_EQ(counter(result, "planes_moved"), 1);
@@ -62,10 +62,10 @@ TEST(SpatialSlicing, SaysOnWhichPlaneItEndsAndWhy) {
   EXPECT_EQ(shut.message,
             "no route: on plane 3 of 5, at x = 4 m, from (3, 2, 1) none of 0 free cells can be "
             "reached; refused legs: blocked cells (1)");
-  // The goal is in sight of no point of the last plane.
+  // No point of the last plane sees the goal.
   const PlanResult last = plan(level("..#.\nS.#.\n...#\n..#G").request);
   EXPECT_EQ(last.status, PlanStatus::no_route);
-  EXPECT_NE(last.message.find("none of 1 free cells can be reached and left for the goal"),
+  EXPECT_NE(last.message.find("none of 1 free cells can be reached and continued to the goal"),
             std::string::npos)
       << last.message;
 }
@@ -117,7 +117,7 @@ TEST(SpatialSlicing, LimitOnTheRoutesLength) {
   EXPECT_NE(refused.message.find("route_length"), std::string::npos) << refused.message;
 }
 
-/// Keeps what a search tells.
+/// Records the events of a search.
 class Kept final : public Trace {
  public:
   void add(const TraceEvent& event) override { events.push_back(event); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beyond the paper: a way over blocks of cells, and the cells around it as a space to plan in.
+// Beyond the paper: a path over blocks of cells, and planning within the cells around it.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace altiplan::stratified {
 
-/// Blocks of 8 x 8 x 8 cells, with how many of their cells are blocked.
+/// Blocks of 8 x 8 x 8 cells, with the number of blocked cells of each.
 class Blocks {
  public:
   static constexpr int kEdge = 8;
@@ -35,9 +35,9 @@ class Blocks {
     }
   }
 
-  /// The blocks of a cheapest way between two cells: A* over blocks with a free cell, a step
-  /// the dearer the less of its block is free. Empty where there is none.
-  /// The two may be blocked altogether: ends of a route are joined from cells beside theirs.
+  /// The blocks of a cheapest path between two cells: A* over blocks with a free cell, where a step
+  /// costs more the less of its block is free. Empty if there is none. The two blocks may be fully
+  /// blocked: ends of a route are linked from neighbouring cells.
   std::vector<Cell> way(const Cell& from, const Cell& to) const {
     const std::uint32_t start = index_.index(block_of(from));
     const Cell goal = block_of(to);
@@ -80,7 +80,7 @@ class Blocks {
     return {};
   }
 
-  /// The free cells of the blocks of a way and of those up to `around` blocks beside it.
+  /// The free cells of the blocks of a path and of those up to `around` blocks beside it.
   VoxelGrid corridor(const std::vector<Cell>& way, int around) const {
     VoxelGrid cells(occupancy_.spec());
     const Cell& n = occupancy_.spec().counts;
@@ -112,7 +112,7 @@ class Blocks {
     return block[0] >= 0 && block[1] >= 0 && block[2] >= 0 && block[0] < counts_[0] &&
            block[1] < counts_[1] && block[2] < counts_[2];
   }
-  /// Cells of a block: fewer at the upper ends of the axes.
+  /// Number of cells of a block: smaller at the upper ends of the axes.
   double volume(const Cell& block) const {
     double cells = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {

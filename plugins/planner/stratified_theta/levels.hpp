@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The levels of a stratified space: lattices twice as fine from one to the next, and how much of
-// the space each knows for certain. Paper 003, section 2.
+// The levels of a stratified space: lattices whose resolution doubles from one to the next, and the
+// share of the space that each knows for certain. Paper 003, section 2.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace altiplan::stratified {
 
-/// Cells on an axis that a lattice of a level lies at: 2^(level - 1) + 1 of them, evenly between
-/// the first cell and the last; every cell where that many are not there.
+/// Cells of an axis on which a level's lattice lies: 2^(level - 1) + 1 of them, evenly spaced
+/// between the first cell and the last; every cell if there are fewer.
 inline std::vector<int> rows_of(int level, int cells) {
   const int steps = std::min(1 << std::min(level - 1, 30), cells - 1);
   std::vector<int> rows;
@@ -24,7 +24,7 @@ inline std::vector<int> rows_of(int level, int cells) {
   return rows;
 }
 
-/// The level whose spacing is nearest to a cell, and not finer, on the longest axis.
+/// The level whose spacing on the longest axis is nearest to a cell, but not finer.
 inline int finest_level(const Cell& counts) {
   const int most = std::max({counts[0], counts[1], counts[2], 2});
   int level = 1;
@@ -34,7 +34,7 @@ inline int finest_level(const Cell& counts) {
   return level;
 }
 
-/// Cells of the blocks in which a level divides an axis: block k from edge k to edge k + 1.
+/// Edges of the blocks into which a level divides an axis: block k from edge k to edge k + 1.
 inline std::vector<int> block_edges(int level, int cells) {
   const int blocks = std::min(1 << std::min(level - 1, 30), cells);
   std::vector<int> edges;
@@ -44,8 +44,8 @@ inline std::vector<int> block_edges(int level, int cells) {
   return edges;
 }
 
-/// Share of a level's blocks that are free or blocked altogether, eq. (5); once `watch` is spent,
-/// no share.
+/// Share of a level's blocks that are fully free or fully blocked, eq. (5); arbitrary once `watch`
+/// is spent.
 inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* watch = nullptr) {
   const Cell& counts = occupancy.spec().counts;
   std::array<std::vector<int>, 3> edges;
@@ -66,7 +66,7 @@ inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* 
         }
         for (int j = edges[1][y]; j < edges[1][y + 1]; ++j) {
           occupancy.for_each_run(j, k, [&](int first, int last) {
-            // The blocks that the run goes through.
+            // The blocks that the run passes through.
             std::size_t x = std::size_t(std::upper_bound(edges[0].begin(), edges[0].end(), first) -
                                         edges[0].begin() - 1);
             for (; x < across && edges[0][x] <= last; ++x) {
@@ -85,8 +85,8 @@ inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* 
   return double(certain) / double(across * deep * high);
 }
 
-/// The least level of which more is certain than p_max; the finest where none is. Once `watch` is
-/// spent, any.
+/// The lowest level whose certain share exceeds p_max; the finest if there is none. Arbitrary once
+/// `watch` is spent.
 inline int min_level(const VoxelGrid& occupancy, double p_max, BudgetWatch* watch = nullptr) {
   const int finest = finest_level(occupancy.spec().counts);
   int level = 1;
@@ -128,7 +128,7 @@ class Level {
     }
   }
 
-  /// The node nearest to a place, in cells, and its neighbours.
+  /// Adds the node nearest to a position, in cells, and its neighbours.
   void add_around(const std::array<double, 3>& place) {
     const Cell key = nearest(place);
     for (int d = 0; d < kit::kDirections; ++d) {
@@ -140,7 +140,7 @@ class Level {
     }
   }
 
-  /// The key of the node nearest to a place, in cells.
+  /// The key of the node nearest to a position, in cells.
   Cell nearest(const std::array<double, 3>& place) const {
     Cell key{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -181,8 +181,8 @@ class Level {
   kit::AnyAngleNodes nodes_;
 };
 
-/// The chain of a level's nodes along a route: the nearest ones to places one spacing apart. (The
-/// bends alone would leave clusters without a way from one to the next.)
+/// The chain of a level's nodes along a route: the nearest ones to points one spacing apart. (The
+/// bends alone would leave clusters without a path between them.)
 inline std::vector<Cell> chain(const Level& level, const Route& route, const GridSpec& cells) {
   const auto in_cells = [&](const Vec3& p) {
     std::array<double, 3> place;

@@ -43,7 +43,7 @@ TEST(Levels, SomeRouteOfSixNodesHasASetOf35) {
   const VoxelGrid grid = empty({80, 80, 1});
   const Level coarse(3, grid);
   std::set<std::size_t> sizes;
-  // Every way of six different nodes, each next to the one before, up to symmetry enough of them.
+  // Every path of six different nodes, each adjacent to the previous, sufficient up to symmetry.
   const std::function<void(std::vector<Cell>&)> extend = [&](std::vector<Cell>& way) {
     if (way.size() == 6) {
       Level fine(4, grid);
@@ -137,7 +137,7 @@ TEST(Levels, AChainIsConnectedAndNearItsRoute) {
     const std::vector<Cell> keys = chain(level, route, grid.spec());
     for (std::size_t n = 1; n < keys.size(); ++n) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        // Rows are not quite evenly spaced, so a step may go over one.
+        // Rows are not exactly evenly spaced, so a step may skip one.
         EXPECT_LE(std::abs(keys[n][axis] - keys[n - 1][axis]), 2) << round;
       }
     }

@@ -3,14 +3,13 @@
 //
 // Citation: paper 003, spatial stratification in cities (SS-LT*). The search of a level: A. Nash,
 //   S. Koenig, C. Tovey: Lazy Theta*. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
-// Guarantees: every leg keeps every rule. Not complete, but for angle_rule: complete.
-// Complexity: O(n) for the share of certain blocks in the n cells of the space, a level; then
-//   O(k log k) in the nodes k of a level's set.
-// Deviations: the set of a level holds the chain of nodes along the route, not its bends alone;
-// where
-//   a whole level has no route the next one is planned on whole; where a refined one has none the
-//   route stays; angles are held against the leg that is flown (angle_rule: route_consistent).
-// Symbols: l_min least level, p_max share that has to be certain, d_limit length of a way that is
+// Guarantees: every leg satisfies every constraint. Not complete, except for angle_rule: complete.
+// Complexity: O(n) per level for the share of certain blocks in the n cells of the space; then O(k
+//   log k) in the nodes k of a level's set.
+// Deviations: the set of a level holds the chain of nodes along the route, not its bends alone; if
+//   a whole level has no route, the next one is planned on whole; if a refined one has none, the
+//   route is kept; angles are checked against the leg that is flown (angle_rule: route_consistent).
+// Symbols: l_min first level, p_max share that has to be certain, d_limit length of a path that is
 //   tried straight, h heuristic 1.1^(level - l_min) d, eq. (6).
 #include <cmath>
 #include <optional>
@@ -44,19 +43,19 @@ struct Params : kit::AnyAngleParams {
     f("p_max", p_max)
         .range(0, 1)
         .doc(
-            "the first level planned on is the least of which more than this share of blocks is "
-            "free or blocked altogether, eq. (5)");
+            "planning starts at the lowest level where more than this share of the blocks is "
+            "fully free or fully blocked, eq. (5)");
     f("d_limit_m", d_limit_m)
         .unit("m")
         .at_least(0)
-        .doc("a goal that is no farther is tried straight first");
+        .doc("maximum distance to the goal at which a straight leg is tried first");
     f("start_levels", start_levels)
         .range(1, 30)
-        .doc("how many levels from that one on are started from; the shortest route is kept");
+        .doc("number of start levels from that one on; the shortest route is kept");
     f("refine", refine, {{"successors", Refine::successors}, {"corridor", Refine::corridor}})
         .doc(
-            "how a route is refined: level by level in the nodes along it and their neighbours, "
-            "or at once in the cells around a way over blocks of 8 cells, which needs no levels");
+            "refine a route level by level in the nodes along it and their neighbours, or at "
+            "once in the cells around a path over blocks of 8 cells, which needs no levels");
   }
 };
 
@@ -66,7 +65,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       : AnyAnglePlanner(params, kBytesPerCell), params_(params) {}
 
  private:
-  /// Of the sets' bits; what searches of them keep is counted as they go.
+  /// For the sets' bits; memory of their searches is counted as they run.
   static constexpr std::size_t kBytesPerCell = 1;
 
   SearchResult search(Task& task) const override {
@@ -153,13 +152,13 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     return found;
   }
 
-  /// The cells around a way over blocks; wider where they hold no route.
+  /// Searches the cells around a path over blocks; wider if they hold no route.
   static SearchResult in_corridor(Task& task) {
     const VoxelGrid& occupancy = *task.rules.grid();
     const Blocks blocks(occupancy);
     const std::vector<Cell> way = blocks.way(task.lattice.nearest(task.request.start.position).cell,
                                              task.lattice.nearest(task.request.goal.position).cell);
-    if (way.empty()) {  // only another end within the tolerance may be left
+    if (way.empty()) {  // only another end within the tolerance may remain
       return run(task, kit::AnyAngleNodes::every_cell(occupancy));
     }
     for (int around = 1;; around *= 2) {
@@ -187,4 +186,5 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "stratified_theta", StratifiedTheta, Params,
-                "Lazy Theta* on levels of the space, from a coarse route to a fine one (SS-LT*)")
+                "Stratified Lazy Theta* (SS-LT*): plans a coarse route and refines it level by "
+                "level")

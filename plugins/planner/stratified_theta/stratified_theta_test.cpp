@@ -11,7 +11,7 @@ using testing::expect_sound;
 using testing::in_city;
 using testing::make_planner;
 
-/// How many of the first cities have a route; each is judged.
+/// Number of the first cities that have a route; each route is judged.
 int solved_of(int cities, bool complex, bool limits, const std::string& yaml) {
   const auto planner = make_planner("stratified_theta", yaml);
   int solved = 0;
@@ -72,7 +72,7 @@ TEST(StratifiedTheta, ANearGoalIsTriedStraight) {
 }
 
 TEST(StratifiedTheta, ACorridorLeadsToAGoalWhoseBlockIsClosed) {
-  // The goal is free, but beside a house whose cells fill its block.
+  // The goal is free, but next to a house whose cells fill its block.
   Request request =
       testing::request_in(testing::world_of({BoxShape{{{405, 105, -1}, {795, 495, 395}}}}),
                           {5, 305, 105}, {403, 305, 105}, {{0, 0, 0}, {1000, 600, 400}});
@@ -85,7 +85,7 @@ TEST(StratifiedTheta, ACorridorLeadsToAGoalWhoseBlockIsClosed) {
 }
 
 TEST(StratifiedTheta, ACorridorThatLeadsNowhereLeavesTheTolerance) {
-  // A wall of more than a block; the goal is behind it, ends within the tolerance are not.
+  // A wall thicker than a block; the goal is behind it, ends within the tolerance are not.
   Request request =
       testing::request_in(testing::world_of({BoxShape{{{200, -1, -1}, {400, 101, 101}}}}),
                           {5, 55, 55}, {455, 55, 55}, {{0, 0, 0}, {600, 100, 100}});
@@ -106,7 +106,7 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   const PlanResult cut = planner->plan(request);
   EXPECT_EQ(cut.status, PlanStatus::timed_out);
   EXPECT_TRUE(cut.budget_hit);
-  // Levels are not looked at any more.
+  // Levels are no longer examined.
   request.budget.max_iterations = 0;
   const PlanResult none = planner->plan(request);
   EXPECT_EQ(none.status, PlanStatus::timed_out);
@@ -116,7 +116,7 @@ TEST(StratifiedTheta, BudgetsAreKept) {
   request.budget = {};
   request.budget.stop = stop.get_token();
   EXPECT_EQ(planner->plan(request).status, PlanStatus::cancelled);
-  // Once a level has a route, what is left of the budget refines it.
+  // Once a level has a route, the remaining budget refines it.
   request.budget = {};
   const PlanResult whole = planner->plan(request);
   request.budget.max_iterations = std::uint64_t(whole.counters.front().value) - 1;

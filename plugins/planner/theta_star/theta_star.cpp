@@ -3,15 +3,16 @@
 //
 // Citation: A. Nash, K. Daniel, S. Koenig, A. Felner: Theta*: Any-Angle Path Planning on Grids.
 //   AAAI 2007, pp. 1177-1183.
-// Guarantees: every leg keeps every rule; a route over free cells is found where there is one
-//   (angle_rule: complete: under limits on turns and climb too), and where cells alone decide it is
-//   never longer than the shortest over the grid.
-// Complexity: O(n log n) time, O(n) memory in the cells, and for each way that may be shorter one
-//   or two lines of sight, over as many cells as the leg meets.
-// Deviations: a leg is held to every rule of the judge, not to obstacles alone; where it breaks one
-//   at the parent's parent the cell is reached by way of the expanded cell; ways are sums of whole
-//   numbers (kit/any_angle.hpp); f that falls from a cell to its successor counts as the last f.
-// Symbols: g length of the way from the start, h straight line to the goal, f = g + h.
+// Guarantees: every leg satisfies every constraint; finds a route over free cells if there is one
+//   (angle_rule: complete: also under limits on turns and climb), and where cells alone decide, the
+//   route is never longer than the shortest over the grid.
+// Complexity: O(n log n) time, O(n) memory in the cells, and one or two lines of sight for each
+//   path that may be shorter, over as many cells as the leg intersects.
+// Deviations: a leg is checked against every constraint of the judge, not only obstacles; where it
+//   violates one at the parent's parent, the cell is reached via the expanded cell; path lengths
+//   are sums of integers (kit/any_angle.hpp); an f that falls from a cell to its successor is
+//   replaced by the last f.
+// Symbols: g length of the path from the start, h straight line to the goal, f = g + h.
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
@@ -28,5 +29,5 @@ class ThetaStar final : public kit::EveryCellPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Planner, "theta_star", ThetaStar, kit::AnyAngleParams,
-                "Theta*: straight legs between cells that see each other, each looked at when it "
-                "is found")
+                "Theta*: straight legs between cells that see each other, each checked when it is "
+                "found")

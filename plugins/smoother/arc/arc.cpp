@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Corners replaced by arcs of the vehicle's turn radius.
 //
-// Citation: the fillet of two lines; as paths of a vehicle with a least turn radius: L. E. Dubins,
-//   On curves of minimal length with a constraint on average curvature, American Journal of
+// Citation: the fillet of two lines; as paths of a vehicle with a minimum turn radius: L. E.
+//   Dubins, On curves of minimal length with a constraint on average curvature, American Journal of
 //   Mathematics 79, 1957, pp. 497-516, doi:10.2307/2372560 (arcs and tangents, in a plane).
-// Guarantees: where every corner is filleted, the route keeps the turn radius, also when it is
-//   written with the digits that autopilots keep; for no constraint does the worst excess grow; the
-//   route never gets longer.
+// Guarantees: if every corner is filleted, the route satisfies the turn radius, also when it is
+//   written with the precision of autopilots; the largest violation of any constraint does not
+//   grow; the route never gets longer.
 // Complexity: O(corners · tangents) leg checks.
-// Deviations: each arc lies in the plane of its two legs, so that it climbs and turns at once; it
-//   is written as equal tangents, whose own fillets are the arc itself: a vehicle that rounds each
-//   waypoint with the radius flies the arc. Waypoints on straight stretches are left out first: a
-//   leg is as long as it is straight.
+// Deviations: each arc lies in the plane of its two legs, so that it climbs and turns
+//   simultaneously; it is written as equal tangents, whose own fillets are the arc itself: a
+//   vehicle that rounds each waypoint with the radius flies the arc. Waypoints on straight
+//   stretches are removed first, so that a leg spans the whole straight stretch.
 // Symbols: C a corner, u and v the directions into and out of it, R the radius, alpha the turn,
 //   t = R tan(alpha / 2) the stretch of each leg that the arc replaces, s = R tan(alpha / 2n) half
 //   of each of its n - 1 tangents.
@@ -39,15 +39,15 @@ struct Params {
     f("sag_m", sag_m)
         .unit("m")
         .greater_than(0)
-        .doc("how far a waypoint may lie outside its arc; auto: a hundredth of the radius");
+        .doc("largest distance of a waypoint outside its arc; auto: a hundredth of the radius");
   }
 };
 
-/// Stretch of each leg that an arc takes.
+/// Length of each leg that an arc replaces.
 double tangent_length(double radius, double turn) { return radius * std::tan(turn / 2); }
 
-/// The arc that touches both legs, as the waypoints at which `turns` equal turns are made: those of
-/// its circle's circumscribed polygon.
+/// The arc that touches both legs, as the waypoints at which `turns` equal turns are made: the
+/// vertices of its circle's circumscribed polygon.
 Route arc_at(const Corner& corner, double radius, int turns) {
   const double t = tangent_length(radius, corner.turn);
   const double half = corner.turn / turns / 2;
@@ -64,11 +64,11 @@ Route arc_at(const Corner& corner, double radius, int turns) {
   return arc;
 }
 
-/// Attempts at an arc, each with twice the turns: they come nearer to it.
+/// Attempts at an arc, each with twice the turns for a closer approximation.
 constexpr int kTries = 3;
 
-/// Turns of an arc at first: they keep the sag and the limits on turns, and legs between them are
-/// no shorter than legs may be.
+/// Initial number of turns of an arc: they satisfy the sag and the turn limits, and the legs
+/// between them are no shorter than the minimum leg.
 int turns_of(double radius, double sag, double turn, const Limits& limits) {
   const double step = std::min({2 * std::acos(radius / (radius + sag)), kPi / 2,
                                 limits.max_turn_space, limits.max_turn_horizontal});
@@ -89,19 +89,19 @@ Route straightened(const Route& route, const Request& request) {
       .route;
 }
 
-/// Whether the legs hold the arc beside those before it, each in its half of the leg that is left
-/// between them. (Taking the corners in order leaves the fewest: each has to do with its two
-/// neighbours alone.)
+/// True if the legs have enough length for the arc and those before it, each within its half of the
+/// remaining leg. (Processing the corners in order leaves the fewest unfilleted: each depends only
+/// on its two neighbours.)
 bool fits(const Corner& corner, double radius, int turns) {
   const double s = tangent_length(radius, corner.turn / turns);
   const double taken = tangent_length(radius, corner.turn) - s - kLengthTolerance;
-  const double before = tangent_length(radius, corner.turn_into);  // that the arc before needs
+  const double before = tangent_length(radius, corner.turn_into);  // needed by the preceding arc
   return taken + 2 * std::max(s, before) <= corner.room_into && taken + 2 * s <= corner.leg_out_of;
 }
 
 std::string summary(const kit::RoundedRoute& rounded, double radius) {
   const std::int64_t tight = rounded.corners - rounded.replaced - rounded.refused;
-  char text[32];  // not printf: a locale may write decimals with a comma
+  char text[32];  // not printf: some locales write decimals with a comma
   const char* end =
       std::to_chars(text, text + sizeof text, radius, std::chars_format::general, 6).ptr;
   std::string said = std::to_string(rounded.replaced) + " of " + std::to_string(rounded.corners) +
@@ -110,9 +110,9 @@ std::string summary(const kit::RoundedRoute& rounded, double radius) {
     said += "; the legs of " + std::to_string(tight) + " are too short for it";
   }
   if (rounded.refused > 0) {
-    said += "; " + std::to_string(rounded.refused) + " would break a rule";
+    said += "; " + std::to_string(rounded.refused) + " would violate a constraint";
   }
-  return said + (rounded.budget_hit ? "; the budget ended" : "");
+  return said + (rounded.budget_hit ? "; the budget was used up" : "");
 }
 
 class Arc final : public Smoother {
@@ -127,7 +127,7 @@ class Arc final : public Smoother {
     if (wanted <= 0) {
       result.status = PlanStatus::invalid_problem;
       result.message =
-          "arc has no radius: give it radius_m, or the problem a turn_radius constraint";
+          "arc has no radius: set radius_m, or give the problem a turn_radius constraint";
       return result;
     }
     const double sag = params_.sag_m.value.value_or(wanted / 100);

@@ -12,7 +12,7 @@ using testing::counter;
 using testing::make_smoother;
 using testing::open_request;
 
-/// The route's arcs of this radius, where nothing is in the way.
+/// The route's arcs of this radius, without obstacles.
 PlanResult arcs(const Route& route, double radius, const std::string& more = "") {
   Request request = open_request(route);
   request.limits.min_turn_radius = radius;
@@ -52,7 +52,7 @@ TEST(Arc, TangentsKeepTheSag) {
   }
 }
 
-/// The route as an autopilot keeps it: in 1e-7 degree and centimetres, at the worst of latitudes.
+/// The route as an autopilot stores it: in 1e-7 degree and centimetres, at the worst latitude.
 Route as_written(const Route& route, RandomStream& random) {
   const double metres_per_degree = 111'320;
   Route written;
@@ -65,7 +65,7 @@ Route as_written(const Route& route, RandomStream& random) {
 }
 
 TEST(Arc, TheRadiusHoldsForEveryRouteWhoseCornersAllHaveArcs) {
-  // In space, as the judge measures it: joints of arcs in different planes included.
+  // In 3-D, as the judge measures it: includes joints of arcs in different planes.
   int whole = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     RandomStream random(seed);
@@ -73,7 +73,7 @@ TEST(Arc, TheRadiusHoldsForEveryRouteWhoseCornersAllHaveArcs) {
     while (route.size() < 7) {
       route.push_back(route.back() + random.in({Vec3::Constant(-3000), Vec3::Constant(3000)}));
     }
-    // The greatest radius for which the legs hold the arcs.
+    // The largest radius whose arcs fit on the legs.
     double radius = kInfinity;
     std::vector<double> tangents = {0};
     for (std::size_t i = 1; i + 1 < route.size(); ++i) {
@@ -151,14 +151,14 @@ TEST(Arc, LeavesShortLegsAndObstacles) {
   EXPECT_EQ(tight.message, "1 of 2 corners are arcs of 40 m; the legs of 1 are too short for it");
   EXPECT_EQ(tight.route.back(), route.back());
   Request request = open_request(route);
-  // Where the middle of the first arc would pass.
+  // The point where the middle of the first arc would pass.
   const Vec3 middle = Vec3(60, 40, 0) + 40.3 * std::sqrt(0.5) * Vec3(1, -1, 0);
   request.world = std::make_shared<const World>(testing::world_of({Shape{Sphere{middle, 3}}}));
   const PlanResult refused = make_smoother("arc", "{radius_m: 40}")->smooth(route, request);
   EXPECT_EQ(refused.route, route);
   EXPECT_EQ(refused.message,
-            "0 of 2 corners are arcs of 40 m; the legs of 1 are too short for it; 1 would break a "
-            "rule");
+            "0 of 2 corners are arcs of 40 m; the legs of 1 are too short for it; 1 would violate "
+            "a constraint");
 }
 
 TEST(Arc, TangentsKeepTheLimitsOnLegsAndTurns) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Corners rounded by a cubic B-spline.
 //
-// Citation: C. de Boor: A Practical Guide to Splines, Springer, 1978; its use on thinned grid
+// Citation: C. de Boor: A Practical Guide to Splines, Springer, 1978; applied to thinned grid
 //   routes: paper 002 (fusion of constrained A*, smoothing and potential field).
-// Guarantees: for no rule does the worst excess grow; the route never gets longer. A corner for
-//   which one of the reaches tried keeps every rule is rounded.
+// Guarantees: the largest violation of any constraint does not grow; the route never gets longer. A
+//   corner is rounded if one of the reaches tried satisfies every constraint.
 // Complexity: O(corners · tries · samples) leg checks.
 // Deviations: the control polygon is the route with four more points around each corner, so that
-//   the curve lies on the legs but for a stretch of known length at each corner, its reach. There
-//   the curve is judged leg by leg; a corner that does not pass is tried nearer and nearer, and
-//   then left. The circles of a curve grow with its reach and so do its cuts: under a limit of the
-//   turn radius the least reach that keeps it is tried last, and nothing below.
+//   the curve lies on the legs except for a stretch of known length at each corner, its reach.
+//   There the curve is checked leg by leg; a corner that fails is retried with a smaller reach, and
+//   finally left. The radii of a curve grow with its reach and so do its cuts: under a limit of the
+//   turn radius the smallest reach that satisfies it is tried last, and nothing below.
 // Symbols: C a corner, u and v the directions into and out of it, d the spacing of control points.
 #include <algorithm>
 
@@ -32,7 +32,9 @@ struct Params {
     f("reach_m", reach_m)
         .unit("m")
         .greater_than(0)
-        .doc("the curve leaves the legs at most this far from a waypoint; auto: up to half a leg");
+        .doc(
+            "largest distance from a waypoint at which the curve leaves the legs; auto: up to "
+            "half a leg");
     f("samples", samples).range(1, 100).doc("legs for each of the four pieces of a corner's curve");
     f("tries", tries).range(1, 30).doc("attempts at a corner, each with half the reach");
   }
@@ -51,9 +53,9 @@ Route curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int sample
   return curve;
 }
 
-/// The least reach at which every corner of the curve has the radius, with the margin that the
-/// digits of autopilots need. (The curve leaves its legs in their direction, so that nothing bends
-/// where it begins and ends.)
+/// The smallest reach at which every corner of the curve has the radius, with the margin that the
+/// precision of autopilots requires. (The curve leaves its legs in their direction, so that nothing
+/// bends where it begins and ends.)
 double reach_for(double radius, const kit::Corner& corner, int samples) {
   const Route curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
   double least = kInfinity;
@@ -104,8 +106,8 @@ class BSpline final : public Smoother {
     return curve_at(corner.at, corner.into, corner.out_of, *reach / 2, params_.samples);
   }
 
-  /// The widest reach halved once an attempt, while that is more than the turn radius needs; then
-  /// what it needs. Where halves of the legs are too short for that: all that is free of them.
+  /// The widest reach, halved per attempt while it exceeds what the turn radius needs; then what it
+  /// needs. If halves of the legs are too short for that: their full free length.
   std::optional<double> reach_of(const kit::Corner& corner, int attempt, double needed) const {
     const double most = params_.reach_m.value.value_or(kInfinity);
     const double widest = std::min(corner.fair_reach(), most);
@@ -127,4 +129,4 @@ class BSpline final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "bspline", BSpline, Params,
-                "corners rounded by a cubic B-spline whose every leg is judged")
+                "corners rounded by a cubic B-spline whose every leg is checked")

@@ -29,7 +29,7 @@ TEST(BSpline, RoundsACornerWithinItsReach) {
 }
 
 TEST(BSpline, ComesNearerWhereTheCurveWouldHitAndElseLeaves) {
-  // Where the middle of the widest curve would pass.
+  // The point where the middle of the widest curve would pass.
   const Vec3 beside(100 - 25.0 / 6, 25.0 / 6, 0);
   const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   Request request = testing::request_in(testing::world_of({Shape{Sphere{beside, 1.5}}}), {0, 0, 0},
@@ -107,7 +107,8 @@ TEST(BSpline, ACornerThatCanBeRoundedIs) {
 }
 
 TEST(BSpline, FindsTheReachBetweenTheBallAndTheRadius) {
-  // 50 m and 25 m of reach hit a ball inside the corner; 12.5 m would bend on 2.5 m.
+  // A reach of 50 m or 25 m hits a ball inside the corner; 12.5 m would turn with a radius of 2.5
+  // m.
   const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   Request request = testing::open_request(route);
   request.limits.min_turn_radius = 4;

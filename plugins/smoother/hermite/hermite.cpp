@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cubic Hermite curve through the waypoints, under the judge.
+// A cubic Hermite curve through the waypoints, checked by the judge.
 //
 // Citation: Li Rongsheng et al.: Path planning for flight vehicles based on improved ACO (paper
 //   004), end of section 2.3; tangents by the parabola through three points (Bessel), C. de Boor: A
 //   Practical Guide to Splines, Springer, 1978, chapter IV.
-// Guarantees: the route passes every waypoint; for no rule does the worst excess grow. The curve
-//   has no kink but at corners that stay. It is longer than the straight legs.
-// Complexity: O(samples · log(leg / least leg)) leg checks a corner; a leg is judged again only
-//   where a node was inserted on it, or on a leg beside it.
-// Deviations: the paper does not say what its tangents are, nor look whether the curve is free.
-//   Here its parameter is the length of chords (a uniform one loops where a short leg meets a long
-//   one), and what is judged are its samples, as they are flown. Where they break a rule, nodes are
-//   inserted on the legs, at halves of the span; where halves get too short the corner stays. At
-//   the start and the goal the curve has the directions of the legs.
-// Why nodes mend it: between two nodes on one leg the curve is the leg, as both tangents lie along
-//   it. In a span beside a corner it leaves the leg by at most 4/27 of the span times the bend.
+// Guarantees: the route passes every waypoint; the largest violation of any constraint does not
+//   grow. The curve has no kink except at corners left sharp. It is longer than the straight legs.
+// Complexity: O(samples · log(leg / minimum leg)) leg checks per corner; a leg is rechecked only if
+//   a node was inserted on it, or on an adjacent leg.
+// Deviations: the paper does not define its tangents, nor check that the curve is free. Here the
+//   parameter is chord length (a uniform one loops where a short leg meets a long one), and the
+//   flown samples are checked. Where they violate a constraint, nodes are inserted on the legs,
+//   halving the span; where halves get too short the corner is left sharp. At the start and the
+//   goal the curve has the directions of the legs.
+// Why nodes repair it: between two nodes on one leg the curve is the leg, as both tangents lie
+// along it. In a span beside a corner it leaves the leg by at most 4/27 of the span times the bend.
 // Symbols: p the waypoints; d the direction of a leg; a and b the lengths of the spans before and
-//   behind a corner, m its tangent, (b d_before + a d_behind) / (a + b) of the parabola; bend =
-//   m - d, which is what leads away from a leg.
+//   after a corner, m its tangent, for the parabola (b d_before + a d_behind) / (a + b); bend = m -
+//   d, the deviation from a leg's direction.
 #include "hermite_curve.hpp"
 
 #include <charconv>
@@ -39,21 +39,23 @@ struct Params {
   void describe(Fields& f) {
     f("tangents", tangents, {{"parabola", Tangents::parabola}, {"chord", Tangents::chord}})
         .doc(
-            "at a waypoint: of the parabola through it and the nodes beside it, which bends least; "
-            "or along the chord between these, which stays nearer to the legs");
-    f("samples", samples).range(2, 1000).doc("legs as which each span of the curve is flown");
+            "at a waypoint: of the parabola through it and the adjacent nodes, which bends "
+            "least; or along the chord between these, which stays nearer to the legs");
+    f("samples", samples).range(2, 1000).doc("legs into which each span of the curve is divided");
     f("step_m", step_m)
         .unit("m")
         .greater_than(0)
-        .doc("they are about so long, 2 to 10,000 of them a span; auto: samples decides");
+        .doc(
+            "approximate length of these legs, 2 to 10,000 of them per span; auto: samples "
+            "decides");
     f("min_leg_m", min_leg_m)
         .unit("m")
         .greater_than(0)
-        .doc("inserted nodes cut no leg to less than this; auto: a 32nd of the leg");
+        .doc("inserted nodes divide no leg into parts shorter than this; auto: a 32nd of the leg");
   }
 };
 
-/// The curve through one route while it is fitted to the rules.
+/// The curve through one route while it is fitted to the constraints.
 class Fitting {
  public:
   Fitting(const Route& route, const Request& request, const Params& params)
@@ -76,7 +78,7 @@ class Fitting {
             leg_violations(before, from, curve_.waypoints()[i + 1], request, i));
         legs_[i].allowed.add(excess);
         if (i > 0) {
-          legs_[i - 1].allowed.add(excess);  // the curve turns before the waypoint too
+          legs_[i - 1].allowed.add(excess);  // the curve also turns before the waypoint
         }
         before = onward(before, from);
       }
@@ -86,7 +88,7 @@ class Fitting {
     }
   }
 
-  /// The curve's route once all of it stands; the route as it was where the budget ended.
+  /// The curve's route once all of it is accepted; the original route if the budget ran out.
   Route fitted() {
     if (curve_.rounded() == 0) {
       return route_;
@@ -94,7 +96,7 @@ class Fitting {
     judge_all();
     while (!budget_hit_ && curve_.rounded() > 0 &&
            !kit::Excess(check(sampled(), request_).violations).within(allowed_)) {
-      // A rule of the whole route, as of its length: nearer to the legs everywhere.
+      // A constraint on the whole route, such as its length: nearer to the legs everywhere.
       halve_all();
       judge_all();
     }
@@ -105,7 +107,7 @@ class Fitting {
   std::int64_t legs_checked() const { return legs_checked_; }
   bool budget_hit() const { return budget_hit_; }
 
-  /// Legs as which a span is flown.
+  /// Number of legs into which a span is divided.
   int pieces(const Span& span) const {
     if (span.straight()) {
       return 1;
@@ -121,27 +123,27 @@ class Fitting {
  private:
   struct Leg {
     Route points;         ///< of the curve, without the first
-    kit::Excess allowed;  ///< what the straight leg breaks, and the one behind it
+    kit::Excess allowed;  ///< violations of the straight leg and the one after it
     bool judged = false;
   };
 
-  /// A leg of the curve that breaks a rule, or breaks it worse.
+  /// A leg of the curve that violates a constraint, or violates it more than the route did.
   struct Fault {
     std::size_t leg;
     Span span;
-    bool turning;        ///< only in turning from the leg before it
-    bool at_waypoint;    ///< at which the leg begins
+    bool turning;        ///< only the turn from the leg before it
+    bool at_waypoint;    ///< the leg begins at a waypoint
     bool in_first_half;  ///< of its span
   };
 
-  /// A span that is flown as two legs of the length that they must have. (Beside corners samples
-  /// are closer together than on average.)
+  /// The shortest span that gives two legs of the minimum length. (Beside corners samples are
+  /// closer together than on average.)
   double min_span() const {
     constexpr double kUneven = 1.5;
     return 2 * kUneven * request_.limits.min_leg;
   }
 
-  /// Where that changes a leg, it is to be judged again, and so is the one that it turns into.
+  /// Resamples a leg; where that changes it, it must be rechecked, and so must the next leg.
   void sample(std::size_t i) {
     Route points;
     for (const Span& span : curve_.spans(i)) {
@@ -203,9 +205,9 @@ class Fitting {
     return std::nullopt;
   }
 
-  /// How the vehicle comes to waypoint i.
+  /// Approach of the vehicle to waypoint i.
   std::optional<Approach> before_leg(std::size_t i) const {
-    // From the last waypoint that a leg with a heading leads to.
+    // From the last waypoint to which a leg with a heading leads.
     std::size_t first = i;
     while (first > 0 && (first == i ||
                          !has_heading(curve_.waypoints()[first + 1] - curve_.waypoints()[first]))) {
@@ -219,19 +221,19 @@ class Fitting {
   }
 
   bool accepted(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
-              const Vec3& to) const {
+                const Vec3& to) const {
     const kit::Excess& allowed = legs_[i].allowed;
     return leg_ok(before, from, to, request_) ||
            (!allowed.none() &&
             kit::Excess(leg_violations(before, from, to, request_, i)).within(allowed));
   }
 
-  /// Brings nearer to the legs what may be to blame; false where the legs are as they were.
+  /// Brings the possible causes nearer to the legs; false if the legs are unchanged.
   bool mend(const Fault& fault) {
     const std::size_t i = fault.leg;
     const Span& span = fault.span;
     const bool at_kept_corner = fault.at_waypoint && !curve_.rounded(i);
-    // A curve at the far end of the leg before it turns that leg's end too.
+    // A curve at the far end of the preceding leg also turns that leg's end.
     bool any = fault.turning && at_kept_corner && i > 0 && halve(i - 1, i - 1);
     if (!span.straight()) {
       const std::size_t corner =
@@ -243,7 +245,7 @@ class Fitting {
       }
       return halve(i, corner) || any;
     }
-    // A straight part is what the curves beside it left of the leg.
+    // A straight part is what the adjacent curves leave of the leg.
     if (span.from > 0) {
       any = halve(i, i) || any;
     }
@@ -287,13 +289,13 @@ class Fitting {
   BudgetWatch watch_;
   HermiteCurve curve_;
   std::vector<Leg> legs_;
-  kit::Excess allowed_;  ///< of the whole route
+  kit::Excess allowed_;  ///< violations of the whole route
   std::int64_t legs_checked_ = 0;
   bool budget_hit_ = false;
 };
 
 std::string number(double value) {
-  char text[32];  // not printf: a locale may write decimals with a comma
+  char text[32];  // not printf: some locales write decimals with a comma
   const char* end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4).ptr;
   return std::string(text, std::size_t(end - text));
@@ -311,7 +313,7 @@ std::string summary(const HermiteCurve& curve, const CurveShape& shape) {
     said += "; " + std::to_string(shape.inserted) + (shape.inserted == 1 ? " node" : " nodes") +
             " inserted";
   }
-  return said + (stay == 0 ? "" : "; " + std::to_string(stay) + (stay == 1 ? " stays" : " stay"));
+  return said + (stay == 0 ? "" : "; " + std::to_string(stay) + " left sharp");
 }
 
 class Hermite final : public Smoother {
@@ -327,7 +329,7 @@ class Hermite final : public Smoother {
     result.budget_hit = fitting.budget_hit();
     result.counters = {{"expanded", fitting.legs_checked()}};
     if (result.budget_hit) {
-      result.message = "the budget ended: the route stays as it was";
+      result.message = "the budget was used up: the route is unchanged";
       return result;
     }
     const CurveShape shape(fitting.curve(), [&](const Span& span) { return fitting.pieces(span); });
@@ -350,4 +352,4 @@ class Hermite final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "hermite", Hermite, Params,
-                "a cubic Hermite curve through the waypoints whose every leg is judged")
+                "a cubic Hermite curve through the waypoints whose every leg is checked")

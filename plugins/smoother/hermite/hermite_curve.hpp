@@ -16,17 +16,17 @@ enum class Tangents { parabola, chord };
 /// The part of a leg between two nodes.
 struct Span {
   double from, to;                 ///< metres along the leg
-  std::optional<Vec3> bend_first;  ///< none where it leaves along the leg
-  std::optional<Vec3> bend_last;   ///< none where it arrives along the leg
+  std::optional<Vec3> bend_first;  ///< empty if it leaves along the leg
+  std::optional<Vec3> bend_last;   ///< empty if it arrives along the leg
   bool straight() const { return !bend_first && !bend_last; }
 };
 
-/// A curve through waypoints. Leg i leads from waypoint i to the next one. A waypoint is rounded,
-/// or else the curve goes straight in and straight out.
+/// A curve through waypoints. Leg i leads from waypoint i to the next one. Each waypoint is either
+/// rounded or left sharp, with straight legs in and out.
 class HermiteCurve {
  public:
-  /// No point twice in a row. Every corner is rounded at first, but those of legs that run straight
-  /// back, and no node is inserted.
+  /// The waypoints must contain no consecutive duplicates. Initially every corner is rounded,
+  /// except those of legs that reverse direction, and no node is inserted.
   HermiteCurve(Route waypoints, Tangents tangents)
       : p_(std::move(waypoints)), tangents_(tangents), corners_(p_.size()) {
     for (std::size_t i = 0; i + 1 < p_.size(); ++i) {
@@ -45,15 +45,16 @@ class HermiteCurve {
   std::size_t legs() const { return d_.size(); }
   double length(std::size_t leg) const { return lengths_[leg]; }
   bool rounded(std::size_t waypoint) const { return corners_[waypoint].rounded; }
-  /// Corners at all, and those that are rounded.
+  /// Number of corners, and of rounded ones.
   std::int64_t turns() const { return turns_; }
   std::int64_t rounded() const {
     return std::count_if(corners_.begin(), corners_.end(),
                          [](const Corner& c) { return c.rounded; });
   }
 
-  /// Halves what bends the leg at one of its ends: inserts a node, or moves it half way to the
-  /// corner. Where it gets shorter than `least` the corner stays. False where nothing bends it.
+  /// Halves the bend of the leg at one of its ends: inserts a node, or moves it half way to the
+  /// corner. If it would get shorter than `least`, the corner is left sharp. False if nothing bends
+  /// it.
   bool halve(std::size_t leg, std::size_t corner, double least) {
     if (!rounded(corner)) {
       return false;
@@ -93,7 +94,7 @@ class HermiteCurve {
     return spans;
   }
 
-  /// Point of a span at t in [0, 1]: its place on the leg, and how far the bends lead away.
+  /// Point of a span at t in [0, 1]: its position on the leg, offset by the bends.
   Vec3 at(std::size_t leg, const Span& span, double t) const {
     if (t == 1 && span.to == lengths_[leg]) {
       return p_[leg + 1];
@@ -109,7 +110,7 @@ class HermiteCurve {
     return p;
   }
 
-  /// Radius of curvature there.
+  /// Radius of curvature at the same point.
   double radius_at(std::size_t leg, const Span& span, double t) const {
     const Vec3 first = span.bend_first.value_or(Vec3::Zero());
     const Vec3 last = span.bend_last.value_or(Vec3::Zero());
@@ -146,15 +147,15 @@ class HermiteCurve {
   std::int64_t turns_ = 0;
 };
 
-/// The curve in numbers.
+/// Measures of the curve.
 struct CurveShape {
   std::int64_t spans = 0;
-  std::int64_t straight = 0;        ///< of the spans
-  std::int64_t inserted = 0;        ///< nodes that are no waypoints
-  double step = 0;                  ///< the longest leg as which a bent span is flown, metres
+  std::int64_t straight = 0;      ///< number of straight spans
+  std::int64_t inserted = 0;      ///< nodes that are not waypoints
+  double step = 0;                ///< the longest leg of a divided bent span, metres
   double min_radius = kInfinity;  ///< of the curve itself
 
-  /// `pieces` tells as how many legs a span is flown.
+  /// `pieces` gives the number of legs into which a span is divided.
   template <class Pieces>
   CurveShape(const HermiteCurve& curve, const Pieces& pieces) {
     for (std::size_t i = 0; i < curve.legs(); ++i) {
@@ -176,7 +177,7 @@ struct CurveShape {
       const Vec3 from = curve.at(leg, span, double(k) / pieces);
       step = std::max(step, (curve.at(leg, span, double(k + 1) / pieces) - from).norm());
     }
-    constexpr int kPlaces = 64;  // whatever the samples are
+    constexpr int kPlaces = 64;  // regardless of the samples
     for (int k = 0; k <= kPlaces; ++k) {
       min_radius = std::min(min_radius, curve.radius_at(leg, span, double(k) / kPlaces));
     }

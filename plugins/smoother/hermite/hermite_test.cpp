@@ -42,7 +42,7 @@ TEST(Hermite, HasTheTangentsOfChordLength) {
     const double at = t[1] + double(k) / 10 * (t[2] - t[1]);
     EXPECT_LT((smooth[10 + k] - pyramid(kBends, t, at)).norm(), 1e-9) << k;
   }
-  // Along the chord of the neighbours: by the four polynomials of Hermite.
+  // Along the chord of the neighbours: by the four Hermite polynomials.
   const Route near = smoothed(kBends, "{samples: 10, tangents: chord}");
   const double h = t[2] - t[1];
   const Vec3 m1 = (kBends[2] - kBends[0]) / (t[2] - t[0]);
@@ -85,7 +85,7 @@ TEST(Hermite, DoesNotLoopWhereAUniformParameterDoes) {
   }
 }
 
-/// Whether these points are among those of the route, in their order.
+/// True if these points are among those of the route, in their order.
 bool passes(const Route& route, const Route& points) {
   auto at = route.begin();
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
@@ -107,7 +107,7 @@ TEST(Hermite, PassesAllWaypointsWithoutAKink) {
     RandomStream random(seed);
     Route route = {random.in({{0, 0, 0}, {10, 10, 10}})};
     for (int i = 0; i < 7; ++i) {
-      // Turns of up to 90 degrees: of sharper ones the curve is too short to be fine at any step.
+      // Turns of up to 90 degrees: at sharper ones the curve is too short to be fine at any step.
       const Vec3 step = random.in({{1, -1, -1}, {9, 1, 1}});
       route.push_back(route.back() + random.uniform(0.1, 10) * step);
     }
@@ -148,7 +148,7 @@ TEST(Hermite, TellsTheLeastRadiusOfTheCurveAndTheStep) {
 }
 
 TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
-  // Behind the second corner the curve runs outside of the leg, where the ball is.
+  // After the second corner the curve runs outside the leg, where the ball is.
   Route route = {{0, 0, 0}, {100, 0, 0}, {150, 100, 0}, {250, 100, 0}};
   for (int i = 1; i < 20; ++i) {
     route.emplace_back(250 + 100 * i, i % 2 == 0 ? 100 : 150, 0);
@@ -165,16 +165,17 @@ TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
   EXPECT_TRUE(passes(mended.route, route));
   EXPECT_GE(counter(mended, "inserted"), 1);
   EXPECT_EQ(counter(mended, "rounded"), counter(mended, "corners"));
-  // Only spans beside the new nodes are judged again.
+  // Only spans next to the new nodes are rechecked.
   EXPECT_LE(counter(mended, "expanded"),
             counter(open, "expanded") + 5 * 16 * counter(mended, "inserted"));
-  // No leg can be halved: the two corners beside the ball stay, and the leg between them.
+  // No leg can be halved: the two corners next to the ball are left sharp, and so is the leg
+  // between them.
   const PlanResult stays = make_smoother("hermite", "{min_leg_m: 60}")->smooth(route, request);
   EXPECT_TRUE(check(stays.route, request).ok());
   EXPECT_EQ(counter(stays, "inserted"), 0);
   EXPECT_LT(counter(stays, "rounded"), counter(stays, "corners"));
   EXPECT_TRUE(passes(stays.route, {route[2], route[3]}));
-  EXPECT_NE(stays.message.find(" stay"), std::string::npos);
+  EXPECT_NE(stays.message.find(" left sharp"), std::string::npos);
 }
 
 void some_limits(Limits& limits, std::uint64_t seed) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thinning of a route under the judge.
+// Thinning of a route, checked by the judge.
 //
 // Citation: paper 002 (fusion of constrained A*, smoothing and potential field), its removal of
 //   redundant points; here the fewest of them, by A* (see planner astar) over pairs of waypoints.
-// Guarantees: no subset of the route's waypoints that keeps the ends and every rule is smaller;
-//   of the smallest, the shortest. The route grows in no measure.
+// Guarantees: the smallest subset of the route's waypoints that keeps the ends and satisfies every
+//   constraint; among those, the shortest. No measure of the route grows.
 // Complexity: O(n^2) leg checks, O(n^3) turn checks in the worst case, for n waypoints.
-// Deviations: legs are judged exactly (the paper looks at cells); turns are part of the search.
+// Deviations: legs are checked exactly (the paper checks cells); turns are part of the search.
 // Symbols: a state (i, j) is the leg between waypoints i and j; legs and metres are compared in
 //   that order.
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace altiplan;
 
-/// Legs and metres, fewer legs first.
+/// Legs and metres, compared in that order.
 struct Cost {
   int legs = 0;
   double metres = 0;
@@ -32,7 +32,7 @@ struct Cost {
   }
 };
 
-/// The fewest waypoints of one route.
+/// Searches the fewest waypoints of one route.
 class Pruning {
  public:
   Pruning(const Route& route, const Request& request)
@@ -42,7 +42,7 @@ class Pruning {
         count_(route.size()),
         visible_(count_ * count_, Visible::unknown) {}
 
-  /// The indices of the waypoints that stay; none where the budget ended or nothing was found.
+  /// The indices of the waypoints to keep; empty if the budget was used up or nothing was found.
   std::vector<std::size_t> fewest() {
     find_legs_to_go();
     struct Entry {
@@ -57,7 +57,7 @@ class Pruning {
       return b.state < a.state;
     };
     std::priority_queue<Entry, std::vector<Entry>, decltype(later)> open(later);
-    std::map<State, std::pair<Cost, State>> best;  // cost, and the state before
+    std::map<State, std::pair<Cost, State>> best;  // cost, and the preceding state
     const std::size_t last = count_ - 1;
     const auto reach = [&](const State& from, std::size_t k, const Cost& cost) {
       const State state = after(from, k);
@@ -95,8 +95,8 @@ class Pruning {
   bool budget_hit() const { return budget_hit_; }
 
  private:
-  /// The last leg, by its waypoints; where that has no heading, also the last leg that has one
-  /// (both 0: there is none).
+  /// The last leg, by its waypoints; if it has no heading, also the last leg that has one (both 0:
+  /// there is none).
   struct State {
     std::size_t from = 0, to = 0;
     std::size_t heading_from = 0, heading_to = 0;
@@ -104,7 +104,7 @@ class Pruning {
   };
   enum class Visible : char { unknown, yes, no };
 
-  /// The leg j–k by itself.
+  /// True if the leg j–k is valid by itself.
   bool visible(std::size_t j, std::size_t k) {
     Visible& known = visible_[j * count_ + k];
     if (known == Visible::unknown) {
@@ -118,7 +118,7 @@ class Pruning {
     return known == Visible::yes;
   }
 
-  /// Legs from each waypoint to the last if turns were free: a lower bound.
+  /// Number of legs from each waypoint to the last if turns were free: a lower bound.
   void find_legs_to_go() {
     const int none = int(count_) + 1;
     legs_to_go_.assign(count_, none);
@@ -168,7 +168,7 @@ class Pruning {
     return onward(request_.before_start(), route_[state.from]);
   }
 
-  /// The rules of the leg j–k that look at the point before it.
+  /// Checks the constraints on the leg j–k that depend on the preceding point.
   bool follows(const std::optional<Approach>& before, std::size_t j, std::size_t k) const {
     if (!before) {
       return true;
@@ -210,15 +210,15 @@ class Prune final : public Smoother {
     for (const std::size_t index : kept) {
       thinned.push_back(clean[index]);
     }
-    // Rules of whole routes have the last word.
+    // Constraints on whole routes are checked last.
     if (!thinned.empty() &&
         check(thinned, request).violations.size() <= check(route, request).violations.size()) {
       result.route = std::move(thinned);
     }
     result.message = std::to_string(result.route.size()) + " of " + std::to_string(route.size()) +
-                     " waypoints stay";
+                     " waypoints kept";
     if (result.route.size() == route.size()) {
-      result.message += result.budget_hit ? " (the budget ended)" : "";
+      result.message += result.budget_hit ? " (the budget was used up)" : "";
     }
     result.counters = {{"expanded", pruning.expanded()},
                        {"legs_checked", pruning.legs_checked()},
@@ -229,4 +229,4 @@ class Prune final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "prune", Prune, NoParams,
-                "the fewest waypoints of the route that keep every rule")
+                "the fewest waypoints of the route that satisfy every constraint")

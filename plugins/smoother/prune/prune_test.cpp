@@ -20,7 +20,7 @@ Request among_balls(SplitMix64& random, int count) {
   return request;
 }
 
-/// A sound route of random points, as long as one was found.
+/// A valid route of random points; repeats until one is found.
 Route random_route(SplitMix64& random, Request& request, std::size_t points) {
   Route route;
   for (int attempt = 0; attempt < 3000 && route.size() < points; ++attempt) {
@@ -36,7 +36,8 @@ Route random_route(SplitMix64& random, Request& request, std::size_t points) {
   return route;
 }
 
-/// Fewest points, then least length, over all subsets that keep the ends and every rule.
+/// Fewest points, then shortest length, over all subsets that keep the ends and satisfy every
+/// constraint.
 std::pair<std::size_t, double> best_subset(const Route& route, const Request& request) {
   std::pair<std::size_t, double> best = {route.size() + 1, kInfinity};
   const unsigned inner = unsigned(route.size()) - 2;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random shortcuts under the judge.
+// Random shortcuts, checked by the judge.
 //
 // Citation: R. Geraerts, M. H. Overmars: Creating High-quality Paths for Motion Planning. The
 //   International Journal of Robotics Research 26(8), 2007, 845-863,
 //   doi:10.1177/0278364907079280, procedure Shortcut.
-// Guarantees: a new leg, and the legs that it joins, keep every rule of legs; the route never gets
-//   longer, and for no rule does the worst excess grow. Not the shortest route there is.
-// Complexity: O(k (log n + c) + s n) for k draws, s shortcuts taken, n waypoints and a leg check c.
-// Deviations: legs are judged exactly, with the turns at both ends of the shortcut (the paper
-//   samples states, which have no turns). A place is drawn on the legs or, with probability
-//   waypoint_share, moved to the nearest waypoint: legs are then not cut, which a least length of
-//   legs may forbid. It ends after a number of draws in vain. No partial shortcuts: coordinates
-//   that move alone are those of robots with joints.
-// Symbols: pi the route; pi_a and pi_b the two places drawn on it.
+// Guarantees: a new leg, and the legs that it joins, satisfy every constraint on legs; the route
+//   never gets longer, and the largest violation of any constraint does not grow. Not the shortest
+//   route possible.
+// Complexity: O(k (log n + c) + s n) for k samples, s shortcuts taken, n waypoints and a leg check
+//   c.
+// Deviations: legs are checked exactly, with the turns at both ends of the shortcut (the paper
+//   samples states, which have no turns). A point is sampled on the legs or, with probability
+//   waypoint_share, moved to the nearest waypoint: then legs are not cut, which a minimum leg
+//   length may forbid. It ends after a number of consecutive failures. No partial shortcuts:
+//   coordinates that move independently are those of articulated robots.
+// Symbols: pi the route; pi_a and pi_b the two random points on it.
 #include <algorithm>
 
 #include "altiplan/check.hpp"
@@ -29,18 +31,18 @@ struct Params {
   double waypoint_share = 0.5;
 
   void describe(Fields& f) {
-    f("iterations", iterations).range(0, 10'000'000).doc("pairs of places drawn at most");
-    f("failures", failures).at_least(1).doc("so many pairs in vain, one after the other, end it");
+    f("iterations", iterations).range(0, 10'000'000).doc("maximum number of random point pairs");
+    f("failures", failures).at_least(1).doc("stop after this many consecutive failed pairs");
     f("waypoint_share", waypoint_share)
         .range(0, 1)
-        .doc("share of places moved to the nearest waypoint; the others stay on the legs");
+        .doc("fraction of points moved to the nearest waypoint; the others stay on the legs");
   }
 };
 
-/// A shortcut that gains less, as a share of the route, is not worth its waypoints.
+/// A shortcut with a smaller gain, as a fraction of the route, is not worth its waypoints.
 constexpr double kMinGain = 1e-5;
 
-/// One route that gets shorter.
+/// Shortens one route.
 class Shortening {
  public:
   Shortening(Route route, const Request& request, double waypoint_share)
@@ -51,7 +53,7 @@ class Shortening {
     measure();
   }
 
-  /// Draws two places and tries the straight leg between them; whether it was taken.
+  /// Samples two points and tries the straight leg between them; returns true if it was taken.
   bool shortcut() {
     Place a = draw();
     Place b = draw();
@@ -66,7 +68,7 @@ class Shortening {
     Route shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
     shorter.insert(shorter.end(), {a.at, b.at});
     shorter.insert(shorter.end(), pi_.begin() + std::ptrdiff_t(b.after), pi_.end());
-    // The leg a-b, and those beside it that are cut, or whose turn is another.
+    // The leg a-b, and the adjacent ones that are cut, or whose turn changes.
     if (!legs_kept(shorter, a.before - (a.is_waypoint() ? 0 : 1),
                    a.before + (b.is_waypoint() ? 1 : 2))) {
       return false;
@@ -83,8 +85,8 @@ class Shortening {
   struct Place {
     Vec3 at;
     double from_start;   ///< metres along the route
-    std::size_t before;  ///< so many waypoints lie before it
-    std::size_t after;   ///< the first waypoint behind it
+    std::size_t before;  ///< number of waypoints before it
+    std::size_t after;   ///< the first waypoint after it
     bool is_waypoint() const { return after > before; }
   };
 
@@ -109,7 +111,7 @@ class Shortening {
     return {pi_[i - 1] + into / leg * (pi_[i] - pi_[i - 1]), metres, i, i};
   }
 
-  /// The legs from number `first` to `last`, and past one without a heading those after it.
+  /// Checks the legs `first` to `last`, and past one without a heading the following legs.
   bool legs_kept(const Route& route, std::size_t first, std::size_t last) {
     std::optional<Approach> before = approach(route, first, request_.before_start());
     for (std::size_t i = first; i + 1 < route.size(); ++i) {
@@ -158,15 +160,15 @@ class Shortcut final : public Smoother {
     result.status = PlanStatus::solved;
     result.counters = {
         {"expanded", drawn}, {"taken", taken}, {"legs_checked", shortening.legs_checked()}};
-    // Rules of whole routes have the last word.
+    // Constraints on whole routes are checked last.
     const bool accepted = taken > 0 && kit::Excess(check(shortening.route(), request).violations)
-                                         .within(kit::Excess(check(route, request).violations));
+                                           .within(kit::Excess(check(route, request).violations));
     result.route = accepted ? shortening.route() : route;
     result.message =
         taken > 0 && !accepted
-            ? "the shorter route would break a rule of whole routes: it stays as it was"
+            ? "the shorter route would violate a constraint on whole routes: it is unchanged"
             : std::to_string(taken) + " shortcuts taken, of " + std::to_string(drawn) + " tried" +
-                  (result.budget_hit ? "; the budget ended" : "");
+                  (result.budget_hit ? "; the budget was used up" : "");
     return result;
   }
 
@@ -175,4 +177,4 @@ class Shortcut final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "shortcut", Shortcut, Params,
-                "straight legs between places drawn at random on the route")
+                "straight legs between random points of the route")

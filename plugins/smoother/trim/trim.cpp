@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trimming of a route in rounds of shorter and shorter strides.
+// Trimming of a route in rounds of ever shorter strides.
 //
 // Citation: Li Rongsheng et al.: Path planning for flight vehicles based on improved ACO (paper
 //   004), section 2.3 and eq. (11).
-// Guarantees: every new leg, and the turn at its end, keeps every rule of legs; the route never
-//   gets longer, no waypoint moves, and for no rule does the worst excess grow. Not the fewest
-//   waypoints, nor the shortest choice of them (see smoother prune).
-// Complexity: O(n) leg checks a round for n waypoints; 5 rounds by default.
-// Deviations: legs are judged exactly, with the turns at both ends of a stride (the paper looks at
-//   obstacles alone). The nodes are the route's waypoints, however far apart.
-// Symbols: l_c(v) the stride of round v, of kit/trimming.hpp.
+// Guarantees: every new leg, and the turn at its end, satisfies every constraint on legs; the route
+//   never gets longer, no waypoint moves, and the largest violation of any constraint does not
+//   grow. Neither the fewest waypoints nor the shortest choice of them (see smoother prune).
+// Complexity: O(n) leg checks per round for n waypoints; 5 rounds by default.
+// Deviations: legs are checked exactly, with the turns at both ends of a stride (the paper checks
+//   obstacles alone). The nodes are the route's waypoints, at any spacing.
+// Symbols: l_c(v) the stride of round v, see kit/trimming.hpp.
 #include "altiplan/kit/smoothing/trimming.hpp"
 
 #include "altiplan/check.hpp"
@@ -42,7 +42,8 @@ class Trimming {
   bool budget_hit() const { return budget_hit_; }
 
  private:
-  /// The stride from one node to another, and the legs behind it that it turns into.
+  /// True if the stride between two nodes, and the following legs into which it turns, satisfy the
+  /// constraints.
   bool keeps_rules(std::size_t from, std::size_t to) const {
     std::optional<Approach> before = approach(nodes_, from, request_.before_start());
     if (!leg_ok(before, nodes_[from], nodes_[to], request_)) {
@@ -54,7 +55,7 @@ class Trimming {
         return false;
       }
       if (has_heading(nodes_[i + 1] - nodes_[i])) {
-        break;  // what follows has not changed
+        break;  // the following legs are unchanged
       }
       before = onward(before, nodes_[i]);
     }
@@ -81,26 +82,27 @@ class Trim final : public Smoother {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.budget_hit = trimming.budget_hit();
-    // Rules of whole routes have the last word.
+    // Constraints on whole routes are checked last.
     const bool accepted = kit::Excess(check(trimming.nodes(), request).violations)
-                            .within(kit::Excess(check(route, request).violations));
+                              .within(kit::Excess(check(route, request).violations));
     result.route = accepted ? trimming.nodes() : route;
     result.counters = {{"expanded", trimming.tried()},
                        {"rounds", std::int64_t(strides_.size())},
                        {"removed", std::int64_t(route.size() - result.route.size())}};
-    result.message = accepted ? summary(result, route.size())
-                            : "the trimmed route would break a rule of whole routes: it stays as "
-                              "it was";
+    result.message = accepted
+                         ? summary(result, route.size())
+                         : "the trimmed route would violate a constraint on whole routes: it is "
+                           "unchanged";
     return result;
   }
 
   std::string summary(const PlanResult& result, std::size_t before) const {
     std::string said = std::to_string(result.route.size()) + " of " + std::to_string(before) +
-                       " waypoints stay, after strides of";
+                       " waypoints kept, after strides of";
     for (std::size_t v = 0; v < strides_.size(); ++v) {
       said += (v == 0 ? " " : ", ") + std::to_string(strides_[v]);
     }
-    return said + (result.budget_hit ? "; the budget ended" : "");
+    return said + (result.budget_hit ? "; the budget was used up" : "");
   }
 
   std::vector<std::size_t> strides_;  // of the rounds
@@ -108,4 +110,4 @@ class Trim final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "trim", Trim, kit::TrimParams,
-                "straight strides over waypoints, shorter from round to round")
+                "straight strides over waypoints, shorter in each round")

@@ -22,14 +22,14 @@ Route waypoints_on_a_line(int count) {
 TEST(Trim, TakesStridesAndThenShorterOnes) {
   const Route line = waypoints_on_a_line(101);
   const Request request = testing::open_request(line);
-  // 10 strides of 10 in the first round; of the 11 waypoints that stay, one to the 9th and one to
-  // the last; then one.
+  // 10 strides of 10 in the first round; of the 11 remaining waypoints, one stride to the 9th and
+  // one to the last; then one.
   const PlanResult result = make_smoother("trim")->smooth(line, request);
   EXPECT_EQ(result.route, (Route{line.front(), line.back()}));
   EXPECT_EQ(counter(result, "expanded"), 10 + 2 + 1);
   EXPECT_EQ(counter(result, "rounds"), 5);
   EXPECT_EQ(counter(result, "removed"), 99);
-  EXPECT_EQ(result.message, "2 of 101 waypoints stay, after strides of 10, 8, 6, 5, 4");
+  EXPECT_EQ(result.message, "2 of 101 waypoints kept, after strides of 10, 8, 6, 5, 4");
   const PlanResult one_round =
       make_smoother("trim", "{longest_stride: 10, shortest_stride: 9}")->smooth(line, request);
   EXPECT_EQ(one_round.route.size(), 11u);
@@ -48,11 +48,11 @@ TEST(Trim, GoesOnByOneWaypointWhereAStrideIsNotFree) {
   };
   EXPECT_EQ(trimmed("{longest_stride: 2, shortest_stride: 2}"),
             (Route{route[0], route[1], route[3], route[5]}));
-  // No stride of 4 is free but the last one, which ends with the route.
+  // No stride of 4 is free except the last one, which ends with the route.
   EXPECT_EQ(trimmed("{longest_stride: 4}"), (Route{route[0], route[1], route[2], route[5]}));
 }
 
-/// The rounds written down plainly: one waypoint after the other is erased from a list.
+/// A direct implementation of the rounds: one waypoint after another is erased from a list.
 Route trimmed_plainly(Route route, const Request& request, const std::vector<std::size_t>& rounds) {
   route = without_repeats(route);
   for (const std::size_t stride : rounds) {
@@ -103,7 +103,7 @@ TEST(Trim, DoesWhatThePaperSaysAndNoRuleOfRandomRoutesGetsWorse) {
 }
 
 TEST(Trim, JudgesTheTurnsAtBothEndsOfAStride) {
-  // Leaving out the second waypoint would turn by 90 degrees at the third.
+  // Removing the second waypoint would turn the route by 90 degrees at the third.
   const Route route = {{0, 0, 0}, {10, 10, 0}, {20, 0, 0}, {20, -20, 0}, {30, -30, 0}};
   Request request = testing::open_request(route);
   const auto trimmed = [&] {
@@ -119,7 +119,7 @@ TEST(Trim, JudgesTheTurnsAtBothEndsOfAStride) {
   request.limits.max_turn_space = radians(85);
   ASSERT_EQ(check(route, request).violations.size(), 1u);  // the second waypoint's 90 degrees
   EXPECT_EQ(trimmed(), (Route{route[0], route[1], route[2], route[4]}));
-  // The first leg is held to the heading.
+  // The first leg is checked against the start's heading.
   request.limits.max_turn_space = radians(91);
   request.start.velocity = {-1, 5, 0};
   EXPECT_EQ(trimmed(), (Route{route[0], route[1], route[2], route[4]}));

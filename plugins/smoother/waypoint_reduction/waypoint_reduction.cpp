@@ -4,12 +4,12 @@
 // velocity vector field", Journal of Nanjing University of Aeronautics & Astronautics 44(3), 2012,
 // 340-346 (paper 001), section 4.
 //
-// Guarantees: every leg that is not the route's own keeps the request's rules of legs and turns by
-//   at most max_turn_deg, the first one from the heading at the start. Not the fewest points (see
-//   smoother prune), and no point moves.
-// Complexity: O(n) leg checks for each point that stays, so O(n^2) for n waypoints.
-// Deviations: legs are held to every rule of the request, not to threats alone. Where no end is
-//   admissible, which the paper does not speak of, the next point stays.
+// Guarantees: every new leg satisfies the request's constraints on legs and turns by at most
+//   max_turn_deg, the first one from the heading at the start. Not the fewest points (see smoother
+//   prune), and no point moves.
+// Complexity: O(n) leg checks for each kept point, so O(n^2) for n waypoints.
+// Deviations: legs are checked against every constraint of the request, not only threats. If no end
+//   is admissible, a case that the paper does not cover, the next point is kept.
 // Symbols: p_begin, p_end the two pointers into the route.
 #include "altiplan/check.hpp"
 #include "altiplan/kit/smoothing/corners.hpp"
@@ -26,7 +26,7 @@ struct Params {
     f("max_turn_deg", max_turn_deg)
         .unit("deg")
         .range(0, 180)
-        .doc("a new leg turns by no more from the leg before it, or the start's heading");
+        .doc("largest turn of a new leg from the leg before it, or from the start's heading");
   }
 };
 
@@ -36,10 +36,10 @@ class Reduction {
   Reduction(const Route& route, const Request& request, double max_turn)
       : route_(route), request_(request), watch_(request.budget), max_turn_(max_turn) {}
 
-  /// The points that stay; cut short where the budget ended.
+  /// The kept points; truncated if the budget was used up.
   Route reduced() {
     Route kept{route_.front()};
-    std::optional<Approach> before = request_.before_start();  // past a via point, the leg to it
+    std::optional<Approach> before = request_.before_start();  // at a via point: the leg to it
     std::size_t begin = 0;
     while (begin + 1 < route_.size() && !budget_hit_) {
       const std::size_t end = farthest_end(before, begin);
@@ -101,17 +101,18 @@ class WaypointReduction final : public Smoother {
                        {"points_without_end", reduction.without_end()}};
     if (result.budget_hit) {
       result.route = route;
-      result.message = "the budget ended: the route stays as it was";
+      result.message = "the budget was used up: the route is unchanged";
     } else if (!kit::Excess(check(reduced, request).violations)
                     .within(kit::Excess(check(route, request).violations))) {
-      // A point that stays for want of an end may turn more sharply than the rules let.
+      // A point kept for lack of an end may turn more sharply than the constraints allow.
       result.route = route;
       result.message =
-          "the reduced route would break a rule, or break it worse: the route stays as it was";
+          "the reduced route would violate a constraint, or violate it more: the route is "
+          "unchanged";
     } else {
       result.route = std::move(reduced);
       result.message = std::to_string(result.route.size()) + " of " + std::to_string(route.size()) +
-                       " waypoints stay" + of_points_without_end(reduction.without_end());
+                       " waypoints kept" + of_points_without_end(reduction.without_end());
     }
     return result;
   }
@@ -119,7 +120,7 @@ class WaypointReduction final : public Smoother {
   static std::string of_points_without_end(std::int64_t count) {
     return count == 0 ? ""
                       : "; from " + std::to_string(count) + (count == 1 ? " point" : " points") +
-                            " no leg to a later one is admissible, and the next one stays";
+                            "no leg to a later one is admissible, so the next one is kept";
   }
 
   double max_turn_;
@@ -127,4 +128,4 @@ class WaypointReduction final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "waypoint_reduction", WaypointReduction, Params,
-                "two pointers: from each point the farthest one that a sound leg leads to")
+                "two pointers: from each point to the farthest one that a valid leg reaches")

@@ -22,15 +22,15 @@ const Route kOver{{0, 0, 0}, {2, 3, 0}, {5, 4.2, 0}, {8, 4, 0}, {10, 0, 0}};
 const Cylinder kBelow{5, 0, 3};
 
 TEST(WaypointReduction, FarthestPointThatIsSeen) {
-  // Over a disc: from the start the top is seen, from there the end.
+  // Over a disc: the start sees the top, and the top sees the end.
   const PlanResult result =
       make_smoother("waypoint_reduction")->smooth(kOver, past({kBelow}, kOver));
   EXPECT_EQ(result.route, (Route{kOver[0], kOver[2], kOver[4]}));
-  EXPECT_EQ(result.message, "3 of 5 waypoints stay");
+  EXPECT_EQ(result.message, "3 of 5 waypoints kept");
 }
 
 TEST(WaypointReduction, TurnsByAtMostNinetyDegrees) {
-  // Around the end of a wall; from behind it the last point is seen, but straight back.
+  // Around the end of a wall; from behind it the last point is visible, but straight back.
   const Route route{{0, 0, 0}, {10, 0, 0}, {12, 1, 0}, {12, 5, 0}, {5, 5.5, 0}};
   const Request request = past({BoxShape{{{-5, 1, -1}, {8, 2, 1}}}}, route);
   const PlanResult result = make_smoother("waypoint_reduction")->smooth(route, request);
@@ -42,7 +42,7 @@ TEST(WaypointReduction, TurnsByAtMostNinetyDegrees) {
 }
 
 TEST(WaypointReduction, TurnsFromTheHeadingAtTheStart) {
-  // Such is what the host tells behind a via point: the heading of the leg that leads to it.
+  // The host passes this after a via point: the heading of the leg that leads to it.
   const Route route{{0, 0, 0}, {0, 5, 0}, {5, 8, 0}, {10, 8, 0}};
   Request request = past({}, route);
   const auto reduced = [&](const char* parameters) {
@@ -64,8 +64,8 @@ TEST(WaypointReduction, KeepsTheNextPointWhereNoEndIsAdmissible) {
   EXPECT_EQ(result.route, route);
   EXPECT_EQ(counter(result, "points_without_end"), 1);
   EXPECT_EQ(result.message,
-            "4 of 4 waypoints stay; from 1 point no leg to a later one is admissible, and the next "
-            "one stays");
+            "4 of 4 waypoints kept; from 1 point no leg to a later one is admissible, so the next "
+            "one is kept");
 }
 
 TEST(WaypointReduction, IsTheDefinitionOnRandomRoutes) {
@@ -117,7 +117,8 @@ TEST(WaypointReduction, KeepsTheTurnLimitOfTheRequest) {
 }
 
 TEST(WaypointReduction, LeavesTheRouteWhereARuleWouldBreak) {
-  // Half around a disc in turns of 20 degrees: after a long leg no other turns by less than 25.
+  // Half around a disc in turns of 20 degrees: after a long leg every other one turns by 25 or
+  // more.
   Route route;
   for (int degree = 180; degree >= 0; degree -= 20) {
     route.emplace_back(40 * std::cos(radians(degree)), 40 * std::sin(radians(degree)), 0);
@@ -127,8 +128,9 @@ TEST(WaypointReduction, LeavesTheRouteWhereARuleWouldBreak) {
   request.limits.max_turn_horizontal = radians(25);
   const PlanResult result = make_smoother("waypoint_reduction")->smooth(route, request);
   EXPECT_EQ(result.route, route);
-  EXPECT_EQ(result.message,
-            "the reduced route would break a rule, or break it worse: the route stays as it was");
+  EXPECT_EQ(
+      result.message,
+      "the reduced route would violate a constraint, or violate it more: the route is unchanged");
 }
 
 TEST(WaypointReduction, LeavesTheRouteWhereTheBudgetEnds) {

@@ -4,13 +4,14 @@
 // Citation: J. Kennedy, R. Eberhart: Particle swarm optimization. ICNN 1995,
 //   doi:10.1109/ICNN.1995.488968; with the inertia of Y. Shi, R. Eberhart: A modified particle
 //   swarm optimizer. ICEC 1998, doi:10.1109/ICEC.1998.699146; defaults by paper 002.
-// Guarantees: none of an optimum. No number ever leaves its range.
-// Complexity: `particles` evaluations an iteration, which may all be done at a time.
-// Deviations: positions and velocities are shares of the ranges; the best of all is looked up once
-//   an iteration, so that its evaluations are independent (papers also do it after each particle);
-//   a particle that meets a bound stops there. While all has failed, nothing pulls.
-// Symbols: x position, v velocity, p a particle's best position, g the best of all, w inertia,
-//   c1 and c2 the pulls of p and g, r1 and r2 uniform from 0 to 1.
+// Guarantees: none of an optimum. No value ever leaves its range.
+// Complexity: `particles` evaluations per iteration, which may all run concurrently.
+// Deviations: positions and velocities are normalised by the ranges; the global best is updated
+//   once per iteration, so that its evaluations are independent (papers also do it after each
+//   particle); a particle that hits a bound stops there. While every evaluation fails, nothing
+//   attracts the particles.
+// Symbols: x position, v velocity, p a particle's best position, g the global best, w inertia, c1
+//   and c2 the attraction to p and g, r1 and r2 uniform from 0 to 1.
 #include <algorithm>
 
 #include "altiplan/kit/tuning_space.hpp"
@@ -29,15 +30,15 @@ struct Params {
   double max_velocity = 0.1;
 
   void describe(Fields& f) {
-    f("particles", particles).range(1, 100000).doc("points of an iteration, N");
-    f("iterations", iterations).range(1, 1000000).doc("batches, T");
-    f("inertia", inertia).range(0, 1).doc("share of its velocity that a particle keeps, w");
-    f("own_pull", own_pull).range(0, 4).doc("towards the best that the particle has met, c1");
-    f("common_pull", common_pull).range(0, 4).doc("towards the best of all, c2");
+    f("particles", particles).range(1, 100000).doc("particles: evaluations per iteration, N");
+    f("iterations", iterations).range(1, 1000000).doc("iterations, T");
+    f("inertia", inertia).range(0, 1).doc("fraction of its velocity that a particle keeps, w");
+    f("own_pull", own_pull).range(0, 4).doc("attraction to the particle's own best position, c1");
+    f("common_pull", common_pull).range(0, 4).doc("attraction to the global best position, c2");
     f("max_velocity", max_velocity)
         .greater_than(0)
         .at_most(1)
-        .doc("on each dimension, as a share of its range a step");
+        .doc("maximum step on each dimension, as a fraction of its range");
   }
 };
 
@@ -134,4 +135,5 @@ class Pso final : public Tuner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Tuner, "pso", Pso, Params,
-                "particle swarm: particles pulled to the best that each, and all, have met")
+                "particle swarm: particles attracted to their own best and the global best "
+                "positions")

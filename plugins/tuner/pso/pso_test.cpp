@@ -16,11 +16,11 @@ using Batches = std::vector<std::vector<Point>>;
 using Score = std::function<double(const Point&)>;
 using testing::make_tuner;
 
-/// M. Clerc and J. Kennedy's numbers, with which a swarm contracts.
+/// Parameters of M. Clerc and J. Kennedy, with which a swarm contracts.
 constexpr const char* kSettling =
     "{inertia: 0.7298, own_pull: 1.49618, common_pull: 1.49618, max_velocity: 0.5}";
 
-/// All that the search asked for.
+/// All points that the search requested.
 Batches search(const char* yaml, const std::vector<Dimension>& space, const Score& score,
                std::uint64_t seed = 1) {
   const auto search = make_tuner("pso", yaml)->begin(space, RandomStream(seed));
@@ -55,7 +55,7 @@ double rosenbrock(const Point& x) {
   const double a = x[1] - x[0] * x[0];
   return 100 * a * a + (1 - x[0]) * (1 - x[0]);
 }
-/// A hundred minima in the square, the least 0 at (1, 1).
+/// A hundred minima in the square, the global minimum 0 at (1, 1).
 double rastrigin(const Point& x) {
   double sum = 0;
   for (const double xi : x) {
@@ -77,10 +77,10 @@ TEST(Pso, SettlesInTheMinimum) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     found += least(search(kSettling, kSquare, rastrigin, seed), rastrigin) < 1e-6;
   }
-  EXPECT_GE(found, 12);  // the other swarms settle beside it
+  EXPECT_GE(found, 12);  // the other swarms settle next to it
 }
 
-/// With the paper's numbers the swarm does not settle, but it samples ever nearer.
+/// With the paper's parameters the swarm does not settle, but samples ever nearer.
 TEST(Pso, DefaultsComeNear) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_LT(least(search("{}", kSquare, sphere, seed), sphere), 0.01) << seed;
@@ -128,7 +128,7 @@ TEST(Pso, OneSeedOneSearch) {
   EXPECT_NE(search("{}", kSquare, rastrigin, 7), search("{}", kSquare, rastrigin, 8));
 }
 
-/// While nothing has a score nothing pulls; a score that turns up late is found all the same.
+/// While nothing has a score, nothing attracts; a score that turns up late is still found.
 TEST(Pso, FailuresDoNotPull) {
   const Batches failed = search("{inertia: 0}", kSquare, [](const Point&) { return kInfinity; });
   EXPECT_EQ(failed.back(), failed.front());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random search: points drawn at random, whatever the scores.
+// Random search: random points, regardless of the scores.
 //
 // Citation: J. Bergstra, Y. Bengio: Random Search for Hyper-Parameter Optimization. JMLR 13 (2012).
-// Guarantees: n points hit the best share q of the space with the chance 1 - (1 - q)^n.
-// Complexity: `evaluations` evaluations, a batch of them at a time.
-// Deviations: weights of a group are uniform numbers divided by their sum, as the particles of
-//   `pso` begin, so that the two are compared on the same draws; they are not uniform on the
+// Guarantees: n points hit the best fraction q of the space with probability 1 - (1 - q)^n.
+// Complexity: `evaluations` evaluations, one batch at a time.
+// Deviations: weights of a group are uniform numbers divided by their sum, as `pso` initialises its
+//   particles, so that the two are compared on the same samples; they are not uniform on the
 //   simplex.
 #include <algorithm>
 
@@ -20,8 +20,8 @@ struct Params {
   int evaluations = 2000;
   int batch = 20;
   void describe(Fields& f) {
-    f("evaluations", evaluations).range(1, 10000000).doc("points in all");
-    f("batch", batch).range(1, 100000).doc("points that are asked for at a time");
+    f("evaluations", evaluations).range(1, 10000000).doc("total number of evaluations");
+    f("batch", batch).range(1, 100000).doc("evaluations requested at a time");
   }
 };
 
@@ -66,4 +66,4 @@ class RandomSearch final : public Tuner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Tuner, "random_search", RandomSearch, Params,
-                "points drawn at random: what other tuners are compared with")
+                "random points: the baseline for other tuners")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts what each thread allocates: a pilot's step may not. A build with sanitizers keeps theirs.
+// Counts the allocations of each thread: a pilot's step must not allocate. A build with sanitizers
+// keeps their operators.
 #include <cstdlib>
 #include <new>
 
@@ -18,7 +19,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // where only one of the two is inlined
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // when only one of the two is inlined
 #endif
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

@@ -27,8 +27,8 @@ struct Arguments {
   std::string only;
   std::string sets;
   std::string junit;
-  std::string answer;         ///< of a process that runs one test for another
-  host::Overrides overrides;  ///< of which the plugin path and the seed are asked for
+  std::string answer;         ///< outcome file of a process that runs one test for another
+  host::Overrides overrides;  ///< only the plugin path and the seed are used
   int rounds = PluginToCheck().rounds;
   double time_limit_s = RunnerOptions().time_limit_s;
   double memory_limit_mb = RunnerOptions().memory_limit_mb;
@@ -39,7 +39,7 @@ struct Arguments {
   bool here = false;
 };
 
-/// Tests run in folders of their own.
+/// Tests run in their own folders, so relative paths would not resolve.
 void make_plugin_path_absolute() {
   const char* const listed = std::getenv("ALTIPLAN_PLUGIN_PATH");
   std::istringstream folders(listed != nullptr ? listed : "");
@@ -56,8 +56,8 @@ void make_plugin_path_absolute() {
 
 PluginToCheck plugin_of(const Arguments& arguments) {
   if (!fs::is_regular_file(arguments.library)) {
-    throw Error(arguments.library + (fs::exists(arguments.library) ? ": not a file, expected the "
-                                                                     "library of a plugin"
+    throw Error(arguments.library + (fs::exists(arguments.library) ? ": not a file, expected a "
+                                                                     "plugin library"
                                                                    : ": no such file"));
   }
   PluginToCheck what;
@@ -73,7 +73,7 @@ PluginToCheck plugin_of(const Arguments& arguments) {
   return what;
 }
 
-/// The call that runs tests of it as this one would, by absolute paths.
+/// The command that repeats these tests, with absolute paths.
 std::vector<std::string> command_of(const Arguments& arguments, const PluginToCheck& what) {
   std::vector<std::string> words{"altiplan", "check-plugin", what.library.string(), "--seed",
                                  std::to_string(what.seed)};
@@ -101,7 +101,7 @@ std::vector<PluginTest> chosen(const Arguments& arguments, const PluginToCheck& 
   return tests;
 }
 
-/// Runs the one test in this process: for a debugger, or for the process that asks for an answer.
+/// Runs one test in this process: for a debugger, or for the parent process that reads --answer.
 int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLibrary& library) {
   Outcome outcome;
   try {
@@ -121,7 +121,7 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
   return verdict.failed() ? kBadPlugin : kDone;
 }
 
-/// The verdicts of tests run one by one in processes of their own, told while they come.
+/// Runs each test in its own process and prints the verdicts as they arrive.
 std::vector<Verdict> verdicts_of(const Arguments& arguments, const std::vector<PluginTest>& tests,
                                  const CheckedLibrary& library, RunnerOptions options) {
   options.jobs = arguments.jobs;
@@ -142,7 +142,7 @@ std::vector<Verdict> verdicts_of(const Arguments& arguments, const std::vector<P
   return verdicts;
 }
 
-/// The exit code that the verdicts of so many tests ask for.
+/// The exit code for the verdicts of that many tests.
 int exit_code(const std::vector<Verdict>& verdicts, std::size_t tests) {
   if (verdicts.size() < tests) {
     std::cerr << "altiplan: check-plugin: interrupted, " << tests - verdicts.size()
@@ -185,7 +185,7 @@ int check_plugin(const Arguments& arguments) {
   }
   if (arguments.here) {
     if (tests.size() > 1) {
-      std::cerr << "altiplan: check-plugin: --here runs one test, and --only leaves "
+      std::cerr << "altiplan: check-plugin: --here runs one test, and --only selects "
                 << tests.size() << '\n';
       return kUsage;
     }
@@ -199,7 +199,7 @@ int check_plugin(const Arguments& arguments) {
   library.time_s = std::chrono::duration<double>(Clock::now() - from).count();
   std::cout << (arguments.json ? host::file_text(verdicts_json(library, verdicts))
                                : summary_text(library, verdicts))
-            << std::flush;  // what is known, before what may fail
+            << std::flush;  // before the JUnit file, whose writing may fail
   if (!arguments.junit.empty()) {
     host::write_file(arguments.junit, verdicts_junit(library, verdicts));
   }
@@ -219,49 +219,55 @@ std::string regex_problem(const std::string& text) {
 void add_check_plugin(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("check-plugin",
-                         "holds a plugin's library to the laws of its interface, each test in a "
-                         "process of its own");
+                         "check a plugin library against the contract of its interface, each test "
+                         "in its own process");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("library", arguments->library, "library of the plugin")
+  command->add_option("library", arguments->library, "plugin library (.so)")
       ->required()
       ->type_name("LIB");
-  command->add_option("--only", arguments->only, "tests whose name the regular expression matches")
+  command
+      ->add_option("--only", arguments->only,
+                   "run only tests whose name matches this regular expression")
       ->type_name("RE")
       ->check(regex_problem);
-  command->add_option("--seed", arguments->overrides.seed, "of all that is drawn (1)")
+  command->add_option("--seed", arguments->overrides.seed, "random seed of the tests (default 1)")
       ->type_name("N")
       ->check(seed_problem);
-  command->add_option("--rounds", arguments->rounds, "worlds, routes or samples of a test")
+  command
+      ->add_option("--rounds", arguments->rounds,
+                   "number of random worlds, routes or samples per test")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command
       ->add_option("--sets", arguments->sets,
-                   "sets of parameters to check it with, as docs/conformance.md says; by default "
-                   "the plugin's own defaults")
+                   "file of parameter sets to check the plugin with, see docs/conformance.md "
+                   "(default: the plugin's defaults)")
       ->type_name("FILE");
   add_plugin_path(*command, arguments->overrides);
-  command->add_option("--jobs", arguments->jobs, "tests at a time")
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "number of parallel tests (default: number of processors)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--time-limit", arguments->time_limit_s, "seconds that a test may take")
+  command->add_option("--time-limit", arguments->time_limit_s, "time limit of a test (s)")
       ->type_name("S")
       ->check(number_from(0.01, 86400))
       ->capture_default_str();
-  command->add_option("--memory-limit", arguments->memory_limit_mb, "megabytes that a test may use")
+  command->add_option("--memory-limit", arguments->memory_limit_mb, "memory limit of a test (MB)")
       ->type_name("MB")
       ->check(number_from(1, 1e9))
       ->capture_default_str();
-  command->add_flag("--untimed", arguments->untimed, "without the tests that look at the clock");
+  command->add_flag("--untimed", arguments->untimed, "skip the tests that measure time");
   command->add_flag("--list", arguments->list, "print the names of the tests and run none");
   CLI::Option* here =
       command->add_flag("--here", arguments->here,
-                        "run the one test that --only leaves in this process: for a debugger");
-  command->add_flag("--json", arguments->json, "print JSON")->excludes(here);
-  command->add_option("--junit", arguments->junit, "write the verdicts for a build server too")
+                        "run the single test selected by --only in this process, for a debugger");
+  command->add_flag("--json", arguments->json, "print as JSON")->excludes(here);
+  command->add_option("--junit", arguments->junit, "also write the verdicts as JUnit XML")
       ->type_name("FILE")
       ->excludes(here);
-  command->add_option("--answer", arguments->answer)->group("");  // between two of these processes
+  command->add_option("--answer", arguments->answer)->group("");  // internal, from the parent
   set_example(*command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
   command->callback(
       [&action, arguments] { action = [arguments] { return check_plugin(*arguments); }; });

@@ -20,8 +20,8 @@ namespace altiplan::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// A system call that changes files: which of its arguments is the path, and which the folder that
-/// the path starts from (-1: the working folder) and the flags of open (-1: none).
+/// A system call that changes files: the indices of its arguments for the path, the folder that the
+/// path is relative to (-1: the working folder) and the flags of open (-1: none).
 struct Call {
   int number;
   const char* does;
@@ -42,7 +42,7 @@ constexpr Call kCalls[] = {
     {SYS_fchmodat, "changes", 1, 0},
     {SYS_fchownat, "changes", 1, 0},
     {SYS_utimensat, "changes", 1, 0},
-#ifdef SYS_open  // the ones of old, of x86-64
+#ifdef SYS_open  // the legacy calls of x86-64
     {SYS_open, "opens", 0, -1, 1},
     {SYS_creat, "opens", 0},
     {SYS_mkdir, "makes the folder", 0},
@@ -57,7 +57,8 @@ constexpr Call kCalls[] = {
 #endif
 };
 
-/// Those calls wait for the listener's answer, all others pass. -1 where the system refuses.
+/// Those calls wait for the listener's answer, all others pass. Returns the listener's descriptor,
+/// -1 if the system refuses the filter.
 int install_filter() {
   std::vector<sock_filter> program{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr))};
   for (const Call& call : kCalls) {
@@ -73,12 +74,12 @@ int install_filter() {
       ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &filter));
 }
 
-/// Text of another thread, or process, that may have gone meanwhile.
+/// Text in the memory of another thread or process, which may have ended meanwhile.
 std::string text_at(pid_t process, std::uint64_t address) {
   std::string text;
   while (text.size() < 4096) {
     std::array<char, 256> part;
-    // Not beyond the end of a page, where the next one need not be there.
+    // Never across the end of a page: the next one may be unmapped.
     const std::size_t room = part.size() - address % part.size();
     const iovec here{part.data(), room};
     const iovec there{reinterpret_cast<void*>(address), room};  // NOLINT: as the kernel has it
@@ -104,17 +105,16 @@ fs::path whole_path(const seccomp_notif& asked, const Call& call) {
   const std::string from = folder == AT_FDCWD ? "/cwd" : "/fd/" + std::to_string(folder);
   std::error_code error;
   const fs::path base = fs::read_symlink("/proc/" + std::to_string(process) + from, error);
-  // What a link leads to counts; the last part may be yet to be made. Only opening follows that
-  // too.
+  // Links are resolved; the last part may not exist yet. Only opening resolves that part too.
   const fs::path whole = (base / path).lexically_normal();
   return call.flags >= 0 ? fs::weakly_canonical(whole, error)
                          : fs::weakly_canonical(whole.parent_path(), error) / whole.filename();
 }
 
-/// Whether the call would change what its path names. (A file of O_TMPFILE has no name.)
+/// True if the call would change the file at its path. (A file of O_TMPFILE has no name.)
 bool changes(const seccomp_notif& asked, const Call& call) {
   if (asked.data.args[std::size_t(call.path)] == 0) {
-    return false;  // of an open file
+    return false;  // acts on an open file
   }
   const std::uint64_t flags = call.flags < 0 ? O_WRONLY : asked.data.args[std::size_t(call.flags)];
   return (flags & (O_WRONLY | O_RDWR | O_CREAT | O_TRUNC)) != 0 && (flags & O_TMPFILE) != O_TMPFILE;
@@ -131,7 +131,7 @@ FileWatch::FileWatch(fs::path scratch) : scratch_(fs::canonical(scratch)) {
   return;  // the leak sanitizer stops all threads, this one's too, and then opens files
 #endif
   std::promise<int> listener;
-  // The thread is made before the filter, which therefore is not its own.
+  // The thread starts before the filter is installed, which therefore does not apply to it.
   std::thread([this, of = listener.get_future()]() mutable { serve(of.get()); }).detach();
   const int made = install_filter();
   works_ = made >= 0;

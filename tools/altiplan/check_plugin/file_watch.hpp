@@ -9,17 +9,17 @@
 
 namespace altiplan::cli {
 
-/// Sees the system calls by which the calling thread, and threads and processes that it starts,
-/// would change a file, and lets them pass: a seccomp filter, which stays to the end of the
-/// process. One a process, never destroyed.
+/// Records the system calls by which the calling thread, and threads and processes that it starts,
+/// would change a file, and lets them pass: a seccomp filter, which stays until the process ends.
+/// One per process, never destroyed.
 class FileWatch {
  public:
-  /// Changes below `scratch`, and those of devices, are not told.
+  /// Changes below `scratch` and to devices are not recorded.
   explicit FileWatch(std::filesystem::path scratch);
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  /// Whether the system allows it.
+  /// True if the system allows the filter.
   bool works() const { return works_; }
   /// "opens /home/me/log for writing": the first few, in order, each once.
   std::vector<std::string> written() const;

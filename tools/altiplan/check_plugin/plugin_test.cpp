@@ -49,7 +49,7 @@ Outcome loads(const host::Library& library) {
   return {};
 }
 
-/// An entry of the kind that makes nothing: which cases there are, the kind alone decides.
+/// An entry of the kind that creates nothing: the list of cases depends only on the kind.
 PluginEntry stub_of(const Manifest& plugin) {
   PluginEntry entry{};
   const std::string_view kind = plugin.kind;
@@ -69,7 +69,7 @@ PluginEntry stub_of(const Manifest& plugin) {
   return entry;
 }
 
-/// Makes the cases of a plugin anew, in the process that runs one of them.
+/// Creates the cases of a plugin in the process that runs one of them.
 class PluginUnderTest {
  public:
   PluginUnderTest(std::shared_ptr<const PluginToCheck> what, const host::Library& library,
@@ -84,12 +84,12 @@ class PluginUnderTest {
              std::strcmp(entry->name, plugin_.name) == 0;
     });
   }
-  /// Why it cannot be set up here; "" where it can.
+  /// Why the plugin cannot be set up here; "" if it can.
   std::string obstacle() const {
     const std::string layer = set_.missing_layer(registry());
-    return layer.empty() ? "" : "no library offers the layer '" + layer + "' of its set";
+    return layer.empty() ? "" : "no library offers the layer '" + layer + "' of the parameter set";
   }
-  /// Why its parameters are none of the plugin's, or its layers cannot be made; "" where all is
+  /// Why the set's parameters do not fit the plugin, or its layers cannot be created; "" if all is
   /// well.
   std::string misfit() const {
     try {
@@ -98,7 +98,7 @@ class PluginUnderTest {
       if (problems.empty() && made.tighter != nullptr) {
         problems = load().describe(made.tighter, "").problems;
       }
-      const char* const hint = what_->sets.empty() ? " (--sets FILE gives it parameters)" : "";
+      const char* const hint = what_->sets.empty() ? " (set parameters with --sets FILE)" : "";
       return problems.empty() ? "" : problems.front().text() + hint;
     } catch (const ConfigError& error) {
       return error.problems().front().text();
@@ -107,7 +107,7 @@ class PluginUnderTest {
     }
   }
   conformance::Setup setup() const { return with_options(set_.setup(registry())); }
-  /// As far as the names of cases depend on it.
+  /// The part of the setup that the names of cases depend on.
   conformance::Setup named_setup() const { return with_options({}); }
   const Manifest& plugin() const { return plugin_; }
 
@@ -137,7 +137,7 @@ Cases entry_cases(const PluginEntry& entry, const conformance::Setup&) {
   return conformance::plugin_cases(entry);
 }
 
-/// A test for each case; it makes the case again, of the plugin itself.
+/// A test for each case; it creates the case again, with the plugin itself.
 std::vector<PluginTest> tests_of_cases(const std::shared_ptr<const PluginUnderTest>& subject,
                                        const std::string& prefix, CasesOf cases_of) {
   std::vector<PluginTest> tests;
@@ -160,8 +160,8 @@ void add(std::vector<PluginTest>& all, std::vector<PluginTest> more) {
   std::move(more.begin(), more.end(), std::back_inserter(all));
 }
 
-/// What the test says, unless it fails and the parameters are not the plugin's. (They are looked at
-/// afterwards: what loading does to the process is a test's to see.)
+/// The test's outcome, or skipped if it fails and the parameters do not fit the plugin. (They are
+/// checked afterwards: a test must observe the effects of loading itself.)
 Outcome excused(const PluginUnderTest& subject, const std::function<Outcome()>& run) {
   Outcome outcome;
   try {
@@ -206,8 +206,8 @@ void expect_known_plugins(const PluginToCheck& what, const host::Library& librar
                                                     return *set.plugin == plugin.name;
                                                   });
     if (!known) {
-      throw Error("a set of parameters is for '" + *set.plugin + "', which " +
-                  library.file.string() + " does not offer");
+      throw Error("a parameter set is for '" + *set.plugin + "', which " + library.file.string() +
+                  " does not contain");
     }
   }
 }
@@ -220,7 +220,7 @@ std::vector<PluginTest> tests_of(const PluginToCheck& what) {
       {"library/manifest", [library] { return manifest_fits(library); }},
       {"library/exports_one_symbol", [library] { return exports_one_symbol(library); }}};
   if (!library.refused.empty()) {
-    return all;  // nothing of it may run
+    return all;  // none of its code may run
   }
   all.push_back({"library/loads", [library] { return loads(library); }});
   const auto shared = std::make_shared<const PluginToCheck>(what);

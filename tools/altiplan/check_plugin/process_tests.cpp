@@ -48,8 +48,8 @@ std::multiset<std::string> environment_variables() {
   return all;
 }
 
-/// A library that it uses may keep a file open, and a pool of threads may grow to its size: what
-/// each further use leaves behind has no end.
+/// A used library may keep a file open and a thread pool may fill up once: only growth in every
+/// further use is a leak.
 Outcome leaves_the_process(const LoadPlugin& load, const MakeSetup& make_setup) {
   const conformance::Setup setup = make_setup();
   host::ProcessGuard guard;
@@ -80,7 +80,7 @@ Outcome leaves_the_process(const LoadPlugin& load, const MakeSetup& make_setup) 
   const std::string changed = guard.restore();
   expect(changed.empty(), "it changed " + changed);
   expect(environment_variables() == variables, "it changed an environment variable");
-  expect(file_mask() == mask, "it changed the mask of new files' modes (umask)");
+  expect(file_mask() == mask, "it changed the file mode creation mask (umask)");
   expect(more_files == 0,
          "it leaves " + std::to_string(more_files) + " more open files behind each time");
   expect(more_threads == 0,
@@ -94,7 +94,7 @@ Outcome writes_nothing_to_stdout(const LoadPlugin& load, const MakeSetup& make_s
   (void)answers_of(load(), setup);
   guard.restore();
   if (guard.pass_on_output()) {
-    return {{{kStdout, "it wrote to stdout, which is the result's alone"}}, "", false, ""};
+    return {{{kStdout, "it wrote to stdout, which is reserved for the result"}}, "", false, ""};
   }
   return {};
 }
@@ -104,7 +104,7 @@ Outcome writes_no_files(const LoadPlugin& load, const MakeSetup& make_setup) {
   static FileWatch& watch = *new FileWatch(std::filesystem::temp_directory_path());  // to the end
   if (!watch.works()) {
     return {{},
-            "the system does not let a process watch its own system calls (seccomp), or this "
+            "the system does not allow a process to watch its own system calls (seccomp), or this "
             "altiplan is built with sanitizers",
             false,
             ""};
@@ -122,7 +122,7 @@ std::size_t memory_in_use() {
   return info.uordblks + info.hblkhd;
 }
 
-/// Caches may fill in the first rounds; what grows in each of the later ones has no end.
+/// Caches may fill in the first rounds; growth in each of the later ones is a leak.
 Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup) {
   constexpr int kRounds = 12;
   constexpr std::size_t kMax = 4096;
@@ -140,7 +140,7 @@ Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup
   }
   if (least > kMax) {
     return {{{kMemory, "equal work takes " + std::to_string(least) +
-                           " bytes more each time that it is done"}},
+                           " bytes more each time it is repeated"}},
             "",
             false,
             ""};

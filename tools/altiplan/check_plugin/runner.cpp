@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kSame = "Process: equal requests give equal answers in two processes";
 
-/// Where the answers of two processes part; "" where they are equal.
+/// The first difference between the answers of two processes; "" if they are equal.
 std::string difference(const std::string& one, const std::string& other) {
   std::istringstream a(one);
   std::istringstream b(other);
@@ -39,7 +39,7 @@ std::string difference(const std::string& one, const std::string& other) {
   return "";
 }
 
-/// The tests of one run, as they are begun and end.
+/// Starts the tests of one run and collects their verdicts.
 class Runner {
  public:
   Runner(const std::vector<PluginTest>& tests, const RunnerOptions& options,
@@ -79,7 +79,7 @@ class Runner {
           if (children.empty()) {
             throw;
           }
-          break;  // there is room again when one of them has ended
+          break;  // retried when a running test has ended
         }
         waiting.pop_back();
       }
@@ -131,7 +131,7 @@ class Runner {
 std::string outcome_text(const Outcome& outcome) {
   Json findings = Json::array();
   for (const conformance::Finding& finding : outcome.findings) {
-    findings.push_back({finding.law, finding.message});
+    findings.push_back({finding.contract, finding.message});
   }
   return Json{{"findings", findings},
               {"skipped", outcome.skipped},
@@ -158,7 +158,7 @@ Outcome outcome_of(const std::string& text) {
 
 std::vector<Verdict> run_apart(const std::vector<PluginTest>& tests, const RunnerOptions& options,
                                const std::function<void(const Verdict&)>& done) {
-  // A parent may have left it ignored, and then nothing can be waited for.
+  // A parent may have left it ignored, in which case wait() does not report children.
   ::signal(SIGCHLD, SIG_DFL);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   return Runner(tests, options, done).run();

@@ -13,10 +13,10 @@ namespace altiplan::cli {
 struct Verdict {
   std::string test;
   std::vector<conformance::Finding> findings;  ///< none: passed
-  bool seen_from_outside = false;  ///< a finding is this process's, of the one that ran the test
+  bool seen_from_outside = false;  ///< a finding by the parent about the process that ran the test
   std::string skipped;
-  bool misfit = false;  ///< skipped, as the parameters do not fit the plugin
-  std::string said;     ///< the end of what it wrote to stdout and stderr
+  bool misfit = false;  ///< skipped because the parameters do not fit the plugin
+  std::string said;     ///< the end of its output on stdout and stderr
   double time_s = 0;
   double peak_memory_mb = 0;
 
@@ -25,23 +25,22 @@ struct Verdict {
 
 struct RunnerOptions {
   std::size_t jobs = 1;
-  double time_limit_s = 60;  ///< of a test; then it is killed
+  double time_limit_s = 60;  ///< of a test, which is killed after it
   double memory_limit_mb = 4096;
-  /// How this program runs one test in the process that it is: program, arguments. The name of the
-  /// test and the file for its outcome are set after them (--only ^NAME$ --here --answer FILE).
+  /// Command of the child that runs one test: program, arguments. The name of the test and the file
+  /// for its outcome are appended (--only ^NAME$ --here --answer FILE).
   std::vector<std::string> command;
   std::stop_token stop;
 };
 
-/// Runs each test in a process of its own, in a scratch folder of its own; those that look at the
-/// clock one after the other, at the end. Calls `done` with each verdict as it comes. Returns them
-/// in the order of the tests; fewer where it was stopped. Throws Error where no process can be
-/// made.
+/// Runs each test in its own process and scratch folder; those that measure time one after the
+/// other, at the end. Calls `done` with each verdict as it arrives. Returns them in the order of
+/// the tests; fewer if stopped. Throws Error if no process can be started.
 std::vector<Verdict> run_apart(const std::vector<PluginTest>& tests, const RunnerOptions& options,
                                const std::function<void(const Verdict&)>& done);
 
-/// The outcome as a process hands it to the one that started it, and back; throws Error where the
-/// text is none.
+/// The outcome as text, passed from a child to its parent, and back; throws Error if the text is
+/// not an outcome.
 std::string outcome_text(const Outcome& outcome);
 Outcome outcome_of(const std::string& text);
 }  // namespace altiplan::cli

@@ -33,12 +33,12 @@ void VolumeParams::describe(Fields& f) {
 }
 
 void ParameterSet::describe(Fields& f) {
-  f("plugin", plugin).doc("of a library of several: the one that the set is for");
+  f("plugin", plugin).doc("plugin that the set is for, in a library of several");
   f("with", with).doc("the plugin's parameters");
-  f("tighter", tighter).doc("of a constraint: stricter ones");
-  f("unit_m", unit_m).greater_than(0).doc("what a planner or smoother resolves well");
-  f("iterations", iterations).at_least(1).doc("what one plan may use");
-  f("volume", volume).doc("where an environment is looked at");
+  f("tighter", tighter).doc("stricter parameters of a constraint");
+  f("unit_m", unit_m).greater_than(0).doc("length that a planner or smoother resolves well");
+  f("iterations", iterations).at_least(1).doc("maximum number of iterations of one plan");
+  f("volume", volume).doc("volume in which an environment is sampled");
   f("before", before).doc("layers before an environment, as in a scenario");
 }
 
@@ -69,7 +69,7 @@ std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file) {
   std::vector<Problem> problems;
   if (list.kind != Value::Kind::list || list.items.empty()) {
     problems.push_back({list.where, "",
-                        "expected a list of sets of parameters, found " +
+                        "expected a list of parameter sets, found " +
                             (list.kind == Value::Kind::list ? "none" : list.what())});
   }
   std::vector<ParameterSet> sets(list.items.size());

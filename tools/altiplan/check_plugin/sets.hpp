@@ -17,7 +17,7 @@ struct VolumeParams {
   void describe(Fields& f);
 };
 
-/// One entry of a conformance.yaml: parameters under which plugins are held to their laws.
+/// One entry of a conformance.yaml: parameters with which plugins are checked.
 struct ParameterSet {
   std::optional<std::string> plugin;
   Value with;
@@ -30,13 +30,13 @@ struct ParameterSet {
   ParameterSet() { with.kind = Value::Kind::map; }
   void describe(Fields& f);
 
-  /// The first layer of `before` that no library offers; "" where all are there.
+  /// The first layer of `before` that no library offers; "" if all are found.
   std::string missing_layer(const host::Registry& registry) const;
-  /// The values in `setup` are this set's. The layers before it come from the registry's libraries;
-  /// throws Error where one cannot be made.
+  /// The setup refers to this set's values. The layers before it come from the registry's
+  /// libraries; throws Error if one cannot be created.
   conformance::Setup setup(host::Registry& registry) const;
 };
 
-/// Those of the file (docs/conformance.md). Throws ConfigError.
+/// Reads the sets of a file (docs/conformance.md). Throws ConfigError.
 std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file);
 }  // namespace altiplan::cli

@@ -28,8 +28,8 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kEnds = "Process: the test ends well, with a result";
 constexpr rlim_t kMaxOutput = 64 << 20;
 
-/// The last bytes of a file, at most that many; "" of what is no regular file: a test may have put
-/// anything in its place.
+/// The last bytes of a file, at most that many; "" if it is not a regular file, since a test may
+/// have replaced it by anything.
 std::string end_of(const fs::path& file, std::size_t most) {
   const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   struct stat status {};
@@ -52,7 +52,7 @@ std::string signal_name(int number) {
   return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(number);
 }
 
-/// Whether the process stems from the test of that scratch folder, which its TMPDIR names.
+/// True if the process descends from the test of that scratch folder, named in its TMPDIR.
 bool stems_from(pid_t process, const fs::path& scratch) {
   std::ifstream variables("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
   std::ostringstream text;
@@ -60,11 +60,11 @@ bool stems_from(pid_t process, const fs::path& scratch) {
   return text.str().find(scratch.string()) != std::string::npos;
 }
 
-/// Ends what has become this process's child when its own parent ended, and stems from the test,
-/// though it may not bear its mark. How many there were that had not ended.
+/// Kills the orphans of the test that this process has adopted, even those without the test's mark.
+/// Returns their number.
 std::size_t end_orphans(const fs::path& scratch) {
   std::size_t count = 0;
-  for (bool more = true; more;) {  // children of those that end come after them
+  for (bool more = true; more;) {  // the children of those killed are adopted next
     more = false;
     for (const pid_t child : study::children_of(::getpid())) {
       if (stems_from(child, scratch)) {
@@ -83,11 +83,11 @@ ScratchFolder::ScratchFolder() {
   std::error_code error;
   const fs::path folder = fs::temp_directory_path(error);
   if (error) {
-    throw Error("TMPDIR: no such folder: " + std::string(std::getenv("TMPDIR")));
+    throw Error("TMPDIR: folder not found: " + std::string(std::getenv("TMPDIR")));
   }
   std::string name = (fs::absolute(folder) / "altiplan-check-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
-    throw Error("cannot make the folder " + name + ": " + std::strerror(errno));
+    throw Error("cannot create the folder " + name + ": " + std::strerror(errno));
   }
   path_ = name;
 }
@@ -116,7 +116,7 @@ TestProcess::TestProcess(const PluginTest& test, std::size_t index, std::uint64_
   arguments.push_back(nullptr);
   process_ = ::fork();
   if (process_ < 0) {
-    throw Error(std::string("no process for a test: ") + std::strerror(errno));
+    throw Error(std::string("cannot start a process for a test: ") + std::strerror(errno));
   }
   if (process_ == 0) {
     become(arguments.data());
@@ -157,7 +157,7 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
 }
 
 void TestProcess::become(char* const* arguments) const {
-  ::setsid();  // what it sends to its group stays there, and the terminal's signals away
+  ::setsid();  // signals to its group stay in it, and the terminal's do not reach it
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   study::set_mark(mark_);
   const rlimit output{kMaxOutput, kMaxOutput};
@@ -172,7 +172,7 @@ void TestProcess::become(char* const* arguments) const {
   ::setenv("TMPDIR", (scratch_.path() / "tmp").c_str(), 1);
   ::setenv("HOME", (scratch_.path() / "home").c_str(), 1);
   if (again_) {
-    // Memory that nobody has set holds something else, also where it was in use before.
+    // Uninitialised memory has other contents than in the first process, also when reused.
     ::setenv("GLIBC_TUNABLES", "glibc.malloc.perturb=165:glibc.malloc.tcache_count=0", 1);
   }
   sigset_t none;

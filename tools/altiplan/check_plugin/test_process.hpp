@@ -13,7 +13,7 @@
 
 namespace altiplan::cli {
 
-/// A folder in TMPDIR that goes with all that is in it.
+/// A folder in TMPDIR, removed with its contents on destruction.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -26,12 +26,12 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// A test under way: its process, in a session and a scratch folder of its own. It ends with the
-/// object.
+/// A running test: its process, in its own session and scratch folder. The process is killed on
+/// destruction.
 class TestProcess {
  public:
-  /// `mark` tells its processes from those of other tests; `again` is for the second of two whose
-  /// answers must be equal. Throws Error where none can be made.
+  /// `mark` distinguishes its processes from those of other tests; `again` marks the second of two
+  /// whose answers must be equal. Throws Error if no process can be started.
   TestProcess(const PluginTest& test, std::size_t index, std::uint64_t mark, bool again,
               const RunnerOptions& options);
   ~TestProcess() { end(); }
@@ -41,9 +41,9 @@ class TestProcess {
   std::size_t index() const { return index_; }
   bool again() const { return again_; }
 
-  /// What is wrong once it has ended, or has used more than it may; nullopt while neither is so.
+  /// The verdict once the process has ended or exceeded a limit; nullopt while it runs.
   std::optional<Verdict> look(const RunnerOptions& options);
-  /// Of a test of two processes that has passed.
+  /// The answers of a passed test in two processes.
   const std::string& answers() const { return answers_; }
 
  private:

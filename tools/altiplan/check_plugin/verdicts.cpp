@@ -26,7 +26,7 @@ Count count(const std::vector<Verdict>& verdicts) {
   return count;
 }
 
-/// Every line of the text after so many blanks.
+/// The text with each line indented by that many blanks.
 std::string indented(const std::string& text, std::size_t by) {
   std::istringstream lines(text);
   std::string all;
@@ -36,13 +36,13 @@ std::string indented(const std::string& text, std::size_t by) {
   return all;
 }
 
-/// What a plugin says need not be text.
+/// A plugin's output made printable: it may contain any bytes.
 std::string text_of(const std::string& said) { return host::printable(said, true); }
 
 std::string findings_text(const CheckedLibrary& library, const Verdict& verdict) {
   std::string all;
   for (const conformance::Finding& finding : verdict.findings) {
-    all += "  " + text_of(finding.law) + "\n" + indented(text_of(finding.message), 4);
+    all += "  " + text_of(finding.contract) + "\n" + indented(text_of(finding.message), 4);
   }
   if (!verdict.said.empty()) {
     all += "  it said:\n" + indented(text_of(verdict.said), 4);
@@ -89,7 +89,7 @@ nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
   for (const Verdict& verdict : verdicts) {
     nlohmann::ordered_json findings = nlohmann::ordered_json::array();
     for (const conformance::Finding& finding : verdict.findings) {
-      findings.push_back({{"law", finding.law}, {"message", finding.message}});
+      findings.push_back({{"contract", finding.contract}, {"message", finding.message}});
     }
     tests.push_back({{"name", verdict.test},
                      {"status", verdict.failed()           ? "failed"
@@ -132,7 +132,7 @@ std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verd
       test.append_attribute("time") = fixed(verdict.time_s, 3).c_str();
       if (verdict.failed()) {
         pugi::xml_node failure = test.append_child("failure");
-        failure.append_attribute("message") = text_of(verdict.findings.front().law).c_str();
+        failure.append_attribute("message") = text_of(verdict.findings.front().contract).c_str();
         failure.text() = text_of(findings_text(library, verdict)).c_str();
       } else if (!verdict.skipped.empty()) {
         test.append_child("skipped").append_attribute("message") = text_of(verdict.skipped).c_str();

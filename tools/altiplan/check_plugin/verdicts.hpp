@@ -9,25 +9,25 @@
 
 namespace altiplan::cli {
 
-/// What was looked at, and how a test of it is seen again.
+/// The checked library and the command that repeats a test of it.
 struct CheckedLibrary {
   std::string file;   ///< as the user named it
   std::string build;  ///< GNU build id
   std::uint64_t seed = 1;
   double time_s = 0;
-  std::string command;  ///< that runs one test, up to its name
+  std::string command;  ///< runs one test; the name of the test is appended
 };
 
-/// The call that shows the verdict again: in the process itself, where that can show it.
+/// The command that reproduces the verdict, in the same process where that is possible.
 std::string reproduce(const CheckedLibrary& library, const Verdict& verdict);
 
-/// One verdict in lines, as the user reads them.
+/// One verdict as printed for the user.
 std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict);
-/// How many passed, failed and had nothing to do.
+/// Numbers of passed, failed and skipped tests, time (s) and peak memory (MB).
 std::string summary_text(const CheckedLibrary& library, const std::vector<Verdict>& verdicts);
 /// docs/check-plugin.md
 nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
                                      const std::vector<Verdict>& verdicts);
-/// As build servers read it: a suite for each plugin, a case for each test.
+/// JUnit XML: one suite per plugin, one case per test.
 std::string verdicts_junit(const CheckedLibrary& library, const std::vector<Verdict>& verdicts);
 }  // namespace altiplan::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step of an ant, an iteration and the set-up of the colonies take, by the number of cells,
-// and on two threads.
+// Times of an ant's step, an iteration and the set-up of the colonies, by the number of cells, and
+// on two threads.
 #include <algorithm>
 #include <vector>
 
@@ -58,7 +58,7 @@ Json row_of(const Setting& setting, const std::vector<Pass>& passes, const Reque
   return row;
 }
 
-/// All settings in turn, pass by pass, so that what else the machine does meets all of them.
+/// Interleaves all settings, pass by pass, so that machine load affects all of them alike.
 Json time_steps(host::Registry& registry, const Arguments& arguments,
                 const std::vector<Setting>& settings) {
   std::vector<std::vector<Pass>> passes(settings.size());
@@ -74,9 +74,8 @@ Json time_steps(host::Registry& registry, const Arguments& arguments,
   return rows;
 }
 
-/// Wall times of the same plan, the least of all passes: another program that takes a processor
-/// for a while meets two threads harder than one. Two plans at once have nothing to wait for but
-/// the machine.
+/// Wall times of the same plan, the minimum of all passes, since another program on a processor
+/// slows down two threads more than one. Two parallel plans are independent except for the machine.
 struct Threads {
   double one_ms = kInfinity;
   double two_ms = kInfinity;
@@ -121,7 +120,7 @@ Json time_threads(host::Registry& registry, const Arguments& arguments,
   return rows;
 }
 
-/// The colonies of paper 004 that there are, in its cells.
+/// The available colonies of paper 004, in its cells.
 std::vector<Setting> paper_colonies(const host::Registry& registry, int iterations) {
   std::vector<Setting> found;
   const std::vector<std::string> offered = registry.names("planner");
@@ -167,23 +166,24 @@ Json time_all(host::Registry& registry, const Arguments& arguments) {
 void add_ants(Subcommands& all) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      all.add("ants", "time a step, an iteration and the set-up of ant colonies",
+      all.add("ants", "time steps, iterations and set-up of ant colonies",
               [=](const Given& given) { return time_all(*given.registry, *arguments); });
   command
-      .add_option("scenario", arguments->scenario, "in level flight, without a mission of its own")
+      .add_option("scenario", arguments->scenario,
+                  "scenario file in level flight, without a mission")
       ->required()
       ->check(CLI::ExistingFile);
   command
-      .add_option(
-          "--planner", arguments->planners,
-          "name and parameters in YAML: 'ant_colony {ants: 50}'; again for more. By default "
-          "the colonies that there are")
+      .add_option("--planner", arguments->planners,
+                  "planner plugin and its parameters in YAML: 'ant_colony {ants: 50}'; repeatable "
+                  "(default: all available colonies)")
       ->type_name("TEXT");
-  command.add_option("--iterations", arguments->iterations, "of a plan")
+  command.add_option("--iterations", arguments->iterations, "iterations per plan")
       ->check(CLI::Range(2, 100'000));
-  command.add_option("--cells", arguments->cells,
-                     "edges of a cell to grow by, in metres; 0 for none");
-  command.add_option("--passes", arguments->passes, "each with its own seed; printed are medians")
+  command.add_option("--cells", arguments->cells, "further cell sizes to plan with (m, 0: none)");
+  command
+      .add_option("--passes", arguments->passes,
+                  "number of passes, each with its own seed; medians are printed")
       ->check(CLI::Range(1, 1000));
 }
 }  // namespace altiplan::bench

@@ -78,7 +78,7 @@ Pass plan_once(host::Registry& registry, const Setting& setting, Request request
   Pass pass;
   pass.first = colony.all(request);
   pass.again = colony.all(request);
-  colony.single(request);  // it has memory of its own, which is now there
+  colony.single(request);  // allocates its own memory before timing
   pass.single = colony.single(request);
   return pass;
 }

@@ -10,7 +10,7 @@
 
 namespace altiplan::bench {
 
-/// The problem of a scenario, its world made anew: no grid of it is there yet.
+/// The problem of a scenario in a newly built world, without cached grids.
 Request problem_of(const std::filesystem::path& scenario);
 
 /// A plan's time by two clocks, in milliseconds.
@@ -24,7 +24,7 @@ struct Time {
   }
 };
 
-/// How a colony is asked to plan.
+/// The settings of a colony's plan.
 struct Setting {
   std::string planner;  ///< the plugin's name and, after a space, its parameters in YAML
   double cell_m = 0;    ///< 0: as the parameters say
@@ -38,16 +38,16 @@ struct Run {
   double length = 0;  ///< infinite without a route
 };
 
-/// A planner with all iterations of its setting, and with a single one: what the two have in common
-/// is the set-up, and what the first takes more is the other iterations.
+/// A planner with all iterations of its setting, and with a single one: the difference in time is
+/// that of the other iterations, the rest is the set-up.
 class Colony {
  public:
   Colony(host::Registry& registry, const Setting& setting);
 
-  /// Throws Error where the judge refuses the route, or where the planner is no colony.
+  /// Throws Error if the judge rejects the route, or if the planner is not a colony.
   Run all(const Request& request) const { return run(*all_, request); }
   Run single(const Request& request) const { return run(*single_, request); }
-  /// That many plans at once, each on a thread of its own.
+  /// That many parallel plans, each on its own thread.
   Time at_once(const Request& request, int plans) const;
 
  private:
@@ -58,7 +58,7 @@ class Colony {
   std::shared_ptr<const Planner> single_;
 };
 
-/// What one seed took, on one thread.
+/// The times of one seed, on one thread.
 struct Pass {
   Run first;   ///< by a new planner in a new world
   Run again;   ///< by the same once more
@@ -68,7 +68,7 @@ struct Pass {
   double step_ns() const {
     return 1e6 * iterations_ms(&Time::processor_ms) / (again.steps - single.steps);
   }
-  /// What a plan takes beside its steps.
+  /// The time of a plan besides its steps.
   double set_up_ms(const Run& run) const {
     return run.time.processor_ms - 1e-6 * step_ns() * run.steps;
   }

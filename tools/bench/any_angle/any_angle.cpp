@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planners over cells side by side, in cities of paper 003 and on maps in space. Times are the
-// thread's, of whole calls of Planner::plan; lengths are in cells.
+// Comparison of grid planners, in cities of paper 003 and on 3-D maps. Times are thread CPU times
+// of whole calls of Planner::plan; lengths are in cells.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -68,7 +68,8 @@ Json time_cities(const Arguments& arguments, host::Registry& registry) {
   return figures;
 }
 
-/// A line for each way as soon as it is read, for a program that asks two systems in turn.
+/// Prints a line for each query as soon as it is read, for a program that queries two systems in
+/// turn.
 void print_each(const Arguments& arguments, const Cells& cells, Row& row, Ways& ways) {
   while (const std::optional<Way> way = ways.next()) {
     for (int pass = 0; pass < arguments.passes; ++pass) {
@@ -115,38 +116,44 @@ Json time_map(const Arguments& arguments, host::Registry& registry) {
 void add_any_angle(Subcommands& all) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      all.add("any-angle", "time planners over cells side by side", [=](const Given& given) {
+      all.add("any-angle", "compare the times of grid planners", [=](const Given& given) {
         return arguments->map.empty() ? time_cities(*arguments, *given.registry)
                                       : time_map(*arguments, *given.registry);
       });
   command.require_subcommand(1);
   command
       .add_option("--planner", arguments->planners,
-                  "name and parameters in YAML: 'astar {corner: free_box}'; again for more. By "
-                  "default astar and those for straight legs that there are")
+                  "planner plugin and its parameters in YAML: 'astar {corner: free_box}'; "
+                  "repeatable (default: astar and the available any-angle planners)")
       ->type_name("TEXT");
-  command.add_option("--passes", arguments->passes, "plans of each way; its time is their median")
+  command
+      .add_option("--passes", arguments->passes,
+                  "number of plans per query; its time is their median")
       ->check(CLI::Range(1, 1000));
-  CLI::App* city = command.add_subcommand("city", "drawn cities, a way across each");
+  CLI::App* city = command.add_subcommand("city", "random cities, a query across each");
   city->fallthrough();
-  city->add_option("--kind", arguments->kind, "of city")
+  city->add_option("--kind", arguments->kind, "kind of city: simple or complex")
       ->check(CLI::IsMember({"simple", "complex"}));
-  city->add_option("--seeds", arguments->seeds, "how many cities")->check(CLI::PositiveNumber);
-  city->add_option("--first-seed", arguments->first_seed, "of the first; the others follow")
+  city->add_option("--seeds", arguments->seeds, "number of cities")->check(CLI::PositiveNumber);
+  city->add_option("--first-seed", arguments->first_seed,
+                   "seed of the first city; the others follow")
       ->check(CLI::NonNegativeNumber);
-  city->add_option("--cells", arguments->counts, "cells along x, y and z")->expected(3);
-  city->add_option("--buildings", arguments->city.buildings, "how many a complex city draws");
-  CLI::App* map = command.add_subcommand("map", "a map, and ways from a file");
+  city->add_option("--cells", arguments->counts, "number of cells along x, y and z")->expected(3);
+  city->add_option("--buildings", arguments->city.buildings,
+                   "number of buildings of a complex city");
+  CLI::App* map = command.add_subcommand("map", "a map with queries from a file");
   map->fallthrough();
-  map->add_option("map", arguments->map, "a Warframe .3dmap")->required();
+  map->add_option("map", arguments->map, "Warframe .3dmap file")->required();
   map->add_option("ways", arguments->ways,
-                  "a .3dscen file, or lines of start x y z and goal x y z; - for standard input")
+                  "queries: a .3dscen file, or lines of start x y z and goal x y z; - for stdin")
       ->required();
-  map->add_option("--limit", arguments->limit, "ways, from the shortest to the longest, evenly")
+  map->add_option("--limit", arguments->limit,
+                  "maximum number of queries, evenly from the shortest to the longest")
       ->check(CLI::PositiveNumber);
-  map->add_option("--least-cells", arguments->min_cells, "between the ends of a way");
+  map->add_option("--least-cells", arguments->min_cells,
+                  "minimum distance of start and goal (cells)");
   map->add_flag("--each", arguments->each,
-                "answer all ways by the first planner, one by one as they are read, --passes times "
-                "each: solved (0 or 1), length in cells, cells expanded, microseconds");
+                "answer each query with the first planner as it is read, --passes times: prints "
+                "solved (0 or 1), length (cells), cells expanded, time (us)");
 }
 }  // namespace altiplan::bench

@@ -12,7 +12,7 @@
 
 namespace altiplan::bench {
 
-/// From cell to cell, as the map's file counts them.
+/// A query from cell to cell, in the map file's indices.
 struct Way {
   std::array<double, 3> start;
   std::array<double, 3> goal;
@@ -42,7 +42,8 @@ struct CityKind {
   Cell counts{80, 80, 100};
   int buildings = 60;
 
-  /// The way of paper 003, section 4, in its 80 x 80 x 100 cells; in others as far from the sides.
+  /// The query of paper 003, section 4, in its 80 x 80 x 100 cells; otherwise with the same
+  /// distance from the sides.
   Way way() const;
 };
 Cells make_city(host::Registry& registry, const CityKind& kind, int seed);
@@ -50,8 +51,8 @@ Cells make_city(host::Registry& registry, const CityKind& kind, int seed);
 /// A Warframe .3dmap.
 Cells load_map(host::Registry& registry, const std::string& file);
 
-/// The next line's way: start x y z, goal x y z, and what follows is passed over, as are the two
-/// first lines of a .3dscen file. Nothing at the end; throws Error with `name` and the line.
+/// The next line's query: start x y z, goal x y z; the rest of the line is ignored, as are the
+/// first two lines of a .3dscen file. Nothing at the end; throws Error with `name` and the line.
 class Ways {
  public:
   Ways(std::istream& in, std::string name) : in_(in), name_(std::move(name)) {}
@@ -64,7 +65,7 @@ class Ways {
   bool is_scenario_ = false;
 };
 
-/// `count` of those at least `least` cells long, from the shortest to the longest, evenly; in the
-/// order given.
+/// `count` of the queries at least `least` cells long, evenly from the shortest to the longest; in
+/// the given order.
 std::vector<Way> spread(std::vector<Way> ways, double least, std::size_t count);
 }  // namespace altiplan::bench

@@ -10,7 +10,7 @@
 
 namespace altiplan::bench {
 
-/// One planner, and what became of its plans.
+/// One planner and the results of its plans.
 class Row {
  public:
   /// `text`: the plugin's name and, after a space, its parameters in YAML.
@@ -21,13 +21,13 @@ class Row {
     double length;  ///< cells; infinite without a route
     double expanded;
   };
-  /// Throws WrongAnswer where the judge refuses the route.
+  /// Throws WrongAnswer if the judge rejects the route.
   Plan plan(const Cells& cells, const Way& way);
   /// As many plans of each way as passes.
   void add(const std::vector<Plan>& passes);
 
   const std::string& name() const { return name_; }
-  /// Its figures, lengths beside those of the first, memory over that many cells.
+  /// Its figures: lengths relative to the first row's, memory per cell for that many cells.
   Json figures(const Row& first, std::size_t cells) const;
 
  private:
@@ -40,7 +40,7 @@ class Row {
   double resident_ = 0;  ///< bytes that came while planning
 };
 
-/// Plans every way by every row, in turn, so that what else the machine does meets all of them.
+/// Plans every query by every row, interleaved, so that machine load affects all of them alike.
 void plan_all(std::vector<Row>& rows, const Cells& cells, const std::vector<Way>& ways, int passes);
 /// A table of rows, and the program's peak of memory, added to the figures of a world.
 void add(Json& figures, const std::vector<Row>& rows, std::size_t cells);

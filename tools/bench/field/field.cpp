@@ -32,7 +32,7 @@ Threats drawn(std::size_t count, double side, double least, double most) {
   return threats;
 }
 
-/// On a jittered lattice, about 20 of them within 2 km of any place.
+/// On a jittered lattice, about 20 of them within 2 km of any point.
 Threats crowd() {
   constexpr int kSide = 100;
   constexpr double kApart = 870;
@@ -103,7 +103,7 @@ void fly(const LocalPlanner& planner, const Row& row, const Request& request, in
   }
 }
 
-/// Rows in turn, so that what else the machine does meets all of them.
+/// Interleaves the rows, so that machine load affects all of them alike.
 Json time_rows(host::Registry& registry, const std::string& variant, int passes) {
   const Chosen field =
       chosen(registry, "local_planner", "velocity_field {variant: " + variant + "}");
@@ -146,8 +146,8 @@ void add_field(Subcommands& all) {
               [=](const Given& given) {
                 return time_rows(*given.registry, arguments->variant, arguments->passes);
               });
-  command.add_option("--passes", arguments->passes, "flights in each world")
+  command.add_option("--passes", arguments->passes, "number of flights in each world")
       ->check(CLI::Range(1, 10000));
-  command.add_option("--variant", arguments->variant, "of velocity_field");
+  command.add_option("--variant", arguments->variant, "variant of velocity_field");
 }
 }  // namespace altiplan::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time of each step of a pilot among 20 obstacles, over hills and over nothing.
+// The time of each step of a pilot among 20 obstacles, with and without hills.
 #include <string>
 #include <vector>
 
@@ -15,7 +15,7 @@ struct Times {
   std::vector<double> wall_us;
 };
 
-/// Takes the time of each step of another.
+/// Measures the time of each step of another pilot.
 class TimedPilot final : public Pilot {
  public:
   TimedPilot(std::unique_ptr<Pilot> pilot, Times& times)
@@ -97,9 +97,9 @@ void add_pilot(Subcommands& all) {
         }
         return figures;
       });
-  command.add_option("--flights", arguments->flights, "flights over each ground")
+  command.add_option("--flights", arguments->flights, "number of flights over each ground")
       ->check(CLI::Range(1, 10000));
-  command.add_option("--ground", arguments->ground, "hills, none or both")
+  command.add_option("--ground", arguments->ground, "ground: hills, none or both")
       ->check(CLI::IsMember({"hills", "none", "both"}));
 }
 }  // namespace altiplan::bench

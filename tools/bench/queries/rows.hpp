@@ -9,7 +9,7 @@
 
 namespace altiplan::bench {
 
-/// Queries of a row: asked in turn, again from the first after the last.
+/// Queries of a row, in cyclic order.
 inline constexpr std::size_t kQueries = 4096;
 
 /// A row of the table: the time of one ask(n), n below kQueries.
@@ -24,12 +24,12 @@ void add_row(const std::string& name, const Ask& ask) {
   });
 }
 
-/// Throws WrongAnswer naming the row and the first query whose answers do not agree.
+/// Throws WrongAnswer naming the row and the first query whose answers differ.
 template <class Agrees>
 void require(const std::string& name, const Agrees& agrees) {
   for (std::size_t n = 0; n < kQueries; ++n) {
     if (!agrees(n)) {
-      throw WrongAnswer(name + ": query " + std::to_string(n) + " has two answers");
+      throw WrongAnswer(name + ": the answers to query " + std::to_string(n) + " differ");
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long dstar_lite takes to repair its plan where cells change, beside astar planning afresh by
-// cells in the same world. Each is timed once, one after the other, and every length is compared.
+// Time of dstar_lite to repair its plan after cell changes, compared with replanning by astar in
+// the same world. Each is timed once, one after the other, and all lengths are compared.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -27,7 +27,7 @@ double ms_of(const std::function<void()>& work) {
 
 double expanded(const PlanResult& result) { return counter(result, "expanded"); }
 
-/// A world of cells, and a way through it.
+/// A world of cells, and a query in it.
 struct Map {
   std::string name;
   VoxelGrid cells;
@@ -71,7 +71,7 @@ Cell random_cell(const GridSpec& spec, RandomStream& random) {
   return c;
 }
 
-/// Free cells far apart that are not easily joined; nothing where many tries find none.
+/// Distant free cells without an easy connection; nothing if many tries fail.
 std::optional<Map> voxel_map(host::Registry& registry, const std::string& file,
                              RandomStream& random) {
   const auto layer = environment(registry, "voxel_map {file: '" + file + "'}");
@@ -174,7 +174,7 @@ struct Row {
   std::vector<double> share;
 };
 
-/// Throws WrongAnswer where the two lengths differ.
+/// Throws WrongAnswer if the two lengths differ.
 void time_one(const Planner& astar, const Planner& dstar, const Map& map, const Kind& kind,
               std::uint64_t trial, Row& row) {
   const auto world = std::make_shared<const World>(world_of(map.cells));
@@ -305,10 +305,10 @@ Json time_repairs(host::Registry& registry, const Arguments& arguments) {
 void add_replan(Subcommands& all) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      all.add("replan", "time repairs of dstar_lite beside planning afresh with astar",
+      all.add("replan", "compare repairs by dstar_lite with replanning by astar",
               [=](const Given& given) { return time_repairs(*given.registry, *arguments); });
-  command.add_option("maps", arguments->maps, "Warframe .3dmap files to use beside the cities");
-  command.add_option("--trials", arguments->trials, "changes of each kind")
+  command.add_option("maps", arguments->maps, "Warframe .3dmap files to use besides the cities");
+  command.add_option("--trials", arguments->trials, "number of changes of each kind")
       ->check(CLI::PositiveNumber);
 }
 }  // namespace altiplan::bench

@@ -7,14 +7,14 @@
 
 namespace altiplan::bench {
 
-/// Towers on three tenths of the ground of 80 x 80 x 100 cells of a metre, and ways across it: free
-/// cells' centres at least half the diagonal apart; `low`: both ends in the lowest fifth, most of
-/// them with towers in the straight way.
+/// Towers on three tenths of the ground of 80 x 80 x 100 cells of a metre, and queries across it:
+/// free cells' centres at least half the diagonal apart; `low`: both ends in the lowest fifth, most
+/// of them with towers in the straight line.
 class City {
  public:
   City(bool low, std::size_t queries);
   const std::vector<Request>& queries() const { return queries_; }
-  /// Ways whose straight leg is free.
+  /// Queries whose straight leg is free.
   std::size_t open() const { return open_; }
 
  private:

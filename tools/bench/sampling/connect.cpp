@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// RRT-Connect beside OMPL's, whole plans: ours with all checks of the request, OMPL's `solve`
-// alone.
+// RRT-Connect compared with OMPL's, whole plans: ours with all checks of the request, OMPL's
+// `solve` alone.
 #include <functional>
 
 #include "city.hpp"
@@ -14,7 +14,7 @@ constexpr std::size_t kQueries = 64;
 constexpr std::uint64_t kSeeds = 32;
 constexpr double kRange = 10;  // cells
 
-/// The ways of both kinds, made when first asked for.
+/// The queries of both kinds, created on first use.
 const City& city(bool low) {
   static const City kCity(false, kQueries);
   static const City kLow(true, kQueries);
@@ -25,8 +25,8 @@ const City& city(bool low) {
 using Plan = std::function<double(const Request& query, std::uint64_t seed)>;
 
 /// A row whose iteration plans each query with each seed: the median and the 95th percentile of the
-/// times, in microseconds, and the share of the queries whose straight way is free. `make` makes
-/// the way to plan.
+/// times, in microseconds, and the share of the queries whose straight leg is free. `make` creates
+/// the planning function.
 template <class Make>
 void add_row(const std::string& name, bool low, const Make& make) {
   benchmark::RegisterBenchmark(name.c_str(),

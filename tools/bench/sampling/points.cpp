@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points found in a k-d tree beside a look at each: the nearest, and the least weighted sum of the
-// distances to a sample and the goal. Points lie anywhere, or where trees grow over the volume of
-// uav_rrt's main layout without obstacles.
+// Point queries in a k-d tree compared with linear search: the nearest, and the lowest weighted sum
+// of the distances to a sample and the goal. Points lie anywhere, or where trees grow over the
+// volume of uav_rrt's main layout without obstacles.
 #include <functional>
 #include <memory>
 #include <vector>

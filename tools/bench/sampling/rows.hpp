@@ -7,9 +7,9 @@
 
 namespace altiplan::bench {
 
-// Each topic adds its rows. What a row needs is made when it runs for the first time, so that
-// --benchmark_filter costs nothing for rows left out; it is timed after its answers have been
-// compared, and WrongAnswer names a row where they differ.
+// Each topic adds its rows. A row's data are created when it first runs, so that rows excluded by
+// --benchmark_filter cost nothing; it is timed after its answers have been compared, and
+// WrongAnswer names a row whose answers differ.
 void add_point_rows();
 void add_connect_rows(host::Registry& registry);
 void add_star_rows(host::Registry& registry);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RRT* beside OMPL's in equal time, and beside its BIT* in four times the time.
+// RRT* compared with OMPL's in equal time, and with its BIT* in four times the time.
 #include <chrono>
 
 #include "city.hpp"

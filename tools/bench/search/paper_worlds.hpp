@@ -7,7 +7,7 @@
 
 namespace altiplan::bench {
 
-/// Rows on the worlds of paper 002: the searches within its angle limits, and both ways beside one
-/// way. Throws WrongAnswer where two that must agree do not.
+/// Rows on the worlds of paper 002: searches within its angle limits, and bidirectional compared
+/// with unidirectional search. Throws WrongAnswer if two that must agree do not.
 void add_paper_rows(const std::shared_ptr<host::Registry>& registry);
 }  // namespace altiplan::bench

@@ -10,8 +10,8 @@ struct PlainResult {
   std::size_t expanded = 0;
 };
 
-/// A* as a textbook has it: a binary heap, real numbers, arrays cleared for each search, octile
-/// distance; a step needs its two cells free. Cells are cubes; with one level of cells steps stay
-/// in it. What the planners are compared with, in length and in time.
+/// Textbook A*: a binary heap, real numbers, arrays cleared for each search, octile distance; a
+/// step needs its two cells free. Cells are cubes; with one level of cells steps stay in it. The
+/// reference for the planners' lengths and times.
 PlainResult plain_astar(const VoxelGrid& grid, const Cell& start, const Cell& goal);
 }  // namespace altiplan::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planners on grids beside a plain A*, on one city in three sizes. A row is timed only after all
+// Grid planners compared with a plain A*, on one city in three sizes. A row is timed only after all
 // its lengths have been compared.
 #include <cmath>
 #include <string>
@@ -66,7 +66,7 @@ struct City {
       Query query{};
       for (Cell* c : {&query.start, &query.goal}) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          // Low over the ground, where the towers are in the way.
+          // Low above the ground, among the towers.
           const int most = axis == 2 ? std::max(counts[2] / 4, 1) : counts[axis];
           (*c)[axis] = int(random.integer(0, most - 1)) *
                        (cells.spec().counts[2] == 1 && axis == 2 ? 1 : scale);
@@ -167,7 +167,7 @@ void add_rows(host::Registry& registry) {
 
 void add_search(Subcommands& all) {
   const auto paper_alone = std::make_shared<bool>(false);
-  add_google(all, "search", "time planners on grids beside a plain A*, and on worlds of paper 002",
+  add_google(all, "search", "time grid planners against a plain A*, and on worlds of paper 002",
              [=](const Given& given) {
                add_paper_rows(given.registry);
                if (!*paper_alone) {
@@ -175,6 +175,6 @@ void add_search(Subcommands& all) {
                }
              })
       .add_flag("--paper-worlds", *paper_alone,
-                "only on those of the paper: the others take a minute to build and compare");
+                "only the worlds of the paper; the others take a minute to build and compare");
 }
 }  // namespace altiplan::bench

@@ -87,7 +87,7 @@ export function told_of(iteration, last) {
     `${population}.`;
 }
 
-/** What the screen says of the events that are not there. */
+/** The note on the events left out of the trace. */
 export function thinning(trace) {
   const [events, kept] = [trace.events, trace.kept].map((count) => number(count));
   if (trace.kept >= trace.events) return `All ${events} events shown.`;

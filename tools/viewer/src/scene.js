@@ -7,7 +7,7 @@ const kVersion = 1;
 function floats(text, count, what) {
   const raw = bytes(text);
   if (raw.length !== 4 * count) {
-    throw new Error(`The scene's ${what} hold ${raw.length} bytes, expected ${4 * count}.`);
+    throw new Error(`The scene's ${what} have ${raw.length} bytes, expected ${4 * count}.`);
   }
   return new Float32Array(raw.buffer);
 }
@@ -15,7 +15,7 @@ function floats(text, count, what) {
 /** The scene of the page, its binary parts decoded; throws one sentence where it is not one. */
 export function read_scene(text) {
   if (text.trim() === '' || text.trimStart().startsWith('/*')) {
-    throw new Error('This page holds no scene: make one with `altiplan view RESULT -o page.html`.');
+    throw new Error('This page contains no scene: create one with `altiplan view RESULT -o page.html`.');
   }
   const scene = parse_packed(text);
   if (scene.altiplan_scene !== kVersion) {

@@ -16,19 +16,19 @@
 #include "altiplan/smoother.hpp"
 #include "altiplan/tuner.hpp"
 
-/// What every plugin of a kind owes, as cases for any test framework: the laws numbered in the
-/// interfaces' class comments, held against small seeded worlds. Fixed seeds and, but for
-/// clock_cases_of, no clock: a finding comes again at every run.
+/// The contract of every plugin of a kind as cases for any test framework: the numbered clauses of
+/// the interfaces' class comments, checked in small seeded worlds. Seeds are fixed and, except in
+/// clock_cases_of, no clock is used: every finding is reproducible.
 namespace altiplan::conformance {
 
-/// A law that was broken: which ("Planner law 1: …"), and the input that broke it.
+/// A violation of a contract: its clause ("Planner contract 1: …"), and the input that caused it.
 struct Finding {
-  std::string law;
+  std::string contract;
   std::string message;
 };
 
-/// A case stands on its own: it can run alone, in any order, in a process of its own. An exception
-/// that escapes the plugin becomes a finding; run itself throws nothing.
+/// Cases are independent: each can run alone, in any order, in its own process. An exception that
+/// escapes the plugin becomes a finding; run itself throws nothing.
 struct Case {
   std::string name;  ///< snake_case
   std::function<std::vector<Finding>()> run;
@@ -37,18 +37,19 @@ using Cases = std::vector<Case>;
 
 struct Options {
   std::uint64_t seed = 1;
-  /// Seeded worlds, routes or hundreds of samples of a case.
+  /// Number of seeded worlds, of routes or of hundreds of samples per case.
   int rounds = 6;
-  /// Calls of the case that holds the hundredth answer against the first.
+  /// Number of calls in the case that compares the last answer with the first.
   int calls = 100;
-  /// Metres of what a planner or smoother resolves well: worlds are 20 x 16 x 6 of them.
+  /// Resolution of a planner or smoother in metres: worlds are 20 x 16 x 6 units.
   double unit_m = 50;
-  /// What one plan may use: enough for a planner to solve a world of 10,000 cells.
+  /// Budget of one plan: enough for a planner to solve a world of 10,000 cells.
   std::uint64_t iterations = 50'000;
-  /// Where an environment is looked at; unset: its bounds, a kilometre around the origin where
-  /// those are infinite.
+  /// Where an environment is sampled; unset: its bounds, a kilometre around the origin where those
+  /// are infinite.
   std::optional<Box> volume;
-  /// How many allocations this thread has made so far; unset: the law that asks is left out.
+  /// Number of allocations that this thread has made so far; unset: the check that needs it is
+  /// skipped.
   std::function<std::uint64_t()> allocations;
 };
 
@@ -56,19 +57,19 @@ template <class Interface>
 using Factory = std::function<std::unique_ptr<Interface>()>;
 using EnvironmentFactory = std::function<std::unique_ptr<Environment>(const Site&)>;
 
-// Each calls its factory more than once, and expects equal objects of it.
+// Each calls its factory more than once, and expects equal objects.
 Cases planner_cases(const Factory<Planner>& make, const Options& options = {});
 Cases local_planner_cases(const Factory<LocalPlanner>& make, const Options& options = {});
 Cases smoother_cases(const Factory<Smoother>& make, const Options& options = {});
 /// `tighter` makes the same constraint with a stricter parameter; may be null.
 Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter = {},
                        const Options& options = {});
-/// In a world of the layers `before` it; null: none.
+/// In a world with the layers `before`; null: none.
 Cases environment_cases(const EnvironmentFactory& make, const Options& options = {},
                         const std::shared_ptr<const World>& before = nullptr);
 Cases tuner_cases(const Factory<Tuner>& make, const Options& options = {});
 
-/// What a plugin of any kind owes: its entry, and the declaration of its parameters.
+/// The cases for plugins of any kind: their entry, and the declaration of their parameters.
 Cases plugin_cases(const PluginEntry& entry);
 
 /// One set of parameters under which a plugin is to conform; null parameters are the defaults.
@@ -81,11 +82,11 @@ struct Setup {
 /// The cases of the entry's kind.
 Cases cases_of(const PluginEntry& entry, const Setup& setup = {});
 
-/// Those that look at the clock, unlike all others: deadlines and stops, kept within 50 ms. To be
-/// run while nothing else does.
+/// The only cases that depend on the clock: deadlines and stops, kept within 50 ms. To be run on an
+/// otherwise idle machine.
 Cases clock_cases_of(const PluginEntry& entry, const Setup& setup = {});
 
-/// What the plugin answers to a list of questions of its kind, every number in digits enough to
-/// make it again: equal parameters and seeds give equal text, in any process.
+/// Answers of the plugin to a list of queries of its kind, with enough digits to reproduce every
+/// number: equal parameters and seeds give equal text, in any process.
 std::string answers_of(const PluginEntry& entry, const Setup& setup = {});
 }  // namespace altiplan::conformance

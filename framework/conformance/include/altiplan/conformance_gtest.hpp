@@ -16,7 +16,7 @@ class GTestCase : public ::testing::Test {
   explicit GTestCase(Case the_case) : case_(std::move(the_case)) {}
   void TestBody() override {
     for (const Finding& finding : case_.run()) {
-      ADD_FAILURE() << finding.law << "\n  " << finding.message;
+      ADD_FAILURE() << finding.contract << "\n  " << finding.message;
     }
   }
 
@@ -24,7 +24,7 @@ class GTestCase : public ::testing::Test {
   Case case_;
 };
 
-/// To be called before RUN_ALL_TESTS.
+/// Call before RUN_ALL_TESTS.
 inline void register_cases(const std::string& suite, const Cases& cases) {
   for (const Case& one : cases) {
     ::testing::RegisterTest(suite.c_str(), one.name.c_str(), nullptr, nullptr, __FILE__, __LINE__,

@@ -13,8 +13,8 @@
 
 namespace altiplan::kit {
 
-/// Work memory that outlives a call: kept by the plugin's object, lent to one call at a time, any
-/// number of threads. What is in it never influences a result: T must start each call as if new.
+/// Work memory that outlives a call: owned by the plugin's object, leased to one call at a time,
+/// thread-safe. Its content never influences a result: T must reset itself at each call.
 template <class T>
 class ScratchPool {
  public:
@@ -45,15 +45,15 @@ class ScratchPool {
   std::vector<std::unique_ptr<T>> idle_;
 };
 
-/// An array of nodes that a new generation empties at once. A Node is a plain struct with an
-/// unsigned member `stamp`; pages that no search touches are never given by the system.
+/// An array of nodes that a new generation empties in O(1). A Node is a plain struct with an
+/// unsigned member `stamp`; the system never allocates pages that no search touches.
 template <class Node>
 class NodeStore {
   static_assert(std::is_trivially_copyable_v<Node> && std::is_unsigned_v<decltype(Node::stamp)>);
   using Stamp = decltype(Node::stamp);
 
  public:
-  /// Starts anew with `count` nodes, none of them seen.
+  /// Starts a generation of `count` nodes, all unseen.
   void reset(std::size_t count) {
     if (count > count_) {
       nodes_.reset();
@@ -73,7 +73,7 @@ class NodeStore {
     ++generation_;
   }
   bool seen(std::size_t i) const { return nodes_.get()[i].stamp == generation_; }
-  /// The node, made `fresh` first if this generation has not seen it.
+  /// The node, first set to `fresh` if this generation has not seen it.
   Node& at(std::size_t i, const Node& fresh) {
     Node& node = nodes_.get()[i];
     if (node.stamp != generation_) {
@@ -82,7 +82,7 @@ class NodeStore {
     }
     return node;
   }
-  /// A node that has been seen.
+  /// A node that this generation has seen.
   Node& operator[](std::size_t i) { return nodes_.get()[i]; }
   const Node& operator[](std::size_t i) const { return nodes_.get()[i]; }
   std::size_t bytes() const { return count_ * sizeof(Node); }
@@ -96,15 +96,15 @@ class NodeStore {
   Stamp generation_ = 0;
 };
 
-/// An array of whole numbers that are 0 until written; emptying it costs what was written since, in
-/// blocks (small ones where few numbers lie near to each other), and pages that no search touches
-/// are never given by the system.
+/// An array of integers that are 0 until written; emptying it costs what was written since, in
+/// blocks (small ones where the writes are scattered), and the system never allocates pages that no
+/// search touches.
 template <class T, std::size_t kBlockBytes = 1024>
 class ScratchArray {
   static_assert(std::is_unsigned_v<T>);
 
  public:
-  /// Starts anew with `count` zeros.
+  /// Resets to `count` zeros.
   void reset(std::size_t count) {
     if (count > count_) {
       values_.reset();
@@ -117,7 +117,7 @@ class ScratchArray {
         throw std::bad_alloc();
       }
       written_ = {};
-      written_.reserve(blocks);  // growing it would take twice the memory
+      written_.reserve(blocks);  // growing on demand would take twice the memory
       count_ = count;
     } else {
       for (const std::uint32_t block : written_) {
@@ -141,7 +141,7 @@ class ScratchArray {
     return values_.get()[i];
   }
   std::size_t bytes() const { return count_ * sizeof(T) + count_ / kBlock; }
-  /// Of the blocks written since the last reset.
+  /// Bytes in the blocks written since the last reset.
   std::size_t written_bytes() const { return written_.size() * kBlockBytes; }
 
  private:

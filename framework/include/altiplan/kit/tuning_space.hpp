@@ -8,16 +8,16 @@
 
 namespace altiplan::kit {
 
-/// A tuner's space seen as the unit cube: a search moves through positions, each number from 0 to
-/// 1, and asks for the points that they stand for.
+/// A tuner's space mapped to the unit cube: a search moves through positions, each number from 0 to
+/// 1, and evaluates the corresponding points.
 class ALTIPLAN_API TuningSpace {
  public:
   explicit TuningSpace(std::vector<Dimension> space);
 
   std::size_t dimensions() const { return space_.size(); }
-  /// Numbers outside of groups by their share of the range. Those of a group are so scaled and then
-  /// divided by their sum; where that would leave the bounds of one, it stays at its bound and the
-  /// others share the rest. A group whose numbers are all 0 has equal weights, as far as bounds
+  /// Maps numbers outside of groups linearly to their ranges. Those of a group are scaled likewise
+  /// and then divided by their sum; a number that would leave its bounds stays at its bound, and
+  /// the others share the rest. A group whose numbers are all 0 has equal weights, as far as bounds
   /// allow. Sums are 1 to within a few units in the last place.
   std::vector<double> point(std::span<const double> position) const;
 
@@ -25,6 +25,6 @@ class ALTIPLAN_API TuningSpace {
   void normalise(const std::vector<std::size_t>& group, std::vector<double>& point) const;
 
   std::vector<Dimension> space_;
-  std::vector<std::vector<std::size_t>> groups_;  ///< indices of the dimensions of each
+  std::vector<std::vector<std::size_t>> groups_;  ///< dimension indices of each group
 };
 }  // namespace altiplan::kit

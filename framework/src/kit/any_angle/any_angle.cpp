@@ -21,7 +21,7 @@ constexpr auto kOffsets = [] {
   return offsets;
 }();
 
-/// As lround, which is a call, but for the last number below a half.
+/// Inline equivalent of lround, except for the last number below a half.
 std::uint32_t rounded(double cost) {
   return std::uint32_t(cost + 0.5);  // NOLINT(bugprone-incorrect-roundings)
 }
@@ -29,7 +29,7 @@ std::uint32_t rounded(double cost) {
 
 AnyAngleSearch::Result AnyAngleSearch::run() {
   const Box box = lattice_.spec().box();
-  // Few ways are longer than four times this, but in a maze they are.
+  // Few paths are longer than four times this, except in a maze.
   double longest_m = 4 * (box.max - box.min).sum();
   for (;; longest_m *= 4) {
     begin(longest_m);
@@ -45,7 +45,7 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
         if (fits) {
           result.status = PlanStatus::solved;
           result.at_goal = at_goal;
-        } else {  // by less than costs tell
+        } else {  // by less than the resolution of costs
           result.status = at_goal ? PlanStatus::no_route : *status;
           result.route.clear();
           result.progress.too_long = true;
@@ -56,13 +56,13 @@ AnyAngleSearch::Result AnyAngleSearch::run() {
   }
 }
 
-/// Nothing where a way is too long for costs as fine as these.
+/// Nothing if a path is too long for costs of this resolution.
 std::optional<PlanStatus> AnyAngleSearch::search() {
   while (!open_.empty()) {
     const BucketQueue::Entry entry = open_.pop();
     const Node s = entry.node;
     if (is_closed(s) || entry.from != g(s)) {
-      continue;  // it waits in another place: a leg was refused, and its way is longer than that
+      continue;  // stale entry: a leg was refused, and the path became longer
     }
     if (watch_.spent(progress_.expanded) || memory_full()) {
       return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
@@ -108,10 +108,10 @@ void AnyAngleSearch::expand(Node s) {
   const Node p = parent(s);
   const Place from = place(p);
   const std::uint32_t g_parent = g(p);
-  // Squares of how far the neighbours are from the parent and from the goal, by axis and offset.
+  // Squared distances of the neighbours from the parent and from the goal, by axis and offset.
   std::array<std::array<double, 3>, 3> to_parent;
   std::array<std::array<double, 3>, 3> to_goal;
-  std::array<std::array<Node, 3>, 3> part;  // of their numbers
+  std::array<std::array<Node, 3>, 3> part;  // of their indices
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<int>& rows = nodes_.cell[axis];
     for (int o = 0; o < 3; ++o) {
@@ -136,7 +136,7 @@ void AnyAngleSearch::expand(Node s) {
     const Node v = sum(part, d);
     const std::uint32_t through_parent = g_parent + rounded(std::sqrt(sum(to_parent, d)));
     if (!is_shorter(through_parent, v)) {
-      continue;  // by way of s it is no shorter
+      continue;  // no shorter by way of s
     }
     const std::uint32_t h = rounded(settings_.weight_h * std::sqrt(sum(to_goal, d)));
     if (untested) {
@@ -168,9 +168,9 @@ void AnyAngleSearch::update_vertex(Node s, Node v, std::uint32_t through_parent,
   }
 }
 
-/// Holds the leg to s, which was taken without a look, to the rules. False where it breaks one:
-/// then s is reached from the best of its closed neighbours, and waits for its turn again, or from
-/// none.
+/// Checks the leg to s, which was taken unchecked. False if it violates a constraint: then s is
+/// reached from the best of its closed neighbours and returns to the open list, or becomes
+/// unreached.
 bool AnyAngleSearch::set_vertex(Node s) {
   if (s == start_.node || sees(parent(s), s)) {
     return true;
@@ -200,7 +200,7 @@ bool AnyAngleSearch::set_vertex(Node s) {
       consider(start_.node, false);
     }
   }
-  reached_.at(s) = 0;  // it may be generated again
+  reached_.at(s) = 0;  // may be generated again
   if (best != kNone) {
     take(s, best, least, heuristic(s));
   }
@@ -214,7 +214,7 @@ bool AnyAngleSearch::may_take(Node a, Node b) {
   return settings_.angles == AngleRule::printed || keeps_limits(a, b);
 }
 
-/// How the vehicle comes to a node.
+/// The approach to a node.
 std::optional<Approach> AnyAngleSearch::before(Node n) const {
   const std::optional<Approach> first = request_.before_start();
   if (n == start_.node) {

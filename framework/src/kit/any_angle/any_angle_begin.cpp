@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a search begins with: its ends, its units and its first node.
+// Initialisation of a search: its ends, its units and its first node.
 #include <algorithm>
 #include <numeric>
 
@@ -8,14 +8,15 @@
 namespace altiplan::kit {
 namespace {
 
-/// Whether a leg is free if its cells are, whatever comes before it.
+/// True if a leg is free whenever its cells are, whatever precedes it.
 bool cells_alone_decide(const Request& request) {
   const Limits& limits = request.limits;
   return MoveRules::cells_decide(request) && limits.max_climb >= kPi / 2 && limits.min_leg <= 0 &&
          limits.max_leg == kInfinity;
 }
 
-/// What roundings may add to a way, more than most have legs: routes are measured in the end.
+/// Bound of the rounding error of a path's cost, for more legs than most have: routes are measured
+/// in the end.
 constexpr std::uint32_t kRoundings = 1000;
 }  // namespace
 
@@ -49,7 +50,7 @@ AnyAngleSearch::AnyAngleSearch(const Request& request, const Lattice& lattice, M
   memory_.sight.prepare(rules_.shared_grid());
 }
 
-/// The place p of the route's start or goal, whose number is `beyond` where it is no node.
+/// The route's start or goal at p; its number is `beyond` if it is no node.
 AnyAngleSearch::End AnyAngleSearch::end_at(const Vec3& p, Node beyond) const {
   const Lattice::Link nearest = lattice_.nearest(p);
   End end{beyond, nearest.length == 0 && !rules_.grid()->blocked(nearest.cell), nearest.cell, {}, p,

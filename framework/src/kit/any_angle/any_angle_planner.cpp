@@ -9,8 +9,8 @@
 namespace altiplan::kit {
 namespace {
 
-/// Whether a leg between two cells may be refused for another reason than what lies below and
-/// beside it: then a cell may be out of reach from one parent alone.
+/// True if a leg between two cells may be refused for other reasons than what lies below and beside
+/// it: then a cell may be unreachable from one parent alone.
 bool legs_differ(const Request& request) {
   const Limits& limits = request.limits;
   return limits.turns() || !request.constraints.empty() || limits.max_climb < kPi / 2 ||
@@ -59,7 +59,7 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
       result.status = result.budget_hit ? PlanStatus::timed_out : PlanStatus::no_route;
       result.route.clear();
       result.message =
-          "the rule as printed gave a route that breaks one: " + judged.violations.front().message;
+          "the angle rule as printed gave an invalid route: " + judged.violations.front().message;
       result.counters.push_back({"routes_refused", 1});
     }
     return result;
@@ -76,7 +76,7 @@ PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells
                                        const PlanResult& found) const {
   SearchSettings settings;
   settings.cell_m = params_.cell_m;
-  settings.corner = CornerRule::any;  // a step that touches edges keeps the rules too
+  settings.corner = CornerRule::any;  // a step that touches edges satisfies the constraints too
   settings.moves = MoveCheck::cells;
   settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
   constexpr std::size_t kBytes = sizeof(HeadingCell) + 1;
@@ -90,7 +90,7 @@ PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells
   const auto memory = heading_memory_.take();
   PlanResult second = HeadingSearch(rest, settings, lattice, kInfinity, *memory).run().result;
   add(second.counters, found.counters);
-  second.message += ", after straight legs between cells led nowhere";
+  second.message += ", after the search by straight legs between cells found no route";
   return second;
 }
 

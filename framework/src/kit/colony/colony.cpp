@@ -10,8 +10,8 @@
 namespace altiplan::kit {
 namespace {
 
-/// Routes of an iteration that a trace shows: as many tell what the colony does, and all of them
-/// would make files of hundreds of megabytes.
+/// Routes per iteration in a trace: enough to show what the colony does; all of them would make
+/// files of hundreds of megabytes.
 constexpr std::size_t kTracedAnts = 10;
 }  // namespace
 
@@ -19,28 +19,30 @@ void ColonyParams::describe(Fields& f) {
   f("cell_m", cell_m)
       .unit("m")
       .at_least(0.001)
-      .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
-  f("ants", ants).range(1, 1'000'000).doc("of the colony");
+      .doc("cell edge length on each axis; a layer with its own cells overrides it");
+  f("ants", ants).range(1, 1'000'000).doc("number of ants in the colony");
   f("iterations", iterations)
       .range(1, 1'000'000)
-      .doc("every ant walks once in each; all of them are made if the budget allows");
+      .doc(
+          "number of iterations, in each of which every ant walks once; all are run if the budget "
+          "allows");
   f("deposit_q", deposit_q)
       .range(1e-9, 1e9)
-      .doc("Q of eq. (2): an ant lays Q over the metres of its route");
-  f("initial_pheromone", initial_pheromone).range(1e-9, 1e9).doc("tau of every place at first");
+      .doc("Q of eq. (2): an ant deposits Q divided by the metres of its route");
+  f("initial_pheromone", initial_pheromone).range(1e-9, 1e9).doc("initial tau at every place");
   f("alpha", alpha).range(0, 20).doc("power of the pheromone in eq. (1)");
   f("beta", beta).range(0, 20).doc("power of the heuristic in eq. (1)");
   f("evaporation", evaporation)
       .range(0, 1)
-      .doc("rho of eq. (4): share of the pheromone that goes with each iteration");
+      .doc("rho of eq. (4): fraction of the pheromone that evaporates in each iteration");
   f("max_length_m", max_length_m)
       .unit("m")
       .greater_than(0)
-      .doc("an ant that has walked farther dies; auto: three times the volume's length and width");
+      .doc("maximum length of an ant's walk; auto: three times the volume's length and width");
   f("max_memory_mb", max_memory_mb)
       .unit("MB")
       .at_least(1)
-      .doc("a lattice that needs more is refused before anything is allocated");
+      .doc("memory limit of the lattice; a larger one is refused before allocation");
 }
 
 Colony::Colony(const Request& request, const ColonyParams& params, const Lattice& lattice)
@@ -91,7 +93,7 @@ std::optional<PlanResult> Colony::without_ants() {
   if (start_ == kNone || goal_ == kNone) {
     result.status = PlanStatus::no_route;
     result.message = std::string("no route: ") + (start_ == kNone ? "the start" : "the goal") +
-                     " has no free cell beside it that it could join";
+                     " has no free cell beside it to join the lattice";
     return result;
   }
   if (start_ != goal_) {
@@ -105,7 +107,7 @@ std::optional<PlanResult> Colony::without_ants() {
   result.status = straight ? PlanStatus::solved : PlanStatus::no_route;
   result.message = straight ? "start and goal share a cell: the straight leg"
                             : "no route: start and goal share a cell, and the straight leg "
-                              "between them breaks a rule";
+                              "between them violates a constraint";
   result.route = straight ? Route{start, goal} : Route{};
   return result;
 }
@@ -131,7 +133,7 @@ PlanResult Colony::run() {
   return result();
 }
 
-/// One iteration; false where a budget has ended it.
+/// One iteration; false if a budget ended it.
 bool Colony::send_out(Crew& crew, std::size_t iteration) {
   max_steps_ = request_.budget.max_iterations - expanded_;
   next_ant_ = 0;
@@ -144,7 +146,7 @@ bool Colony::send_out(Crew& crew, std::size_t iteration) {
 
 void Colony::send_out(Walker& walker, std::size_t iteration) {
   for (;;) {
-    // Asked first: all ants whose steps have been added then come before the next one.
+    // Read first, so that all ants whose steps have been added come before the next one.
     const bool is_spent = walked_ >= max_steps_;
     const std::size_t n = next_ant_++;
     if (n >= ants_.size()) {
@@ -171,8 +173,8 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
   }
 }
 
-/// Takes the ants' routes in their order, those that the budget of steps still covers; whether it
-/// covers all.
+/// Collects the ants' routes in order, as far as the budget of steps covers them; true if it covers
+/// all.
 bool Colony::collect() {
   alive_ = stuck_ = too_long_ = 0;
   double sum = 0;
@@ -262,7 +264,7 @@ bool Colony::keeps_rules(Walker& walker, std::size_t from, std::size_t to) const
   return goal_link_ == 0 || walker.rules.any_leg_ok(a, b, request_.goal.position);
 }
 
-/// Whether the leg from the goal's cell to the goal may follow the ant's last one.
+/// True if the leg from the goal's cell to the goal may follow the ant's last one.
 bool Colony::ends_well(Walker& walker) const {
   const Ant& ant = *walker.ant;
   return goal_link_ == 0 || cells_decide_ ||
@@ -330,11 +332,11 @@ std::string Colony::reason() const {
                              " steps";
   const std::string last = "in the last, " + std::to_string(alive_) + " arrived, " +
                            std::to_string(stuck_) + " were stuck and " + std::to_string(too_long_) +
-                           " went farther than " + std::to_string(std::llround(longest_)) + " m";
+                           " exceeded " + std::to_string(std::llround(longest_)) + " m";
   if (!best_.way.empty()) {
     return "a route of " + std::to_string(best_.length) + " m after " + walked + "; " + last;
   }
-  return "no ant has arrived: " + walked + "; " + last +
+  return "no ant arrived: " + walked + "; " + last +
          (first_refused_.empty() ? "" : "; refused moves of the first ant: " + first_refused_);
 }
 
@@ -348,7 +350,7 @@ PlanResult ColonyPlanner::do_plan(const Request& request) const {
     PlanResult result;
     result.status = PlanStatus::invalid_problem;
     result.message = std::string(name_) + " searches one level of cells, this lattice has " +
-                     std::to_string(levels) + " (no level flight is asked for): use astar";
+                     std::to_string(levels) + " (level flight is not requested): use astar";
     return result;
   }
   return search(request, lattice);

@@ -12,7 +12,7 @@
 
 namespace altiplan::kit {
 
-/// Threads that stay for a plan: an iteration is too short to start new ones for.
+/// Threads that live as long as a plan: an iteration is too short to start new ones.
 class Crew {
  public:
   explicit Crew(std::size_t size) {
@@ -22,7 +22,7 @@ class Crew {
         others_.emplace_back([this, n] { live(n); });
       }
     } catch (const std::system_error&) {
-      // No more threads are to be had: those that there are take all of the ants.
+      // No more threads are available: the existing ones process all ants.
     }
   }
   Crew(const Crew&) = delete;
@@ -32,8 +32,8 @@ class Crew {
     begin();
   }
 
-  /// Has each of the crew do its part, this thread as number 0; ends when all have, and throws what
-  /// one of them has thrown.
+  /// Runs `work` on every thread, this one as number 0; returns when all have finished, and
+  /// rethrows an exception from any of them.
   void all_do(const std::function<void(std::size_t)>& work) {
     work_ = &work;
     busy_ = others_.size();
@@ -79,6 +79,6 @@ class Crew {
   std::atomic<std::uint32_t> round_{0};
   std::atomic<std::size_t> busy_{0};
   std::vector<std::exception_ptr> failed_;
-  std::vector<std::jthread> others_;  // last: they use the rest
+  std::vector<std::jthread> others_;  // last: they use the members above
 };
 }  // namespace altiplan::kit

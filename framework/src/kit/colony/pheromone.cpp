@@ -35,10 +35,10 @@ bool Pheromone::settle() {
   }
   all_changed_ = false;
   double factor = 1;
-  if (largest_ > 0) {  // it is 0 where nothing remains and nothing was laid
+  if (largest_ > 0) {  // 0 where nothing remains and nothing was deposited
     factor = 1 / largest_;
     largest_ = 1;
-    // Beside a unit of this size, what is there counts for nothing anyway.
+    // Relative to a unit of this size, existing values are negligible.
     per_unit_ = std::min(per_unit_ * factor, 1e50);
   }
   for (double& amount : amounts_) {

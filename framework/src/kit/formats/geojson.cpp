@@ -43,7 +43,7 @@ Ring read_ring(const Json& points) {
   return without_repeats(ring);
 }
 
-/// Nothing where it is flat.
+/// Nothing if the polygon is degenerate.
 std::optional<Polygon> read_polygon(const Json& rings) {
   if (!rings.is_array()) {
     throw Error("a Polygon needs a list of rings, found " + short_text(rings));
@@ -89,7 +89,7 @@ std::string id_of(const Json& feature, std::size_t n) {
   return text.empty() ? std::to_string(n) : text;
 }
 
-// Takes the feature's areas; false where it has none.
+// Reads the feature's areas; false if it has none.
 bool read_feature(const Json& feature, const std::string& id, GeoJson& to) {
   const auto geometry = feature.find("geometry");
   if (geometry == feature.end() || geometry->is_null()) {

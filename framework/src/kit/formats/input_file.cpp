@@ -15,7 +15,7 @@
 namespace altiplan::kit {
 namespace {
 
-/// What the file is in place of a regular file; "" where it is one.
+/// What the path is instead of a regular file; "" for a regular file.
 std::string why_irregular(const struct stat& found) {
   const char* const what = S_ISREG(found.st_mode)    ? ""
                            : S_ISDIR(found.st_mode)  ? "a folder"
@@ -30,14 +30,14 @@ std::string why_not_opened(int error) {
                          : std::string("cannot be opened: ") + std::strerror(error);
 }
 
-/// Opens a regular file; `why` says why it is none, where it is none.
+/// Opens a regular file; for anything else `why` gets the reason.
 Descriptor open_regular(const std::string& file, std::string& why) {
   struct stat found {};
   if (::stat(file.c_str(), &found) != 0) {
     why = why_not_opened(errno);
     return Descriptor(-1);
   }
-  // Before opening too, which does things to devices.
+  // Checked before opening too, as opening a device has side effects.
   if (why = why_irregular(found); !why.empty()) {
     return Descriptor(-1);
   }
@@ -59,7 +59,8 @@ Descriptor open_or_throw(const std::string& file) {
   return opened;
 }
 
-/// Says which file cannot be read, and why, where the library says "underflow error".
+/// Names the file that cannot be read, and the reason, where the library only reports "underflow
+/// error".
 class NamedBuffer : public __gnu_cxx::stdio_filebuf<char> {
   template <class Read>
   auto named(const Read& read) {
@@ -105,7 +106,7 @@ std::string why_unreadable(const std::string& file) {
 InputFile::InputFile(const std::string& file) : std::istream(nullptr) {
   buffer_ = std::make_unique<NamedBuffer>(file);
   rdbuf(buffer_.get());
-  exceptions(std::ios::badbit);  // what the buffer throws is thrown on
+  exceptions(std::ios::badbit);  // rethrows the buffer's exceptions
 }
 
 InputFile::~InputFile() = default;
@@ -115,12 +116,12 @@ std::string read_file(const std::string& file, std::uintmax_t max_bytes) {
   struct stat found {};
   ::fstat(opened.number(), &found);
   const auto refuse_size = [&] {
-    throw InputError(file, "is larger than " + in_mega(max_bytes) + ", the most that is read");
+    throw InputError(file, "is larger than " + in_mega(max_bytes) + ", the largest size accepted");
   };
   if (std::uintmax_t(found.st_size) > max_bytes) {
     refuse_size();
   }
-  // What says that it has no bytes may have some, as below /proc, and what grows has more.
+  // A file of size 0 may have content, as below /proc, and a growing file gets longer.
   constexpr std::size_t kBlock = 65536;
   std::string text;
   std::size_t size = 0;

@@ -7,7 +7,7 @@
 namespace altiplan::kit {
 namespace {
 
-/// Takes parts off the front of a text.
+/// Parses a text from the front.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}

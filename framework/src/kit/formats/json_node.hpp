@@ -11,7 +11,7 @@
 
 namespace altiplan::kit {
 
-/// A value of the file and where it stands in it ("mission.items.3"): what is wrong is told there.
+/// A value of the file and its position there ("mission.items.3"), which error messages name.
 class JsonNode {
  public:
   JsonNode(const nlohmann::json& json, std::string place)
@@ -82,7 +82,7 @@ class JsonNode {
     told([&] { expect_position(p[0], p[1]); });
     return p;
   }
-  /// Runs a check that does not know the place.
+  /// Runs a check that does not know the position.
   template <class Check>
   void told(const Check& check) const {
     try {

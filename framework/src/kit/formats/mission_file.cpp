@@ -21,8 +21,8 @@ std::string number_text(double value) {
   return text;
 }
 
-/// The kind of item that a MAV_CMD is, none for a command that is no place on the way.
-/// DO_LAND_START (189) carries a place, but marks where landing begins and is not flown to.
+/// The item kind of a MAV_CMD, none for a command that is no position on the route. DO_LAND_START
+/// (189) carries a position, but marks where landing begins and is not flown to.
 std::optional<MissionItem::Kind> kind_of(int command) {
   using Kind = MissionItem::Kind;
   switch (command) {
@@ -80,7 +80,7 @@ void expect_altitude(double altitude_m) {
 
 AltitudeFrame frame_of(int mav_frame) {
   switch (mav_frame) {
-    case 0:  // GLOBAL, and its form with whole numbers
+    case 0:  // GLOBAL, and its integer form
     case 5:
       return AltitudeFrame::sea;
     case 3:  // GLOBAL_RELATIVE_ALT
@@ -115,7 +115,7 @@ void check_zone(MissionZone& zone) {
 MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kind) const {
   MissionPoint at{command.lon, command.lat, command.altitude_m, frame_of(command.frame)};
   if (is_nowhere(at.lon, at.lat)) {
-    // Autopilots take off, loiter and land where the vehicle is.
+    // Autopilots take off, loiter and land at the vehicle's current position.
     if (kind == MissionItem::Kind::waypoint) {
       throw Error("a waypoint needs a position, found longitude " + number_text(at.lon) +
                   " and latitude " + number_text(at.lat));
@@ -124,7 +124,7 @@ MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kin
                                : mission_.home         ? &*mission_.home
                                                        : nullptr;
     if (here == nullptr) {
-      throw Error("begins where the vehicle is, and the file has no home position");
+      throw Error("begins at the vehicle's position, but the file has no home position");
     }
     at.lon = here->lon;
     at.lat = here->lat;
@@ -152,14 +152,14 @@ void CommandList::finish() {
       numbers += (numbers.empty() ? "" : ", ") + std::to_string(number);
     }
     mission_.notes.push_back(std::to_string(skipped_) +
-                             " commands that are no places on the way skipped (" + numbers + ")");
+                             " commands that are not waypoints skipped (" + numbers + ")");
   }
   if (taken_ > 0) {
     mission_.notes.push_back(std::to_string(taken_) + " commands taken out of survey items");
   }
   if (complex_ > 0) {
     mission_.notes.push_back(std::to_string(complex_) +
-                             " complex items skipped: they carry no waypoints");
+                             " complex items skipped: they contain no waypoints");
   }
 }
 
@@ -171,7 +171,7 @@ bool is_mission_file(const std::string& file) {
 MissionFile read_mission(const std::string& file) { return read_mission(file, read_file(file)); }
 
 MissionFile read_mission(const std::string& file, const std::string& text) {
-  const std::string mark = "\xEF\xBB\xBF";  // some editors begin UTF-8 with it
+  const std::string mark = "\xEF\xBB\xBF";  // some editors put it before UTF-8
   const std::string body = text.starts_with(mark) ? text.substr(mark.size()) : text;
   const std::size_t first = body.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) {

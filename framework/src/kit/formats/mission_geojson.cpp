@@ -7,8 +7,8 @@ namespace {
 
 using Node = JsonNode;
 
-/// The line of a GeoJSON file that is a route: three coordinates a point, and `altitude_frame`
-/// among its properties (sea level, as RFC 7946 has it, where it is not).
+/// The line of a GeoJSON file that is a route: three coordinates per point, and `altitude_frame`
+/// among its properties (by default sea level, as in RFC 7946).
 void read_line(const Node& feature, MissionFile& mission) {
   if (!mission.items.empty()) {
     mission.route_problem = "expected one LineString as the route, found more";
@@ -71,7 +71,7 @@ MissionFile read_geojson_route(const nlohmann::json& json) {
     }
   }
   if (others > 0) {
-    mission.notes.push_back(std::to_string(others) + " features that are no lines skipped");
+    mission.notes.push_back(std::to_string(others) + " features other than lines skipped");
   }
   return mission;
 }

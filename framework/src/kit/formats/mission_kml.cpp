@@ -7,7 +7,7 @@
 namespace altiplan::kit {
 namespace {
 
-/// A position of a KML file; the altitude may be left out.
+/// A position of a KML file; the altitude is optional.
 struct Coordinate {
   Point2 lonlat{0, 0};
   double altitude_m = 0;
@@ -63,7 +63,7 @@ std::string_view altitude_mode(const pugi::xml_node& geometry) {
   return mode;
 }
 
-/// What a Placemark says beside its geometry: its name, and our own limits of a zone.
+/// Data of a Placemark apart from its geometry: its name, and our own limits of a zone.
 struct Placemark {
   std::string name;
   std::map<std::string, std::string, std::less<>> data;
@@ -85,12 +85,12 @@ struct Placemark {
   }
 };
 
-/// What KML holds: routes as lines or points, zones as polygons.
+/// Content of a KML file: routes as lines or points, zones as polygons.
 class KmlReader {
  public:
   explicit KmlReader(MissionFile& mission) : mission_(mission) {}
 
-  /// True where what is in the element has been read.
+  /// True if the content of the element has been read.
   bool take(const pugi::xml_node& node) {
     const std::string_view name = local_name(node);
     if (name == "Polygon") {
@@ -113,7 +113,7 @@ class KmlReader {
           "expected one LineString as the route, found " + std::to_string(lines_);
     } else if (const Points& route = lines_ > 0 ? line_ : points_; route.without_height) {
       mission_.route_problem =
-          "a route needs heights: altitudeMode absolute or relativeToGround, and three numbers a "
+          "a route needs heights: altitudeMode absolute or relativeToGround, and three numbers per "
           "point";
     }
     mission_.items = lines_ > 0 ? std::move(line_.items) : std::move(points_.items);
@@ -123,7 +123,7 @@ class KmlReader {
     }
     if (flat_ > 0) {
       mission_.notes.push_back(std::to_string(flat_) +
-                               " polygons without limits in height: they hold at every height");
+                               " polygons without altitude limits: they apply at every altitude");
     }
     if (links_ > 0) {
       mission_.notes.push_back(std::to_string(links_) + " network links not followed");
@@ -162,7 +162,7 @@ class KmlReader {
     return ring;
   }
 
-  /// An extruded polygon above sea level reaches up to its corners; others hold at every height.
+  /// An extruded polygon above sea level extends up to its corners; others apply at every height.
   void add_polygon(const pugi::xml_node& node) {
     const Placemark placemark(node);
     MissionZone zone;

@@ -8,7 +8,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/mission_file.hpp"
 
-/// \file What the readers of mission files share.
+/// \file Common parts of the readers of mission files.
 namespace pugi {
 class xml_node;
 }
@@ -23,35 +23,36 @@ MissionFile read_kml_or_gpx(const std::string& file, const std::string& text);
 MissionFile read_kml(const pugi::xml_node& root, const std::string& file, const std::string& text);
 MissionFile read_gpx(const pugi::xml_node& root, const std::string& file, const std::string& text);
 
-/// Throws Error where the place is not on the Earth; swapped axes are named where they show.
+/// Throws Error if the position is not on the Earth; the message suspects swapped axes where they
+/// fit.
 void expect_position(double lon, double lat);
-/// Throws Error where the height is not finite or beyond 100 km.
+/// Throws Error if the height is not finite or beyond 100 km.
 void expect_altitude(double altitude_m);
-/// The frame of a MAV_FRAME number that gives a place on the Earth; throws Error for others.
+/// The altitude frame of a global MAV_FRAME number; throws Error for others.
 AltitudeFrame frame_of(int mav_frame);
-/// Repeated points dropped; throws Error for a polygon that is none.
+/// Drops repeated points; throws Error for an invalid polygon.
 void check_zone(MissionZone& zone);
 
-/// Mission commands as the autopilots count them, one after the other.
+/// Mission commands in the numbering of the autopilots, one after the other.
 class CommandList {
  public:
   struct Command {
     int number = 0;
     int frame = 0;
     double acceptance_m = 0;
-    double lon = 0;  ///< both 0, or not finite: at the place where the vehicle is then
+    double lon = 0;  ///< both 0, or not finite: the vehicle's position at that time
     double lat = 0;
     double altitude_m = 0;
     std::string place;
   };
 
   explicit CommandList(MissionFile& mission) : mission_(mission) {}
-  /// Adds the item that the command stands for, if it is a place to fly to. Throws Error for a
-  /// place that is none.
+  /// Adds the item of the command, if it is a position to fly to. Throws Error for an invalid
+  /// position.
   void add(const Command& command);
   void skip_complex() { ++complex_; }
   void take_complex(std::size_t items) { taken_ += items; }
-  /// Notes what was left out.
+  /// Adds the notes on skipped commands.
   void finish();
 
  private:

@@ -39,7 +39,7 @@ void read_simple_item(const Node& item, CommandList& commands) {
   item.told([&] { commands.add(command); });
 }
 
-/// A survey carries the commands that the ground station made of it; a structure scan does not.
+/// A survey contains the commands that the ground station made from it; a structure scan does not.
 void read_complex_item(const Node& item, CommandList& commands) {
   item.at("complexItemType").text();
   if (!item.has("TransectStyleComplexItem") || !item.at("TransectStyleComplexItem").has("Items")) {
@@ -85,7 +85,7 @@ void add_zone(const Node& from, MissionZone zone, MissionFile& mission) {
 
 void read_fence(const Node& fence, MissionFile& mission) {
   fence.at("version").expect_version(1, 2);
-  if (fence.at("version").whole(2) == 1) {  // one polygon, to stay in
+  if (fence.at("version").whole(2) == 1) {  // one polygon, keep-in
     const Node polygon = fence.at("polygon");
     if (polygon.size() > 0) {
       MissionZone zone;
@@ -126,11 +126,11 @@ void read_rally_points(const Node& rally, MissionFile& mission) {
   }
 }
 
-/// Says what a JSON file that is no plan may be instead.
+/// Throws Error naming what a JSON file that is no plan may be instead.
 void expect_plan(const Node& root, const Json& json) {
   if (!root.has("fileType")) {
     if (root.has("items") && root.has("groundStation")) {
-      throw Error("this is a mission in the form from before .plan (.mission), expected a .plan");
+      throw Error("this is a mission in the old format (.mission), expected a .plan");
     }
     throw Error("expected a plan (\"fileType\": \"Plan\"), found " + short_text(json));
   }

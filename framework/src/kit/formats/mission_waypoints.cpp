@@ -70,7 +70,7 @@ struct Row {
   double altitude() const { return fields[10]; }
 };
 
-/// Fence points, of which those of one polygon follow one another.
+/// Fence points; those of one polygon are consecutive.
 class FenceReader {
  public:
   explicit FenceReader(MissionFile& mission) : mission_(mission) {}
@@ -83,7 +83,7 @@ class FenceReader {
     if (missing_ > 0 && command != command_) {
       finish();
     }
-    if (command == 5000) {  // where a vehicle returns to that breaks the fence
+    if (command == 5000) {  // return point after a fence breach
       ++returns_;
     } else if (command == 5003 || command == 5004) {
       MissionZone zone;
@@ -122,7 +122,7 @@ class FenceReader {
       corners_ = missing_ = std::size_t(count);
     } else if (std::size_t(count) != corners_) {
       throw Error("the polygon of " + zone_.name + " has " + std::to_string(corners_) +
-                  " corners, this one says " + std::to_string(std::size_t(count)));
+                  " corners, this one gives " + std::to_string(std::size_t(count)));
     }
     expect_position(row.lon(), row.lat());
     zone_.polygon.outline.push_back({row.lon(), row.lat()});
@@ -140,7 +140,7 @@ class FenceReader {
   std::size_t returns_ = 0;
 };
 
-/// Says what a text that does not begin as it should may be instead.
+/// Throws Error naming what a text with another first line may be.
 void expect_header(std::string_view first_line) {
   const std::vector<std::string_view> words = words_of(first_line);
   if (words.size() == 3 && words[0] == "QGC" && words[1] == "WPL") {
@@ -154,17 +154,16 @@ void expect_header(std::string_view first_line) {
   }
   if (words.size() == 2 && number_of(words[0]) && number_of(words[1])) {
     throw Error(
-        "this is an ArduPilot fence in its old form (latitude and longitude alone), "
+        "this is an ArduPilot fence in the old format (latitude and longitude only), "
         "expected QGC WPL 110");
   }
   if (first_line.starts_with("PK")) {
-    throw Error("this is a ZIP archive (KMZ?), expected what is in it");
+    throw Error("this is a ZIP archive (KMZ?), expected the file inside it");
   }
   throw Error("expected QGC WPL 110, JSON or XML, found " + excerpt(first_line.substr(0, 40)));
 }
 
-/// Line 0 is the home position where it is a waypoint above sea level: ground stations put it
-/// there.
+/// Line 0 is the home position if it is a waypoint above sea level: ground stations write it there.
 bool is_home(const Row& row) { return row.command() == 16 && row.frame() == 0; }
 }  // namespace
 
@@ -216,7 +215,7 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
   }
   commands.finish();
   if (number == 0) {
-    throw Error(file + ": there is no item in it");
+    throw Error(file + ": contains no mission items");
   }
   return mission;
 }

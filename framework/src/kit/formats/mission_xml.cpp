@@ -5,7 +5,7 @@ namespace altiplan::kit {
 
 MissionFile read_kml_or_gpx(const std::string& file, const std::string& text) {
   pugi::xml_document document;
-  // Entities of a document type are never expanded; such a file is refused all the same.
+  // Entities of a document type are never expanded; such a file is refused anyway.
   const pugi::xml_parse_result parsed = document.load_buffer(
       text.data(), text.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_auto);
   const auto at = [&](std::ptrdiff_t offset) {

@@ -19,10 +19,10 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
 }
 
 Json parse_json(const std::string& file, const std::string& text) {
-  // Printing a value, and freeing it, goes down as many calls as it has levels.
+  // Printing and freeing a value recurse as deep as its nesting.
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
     if (depth > kMaxDepth) {
-      throw Error(file + ": lists and objects are nested over " + std::to_string(kMaxDepth) +
+      throw Error(file + ": lists and objects are nested more than " + std::to_string(kMaxDepth) +
                   " levels deep");
     }
     return true;
@@ -30,10 +30,10 @@ Json parse_json(const std::string& file, const std::string& text) {
   try {
     return Json::parse(text, shallow);
   } catch (const Json::parse_error& error) {
-    throw Error(file + ": is not JSON: it breaks off or goes wrong in line " +
+    throw Error(file + ": is not valid JSON: it ends early or has an error in line " +
                 std::to_string(line_at(text, error.byte)));
   } catch (const Json::out_of_range&) {
-    throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
+    throw Error(file + ": contains a number that is too large (beyond 1.8e308)");
   }
 }
 

@@ -6,12 +6,12 @@
 
 namespace altiplan::kit {
 
-/// Throws Error with the line where the text is not JSON; `file` is for messages.
+/// Throws Error with the line if the text is not JSON; `file` is for messages.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 
 /// A value for messages, shortened.
 std::string short_text(const nlohmann::json& value);
 
-/// The line, from 1, that holds the byte at `offset`.
+/// The line, from 1, that contains the byte at `offset`.
 std::size_t line_at(const std::string& text, std::size_t offset);
 }  // namespace altiplan::kit

@@ -11,7 +11,7 @@
 #include "mission_parts.hpp"
 #include "text_file.hpp"
 
-/// \file What the readers of KML and GPX share.
+/// \file Common parts of the readers of KML and GPX.
 namespace altiplan::kit {
 
 inline constexpr int kMaxXmlDepth = 64;
@@ -49,7 +49,7 @@ inline double number_of(std::string_view text) {
   return value;
 }
 
-/// Shows every element to a reader; what is in one that it took is not shown.
+/// Passes every element to a reader; the children of an element that it took are skipped.
 template <class Reader>
 class XmlWalk : public pugi::xml_tree_walker {
  public:
@@ -62,7 +62,7 @@ class XmlWalk : public pugi::xml_tree_walker {
           line_at(text_, std::size_t(std::max<std::ptrdiff_t>(node.offset_debug(), 0))));
     };
     if (depth() > kMaxXmlDepth) {
-      throw Error(file_ + ":" + line() + ": elements are nested over " +
+      throw Error(file_ + ":" + line() + ": elements are nested more than " +
                   std::to_string(kMaxXmlDepth) + " levels deep");
     }
     if (node.type() != pugi::node_element) {

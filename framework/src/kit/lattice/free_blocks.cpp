@@ -12,13 +12,13 @@ namespace {
 
 constexpr int kEdgeBits = 3;
 constexpr int kEdge = 1 << kEdgeBits;
-constexpr int kShort = 96;           // steps, below which every cell is looked at
-constexpr int kMaxSteps = 1 << 20;  // their products stay whole numbers
+constexpr int kShort = 96;          // steps; every cell is tested on shorter legs
+constexpr int kMaxSteps = 1 << 20;  // their products stay integers
 
 enum class Seen { end, blocked_cell, next_block };
 
-/// A leg between the centres of two cells, on its way from block to block. Face number n of an axis
-/// is crossed at the time (2 n + 1) * unit, as in kit::line_of_sight.
+/// A leg between the centres of two cells, traversed block by block. Face number n of an axis is
+/// crossed at the time (2 n + 1) * unit, as in kit::line_of_sight.
 class Walk {
  public:
   Walk(const VoxelGrid& grid, const Cell& a, const Cell& b)
@@ -44,14 +44,14 @@ class Walk {
   const Cell& block() const { return block_; }
   bool is_in_last_block() const { return leaves() == kNever; }
 
-  /// Goes on to the next block without a look at this one's cells.
+  /// Moves to the next block without testing this one's cells.
   void leave_block() {
     now_ = leaves();
     has_jumped_ = true;
     enter_blocks();
   }
 
-  /// Goes on to it from cell to cell.
+  /// Moves to it cell by cell.
   Seen look_through_block() {
     if (has_jumped_) {
       catch_up();
@@ -74,7 +74,7 @@ class Walk {
         cell_[axis] += is_crossed ? sign_[axis] : 0;
         next_[axis] += is_crossed ? 2 * unit_[axis] : 0;
       }
-      // Through an edge or a corner: the cells beside the way, some of them twice.
+      // Through an edge or a corner: the cells beside the leg, some of them twice.
       if (crossed > 1 &&
           (is_blocked(at + part[0]) || is_blocked(at + part[1]) || is_blocked(at + part[2]) ||
            is_blocked(at + part[0] + part[1]) || is_blocked(at + part[0] + part[2]) ||
@@ -109,7 +109,7 @@ class Walk {
     }
   }
 
-  /// Finds the cell where the leg is by now.
+  /// Finds the cell of the leg at the current time.
   void catch_up() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (start_[axis] == end_[axis]) {
@@ -137,8 +137,8 @@ class Walk {
   double per_unit_[3];
   int sign_[3];
   std::int64_t move_[3];   // in bits
-  std::int64_t next_[3];   // when the next face is crossed
-  std::int64_t leave_[3];  // when the block is left
+  std::int64_t next_[3];   // time at which the next face is crossed
+  std::int64_t leave_[3];  // time at which the block is left
   std::int64_t now_ = 0;
   bool has_jumped_ = false;
 };

@@ -9,8 +9,8 @@
 namespace altiplan::kit {
 namespace {
 
-/// Slack for "this centre is still inside", in cells: what rounding can do, and the judge's
-/// tolerance lets pass.
+/// Tolerance for "this centre is still inside", in cells: bounds the rounding, and is within the
+/// judge's tolerance.
 double rounding(double edge) { return std::min(1e-9, kLengthTolerance / 2 / edge); }
 
 /// Where centres may lie: the volume, and the altitude bands over sea.
@@ -71,7 +71,7 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
     spec_.counts[axis] = int(counts[axis]);
   }
   numbers_ = CellIndex(spec_.counts);
-  std::array<double, 8> along{};  // by the axes, as bits, that a step leads along
+  std::array<double, 8> along{};  // by the axes, as bits, of a step
   for (int set = 0; set < 8; ++set) {
     along[std::size_t(set)] = step(direction(set & 1, set >> 1 & 1, set >> 2 & 1)).norm();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What MoveRules has refused, in words.
+// Text of the refusals of MoveRules.
 #include <algorithm>
 
 #include "altiplan/kit/lattice/move_rules.hpp"

@@ -18,7 +18,7 @@ bool climb_kept(const Vec3& leg, const Limits& limits) {
   return climb_angle(leg) <= limits.max_climb + kAngleTolerance;
 }
 
-/// What the cosine of an angle tells of it and a limit: a product of two vectors, and of their
+/// Comparison of an angle with a limit by its cosine: a product of two vectors, and of their
 /// lengths, against the limit's cosine.
 enum class Told { kept, broken, nothing };
 Told by_cosine(double dot, double lengths, double limit_cosine) {
@@ -117,7 +117,7 @@ std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_
   if (heading_of(step) >= 0) {
     return Approach(from, heading_vector(step));
   }
-  // Straight up or down from the start, or from the cell that a link led to, in the same column.
+  // Vertical from the start, or from the cell of a link, in the same column.
   return Approach(from, onward(first, request_.start.position).heading_at(here));
 }
 
@@ -133,10 +133,10 @@ void MoveRules::sort_layers() {
 }
 
 void MoveRules::find_gaps() {
-  constexpr double kRounding = 1e-5;  // of what StepGround has learned, in metres
+  constexpr double kRounding = 1e-5;  // of the heights in StepGround, in metres
   double slope = 0;
   for (const Layer& layer : bare_ground_.layers()) {
-    // What is below this blocks the leg itself.
+    // Anything below this blocks the leg itself.
     needed_gap_ = 0;
     too_low_ = by_clearance;
     refused_layer_ = layer.id;
@@ -245,7 +245,7 @@ bool MoveRules::keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b)
   if (top.least < StepGround::kNone && !ends_too_low() && high - top.least >= needed_gap_ &&
       low - top.most < certain_gap_) {
     const double gap = request_.world->ground_gap(a, b, certain_gap_);
-    // Where it is enough, the gap that is told may be more than there is.
+    // Where it is sufficient, the returned gap may exceed the actual one.
     StepGround::learn(top, low, high, std::min(gap, certain_gap_), gap < certain_gap_);
     if (gap >= certain_gap_ && !has_ceiling_over_ground_) {
       return true;
@@ -283,8 +283,8 @@ void MoveRules::ask(KnownClearance& known, const Vec3& at) const {
 bool MoveRules::keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
                           KnownClearance& near_b) {
   const double length = lattice_.step_length(d);
-  // Clearance is 1-Lipschitz: what is known of a tells of b, and two balls of half the leg around
-  // its ends hold all of it.
+  // Clearance is 1-Lipschitz: a bound at a gives one at b, and two balls of half the leg around its
+  // ends contain all of it.
   near_b.learn(near_a.least - length);
   const double half = spare_ + length / 2;
   if (near_a.least <= half) {
@@ -346,7 +346,7 @@ bool MoveRules::keeps_turn(const Approach& before, const Vec3& a, const Vec3& ou
   const Limits& limits = request_.limits;
   const Vec3 incoming = a - before.from;
   const double runs = incoming.head<2>().squaredNorm() * outgoing.head<2>().squaredNorm();
-  constexpr double kUpright = 1e-9;  // of the squares: beyond it a leg has a heading
+  constexpr double kUpright = 1e-9;  // of the squares: a leg above it has a heading
   const double all = incoming.squaredNorm() * outgoing.squaredNorm();
   if (limits.min_turn_radius > 0 || runs < kUpright * all || !has_heading(incoming) ||
       !has_heading(outgoing)) {

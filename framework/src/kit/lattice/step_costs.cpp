@@ -8,14 +8,14 @@
 namespace altiplan::kit {
 namespace {
 
-// Whole numbers of which sqrt 2, or sqrt 2 and sqrt 3, times them are nearer to whole numbers than
-// for any smaller one (the coarsest is the customary ratio).
+// Integers whose products with sqrt 2, or with sqrt 2 and sqrt 3, are nearer to integers than for
+// any smaller one (the coarsest is the customary ratio).
 constexpr std::uint32_t kSquares[] = {70, 408, 985, 2378, 5741, 33461, 195025, 1136689, 6625109};
 constexpr std::uint32_t kCubes[] = {41, 1463, 4109, 20586, 192070, 326491, 2151016};
-// Steps that are this exact need no finer ones; a search is quicker with coarser keys.
+// Steps of this accuracy need no finer ones; a search is faster with coarser keys.
 constexpr double kFineEdge = 25000;
 
-/// Cost of an edge: one of the records where there are some, else any.
+/// Cost of an edge: one of the records if there are any, else any integer.
 double edge_cost(std::span<const std::uint32_t> records, StepCosts::Scale scale, double most) {
   if (scale == StepCosts::Scale::ratio) {
     return std::min(most, double(records.front()));
@@ -50,7 +50,7 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
       error_ = costs_[std::size_t(d)] > 0 ? std::max(error_, error) : kInfinity;
     }
   }
-  // Rounding takes at most half a unit of a step's cost and one of the bound's fall along it.
+  // Rounding costs at most half a unit of a step's cost and one of the bound's fall along it.
   const double min_cost = edge * per_metre_;
   bound_per_metre_ = per_metre_ * std::max(0.0, 1 - 2 / min_cost);
   const bool faces = (lattice.steps() >> direction(1, 1, 0) & 1) == 0;

@@ -35,7 +35,7 @@ FloatBox grown(const Box& box) {
   return result;
 }
 
-/// Boxes as the tree has them, and what they are sorted by.
+/// Boxes as stored in the tree, and their sort keys.
 class SolidBoxes {
  public:
   explicit SolidBoxes(const std::vector<Box>& boxes) : boxes_(boxes.size()) {
@@ -44,7 +44,7 @@ class SolidBoxes {
   std::size_t count() const { return boxes_.size(); }
   FloatBox box(std::int32_t index) const { return boxes_[std::size_t(index)]; }
   float twice_middle(std::int32_t index, int axis) const {
-    constexpr float kFar = 2e15F;  // the sum of two endless sides stays a number
+    constexpr float kFar = 2e15F;  // keeps the sum of two infinite sides a number
     const FloatBox& box = boxes_[std::size_t(index)];
     return std::clamp(box.min[axis], -kFar, kFar) + std::clamp(box.max[axis], -kFar, kFar);
   }
@@ -53,7 +53,7 @@ class SolidBoxes {
   std::vector<FloatBox> boxes_;
 };
 
-/// The same of cells, of which nothing more is kept.
+/// The same for cells, without further data per cell.
 class BoxesOfCells {
  public:
   explicit BoxesOfCells(const CellBoxes& boxes)
@@ -73,7 +73,7 @@ class BoxesOfCells {
 template <class Boxes>
 struct Builder {
   const Boxes boxes;
-  std::vector<std::int32_t> order;  // indices of boxes, the range of a node together
+  std::vector<std::int32_t> order;  // indices of boxes, contiguous for each node
   std::vector<BoxNode> nodes;
 
   using Range = std::array<std::size_t, 2>;
@@ -89,7 +89,7 @@ struct Builder {
 
   float twice_middle(std::int32_t index, int axis) const { return boxes.twice_middle(index, axis); }
 
-  // Twice the middles of a range lie within.
+  // Bounds of twice the centres of a range.
   struct Extent {
     float low[3];
     float high[3];
@@ -117,7 +117,7 @@ struct Builder {
     return result;
   }
 
-  // Cuts the range into that many parts of about equal size.
+  // Splits the range into that many parts of about equal size.
   void cut(const Range& range, const Extent& within, std::size_t parts, std::vector<Range>& into) {
     if (parts == 1) {
       into.push_back(range);
@@ -137,13 +137,13 @@ struct Builder {
     cut({middle, range[1]}, above, parts - first, into);
   }
 
-  // Makes the node of a range, and all below it; gives its box.
+  // Builds the node of a range and its subtree; returns its box.
   FloatBox make(std::size_t index, const Range& range) {
     constexpr std::size_t kWidth = BoxNode::kWidth;
     const std::size_t count = range[1] - range[0];
     const bool is_leaf = count <= kWidth;
     std::vector<Range> parts;
-    std::size_t full = 1;  // boxes below a child where all is full
+    std::size_t full = 1;  // boxes below a child in a full tree
     while (full * kWidth < count) {
       full *= kWidth;
     }

@@ -13,55 +13,56 @@
 
 namespace altiplan::kit {
 
-/// Eight numbers, or yes (all bits) and no, that one vector operation takes at once; compilers make
-/// two of it for CPUs whose vectors are half as wide.
+/// Eight numbers, or booleans (all bits set or none), in one vector register; compilers split it
+/// for CPUs whose vectors are half as wide.
 using Lanes = float __attribute__((vector_size(32)));
 using LaneBits = std::int32_t __attribute__((vector_size(32)));
 
-/// A node of a tree sixteen wide: up to sixteen boxes side by side, in two halves. Their sides are
-/// floats, rounded outwards by more than a distance in doubles may err.
+/// A node of a 16-ary tree: up to sixteen boxes side by side, in two halves. Their sides are
+/// floats, rounded outwards by more than the error of a distance in doubles.
 struct alignas(64) BoxNode {
   static constexpr int kWidth = 16;
   Lanes side[3][2][2];       ///< by axis, the lower and the upper one, by half
   std::int32_t box[kWidth];  ///< of a leaf: the boxes' indices
-  std::int32_t first;        ///< else of its first child, the others follow; -1 of a leaf
-  std::uint32_t lanes;       ///< a bit for each lane in use; the others' boxes are nowhere
+  std::int32_t first;        ///< of an inner node: its first child, followed by the others; -1 for
+                             ///< a leaf
+  std::uint32_t lanes;       ///< one bit per lane in use; the boxes of other lanes are empty
 
   bool is_leaf() const { return first < 0; }
 };
 static_assert(sizeof(BoxNode) == 512);
 
-/// Boxes halved at the median of their middles along the longer side, as few parts a node as keep
-/// the nodes below it full. The root is node 0; no boxes, no nodes.
+/// Boxes split at the median of their centres along the longer side, into as few parts per node as
+/// keep the nodes below it full. The root is node 0; no boxes, no nodes.
 std::vector<BoxNode> box_tree(const std::vector<Box>& boxes);
 std::vector<BoxNode> box_tree(const CellBoxes& boxes);
 
-/// Levels of a tree of 2^31 boxes, and the nodes of it that can wait at once while it is walked.
+/// Levels of a tree of 2^31 boxes, and the maximum number of pending nodes of a traversal.
 inline constexpr int kMaxLevels = 10;
 inline constexpr int kMaxOpen = 15 * kMaxLevels + 1;
 
-/// Coordinates up to here may be asked for by the tests below; sides beyond it are endless.
+/// Maximum coordinate of a query by the tests below; sides beyond it count as infinite.
 inline constexpr double kTreeReach = 1e15;
 
-/// Floats that are not above, and not below, a value of at most kTreeReach.
+/// The largest float not above, and the smallest not below, a value of at most kTreeReach.
 inline float rounded_down(double value) {
   const auto nearest = static_cast<float>(value);
   return nearest - (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
 }
 inline float rounded_up(double value) { return -rounded_down(-value); }
 
-/// Of the greatest coordinate: what boxes and legs are grown by, far more than distances in doubles
-/// may err there, and than a float may.
+/// Relative to the largest coordinate: boxes and legs are grown by this, far more than the error of
+/// distances in doubles, and than that of a float.
 inline constexpr double kTreeGrowth = 0x1p-21;
 
-/// A leg a–b that reaches somewhat farther than `reach` to all sides.
+/// A leg a–b, grown by slightly more than `reach` on all sides.
 struct TreeLeg {
   float from[3][2];  ///< the farthest that a reaches up and down
-  float inverse[3];  ///< of the way from a to b
+  float inverse[3];  ///< of the displacement from a to b
   int first[3];      ///< the side of a box that is met first
 
   TreeLeg(const Vec3& a, const Vec3& b, double reach) {
-    constexpr double kNoWay = 1e-30;  // what is beyond a side then stays beyond it at any time
+    constexpr double kNoWay = 1e-30;  // keeps anything beyond a side beyond it at any time
     const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
     const double grown = reach + kTreeGrowth * most;
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +75,7 @@ struct TreeLeg {
   }
 };
 
-/// A bit for each lane that says yes.
+/// One bit for each lane that is true.
 inline std::uint32_t bits_of(const LaneBits& low, const LaneBits& high) {
   constexpr LaneBits kBits{1, 2, 4, 8, 16, 32, 64, 128};
   const LaneBits bits = (low & kBits) | (high & kBits << 8);
@@ -85,16 +86,16 @@ inline std::uint32_t bits_of(const LaneBits& low, const LaneBits& high) {
   return static_cast<std::uint32_t>(four[0]);
 }
 
-/// A distance as a key: its square as a float, read as a whole number, which keeps the order. The
-/// keys of lanes have the lane in their last four bits.
+/// A distance as a key: its square as a float, reinterpreted as an integer, which preserves the
+/// order. The keys of lanes have the lane in their last four bits.
 inline std::int32_t key_of(double distance) {
-  constexpr double kRounding = 1 + 0x1p-17;  // more than the keys of lanes are too great
+  constexpr double kRounding = 1 + 0x1p-17;  // covers the excess of the lanes' keys
   constexpr double kMax = std::numeric_limits<float>::max();
   const double outside = std::max(distance, 0.0);
   return std::bit_cast<std::int32_t>(float(std::min(outside * outside * kRounding, kMax))) | 15;
 }
 
-/// Keys of the least distance from the point to each box.
+/// Keys of the minimum distance from the point to each box.
 struct Keys {
   LaneBits half[2];
 };
@@ -116,7 +117,7 @@ inline void keys_of(const BoxNode& node, const float* p, Keys& keys) {
   }
 }
 
-/// The lanes whose keys are at most `limit`, a bit each.
+/// The lanes whose keys are at most `limit`, one bit each.
 inline std::uint32_t lanes_within(const Keys& keys, std::int32_t limit) {
   const LaneBits low = keys.half[0] <= limit + LaneBits{};
   const LaneBits high = keys.half[1] <= limit + LaneBits{};
@@ -136,10 +137,10 @@ inline std::int32_t min_of(const Keys& keys) {
   return least[0];
 }
 
-/// The lanes whose boxes the leg may reach, a bit each: where it is between the sides on all axes
+/// The lanes whose boxes the leg may reach, one bit each: where it is between the sides on all axes
 /// at once.
 inline std::uint32_t lanes_reached(const BoxNode& node, const TreeLeg& leg) {
-  constexpr float kRounding = 0x1p-20F;  // more than a time loses to rounding
+  constexpr float kRounding = 0x1p-20F;  // exceeds the rounding error of a time
   LaneBits reached[2];
   for (int half = 0; half < 2; ++half) {
     Lanes enter{};

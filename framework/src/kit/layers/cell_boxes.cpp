@@ -9,15 +9,15 @@ namespace {
 using Run = std::array<int, 2>;        ///< the first and the last column, both included
 using Rectangle = std::array<int, 4>;  ///< and the first and the last row
 
-/// What is alike in neighbouring slices (rows, or levels) from the slice `since` on.
+/// Parts that recur in consecutive slices (rows, or levels) from the slice `since` on.
 template <class Part>
 struct Lasting {
   Part part;
   int since;
 };
 
-/// Goes on to the next slice, whose parts are in order: `lasting` becomes them, each since its
-/// first slice; ended(part, since) is told what is not among them.
+/// Advances to the next slice, whose parts are in order: `lasting` becomes these, each with its
+/// first slice; ended(part, since) is called for the parts that are not among them.
 template <class Part, class Ended>
 void go_on(std::vector<Lasting<Part>>& lasting, const std::vector<Part>& parts, int slice,
            const Ended& ended) {
@@ -37,7 +37,7 @@ void go_on(std::vector<Lasting<Part>>& lasting, const std::vector<Part>& parts, 
   lasting = std::move(now);
 }
 
-/// Whether so many rows from row (j, k) on have the same cells blocked as those from (j0, k0) on.
+/// True if `rows` rows from row (j, k) on have the same cells blocked as those from (j0, k0) on.
 bool same_rows(const VoxelGrid& cells, int j, int k, int j0, int k0, int rows) {
   const std::uint64_t* words = cells.row_words(j, k);
   return std::equal(words, words + std::size_t(rows) * cells.words_per_row(),

@@ -24,7 +24,7 @@ struct CellBoxes {
   }
 };
 
-/// Boxes that cover the blocked cells and meet in faces: runs along x, equal runs of neighbouring
-/// rows together, and equal rectangles of neighbouring levels.
+/// Boxes that cover the blocked cells and share only faces: runs along x, equal runs of
+/// neighbouring rows merged, then equal rectangles of neighbouring levels.
 CellBoxes cell_boxes_of(const VoxelGrid& cells);
 }  // namespace altiplan::kit

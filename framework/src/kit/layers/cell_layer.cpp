@@ -38,11 +38,11 @@ CellLayer::CellLayer(VoxelGrid cells, std::vector<std::string> notes)
 
 double CellLayer::do_clearance(const Vec3& p) const {
   const double outside = solid_.clearance(p);
-  // Boxes that meet know nothing of each other: how deep a point is in all of them, the cells say.
+  // Adjacent boxes are independent of each other: the depth in their union comes from the cells.
   return outside > 0 ? outside : -depth(p);
 }
 
-/// How far from the nearest free cell, or the grid's outside; 0 at the surface.
+/// Distance from the nearest free cell, or the outside of the grid; 0 at the surface.
 double CellLayer::depth(const Vec3& p) const {
   const GridSpec& spec = cells_.spec();
   const Cell at = spec.cell_of(p);
@@ -77,13 +77,13 @@ bool CellLayer::do_blocked(const Vec3& a, const Vec3& b, double r) const {
   if (r <= 0 && a == b) {
     const Cell at = cells_.spec().cell_of(a);
     if (cells_.spec().holds(at) && !cells_.blocked(at)) {
-      return false;  // at the most it touches one that is blocked
+      return false;  // it can only touch a blocked one
     }
   }
   return solid_.blocked(a, b, r) || (r <= kSeam && runs_in_a_seam(a, b));
 }
 
-/// Whether the cube of twice that edge around p lies in blocked cells.
+/// True if the cube of twice that edge around p lies in blocked cells.
 bool CellLayer::is_inside(const Vec3& p, double half_edge) const {
   const GridSpec& spec = cells_.spec();
   const Box cube = Box{p, p}.grown(half_edge);
@@ -105,9 +105,9 @@ bool CellLayer::is_inside(const Vec3& p, double half_edge) const {
   return true;
 }
 
-/// Whether the leg, too near to faces of cells for a single box to count as entered, runs through
-/// the inside of several together. A piece within one cell is judged by its ends and its middle, at
-/// half the depth that a point is judged by: a leg is then never free where a point of it is not.
+/// True if the leg, too close to cell faces for a single box to count as entered, runs through the
+/// interior of several together. A piece within one cell is tested at its ends and its midpoint, at
+/// half the depth of the point test: a leg is then never free where one of its points is not.
 bool CellLayer::runs_in_a_seam(const Vec3& a, const Vec3& b) const {
   if (a == b) {
     return is_inside(a, kSeam);

@@ -7,12 +7,12 @@
 namespace altiplan::kit {
 namespace {
 
-/// (share of the leg, x, y), x and y counted from the piece's middle.
+/// (fraction of the leg, x, y), x and y relative to the piece's centre.
 using Unknowns = std::array<double, 3>;
 
-/// The square of |o + share d - (x, y, dx x + dy y)| over a box of the unknowns: convex, so that
-/// its least value is the least of those where the derivatives in some of them are zero and the
-/// others are at their ends.
+/// The square of |o + share d - (x, y, dx x + dy y)| over a box of the unknowns: convex, so its
+/// minimum is the smallest of those where the derivatives in some of them are zero and the others
+/// are at their ends.
 class LeastSquare {
  public:
   LeastSquare(const Vec3& o, const Vec3& d, const GroundPiece& piece)
@@ -29,8 +29,8 @@ class LeastSquare {
     return (o_ + u[0] * columns_[0] + u[1] * columns_[1] + u[2] * columns_[2]).norm();
   }
 
-  /// Sets the free unknowns, one or more of them, so that the derivatives in them are zero; false
-  /// where the columns are dependent: the least value is then found with fewer of them free, too.
+  /// Solves for the free unknowns, one or more, with zero derivatives; false if the columns are
+  /// dependent: the minimum is then found with fewer free unknowns too.
   bool solve(const std::array<bool, 3>& is_free, Unknowns& u) const {
     std::array<std::size_t, 3> free{};
     std::array<double, 3> right{};
@@ -44,7 +44,7 @@ class LeastSquare {
         free[count++] = i;
       }
     }
-    // Elimination without pivots, as the matrix is positive definite or singular.
+    // Elimination without pivoting, as the matrix is positive definite or singular.
     std::array<std::array<double, 3>, 3> m{};
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
@@ -89,7 +89,7 @@ LegToPlane leg_to_plane(const Vec3& a, const Vec3& b, const GroundPiece& piece, 
   const Unknowns low{0, -half_x, -half_y};
   const Unknowns high{a == b ? 0.0 : 1.0, half_x, half_y};
   LegToPlane best{kInfinity, 0, 0, 0};
-  // Each unknown is free (0), at its least (1) or its greatest (2); first all of them are free.
+  // Each unknown is free (0), at its minimum (1) or its maximum (2); all of them are free first.
   for (int faces = 0; faces < 27; ++faces) {
     const std::array<int, 3> at{faces % 3, faces / 3 % 3, faces / 9};
     Unknowns u{};

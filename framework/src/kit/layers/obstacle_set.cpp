@@ -14,7 +14,7 @@
 #include "../../shape/shape_parts.hpp"
 #include "box_tree.hpp"
 
-// A tree of boxes finds the shapes near a point or a leg, closed forms decide: see
+// A bounding box tree finds the shapes near a point or a leg, closed forms decide: see
 // docs/decisions/0002-fcl.md for the measurement behind this.
 namespace altiplan::kit {
 namespace {
@@ -25,8 +25,8 @@ constexpr double kMeets = 1e-9;
 using shape_parts::Indexed;
 using Trees = std::vector<std::unique_ptr<EdgeTree>>;
 
-// The shapes, and the trees of those that have many edges; none where none has. Or boxes of cells,
-// each made a shape when it is asked for.
+// The shapes, with edge trees for those with many edges, or boxes of cells, each converted to a
+// shape on demand.
 class Solids {
  public:
   Solids(const std::vector<Shape>& shapes, const Trees& trees, const CellBoxes& cells)
@@ -51,26 +51,26 @@ bool meets(const Indexed& shape, const Vec3& a, const Vec3& b, double r) {
   if (limit > kMeets) {
     return comes_within(shape, a, b, limit);
   }
-  // A point (r below the tolerance) is blocked where it gets inside, as touching is free.
+  // A point (r below the tolerance) is blocked if it is inside, as touching is free.
   if (!comes_within(shape, a, b, 2 * kMeets)) {
     return false;
   }
   const double distance = leg_distance(shape, a, b);
-  // leg_depth may be half of what the leg's deepest place is.
+  // leg_depth may be half of the leg's maximum depth.
   return distance < limit ||
          (distance <= kMeets && -leg_depth(shape, a, b) < r - kLengthTolerance / 2);
 }
 
 bool is_in_reach(const Vec3& p) { return p.cwiseAbs().maxCoeff() <= kTreeReach; }
 
-// A node on the way down, and the lanes that have not been looked at.
+// A node on the current path, with the lanes not yet visited.
 struct Open {
   Keys keys;
   const BoxNode* node;
   std::uint32_t lanes;
 };
 
-// Down to the nearest leaf first, so that on the way back little is still near enough.
+// Descends to the nearest leaf first, so that few lanes are still near enough on the way back.
 ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const Vec3& p) {
   std::array<Open, kMaxLevels> way;
   std::size_t depth = 0;
@@ -155,7 +155,7 @@ std::vector<int> shapes_within(const BoxNode* nodes, const Vec3& p, double reach
       }
     }
   }
-  std::sort(found.begin(), found.end());  // the tree's order is nobody's business
+  std::sort(found.begin(), found.end());  // hides the tree's order
   return found;
 }
 

@@ -26,7 +26,7 @@ bool within_box(const Point2& e, const Point2& f, const Point2& p) {
          p[1] >= std::min(e[1], f[1]) && p[1] <= std::max(e[1], f[1]);
 }
 
-// Where two edges meet, if they do; touching counts.
+// Intersection of two edges, if there is one; touching counts.
 std::optional<Point2> meeting(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   if (std::max(a[0], b[0]) < std::min(c[0], d[0]) || std::max(c[0], d[0]) < std::min(a[0], b[0]) ||
       std::max(a[1], b[1]) < std::min(c[1], d[1]) || std::max(c[1], d[1]) < std::min(a[1], b[1])) {
@@ -76,7 +76,7 @@ struct Edges {
   bool covers(const Point2& p) const { return tree.covers(p[0], p[1]); }
 };
 
-// Where edge n of a ring meets its edge m > n.
+// Intersection of edge n of a ring with its edge m > n.
 std::optional<Point2> meeting_in_ring(const Ring& ring, std::size_t n, std::size_t m) {
   const std::size_t size = ring.size();
   const Point2& a = ring[n];
@@ -98,7 +98,7 @@ std::optional<Point2> meeting_in_ring(const Ring& ring, std::size_t n, std::size
   return std::nullopt;
 }
 
-// The first place, along the one ring and then along the other, where they meet.
+// The first intersection of two rings, in order along the one and then along the other.
 std::optional<Point2> meeting(const Edges& one, const Edges& other) {
   if (!one.reaches(other)) {
     return std::nullopt;
@@ -141,7 +141,7 @@ bool has_area(const Ring& ring) {
   const auto distance2 = [&](const Point2& p) {
     return (p[0] - ring[0][0]) * (p[0] - ring[0][0]) + (p[1] - ring[0][1]) * (p[1] - ring[0][1]);
   };
-  // The farthest corner from the first gives the line that all would lie on.
+  // The line through the first corner and the corner farthest from it would contain all others.
   const auto far = std::max_element(
       ring.begin(), ring.end(),
       [&](const Point2& p, const Point2& q) { return distance2(p) < distance2(q); });
@@ -176,7 +176,7 @@ std::string names_text(const std::vector<std::string>& names) {
     text += (n == 0 ? "'" : ", '") + names[n] + "'";
   }
   return names.size() <= kMax ? text
-                               : text + " and " + std::to_string(names.size() - kMax) + " more";
+                              : text + " and " + std::to_string(names.size() - kMax) + " more";
 }
 
 std::string polygon_problem(const Polygon& polygon) {
@@ -206,7 +206,7 @@ std::string polygon_problem(const Polygon& polygon) {
     }
     for (std::size_t m = 1; m < n; ++m) {
       if (rings[m].covers(ring.front()) || rings[n].covers(rings[m].ring.front())) {
-        return name + " and hole " + std::to_string(m) + " lie one in the other";
+        return name + " and hole " + std::to_string(m) + " lie one inside the other";
       }
     }
   }

@@ -11,8 +11,8 @@ namespace altiplan::kit::kd {
 using Leaf = KdTree::Leaf;
 using Branch = KdTree::Branch;
 
-/// Four numbers, or yes (all bits) and no, that one vector operation takes at once; compilers make
-/// two of it for CPUs whose vectors are half as wide.
+/// Four numbers, or booleans (all bits set or none), in one vector register; compilers split it for
+/// CPUs whose vectors are half as wide.
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourBits = std::int64_t __attribute__((vector_size(32)));
 
@@ -25,25 +25,25 @@ inline void take_roots(Four& numbers) {
 }
 
 /// Lower bounds of a query's figure in each part of a branch, >= 0. Their last three bits are the
-/// lane's number, which keeps the order but among those that differ in these bits alone.
+/// lane's number, which preserves the order except among those that differ in these bits alone.
 struct Keys {
   Four half[2];
 
   double& operator[](int lane) { return reinterpret_cast<double*>(half)[lane]; }
 };
 
-/// More than any figure. As a limit, a little less.
+/// Above every figure; slightly less as a limit.
 inline constexpr double kBeyond = 0x1p1000;
 inline constexpr double kNoLimit = 0x1p999;
 
 inline int lane_in(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
-/// What keys of figures up to this one do not exceed.
+/// Upper bound of the keys of figures up to this one.
 inline double limit_of(double figure) {
   const double most = figure < kNoLimit ? figure : kNoLimit;
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(most) | 7);
 }
 
-/// Makes keys of bounds; parts not in use are beyond any limit.
+/// Makes keys of bounds; unused parts are beyond any limit.
 inline void make_keys(std::uint32_t count, Keys& keys) {
   constexpr FourBits kLane{0, 1, 2, 3};
   for (int half = 0; half < 2; ++half) {
@@ -91,7 +91,7 @@ inline Box box_of(const Branch& branch) {
   return box;
 }
 
-/// Keys of the squares of the least distances to the parts. Rounding keeps the order of numbers,
+/// Keys of the squared minimum distances to the parts. Rounding preserves the order of numbers,
 /// so none of them exceeds a computed distance to a point of the part.
 inline void distance_keys(const Branch& branch, const Vec3& p, Keys& keys) {
   for (int half = 0; half < 2; ++half) {
@@ -117,12 +117,12 @@ inline void squares(const Leaf& leaf, int quarter, const Vec3& p, Four& square) 
   square = x * x + y * y + z * z;
 }
 
-/// The point of the least figure, the smallest number among equals.
+/// The point with the smallest figure, the smallest number among equals.
 struct Best {
   double least = kBeyond;
   std::size_t number = KdTree::kNone;
 
-  /// Looks at the points of a leaf whose figures those are, by quarter.
+  /// Considers the points of a leaf with these figures, by quarter.
   void see(const Leaf& leaf, const Four* figures) {
     Four max_promising = kBeyond + Four{};
     for (int quarter = 0; quarter < 4; ++quarter) {
@@ -145,7 +145,7 @@ struct Best {
   }
 };
 
-/// Asks for the lines of a part that is likely to be looked at next.
+/// Prefetches the cache lines of a part that is likely to be visited next.
 template <class Part>
 inline void prefetch(const Part& part) {
   constexpr std::size_t kLine = 64;
@@ -154,7 +154,7 @@ inline void prefetch(const Part& part) {
   }
 }
 
-/// The most promising leaf first, so that on the way back little is still promising. `query` has
+/// Most promising leaf first, so that little is left to visit on the way back. `query` has
 /// keys_of(branch, keys), limit(), which keys must not exceed, and see(leaf).
 template <class Query>
 [[gnu::always_inline]] inline void search(const Leaf* leaves, const Branch* branches,
@@ -162,7 +162,7 @@ template <class Query>
   constexpr int kMaxLevels = 32;
   struct Open {
     Keys keys;
-    double next;  ///< the least of them
+    double next;  ///< the smallest of them
     const Branch* branch;
   };
   if (height == 0) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace kd;
 
-constexpr double kFar = 1e150;  // x of a leaf's slots that are not in use
+constexpr double kFar = 1e150;  // x of a leaf's unused slots
 
 Box box_of_part(const Branch& branch, std::uint32_t lane) {
   Box box;
@@ -38,7 +38,7 @@ void append(Leaf& leaf, const Vec3& p, std::uint32_t number) {
   leaf.number[leaf.count++] = number;
 }
 
-// No slot in use: far away and without a number.
+// All slots unused: far away and without a number.
 void make_empty(Leaf& leaf) {
   leaf.count = 0;
   std::fill_n(leaf.at[0], Leaf::kMax, kFar);
@@ -49,7 +49,7 @@ std::uint32_t lane_with(const Branch& branch, std::uint32_t part) {
   return std::uint32_t(std::find(branch.part, branch.part + branch.count, part) - branch.part);
 }
 
-// Whether the box of a part would meet another part's if it reached the point.
+// True if the box of a part, extended to the point, would overlap another part's.
 inline bool would_meet(const Branch& branch, int lane, const Vec3& p) {
   FourBits meets[2] = {~FourBits{}, ~FourBits{}};
   for (int axis = 0; axis < 3; ++axis) {
@@ -66,8 +66,8 @@ inline bool would_meet(const Branch& branch, int lane, const Vec3& p) {
   return (others[0] | others[1] | others[2] | others[3]) != 0;
 }
 
-// The nearest part whose box can reach the point without meeting another's, just the nearest if
-// there is none: parts that overlap cost every query.
+// The nearest part whose box can be extended to the point without overlapping another's, simply the
+// nearest if there is none: overlapping parts cost every query.
 inline int lane_for(const Branch& branch, const Vec3& p) {
   Keys keys;
   distance_keys(branch, p, keys);
@@ -85,7 +85,7 @@ inline int lane_for(const Branch& branch, const Vec3& p) {
   return lane_in(nearest);
 }
 
-// The boxes on the way reach the point from now on.
+// Extends the boxes on the path to include the point.
 ALTIPLAN_CLONES std::uint32_t way_to_leaf(Branch* branches, std::uint32_t root,
                                           std::uint32_t height, const Vec3& p) {
   std::uint32_t part = root;
@@ -153,8 +153,8 @@ void KdTree::put(std::uint32_t number) {
   }
 }
 
-/// The leaf is full, and the point is one more: half of them move to a new leaf, beyond the median
-/// along the longest side of their box.
+/// The leaf is full: half of its points, the new one included, move to a new leaf, beyond the
+/// median along the longest side of their box.
 void KdTree::halve(std::uint32_t leaf, std::uint32_t number) {
   struct Entry {
     Vec3 p;
@@ -210,8 +210,8 @@ void KdTree::replace(std::uint32_t level, std::uint32_t above, const Part& part,
   }
 }
 
-/// The branch is full, and the part is one more: some of them move to a new branch, where the two
-/// boxes overlap least and have the least sides.
+/// The branch is full: some of its parts, the new one included, move to a new branch, at the split
+/// with the least overlap of the two boxes and the shortest sides.
 void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added) {
   std::array<Part, kParts> all;
   for (std::uint32_t lane = 0; lane < Branch::kMax; ++lane) {
@@ -246,13 +246,13 @@ void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added)
   replace(level + 1, low.above, {box_of(low), branch}, {box_of(high), other});
 }
 
-/// After how many of the parts, in that order, to cut, and how bad that is, metres. The more even
-/// among equals.
+/// Number of parts, in that order, before the best split, and its cost in metres; the more even
+/// split among equals.
 std::pair<double, std::size_t> KdTree::best_cut(const std::array<Part, kParts>& parts) {
-  constexpr double kOverlap = 1000;  // parts that overlap cost every query
+  constexpr double kOverlap = 1000;  // overlapping parts cost every query
   constexpr double kUneven = 0.5;    // few parts in a branch cost another level
-  std::array<Box, kParts> first;     // around those before
-  std::array<Box, kParts> last;      // around this and those after it
+  std::array<Box, kParts> first;     // around the preceding parts
+  std::array<Box, kParts> last;      // around this and the following parts
   Box box = Box::empty();
   for (std::size_t i = 0; i < kParts; ++i) {
     first[i] = box;
@@ -303,7 +303,7 @@ void KdTree::erase(std::size_t number) {
   }
 }
 
-/// The part, which is empty, goes, and so do the branches that have no other.
+/// Removes the part, which is empty, and the branches that have no other.
 void KdTree::take_part(std::uint32_t above, std::uint32_t part) {
   while (above != kOut && branches_[above].count == 1) {
     free_branches_.push_back(above);
@@ -327,7 +327,7 @@ void KdTree::take_part(std::uint32_t above, std::uint32_t part) {
   }
 }
 
-/// The part has the box from now on, and those above it what is left to them.
+/// Sets the box of the part, and updates those above it.
 void KdTree::close_boxes(std::uint32_t above, std::uint32_t part, Box box) {
   while (above != kOut) {
     Branch& branch = branches_[above];

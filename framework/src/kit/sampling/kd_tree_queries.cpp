@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of KdTree.
+// Queries of KdTree.
 #include <algorithm>
 
 #include "../../multiversion.hpp"
@@ -29,11 +29,11 @@ ALTIPLAN_CLONES void find_nearest(const Leaf* leaves, const Branch* branches, st
   search(leaves, branches, root, height, query);
 }
 
-// F(x) = p_weight |x − p| + q_weight |x − q| is convex: over a box it is at least what its tangent
-// at any c of the box says, that is F(c) and, for each axis, the lesser of the gradient times the
-// ways from c to both sides. The nearer c is to where F is least in the box, the better; that is
-// about where the box is nearest to the segment p–q. Rounding errs by less than `slack`, 450 times
-// the precision of doubles of what is added up: each part of it by less than 30 times.
+// F(x) = p_weight |x − p| + q_weight |x − q| is convex: over a box it is at least its tangent at
+// any c of the box, that is F(c) and, for each axis, the smaller product of the gradient and the
+// distances from c to both sides. The bound is the tighter the nearer c is to the minimum of F in
+// the box, which is about where the box is nearest to the segment p–q. Rounding errs by less than
+// `slack`, 450 times the double precision of the sum: each part of it by less than 30 times.
 struct LeastSum {
   const Vec3& p;
   double p_weight;
@@ -167,8 +167,7 @@ std::size_t KdTree::nearest(const Vec3& p) const {
   return query.best.number;
 }
 
-std::size_t KdTree::min_sum(const Vec3& p, double p_weight, const Vec3& q,
-                              double q_weight) const {
+std::size_t KdTree::min_sum(const Vec3& p, double p_weight, const Vec3& q, double q_weight) const {
   if (root_ == kOut) {
     return kNone;
   }

@@ -12,7 +12,7 @@
 namespace altiplan::kit {
 namespace {
 
-/// So deep within a blocked cell a leg is blocked whatever the tolerance.
+/// At this depth within a blocked cell a leg is blocked whatever the tolerance.
 constexpr double kSurelyInside = 2 * kLengthTolerance;
 
 std::shared_ptr<const World> open_world() {
@@ -39,7 +39,7 @@ LegRules::LegRules(const Request& request)
   }
 }
 
-/// The grid that all layers are cells of, where nothing but its cells blocks.
+/// The grid whose cells make up all layers, if nothing but its cells blocks.
 std::optional<GridSpec> LegRules::cells_that_decide() const {
   const World& world = *request_.world;
   if (world.layers().empty() || world.has_ground() ||
@@ -115,8 +115,7 @@ bool LegRules::in_grid(const Vec3& p) const {
          p.z() < counts[2];
 }
 
-/// What the cells say of the leg; unsure where it runs along faces of blocked ones, or leaves the
-/// grid.
+/// Answer by the cells; unsure where the leg runs along faces of blocked ones, or leaves the grid.
 LegRules::Answer LegRules::by_cells(const Vec3& a, const Vec3& b) const {
   const GridSpec& spec = grid_->spec();
   const Vec3 from = (a - spec.origin).cwiseProduct(per_cell_);
@@ -124,7 +123,7 @@ LegRules::Answer LegRules::by_cells(const Vec3& a, const Vec3& b) const {
   if (!in_grid(from) || !in_grid(to)) {
     return Answer::unsure;
   }
-  // Most legs that are blocked are so at their end, or in the middle.
+  // Most blocked legs are blocked at their end or at their midpoint.
   if (surely_blocked(to) || surely_blocked((from + to) / 2)) {
     return Answer::blocked;
   }
@@ -133,7 +132,7 @@ LegRules::Answer LegRules::by_cells(const Vec3& a, const Vec3& b) const {
   return answer == Answer::unsure ? walk(leg) : answer;
 }
 
-/// Whether a place of the grid, in cells, lies so deep in a blocked one that no tolerance matters.
+/// True if a point of the grid, in cells, lies so deep in a blocked one that no tolerance matters.
 bool LegRules::surely_blocked(const Vec3& p) const {
   const int i = int(p.x());
   const int j = int(p.y());
@@ -146,8 +145,8 @@ bool LegRules::surely_blocked(const Vec3& p) const {
          kSurelyInside;
 }
 
-/// Looks at the cells that the leg meets, and a few beside it, a layer at a time along its longest
-/// axis: within one, the other axes cross a face each at the most.
+/// Tests the cells that the leg intersects, and a few beside it, one layer at a time along its
+/// longest axis: within a layer, the other axes cross at most one face each.
 LegRules::Answer LegRules::by_layers(const CellLeg& leg) const {
   int axis = 0;
   leg.way.cwiseAbs().maxCoeff(&axis);
@@ -190,14 +189,14 @@ LegRules::Answer LegRules::by_layers(const CellLeg& leg) const {
   }
 }
 
-/// Looks at the cells that the leg runs through, in order, until one is blocked: for certain where
-/// the leg's middle in it lies inside.
+/// Tests the cells that the leg crosses, in order, until one is blocked: certain if the leg's
+/// midpoint in that cell lies inside.
 LegRules::Answer LegRules::walk(const CellLeg& leg) const {
   const std::uint64_t* words = grid_->words().data();
   const std::int64_t strides[3] = {1, std::int64_t(grid_->row_bits()),
                                    std::int64_t(grid_->level_bits())};
   std::int64_t step[3];
-  double next[3];  // when the next face of an axis is crossed, and the time between two of them
+  double next[3];  // times at which the next face of an axis is crossed, and between two of them
   double between[3];
   std::int64_t bit = std::int64_t(grid_->bit(0, 0, 0));
   int crossings = 0;
@@ -230,7 +229,7 @@ LegRules::Answer LegRules::walk(const CellLeg& leg) const {
   }
 }
 
-/// The rule or the layer that refuses the leg, by few queries of the world.
+/// The constraint or the layer that refuses the leg, by few queries of the world.
 std::string LegRules::refused_by(const Refused& leg, const Request& open) const {
   const auto first = [&](const Request& request) {
     const auto found = leg_violations(leg.before, leg.a, leg.b, request, 0);

@@ -10,9 +10,9 @@
 namespace altiplan::kit {
 namespace {
 
-constexpr double kPerBucket = 6;  ///< points, when the grid is laid
+constexpr double kPerBucket = 6;  ///< mean number of points at a rebuild
 
-// Four at a time: the compiler makes of them what the CPU has.
+// Four at a time: the compiler maps them to the vectors of the CPU.
 using Wide = double __attribute__((vector_size(32)));
 using WideMask = std::int64_t __attribute__((vector_size(32)));
 
@@ -50,10 +50,9 @@ std::size_t PointGrid::insert(const Vec3& p) {
   return number;
 }
 
-/// Lays the grid over the points that are kept; those that come later and lie beyond it belong to
-/// the bucket nearest to them.
+/// Rebuilds the grid over the current points; later points outside it belong to the nearest bucket.
 void PointGrid::lay() {
-  chunks_.resize(1);  // number 0 stands for none
+  chunks_.resize(1);  // number 0 means none
   counts_ = {1, 1, 1};
   per_edge_.setZero();
   edge_.setConstant(kInfinity);
@@ -128,8 +127,8 @@ std::array<int, 3> PointGrid::bucket_of(const Vec3& p) const {
   return at;
 }
 
-/// Calls visit(number, its square) for the points of the bucket whose squared distance is at most
-/// `square`, which a visit may lessen.
+/// Calls visit(number, squared distance) for the points of the bucket whose squared distance is at
+/// most `square`, which a visit may reduce.
 template <class Visit>
 [[gnu::always_inline]] inline void PointGrid::visit_bucket(std::size_t bucket, const Vec3& p,
                                                            const double& square,
@@ -152,8 +151,8 @@ template <class Visit>
   }
 }
 
-/// Calls visit(bucket) for the buckets whose index differs by `ring` on an axis, and by no more on
-/// the others.
+/// Calls visit(bucket) for the buckets whose index differs by `ring` on an axis, and by at most
+/// that on the others.
 template <class Visit>
 void PointGrid::visit_ring(const std::array<int, 3>& middle, int ring, const Visit& visit) const {
   std::array<int, 3> low{};
@@ -203,7 +202,7 @@ ALTIPLAN_CLONES std::uint32_t PointGrid::nearest_of_all(const Vec3& p) const {
   for (int place = 0; place < kWide; ++place) {
     square = std::min(square, least[place / kLanes][place % kLanes]);
   }
-  std::int64_t best = std::int64_t(kept_.size());  // place in the list: numbers ascend there
+  std::int64_t best = std::int64_t(kept_.size());  // index in the list: numbers ascend there
   for (int place = 0; place < kWide; ++place) {
     const int part = place / kLanes;
     const int lane = place % kLanes;
@@ -225,7 +224,7 @@ std::size_t PointGrid::nearest(const Vec3& p) const {
   const std::array<int, 3> middle = bucket_of(p);
   const int rings = *std::max_element(counts_.begin(), counts_.end());
   for (int ring = 0; ring < rings; ++ring) {
-    // Buckets of this ring are at least so far: whole edges lie between.
+    // Minimum distance of the buckets of this ring: whole edges lie between.
     const double gap = std::max(0, ring - 1) * edge_.minCoeff() * (1 - 1e-9);
     if (gap * gap > least) {
       break;

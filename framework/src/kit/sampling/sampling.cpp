@@ -7,12 +7,12 @@
 namespace altiplan::kit {
 namespace {
 
-constexpr int kTries = 64;            ///< draws before the box alone has to do
+constexpr int kTries = 64;            ///< samples before falling back to the box
 constexpr double kWithin = 1 - 1e-9;  ///< keeps a bent leg off its limit
 
 double horizontal(const Vec3& v) { return std::hypot(v.x(), v.y()); }
 
-/// Turned about the vertical until it makes at most that angle with `incoming`.
+/// Rotated about the vertical until its angle with `incoming` is at most `most`.
 Vec3 turned_level(const Vec3& incoming, const Vec3& way, double most) {
   const double run = horizontal(way);
   if (turn_angle_horizontal(incoming, way) <= most) {
@@ -24,7 +24,7 @@ Vec3 turned_level(const Vec3& incoming, const Vec3& way, double most) {
   return {run * std::cos(heading), run * std::sin(heading), way.z()};
 }
 
-/// Turned in the plane of both until it makes at most that angle with `incoming`.
+/// Rotated in the plane of both until its angle with `incoming` is at most `most`.
 Vec3 turned_in_space(const Vec3& incoming, const Vec3& way, double most) {
   if (turn_angle_in_space(incoming, way) <= most) {
     return way;
@@ -81,7 +81,7 @@ void InformedSet::set_length(double length) {
   const double distance = apart.norm();
   const double across = std::sqrt(std::max(0.0, length * length - distance * distance)) / 2;
   const Vec3 ahead = distance > 0 ? Vec3(apart / distance) : Vec3(1, 0, 0);
-  // Any two directions at right angles to it and to each other; the second is up on a level.
+  // Any two directions at right angles to it and to each other; the second points up on a level.
   const Vec3 aside = std::abs(ahead.z()) < 0.9 ? Vec3(-ahead.y(), ahead.x(), 0).normalized()
                                                : Vec3(1, 0, 0).cross(ahead).normalized();
   long_ = ahead * (length / 2);
@@ -100,7 +100,7 @@ Vec3 InformedSet::draw(RandomStream& random) const {
       }
       continue;
     }
-    // A point of the unit ball (or disc), by trial in the cube around it.
+    // A point of the unit ball (or disc), by rejection sampling in its bounding cube.
     const double x = random.uniform(-1, 1);
     const double y = random.uniform(-1, 1);
     const double z = flat_ ? 0.0 : random.uniform(-1, 1);

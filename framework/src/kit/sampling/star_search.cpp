@@ -9,9 +9,10 @@
 namespace altiplan::kit {
 namespace {
 
-constexpr std::size_t kBytesPerNode = 160;  ///< of all that Memory holds, with room to grow
-constexpr double kShorter = 1 - 1e-12;      ///< what is shorter by rounding alone is not
-constexpr double kForgetBelow = 0.99;  ///< of the last length: then useless nodes are forgotten
+constexpr std::size_t kBytesPerNode = 160;  ///< of all data in Memory, including growth
+constexpr double kShorter = 1 - 1e-12;      ///< excludes improvements by rounding alone
+constexpr double kForgetBelow = 0.99;       ///< of the last length: triggers the removal of useless
+                                            ///< nodes
 
 /// Measure of the unit ball.
 double unit_ball(int axes) { return axes == 3 ? 4 * kPi / 3 : axes == 2 ? kPi : 2.0; }
@@ -59,8 +60,9 @@ Vec3 StarSearch::sample() {
   return settings_.informed ? set_.draw(random_) : random_.in(box_);
 }
 
-/// One turn of the loop of RRT*: Nearest, Steer, Near, the best parent, and rewiring. Where limits
-/// bend the leg from the nearest node, others may still lead to the sample itself: they come first.
+/// One iteration of RRT*: Nearest, Steer, Near, the best parent, and rewiring. Where limits bend
+/// the leg from the nearest node, other nodes may still reach the sample itself: they are tried
+/// first.
 void StarSearch::grow(const Vec3& x_rand) {
   if (!set_.contains(x_rand) || !rules_.point_ok(x_rand)) {
     return;
@@ -88,7 +90,7 @@ void StarSearch::grow(const Vec3& x_rand) {
     return;
   }
   const Node node = add(x_new, *parent);
-  // The order of choose_parent is its own: what is left of the list still holds all that may gain.
+  // choose_parent reorders the list; what is left of it still holds all nodes that may gain.
   for (const Candidate& candidate : candidates_) {
     const double cost = memory_.cost[std::size_t(node)] + candidate.metres;
     if (cost < memory_.cost[std::size_t(candidate.node)] * kShorter) {
@@ -99,7 +101,7 @@ void StarSearch::grow(const Vec3& x_rand) {
   learn_length();
 }
 
-/// The goal as a child of a new node in range of it, until it is in the tree.
+/// Adds the goal as a child of a new node in range of it, until it is in the tree.
 void StarSearch::reach_goal(Node node) {
   const Vec3& p = memory_.legs.point(node);
   const Vec3& goal = request_.goal.position;
@@ -111,7 +113,7 @@ void StarSearch::reach_goal(Node node) {
   }
 }
 
-/// Puts the nodes within the radius of p into memory_.near, the nearest among them whatever its
+/// Puts the nodes within the radius of p into memory_.near, including the nearest one whatever its
 /// distance, and returns that.
 LegTree::Node StarSearch::find_near(const Vec3& p) {
   memory_.points.within(p, near_radius(), memory_.near);
@@ -142,8 +144,8 @@ void StarSearch::list_candidates(const Vec3& x_new) {
   }
 }
 
-/// The node through which the way to x_new is shortest. Legs are judged from the cheapest on until
-/// one is kept; those judged leave the list, as a way through x_new is no gain for them.
+/// The node through which the path to x_new is shortest. Legs are checked from the cheapest on
+/// until one is valid; those checked leave the list, as a path through x_new is no gain for them.
 std::optional<StarSearch::Candidate> StarSearch::choose_parent(const Vec3& x_new) {
   list_candidates(x_new);
   const double to_go =
@@ -166,8 +168,8 @@ std::optional<StarSearch::Candidate> StarSearch::choose_parent(const Vec3& x_new
   return std::nullopt;
 }
 
-/// Hangs x_near below x_new where the leg, the turns at both of its ends and those that follow keep
-/// every rule.
+/// Moves x_near below x_new if the leg, the turns at both of its ends and the turns that follow
+/// satisfy every constraint.
 void StarSearch::rewire(Node x_new, Node x_near) {
   LegTree& legs = memory_.legs;
   const Vec3& a = legs.point(x_new);
@@ -191,7 +193,7 @@ void StarSearch::rewire(Node x_new, Node x_near) {
   }
 }
 
-/// min(gamma (log n / n)^(1/d), eta), found anew when n has grown by a 64th.
+/// min(gamma (log n / n)^(1/d), eta), recomputed when n has grown by a 64th.
 double StarSearch::near_radius() {
   const std::size_t count = memory_.points.count();
   if (count < radius_for_ || count > radius_for_ + radius_for_ / 64) {
@@ -206,13 +208,13 @@ double StarSearch::near_radius() {
   return radius_;
 }
 
-/// How the vehicle comes to the node, where a rule asks for it.
+/// The approach to the node, if a constraint depends on it.
 std::optional<Approach> StarSearch::behind(Node node) const {
   return rules_.looks_back() ? memory_.legs.approach(node, 0, before_start_) : std::nullopt;
 }
 
-/// Whether the turns into the legs below a node hold for a vehicle that comes to it by `before`;
-/// past a leg without a heading, those that follow too.
+/// True if the turns into the legs below a node are valid for a vehicle that reaches it by
+/// `before`; beyond a leg without a heading, the turns that follow too.
 bool StarSearch::turns_follow(const Approach& before, Node node) {
   const LegTree& legs = memory_.legs;
   const Vec3& at = legs.point(node);
@@ -260,8 +262,8 @@ void StarSearch::note_end(Node node) {
   }
 }
 
-/// After an improvement: where a shorter route may lead shrinks, and nodes outside of it are looked
-/// for no more.
+/// After an improvement: the set of points on shorter routes shrinks, and nodes outside of it are
+/// no longer searched.
 void StarSearch::learn_length() {
   if (best_end_ == LegTree::kNone || best_ >= known_) {
     return;
@@ -306,13 +308,13 @@ PlanResult StarSearch::result() {
   return result;
 }
 
-/// How near the tree came, and what was in the way.
+/// How near the tree came to the goal, and which constraints stopped it.
 std::string StarSearch::reason() const {
   char near[32];
   std::snprintf(near, sizeof near, "%.0f",
                 std::min(nearest_, (request_.start.position - request_.goal.position).norm()));
   const std::string refusals = rules_.refusals();
-  return "the tree of " + std::to_string(memory_.legs.size()) + " nodes came to " + near +
+  return "the tree of " + std::to_string(memory_.legs.size()) + " nodes came within " + near +
          " m of the goal" + (refusals.empty() ? "" : "; the last legs were refused by " + refusals);
 }
 }  // namespace altiplan::kit

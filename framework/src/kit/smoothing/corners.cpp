@@ -23,8 +23,9 @@ void Excess::add(const Excess& other) {
 }
 
 bool Excess::within(const Excess& other) const {
-  // Rounding may make a leg of the same direction, or a piece of a leg, that much worse. Far below
-  // the judge's own tolerances, so that what three corners add up to at one place is nothing.
+  // Tolerated increase of an excess by rounding, in a leg of the same direction or a part of a leg.
+  // Far below the judge's own tolerances, so that three corners at one place still add up to
+  // nothing.
   constexpr double kRounding = 1e-8;
   return std::all_of(worst_.begin(), worst_.end(), [&](const auto& entry) {
     const auto there = other.worst_.find(entry.first);
@@ -33,7 +34,8 @@ bool Excess::within(const Excess& other) const {
 }
 
 double radius_margin(double leg, double turn) {
-  // How far rounding may move a point: half of 1e-7 degree on two axes, half a centimetre up.
+  // Maximum displacement of a point by rounding: half of 1e-7 degree on two axes, half a centimetre
+  // up.
   constexpr double kMoved = 0.0095;
   constexpr double kMax = 0.05;
   // The radius is leg / 2 / tan(turn / 2): both ends of a leg move, and both legs of a turn.
@@ -47,7 +49,7 @@ namespace {
 
 bool near(const Vec3& a, const Vec3& b) { return (a - b).norm() <= kLengthTolerance; }
 
-/// Appends a point that is not the last one again.
+/// Appends a point unless it repeats the last one.
 void append(Route& route, const Vec3& p) {
   if (p != route.back()) {
     route.push_back(p);
@@ -74,7 +76,7 @@ class Rounding {
   }
 
   RoundedRoute run() {
-    // Judging a long route takes its time: none is begun once the budget has ended.
+    // Judging a long route takes long: skipped once the budget has ended.
     const Excess allowed(budget_ended() ? std::vector<Violation>()
                                         : check(original_, request_).violations);
     if (budget_ended()) {
@@ -84,7 +86,7 @@ class Rounding {
     round_all();
     bool accepted = kept();
     if (!accepted && !budget_ended()) {
-      // A rule of the whole route, which no leg shows: looked at for every curve.
+      // A constraint on the whole route, which no leg shows: checked for every curve.
       allowed_ = &allowed;
       round_all();
       accepted = kept();
@@ -106,19 +108,19 @@ class Rounding {
     return result_.budget_hit;
   }
 
-  /// What a leg of the route breaks, and what it would break if no leg were before it.
+  /// Excess of a leg of the route, and its excess without a leg before it.
   struct LegExcess {
     Excess with_turn;
     Excess alone;
   };
 
   struct State {
-    int first = 0;         ///< choices before this one are ruled out
-    int chosen = kStays;   ///< the choice that stands
-    std::size_t done = 1;  ///< points of the route before this corner
-    std::size_t from = 0;  ///< the waypoint that is the last of these; kNone: a curve's end is
-    bool turns = false;    ///< whether it is a corner at all
-    bool offered = false;  ///< whether there was a choice
+    int first = 0;         ///< candidates before this one are ruled out
+    int chosen = kStays;   ///< the accepted candidate
+    std::size_t done = 1;  ///< number of points of the route before this corner
+    std::size_t from = 0;  ///< the waypoint that is the last of these; kNone: the end of a curve
+    bool turns = false;    ///< true if the waypoint is a corner
+    bool offered = false;  ///< true if it had a candidate
   };
 
   void round_all() {
@@ -130,13 +132,13 @@ class Rounding {
       if (next_ > 1) {
         const State& before = states_[next_ - 1];
         state.from = before.chosen == kStays       ? next_ - 1
-                     : before.done == done_.size() ? before.from  // it was left out
+                     : before.done == done_.size() ? before.from  // it was cut out
                                                    : kNone;
       }
       state.chosen = choose();
       if (state.chosen == kStays && states_[next_ - 1].chosen != kStays &&
           !is_accepted(part_with({route_[next_]}))) {
-        // The curve before took too much of the leg.
+        // The previous curve used too much of the leg.
         --next_;
         done_.resize(states_[next_].done);
         states_[next_].first = states_[next_].chosen + 1;
@@ -150,7 +152,8 @@ class Rounding {
     append(done_, route_.back());
   }
 
-  /// Takes the best choice for the corner that is next, and says which; kStays where none stands.
+  /// Applies the best candidate to the next corner and returns its number; kStays if none is
+  /// accepted.
   int choose() {
     const Corner corner = corner_here();
     State& state = states_[next_];
@@ -203,7 +206,7 @@ class Rounding {
             next_ + 2 == route_.size()};
   }
 
-  /// Appends the points of a curve; those that are the same but for rounding as its neighbours are
+  /// Appends the points of a curve; those equal to the adjacent waypoints up to rounding become
   /// these.
   void append_curve(Route& route, const Route& curve) const {
     for (const Vec3& p : curve) {
@@ -221,7 +224,7 @@ class Rounding {
     return part;
   }
 
-  /// Calls judge(before, a, b) for the legs of a part until it says false.
+  /// Calls judge(before, a, b) for the legs of a part until it returns false.
   template <class Judge>
   bool all_legs(const Route& part, const Judge& judge) const {
     std::optional<Approach> before = approach(done_, done_.size() - 1, request_.before_start());
@@ -240,9 +243,9 @@ class Rounding {
     });
   }
 
-  /// Whether the part breaks no rule by more than the two legs of the corner: its first leg, in
-  /// turning into it, by no more than the leg into the corner, or the one that began where it does;
-  /// the others by no more than the corner.
+  /// True if the part violates no constraint by more than the two legs of the corner: its first
+  /// leg, in turning into it, by no more than the leg into the corner, or the one that began where
+  /// it does; the others by no more than the corner.
   bool is_accepted(const Route& part) const {
     const LegExcess& into = legs_[next_ - 1];
     const LegExcess& out_of = legs_[next_];
@@ -275,7 +278,7 @@ class Rounding {
     return Excess(check(whole, request_).violations).within(*allowed_);
   }
 
-  /// Counts what became of the corners, if the route with its curves stands at all.
+  /// Counts the outcomes of the corners, if the route with its curves is accepted at all.
   void count(bool accepted) {
     for (const State& state : states_) {
       const bool replaced = accepted && state.chosen != kStays;
@@ -291,9 +294,9 @@ class Rounding {
   const CurveOf& curve_of_;
   BudgetWatch watch_;
   std::vector<LegExcess> legs_;      ///< of route_
-  const Excess* allowed_ = nullptr;  ///< of the whole route, where that is looked at
+  const Excess* allowed_ = nullptr;  ///< of the whole route, if checked
   std::vector<State> states_;        ///< of the waypoints of route_
-  Route done_;                       ///< the points so far; route_ from next_ on is to come
+  Route done_;                       ///< the points so far, to be followed by route_ from next_ on
   std::size_t next_ = 1;
   RoundedRoute result_;
 };

@@ -11,7 +11,7 @@ CubicSpline::CubicSpline(std::vector<Vec3> control) : control_(std::move(control
   if (control_.size() < 2) {
     throw Error("a spline needs at least 2 control points, got " + std::to_string(control_.size()));
   }
-  // At a knot the curve is (P[i-1] + 4 P[i] + P[i+1]) / 6: with the neighbour mirrored at the end
+  // At a knot the curve is (P[i-1] + 4 P[i] + P[i+1]) / 6: with the neighbour mirrored at the end,
   // that is the end itself.
   const Vec3 first = 2 * control_[0] - control_[1];
   const Vec3 last = 2 * control_[control_.size() - 1] - control_[control_.size() - 2];

@@ -22,7 +22,7 @@ const unpacked = new Map();
 function unpack(id) {
   if (!window.DecompressionStream) {
     return Promise.reject(new Error('This browser cannot unpack the runs (no DecompressionStream); ' +
-      'runs.csv has them.'));
+      'see runs.csv.'));
   }
   if (!unpacked.has(id)) {
     const bytes = Uint8Array.from(atob(by_id(id).textContent), (letter) => letter.charCodeAt(0));
@@ -69,7 +69,7 @@ function number(value, unit) {
   return text + (unit === '°' || unit === '' ? unit : ` ${unit}`);
 }
 
-/** In the scene's list a run of which nothing can be drawn; else another's profile stood for it. */
+/** A placeholder in the scene's list for a run without anything to draw, instead of another's profile. */
 function without_route(data, run) {
   return {name: data.pipelines[run.pipeline], file: run_name(data, run), status: run.outcome,
     message: data.why_not.get(run.index) ?? run.message, seed: run.seed, metrics: null, check: null,
@@ -93,11 +93,11 @@ function scene_part(data, run) {
   const why = data.why_not.get(run.index);
   const parts = [];
   if (scene === undefined) {
-    parts.push(element('p', {className: 'quiet'}, 'This page holds no 3-D scene of this run' +
-      `${why ? `: ${why}` : ''}. To make it again:`));
+    parts.push(element('p', {className: 'quiet'}, 'This page has no 3-D scene of this run' +
+      `${why ? `: ${why}` : ''}. To reproduce the run:`));
   } else {
     if (!data.scenes[scene].includes(run.index)) {
-      parts.push(element('p', {className: 'quiet'}, why ? `This run is not drawn: ${why}.` :
+      parts.push(element('p', {className: 'quiet'}, why ? `This run is not shown: ${why}.` :
         'This run left no result; the scene shows the other pipelines of its pair.'));
     }
     const frame = element('iframe', {title: `Scene of ${run_name(data, run)}`});
@@ -106,7 +106,7 @@ function scene_part(data, run) {
       frame.replaceWith(element('p', {}, error.message));
       throw error;
     });
-    parts.push(frame, element('p', {className: 'quiet'}, 'To make this run again:'));
+    parts.push(frame, element('p', {className: 'quiet'}, 'To reproduce this run:'));
   }
   return [...parts, element('pre', {className: 'command'}, command)];
 }

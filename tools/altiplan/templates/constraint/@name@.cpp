@@ -10,8 +10,8 @@ struct Params {
   double min_m = 300;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("at_m", at_m).unit("m").doc("the quiet place, east and north");
-    f("min_m", min_m).unit("m").greater_than(0).doc("least horizontal distance from it");
+    f("at_m", at_m).unit("m").doc("centre of the quiet area, east and north");
+    f("min_m", min_m).unit("m").greater_than(0).doc("minimum horizontal distance from it");
   }
 };
 
@@ -20,17 +20,18 @@ class QuietPlace final : public Constraint {
   explicit QuietPlace(const Params& params) : params_(params) {}
 
  private:
-  // Asked leg by leg by planners, pilots, smoothers and the judge.
+  // Called leg by leg by planners, pilots, smoothers and the judge.
   bool do_admits(const Leg& leg) const override {
-    const Vec3 way(leg.to.x() - leg.from.x(), leg.to.y() - leg.from.y(), 0);
+    const Vec3 track(leg.to.x() - leg.from.x(), leg.to.y() - leg.from.y(), 0);
     const Vec3 place(params_.at_m[0] - leg.from.x(), params_.at_m[1] - leg.from.y(), 0);
     const double along =
-        way.isZero(0) ? 0.0 : std::clamp(place.dot(way) / way.squaredNorm(), 0.0, 1.0);
-    return (place - along * way).norm() >= params_.min_m - kLengthTolerance;  // touching is free
+        track.isZero(0) ? 0.0 : std::clamp(place.dot(track) / track.squaredNorm(), 0.0, 1.0);
+    return (place - along * track).norm() >= params_.min_m - kLengthTolerance;  // touching is free
   }
 
   Params params_;
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Constraint, "@name@", QuietPlace, Params, "Keeps away from a quiet place")
+ALTIPLAN_PLUGIN(Constraint, "@name@", QuietPlace, Params,
+                "Keeps a minimum distance from a quiet area")

@@ -15,8 +15,8 @@ struct Params {
   void describe(Fields& f) {  // the only place that lists them
     f("from_m", from_m).unit("m").doc("the first pole, east and north");
     f("to_m", to_m).unit("m").doc("the last pole");
-    f("poles", poles).range(2, 10000).doc("how many, at equal distances");
-    f("radius_m", radius_m).unit("m").greater_than(0).doc("of a pole");
+    f("poles", poles).range(2, 10000).doc("number of poles, at equal distances");
+    f("radius_m", radius_m).unit("m").greater_than(0).doc("radius of a pole");
     f("top_m", top_m).unit("m").doc("height of the poles above sea level");
   }
 };
@@ -32,8 +32,8 @@ class RowOfPoles final : public Environment {
     return first + double(i) / (params_.poles - 1) * (last - first);
   }
 
-  // Metres to the nearest pole, negative inside. All else (whether a leg is blocked, grids, what is
-  // near) has a default that works from this.
+  // Distance to the nearest pole (m), negative inside. All other queries (blocked legs, grids,
+  // nearby obstacles) have defaults based on this.
   double do_clearance(const Vec3& p) const override {
     double beside = kInfinity;
     for (int i = 0; i < params_.poles; ++i) {
@@ -44,7 +44,7 @@ class RowOfPoles final : public Environment {
     return beside > 0 && above > 0 ? std::hypot(beside, above) : std::max(beside, above);
   }
 
-  // Poles reach down without end.
+  // Poles extend downwards without limit.
   Box do_bounds() const override {
     const Vec3 first = pole(0);
     const Vec3 last = pole(params_.poles - 1);
@@ -55,7 +55,7 @@ class RowOfPoles final : public Environment {
     return box;
   }
 
-  // Where a layer does not say what to draw, its cells are drawn, which takes longer.
+  // Without this the layer's cells are drawn, which is slower.
   std::optional<Drawing> do_drawing() const override {
     Drawing drawing;
     for (int i = 0; i < params_.poles; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "@name@.cpp"  // a plugin has no header: only its name leaves the file
+#include "@name@.cpp"  // a plugin has no header: only its name is exported
 
 #include <altiplan/conformance_gtest.hpp>
 
@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   const altiplan::PluginEntry& plugin = *altiplan_plugins(&count)[0];
   register_cases("@name@", plugin_cases(plugin));
   Setup setup;
-  setup.options.volume = altiplan::Box{{-150, -150, 0}, {650, 350, 250}};  // where it is looked at
+  setup.options.volume = altiplan::Box{{-150, -150, 0}, {650, 350, 250}};  // where it is sampled
   register_cases("@name@", cases_of(plugin, setup));
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

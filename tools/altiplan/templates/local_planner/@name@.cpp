@@ -10,11 +10,14 @@ struct Params {
   double look_ahead_m = 200;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("look_ahead_m", look_ahead_m).unit("m").greater_than(0).doc("how far the way must be free");
+    f("look_ahead_m", look_ahead_m)
+        .unit("m")
+        .greater_than(0)
+        .doc("distance ahead that must be free");
   }
 };
 
-/// One flight: all that a pilot remembers stands here.
+/// One flight: holds the pilot's whole state.
 class StraightPilot final : public Pilot {
  public:
   StraightPilot(const Params& params, const Request& request)
@@ -22,15 +25,15 @@ class StraightPilot final : public Pilot {
 
  private:
   PilotStep do_step(const Observation& seen) override {
-    // What is seen now counts; the request's world is the one before take-off. Not owned: a step
-    // allocates nothing.
+    // Uses the world as sensed now; the request's world is the one before take-off. Not owned: a
+    // step must not allocate.
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), seen.world);
     const Vec3 here = seen.state.position;
     PilotStep step;
     step.next = seen.state;
     if (!leg_ok(std::nullopt, here, toward(seen, params_.look_ahead_m), request_)) {
       step.outcome = PilotStep::Outcome::stuck;
-      step.why = "the way ahead is not free";
+      step.why = "the path ahead is blocked";
       return step;
     }
     const double speed = request_.vehicle.speed_mps;
@@ -44,11 +47,11 @@ class StraightPilot final : public Pilot {
     return step;
   }
 
-  /// The point so many metres toward the target, or the target where it is nearer.
+  /// The point that many metres toward the target, or the target if it is nearer.
   static Vec3 toward(const Observation& seen, double metres) {
-    const Vec3 way = seen.local_target - seen.state.position;
-    const double left = way.norm();
-    return left > metres ? Vec3(seen.state.position + metres / left * way) : seen.local_target;
+    const Vec3 offset = seen.local_target - seen.state.position;
+    const double left = offset.norm();
+    return left > metres ? Vec3(seen.state.position + metres / left * offset) : seen.local_target;
   }
 
   double do_reach_m() const override {
@@ -73,4 +76,4 @@ class StraightFlight final : public LocalPlanner {
 }  // namespace
 
 ALTIPLAN_PLUGIN(LocalPlanner, "@name@", StraightFlight, Params,
-                "Straight to the target, stuck where the way is not free")
+                "Straight to the target, stuck if the path is blocked")

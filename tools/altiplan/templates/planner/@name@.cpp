@@ -11,8 +11,8 @@ struct Params {
   int tries = 50;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("step_m", step_m).unit("m").greater_than(0).doc("how much farther out each try bends");
-    f("tries", tries).range(0, 10000).doc("bends tried on each side");
+    f("step_m", step_m).unit("m").greater_than(0).doc("increase of the lateral offset per try");
+    f("tries", tries).range(0, 10000).doc("maximum number of bends tried on each side");
   }
 };
 
@@ -44,14 +44,15 @@ class Dogleg final : public Planner {
                       : watch.cancelled() ? PlanStatus::cancelled
                                           : PlanStatus::timed_out;
       result.budget_hit = result.status == PlanStatus::timed_out;
-      result.message = "no single bend leads around, " + std::to_string(tried) + " tried";
+      result.message = "no route with a single bend found in " + std::to_string(tried) + " tries";
     }
     return result;
   }
-  Traits do_traits() const override { return {}; }  // promises nothing
+  Traits do_traits() const override { return {}; }  // no guarantees
 
   Params params_;
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Planner, "@name@", Dogleg, Params, "Straight ahead, or around with one bend")
+ALTIPLAN_PLUGIN(Planner, "@name@", Dogleg, Params,
+                "Straight to the goal, or around obstacles with one bend")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "@name@.cpp"  // a plugin has no header: only its name leaves the file
+#include "@name@.cpp"  // a plugin has no header: only its name is exported
 
 #include <altiplan/conformance_gtest.hpp>
 
@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   std::size_t count = 0;
   const altiplan::PluginEntry& plugin = *altiplan_plugins(&count)[0];
   register_cases("@name@", plugin_cases(plugin));
-  register_cases("@name@", cases_of(plugin));  // of its kind, with the default parameters
+  register_cases("@name@", cases_of(plugin));  // cases of its kind, with default parameters
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -10,7 +10,7 @@ struct Params {
   int passes = 2;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("passes", passes).range(1, 100).doc("times that the route is gone along");
+    f("passes", passes).range(1, 100).doc("number of passes along the route");
   }
 };
 
@@ -19,8 +19,8 @@ class DropWaypoints final : public Smoother {
   explicit DropWaypoints(const Params& params) : params_(params) {}
 
  private:
-  // A drop stays where the judge's own code finds nothing wrong with the shorter route, so a route
-  // that breaks a rule comes back better or as it was.
+  // A waypoint is dropped only if the judge's own code accepts the shorter route, so a route that
+  // violates a constraint is returned improved or unchanged.
   PlanResult do_smooth(const Route& route, const Request& request) const override {
     PlanResult result;
     result.status = PlanStatus::solved;
@@ -44,7 +44,7 @@ class DropWaypoints final : public Smoother {
       }
     }
     result.message = std::to_string(result.route.size()) + " of " + std::to_string(route.size()) +
-                     " waypoints stay";
+                     " waypoints kept";
     result.counters = {{"expanded", tried}};
     return result;
   }
@@ -53,4 +53,4 @@ class DropWaypoints final : public Smoother {
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Smoother, "@name@", DropWaypoints, Params, "Drops waypoints that are not needed")
+ALTIPLAN_PLUGIN(Smoother, "@name@", DropWaypoints, Params, "Removes waypoints that are not needed")

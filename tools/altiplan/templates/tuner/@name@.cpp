@@ -10,11 +10,11 @@ struct Params {
   int points = 5;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("points", points).range(2, 1000).doc("of the grid along each parameter");
+    f("points", points).range(2, 1000).doc("number of grid points along each parameter");
   }
 };
 
-/// One search: a row of the grid is a batch.
+/// One search: each row of the grid is a batch.
 class Grid final : public Search {
  public:
   Grid(const Params& params, const std::vector<Dimension>& space)
@@ -34,9 +34,9 @@ class Grid final : public Search {
     return row;
   }
 
-  void do_tell(std::span<const double>) override {}  // a grid learns nothing
+  void do_tell(std::span<const double>) override {}  // a grid does not use the scores
 
-  /// Counts on, the first parameter fastest.
+  /// Advances to the next point, the first parameter fastest.
   void advance() {
     for (int& n : at_) {
       if (++n < params_.points) {
@@ -49,7 +49,7 @@ class Grid final : public Search {
 
   Params params_;
   kit::TuningSpace space_;
-  std::vector<int> at_;  ///< the next point, by its number along each parameter
+  std::vector<int> at_;  ///< the next point, by its index along each parameter
   bool done_ = false;
 };
 
@@ -66,4 +66,4 @@ class GridSearch final : public Tuner {
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Tuner, "@name@", GridSearch, Params, "Every point of a grid")
+ALTIPLAN_PLUGIN(Tuner, "@name@", GridSearch, Params, "Evaluates every point of a grid")

@@ -2,10 +2,10 @@
 import {by_id, element} from '../dom.js';
 
 const kButtons = [
-  ['fit', '⌂ Overview', 'All of the box, from the south-west (R)'],
-  ['top', '⊤ From above', 'From above, north up (T)'],
-  ['theme', '◐ Theme', 'Light or dark (D)'],
-  ['help', '?', 'Keys and signs (?)'],
+  ['fit', '⌂ Overview', 'The whole box from the south-west (R)'],
+  ['top', '⊤ Top view', 'Top view, north up (T)'],
+  ['theme', '◐ Theme', 'Light or dark theme (D)'],
+  ['help', '?', 'Keys and symbols (?)'],
 ];
 
 export function build_bar(world, actions) {
@@ -20,7 +20,7 @@ export function build_bar(world, actions) {
   if (unsolved.length > 0 && solved === 0) show_failure(unsolved[0]);
 }
 
-/** Nothing was solved: say so where the route would be. */
+/** Shows the failure in place of the route if no result is solved. */
 function show_failure({name, status, message}) {
   const alert = by_id('alert');
   alert.replaceChildren(element('strong', {}, `${name}: ${status.replaceAll('_', ' ')}. `), message,

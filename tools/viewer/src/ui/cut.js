@@ -2,12 +2,12 @@
 import {element} from '../dom.js';
 import {metres, round_step} from '../units.js';
 
-/** The slider is at its top where nothing is cut. */
+/** The slider is at its top if the cut is off. */
 export function cut_slider({box: [low, high]}, store) {
   const [floor, top] = [low[2], high[2]];
   const value = element('output', {});
   const input = element('input', {type: 'range', id: 'cut', min: floor, max: top, step: 'any',
-    title: 'Shows what is inside: nothing above this height is drawn but routes (, and .)',
+    title: 'Hide everything but routes above this altitude, to look inside (, and .)',
     oninput: () => {
       const height = Number(input.value);
       store.set({cut: height < top ? height : Infinity});
@@ -22,7 +22,7 @@ export function cut_slider({box: [low, high]}, store) {
   return element('label', {className: 'slider'}, 'Cut above', input, value);
 }
 
-/** The next round height under (`way` -1) or over (1) the cut; over the box's top nothing is. */
+/** The next round height below (`way` -1) or above (1) the cut; above the box's top it is off. */
 export function next_cut(cut, {box: [low, high], size}, way) {
   const step = round_step(size[2], 20);
   // A cut may differ from a multiple of the step by rounding alone.

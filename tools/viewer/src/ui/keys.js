@@ -5,18 +5,18 @@ import {next_cut} from './cut.js';
 
 const kKeys = [
   ['Space', 'play or pause the flight'],
-  ['← →', 'one second (with Shift: ten) of the flight back or on'],
+  ['← →', 'step the flight back or forward by 1 s (with Shift: 10 s)'],
   ['1 … 9', 'show or hide a result'],
-  ['R', 'overview: all of the box from the south-west'],
-  ['T', 'from above'], ['N', 'from the south, north up'],
-  ['[ ]', 'heights drawn less or more steeply'],
-  [', .', 'cut lower or higher: nothing above is drawn but routes'], ['C', 'nothing cut'],
-  ['G', 'grid and box'], ['L', 'legend'], ['D', 'light or dark'],
+  ['R', 'overview: the whole box from the south-west'],
+  ['T', 'top view'], ['N', 'from the south, north up'],
+  ['[ ]', 'decrease or increase the vertical exaggeration'],
+  [', .', 'lower or raise the cut: hide everything but routes above it'], ['C', 'cut off'],
+  ['G', 'grid and box'], ['L', 'legend'], ['D', 'light or dark theme'],
   ['P M V S', 'profiles, metrics, violations, search'],
   ['B', 'results and layers (narrow screens)'], ['?', 'this list'],
 ];
 
-/** One letter each; none acts while something is being typed or chosen. */
+/** Single-key commands, ignored while an input has the focus. */
 export function listen_to_keys(world, store, actions) {
   const state = store.state;
   const exaggerate = (by) =>
@@ -69,10 +69,10 @@ function help_text() {
     element('h2', {}, 'Keys'),
     element('dl', {}, kKeys.flatMap(([key, what]) =>
       [element('dt', {}, element('kbd', {}, key)), element('dd', {}, what)])),
-    element('h2', {}, 'Mouse and fingers'),
-    element('p', {}, 'Drag turns, drag with the right button or two fingers moves, wheel or ' +
-      'pinch comes nearer. Point at a route to move the cursor of the profiles; click it to look ' +
-      'at that result. Click a profile of a flight to go to that time.'),
+    element('h2', {}, 'Mouse and touch'),
+    element('p', {}, 'Drag to rotate, drag with the right button or two fingers to pan, use the ' +
+      'wheel or pinch to zoom. Point at a route to move the cursor of the profiles; click it to ' +
+      'select that result. Click a profile of a flight to jump to that time.'),
     element('h2', {}, 'Search events'),
     element('p', {className: 'kinds'}, kKindNames.slice(0, 4).flatMap((name, kind) =>
       element('span', {}, swatch(kKinds[kind]), name))),

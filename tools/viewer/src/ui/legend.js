@@ -7,7 +7,7 @@ import {metres, number} from '../units.js';
 import {grid_lines, layers_of} from '../world.js';
 import {violations_of} from './violations.js';
 
-/** What the colours and lines on the picture mean, with units. */
+/** The legend of colours and lines, with units. */
 export function build_legend(world, store) {
   const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
     ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
@@ -49,14 +49,14 @@ function violations(world, {shown}) {
   return [element('div', {}, element('span', {className: 'swatch violation'}), 'Violation')];
 }
 
-/** Whoever looks at a search sees what is left out of it, whichever pane is open. */
+/** While a search is shown, states how much of it is left out, whichever pane is open. */
 function search({search: shown}) {
   return shown ? [element('div', {className: 'note'}, `Search. ${thinning(shown.trace)}`)] : [];
 }
 
 function grid(frame, state) {
   const parts = state.grid ? [`Grid ${metres(grid_lines(frame.box, 0).step)}`] : [];
-  if (state.exaggeration > 1) parts.push(`heights drawn ${state.exaggeration.toFixed(1)}×`);
+  if (state.exaggeration > 1) parts.push(`vertical exaggeration ${state.exaggeration.toFixed(1)}×`);
   if (state.cut < Infinity) parts.push(`cut above ${metres(state.cut)}`);
   return element('div', {className: 'note'}, parts.join(', '));
 }

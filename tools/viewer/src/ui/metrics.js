@@ -63,6 +63,6 @@ function reading(key, value) {
 
 function verdict(check) {
   if (!check) return '–';
-  return check.ok ? 'no rule broken' :
+  return check.ok ? 'no violations' :
     `${check.violations.length} violation${check.violations.length === 1 ? '' : 's'}`;
 }

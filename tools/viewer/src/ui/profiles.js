@@ -50,7 +50,7 @@ export function build_profiles(world, store) {
 function sources(world, store, profile) {
   const result = world.scene.results[store.state.selected];
   if (!profile) {
-    const fate = result?.status === 'solved' ? 'is not drawn' : 'has no route';
+    const fate = result?.status === 'solved' ? 'is not shown' : 'has no route';
     return [element('span', {className: 'empty'}, `${result?.name ?? 'This result'} ${fate}` +
       (result?.message ? `: ${result.message}` : '.'))];
   }

@@ -11,7 +11,7 @@ export function pill(status) {
     status.replaceAll('_', ' '));
 }
 
-/** The panel on the left: results with what each can show, and the world's layers. */
+/** The left panel: the results with their lines, and the world's layers. */
 export function build_side(world, store) {
   by_id('side').append(
     element('h2', {}, 'Results'),
@@ -22,7 +22,7 @@ export function build_side(world, store) {
 function result_card(result, index, world, store) {
   const lines = world.lines.filter((line) => line.result === index);
   const name = element('button', {className: 'name', textContent: result.name,
-    title: `Look at the profiles of ${result.file}`,
+    title: `Show the profiles of ${result.file}`,
     onclick: () => store.set({selected: index, cursor: null})});
   const mark = swatch('#000', 'line');
   const card = element('section', {className: 'result'},
@@ -73,7 +73,7 @@ function world_controls(world, store) {
   store.on(['legend'], () => { legend.input.checked = store.state.legend; });
   rows.push(grid.row, legend.row);
   if (layers_of(scene).some(({events}) => events.size > 0)) {
-    rows.push(checkbox('All that events bring, at any time', false,
+    rows.push(checkbox('Shapes of all events, at any time', false,
       (on) => store.set({everything: on})).row);
   }
   return rows;
@@ -86,7 +86,7 @@ function layer_row(layer, scene, store) {
   const remarks = [kRoleNames[layer.role]];
   if (layer.count > 1) remarks.push(`${layer.count.toLocaleString('en')} shapes`);
   if (!layer.known) remarks.push('unknown to the planner');
-  for (const event of layer.events) remarks.push(`comes with “${scene.events[event]?.text}”`);
+  for (const event of layer.events) remarks.push(`appears with “${scene.events[event]?.text}”`);
   row.append(element('small', {}, remarks.join(', ')));
   return row;
 }

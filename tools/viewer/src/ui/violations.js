@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {element} from '../dom.js';
 
-/** Every violation with the place of its waypoint, of routes, steps and flights. */
+/** All violations of routes, steps and flights, with the positions of their waypoints. */
 export function violations_of({scene}) {
   const found = [];
   const add = (check, points, whose, result, line) => {
@@ -12,7 +12,7 @@ export function violations_of({scene}) {
   scene.results.forEach((result, index) => {
     add(result.check, result.route, result.name, index, `${index}`);
     result.steps.forEach((step, at) => {
-      // What stands is judged as the route above, except for a step that another one follows.
+      // The accepted step is judged as the route above, unless another step follows.
       if (step.accepted) return;
       add(step.check, step.route, `${result.name}, ${step.id}`, index, `${index}.${at}`);
     });
@@ -26,7 +26,7 @@ export function build_violations(view, world, store) {
   const found = violations_of(world);
   if (found.length === 0) {
     return element('div', {}, element('p', {className: 'empty'},
-      'No rule is broken by what is shown here.'));
+      'No constraint is violated by the results shown.'));
   }
   return element('div', {}, element('ol', {}, found.map((violation) => element('li', {},
     element('button', {

@@ -12,43 +12,43 @@
 #include "altiplan/kit/lattice/lattice_search.hpp"
 #include "altiplan/kit/scratch.hpp"
 
-/// \file Searches whose routes go straight between cells that see each other: Theta*, Lazy Theta*,
-/// and what is built of them.
+/// \file Searches whose routes are straight between cells in line of sight: Theta*, Lazy Theta*,
+/// and their derivatives.
 namespace altiplan::kit {
 
-/// When a leg is held to the obstacles.
+/// When a leg is checked against the obstacles.
 enum class Sight {
-  eager,  ///< as soon as it would be taken: Theta*
-  lazy,   ///< when its last node is expanded: Lazy Theta*
+  eager,  ///< before it is taken: Theta*
+  lazy,   ///< when its end node is expanded: Lazy Theta*
 };
 
-/// How a leg is held to the limits on turns and climb while nodes are generated.
+/// How legs are checked against the limits on turns and climb during expansion.
 enum class AngleRule {
-  printed,           ///< the step to the node; the leg that is taken in its place is not looked at
-  route_consistent,  ///< the leg that is taken, and again when its last node is expanded
+  printed,           ///< the step to the node is checked, not the leg taken instead of it
+  route_consistent,  ///< the leg taken is checked, and again when its end node is expanded
 };
 
 struct AnyAngleSettings {
   Sight sight = Sight::lazy;
   AngleRule angles = AngleRule::route_consistent;
-  double weight_h = 1;  ///< of the straight line to the goal in f
+  double weight_h = 1;  ///< of the straight-line distance to the goal in f
   std::size_t max_bytes = ~std::size_t{0};
-  SearchStats before;  ///< what other searches of the same budget have done
+  SearchStats before;  ///< statistics of earlier searches under the same budget
 };
 
-/// The nodes of a search: places in rows along the axes, each at a cell of a lattice.
+/// The nodes of a search: a rectilinear grid of positions, each at a cell of a lattice.
 struct ALTIPLAN_API AnyAngleNodes {
-  /// Every free cell; a step whose cells are free is a leg whose cells are.
+  /// Every free cell; a step between free cells is a leg through free cells.
   static AnyAngleNodes every_cell(const VoxelGrid& occupancy);
 
-  const VoxelGrid* grid = nullptr;       ///< a bit a place; blocked: no node
-  CornerRule corner = CornerRule::any;   ///< free_box: nodes are neighbours by that rule
-  std::array<std::vector<int>, 3> cell;  ///< number of the cell on each axis, rising
+  const VoxelGrid* grid = nullptr;       ///< one bit per position; blocked: no node
+  CornerRule corner = CornerRule::any;   ///< free_box: adjacency of nodes by that rule
+  std::array<std::vector<int>, 3> cell;  ///< cell index on each axis, ascending
 };
 
-/// Numbers of the cells of a box, in bricks of 4 x 4 x 4 of them (4 x 4 on a level). The number of
-/// a cell has bits of its own for each axis, so that both are quick to tell from each other; as
-/// many numbers as the axes have, rounded up to powers of two.
+/// Indices of the cells of a box, in bricks of 4 x 4 x 4 cells (4 x 4 on a level). Each axis has
+/// its own bits in an index, so that both convert fast; there are as many indices as the product of
+/// the axis sizes, each rounded up to a power of two.
 class BrickIndex {
  public:
   explicit BrickIndex(const Cell& counts) {
@@ -65,10 +65,10 @@ class BrickIndex {
     all_bits_ = shift;
   }
 
-  /// Whether four bytes hold all numbers, and two more.
+  /// True if four bytes hold all indices and two more.
   bool fits() const { return all_bits_ < 32; }
   std::size_t size() const { return std::size_t{1} << all_bits_; }
-  /// The number of a cell is the sum of what its place on each axis adds.
+  /// The index of a cell is the sum of the parts of its coordinates.
   std::uint32_t part(std::size_t axis, int k) const {
     const auto place = std::uint32_t(k);
     const Field& low = low_[axis];
@@ -99,18 +99,17 @@ class BrickIndex {
 };
 
 struct AnyAngleMemory {
-  /// By node: whether it is closed, how much shorter than the longest the way to it is, and the
-  /// number of its parent; 0: not reached. Nodes lie in bricks, so that neighbours are near.
+  /// Per node: closed or not, how much shorter than the longest path its cost is, and the index of
+  /// its parent; 0: not reached. Nodes lie in bricks, so that neighbours are close in memory.
   ScratchArray<std::uint64_t, 512> reached;
-  ScratchArray<std::uint64_t> closed;  ///< a bit a node, laid out like the grid of the nodes
+  ScratchArray<std::uint64_t> closed;  ///< one bit per node, laid out like the grid of the nodes
   BucketQueue open;
   FreeBlocks sight;
 
   /// Without the open list, rounded up.
   static constexpr std::size_t kBytesPerNode = 9;
   std::size_t bytes() const { return reached.written_bytes() + closed.written_bytes(); }
-  /// Starts anew for the nodes of a grid. Room once made is kept: the largest grid comes best
-  /// first.
+  /// Resets for the nodes of a grid. Memory is kept, so the largest grid should come first.
   void reset(const VoxelGrid& nodes) {
     reached.reset(BrickIndex(nodes.spec().counts).size() + 2);
     closed.reset(nodes.words().size());
@@ -121,12 +120,13 @@ struct AnyAngleMemory {
 /// Any-Angle Path Planning on Grids. AAAI 2007; A. Nash, S. Koenig, C. Tovey: Lazy Theta*:
 /// Any-Angle Path Planning and Path Length Analysis in 3D. AAAI 2010, doi:10.1609/aaai.v24i1.7566.
 ///
-/// Ways are sums of legs as whole numbers of one small length, a 1e9th of what ways are allowed:
-/// the open list is one of buckets, and a node does with 8 bytes and a bit. An end of the route
-/// that is no node is one more: the nodes up to the next row on each axis are its neighbours.
+/// Path costs are sums of leg lengths as integer multiples of a small length, a 1e9th of the
+/// longest path allowed: the open list is a bucket queue, and a node takes 8 bytes and a bit. An
+/// end of the route that is no node is an extra node: its neighbours are the nodes up to the next
+/// row on each axis.
 class ALTIPLAN_API AnyAngleSearch {
  public:
-  /// All of it must outlive the search; the rules are those of the lattice, by cells.
+  /// All arguments must outlive the search; `rules` checks the moves of the lattice, by cells.
   AnyAngleSearch(const Request& request, const Lattice& lattice, MoveRules& rules,
                  const AnyAngleNodes& nodes, const AnyAngleSettings& settings,
                  AnyAngleMemory& memory);
@@ -136,8 +136,8 @@ class ALTIPLAN_API AnyAngleSearch {
     Route route;
     bool at_goal = false;  ///< not only within its tolerance
     bool budget_hit = false;
-    SearchStats progress;  ///< of the searches before too
-    Counters more;      ///< of who makes several searches
+    SearchStats progress;  ///< including the earlier searches
+    Counters more;         ///< for callers that run several searches
   };
   Result run();
 
@@ -145,16 +145,16 @@ class ALTIPLAN_API AnyAngleSearch {
   using Node = std::uint32_t;
   using Place = std::array<double, 3>;  ///< in units of costs
   static constexpr Node kNone = ~Node{0};
-  /// Cost of the longest way, so that the sum of two and an estimate keeps a bit free.
+  /// Cost of the longest path, so that the sum of two and an estimate leaves one bit free.
   static constexpr std::uint32_t kMax = 900'000'000;
   /// Start or goal.
   struct End {
     Node node;
-    bool centred;  ///< it is the centre of a cell
+    bool centred;  ///< at the centre of a cell
     Cell cell;     ///< of the lattice
     Place place;
     Vec3 position;
-    std::vector<Node> links;  ///< its neighbours, where it is none of the nodes
+    std::vector<Node> links;  ///< its neighbours, if it is none of the nodes
   };
   End end_at(const Vec3& p, Node beyond) const;
   void begin(double longest_m);
@@ -171,12 +171,12 @@ class ALTIPLAN_API AnyAngleSearch {
   Route route_to(Node last) const;
 
   static constexpr std::uint32_t kClosed = 1U << 31;
-  static constexpr std::uint32_t kLongest = kClosed - 1;  ///< no way is longer
-  /// What is known of a node, the greater the shorter its way is; greatest where it is closed.
+  static constexpr std::uint32_t kLongest = kClosed - 1;  ///< the longest path
+  /// State of a node, the greater the shorter its path; maximal where it is closed.
   std::uint32_t known(Node n) const { return std::uint32_t(reached_[n] >> 32); }
   std::uint32_t g(Node n) const { return kLongest - (known(n) & ~kClosed); }
   bool is_closed(Node n) const { return known(n) >= kClosed; }
-  /// Whether a way of that length is of use.
+  /// True if a path of that length improves the node.
   bool is_shorter(std::uint32_t g, Node n) const { return kLongest - g > known(n); }
   Node parent(Node n) const { return Node(reached_[n]); }
   const End* end(Node n) const {
@@ -229,16 +229,16 @@ class ALTIPLAN_API AnyAngleSearch {
   BudgetWatch watch_;
   BrickIndex numbers_;
   bool cells_decide_;    ///< a leg is free if its cells are
-  bool steps_are_free_;  ///< and so are the cells of a step
+  bool steps_are_free_;  ///< the cells of a step are always free
   DirectionMask lattice_steps_;
   double per_metre_ = 1;
-  std::array<double, 3> unit_{};  ///< edges of a cell
+  std::array<double, 3> unit_{};  ///< cell edges
   std::uint32_t longest_ = kNone;
   End start_;
   End goal_;
-  Node min_link_ = kNone;  ///< of the goal's
+  Node min_link_ = kNone;  ///< of the goal's links
   Node max_link_ = 0;
-  Node fallback_ = kNone;  ///< ends within the tolerance
+  Node fallback_ = kNone;  ///< a node within the tolerance
   std::uint32_t nearest_ = kNone;
   SearchStats progress_;
 };

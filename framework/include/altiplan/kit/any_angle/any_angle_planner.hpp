@@ -7,7 +7,7 @@
 
 namespace altiplan::kit {
 
-/// The parameters that planners of straight legs between cells have in common.
+/// Common parameters of the planners of straight legs between cells.
 struct AnyAngleParams {
   enum class Angles { printed, route_consistent, complete };
 
@@ -19,20 +19,20 @@ struct AnyAngleParams {
     f("cell_m", cell_m)
         .unit("m")
         .at_least(0.001)
-        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+        .doc("cell edge length on each axis; a layer with its own cells overrides it");
     f("angle_rule", angle_rule,
       {{"printed", Angles::printed},
        {"route_consistent", Angles::route_consistent},
        {"complete", Angles::complete}})
         .doc(
-            "limits on turns and climb while nodes are generated: tested for the step, not for the "
-            "leg that is taken (printed, paper 003), for that leg, and again when its end is "
-            "expanded (route_consistent), or so and, where that finds nothing, by an A* search "
-            "over cell and heading, whose steps may touch edges (complete)");
+            "check of the limits on turns and climb during expansion: for the step, not for the "
+            "leg taken (printed, paper 003); for that leg, and again when its end is expanded "
+            "(route_consistent); or the same and, if that finds nothing, an A* search over cell "
+            "and heading, whose steps may touch edges (complete)");
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
-        .doc("a lattice that needs more is refused before anything is allocated");
+        .doc("memory limit of the lattice; a larger one is refused before allocation");
   }
   std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
   AngleRule angles() const {
@@ -40,14 +40,14 @@ struct AnyAngleParams {
   }
 };
 
-/// What a planner of straight legs between cells does beside its search.
+/// Common part of the planners of straight legs between cells, apart from their search.
 class ALTIPLAN_API AnyAnglePlanner : public Planner {
  protected:
-  /// `bytes_per_cell`: what a search keeps for each cell of the lattice, without its open list.
+  /// `bytes_per_cell`: memory of a search per cell of the lattice, without its open list.
   AnyAnglePlanner(const AnyAngleParams& params, std::size_t bytes_per_cell)
       : params_(params), bytes_per_cell_(bytes_per_cell) {}
 
-  /// A problem in cells, and what its searches need.
+  /// A problem in cells, with the inputs of its searches.
   struct Task {
     const Request& request;
     const Lattice& lattice;
@@ -60,7 +60,7 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
 
  private:
   virtual AnyAngleSearch::Result search(Task& task) const = 0;
-  /// Whether such a search that finds nothing has looked at every way over the cells.
+  /// True if a search that finds nothing has covered every path over the cells.
   virtual bool looks_everywhere() const = 0;
 
   PlanResult do_plan(const Request& request) const final;
@@ -72,7 +72,7 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
   mutable ScratchPool<HeadingMemory> heading_memory_;
 };
 
-/// The planner whose nodes are all free cells.
+/// A planner whose nodes are all free cells.
 class ALTIPLAN_API EveryCellPlanner : public AnyAnglePlanner {
  protected:
   EveryCellPlanner(const AnyAngleParams& params, Sight sight)

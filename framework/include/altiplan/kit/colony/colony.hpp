@@ -15,9 +15,9 @@
 #include "altiplan/params.hpp"
 #include "altiplan/planner.hpp"
 
-/// \file What ant colonies on the cells of a level have in common. M. Dorigo, V. Maniezzo, A.
-/// Colorni: Ant System: Optimization by a Colony of Cooperating Agents. IEEE Transactions on
-/// Systems, Man, and Cybernetics B 26(1), 1996, doi:10.1109/3477.484436; as of paper 004.
+/// \file Common parts of ant colonies on the cells of a level. M. Dorigo, V. Maniezzo, A. Colorni:
+/// Ant System: Optimization by a Colony of Cooperating Agents. IEEE Transactions on Systems, Man,
+/// and Cybernetics B 26(1), 1996, doi:10.1109/3477.484436; as of paper 004.
 namespace altiplan::kit {
 
 struct ALTIPLAN_API ColonyParams {
@@ -36,8 +36,8 @@ struct ALTIPLAN_API ColonyParams {
   std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
 };
 
-/// A bit for each cell of a level, with room at both ends for the cells around the first and the
-/// last.
+/// One bit per cell of a level, padded at both ends for the neighbours of the first and the last
+/// cell.
 class CellBits {
  public:
   void reset(int columns, std::size_t cells) {
@@ -56,8 +56,8 @@ class CellBits {
     const std::size_t bit = cell + spare_;
     bytes_[bit / 8] = std::uint8_t(bytes_[bit / 8] & ~(1U << bit % 8));
   }
-  /// The bits of the eight cells around one, west first, from the row south of it on. At the edge
-  /// of the level some are those of other cells.
+  /// Bits of the eight neighbours of a cell, west first, from the row south of it on. At the edge
+  /// of the level some belong to other cells.
   unsigned around(std::uint32_t cell) const {
     const std::size_t south = cell;  // and west, with the spare bits
     const std::size_t columns = spare_ - 1;
@@ -79,9 +79,9 @@ class CellBits {
 
 class Crew;
 
-/// One plan by a colony: ants walk from the start to the goal, each by itself, and lay pheromone
-/// when all are back. A result is the same for any number of threads: every ant has a random stream
-/// of its own, and what they bring back is looked at in their order.
+/// One plan by a colony: ants walk from the start to the goal independently, and deposit pheromone
+/// when all have returned. The result does not depend on the number of threads: every ant has its
+/// own random stream, and the ants are evaluated in order.
 ///
 /// An iteration of the budget is a step of an ant.
 class ALTIPLAN_API Colony {
@@ -92,16 +92,16 @@ class ALTIPLAN_API Colony {
  protected:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  // Each on lines of the cache of its own: threads write to them at every step.
+  // On its own cache lines: threads write to it at every step.
   struct alignas(128) Ant {
     enum class End { arrived, stuck, too_long, stopped };
     std::vector<std::uint32_t> way;     ///< cells, from the start's on
-    std::vector<std::uint32_t> places;  ///< where pheromone is laid, as `bring_home` finds
-    double length = 0;                  ///< metres of the route, ends included
+    std::vector<std::uint32_t> places;  ///< where pheromone is deposited, from `bring_home`
+    double length = 0;                  ///< length of the route in metres, ends included
     End end = End::stopped;
     std::uint64_t steps = 0;
   };
-  /// What one thread has to itself.
+  /// Working memory of one thread.
   struct alignas(128) Walker {
     Walker(const Request& request, const Lattice& lattice)
         : rules(request, lattice, MoveCheck::cells, CornerRule::free_box), watch(request.budget) {}
@@ -116,29 +116,28 @@ class ALTIPLAN_API Colony {
     double metres = 0;
   };
 
-  /// All of it must outlive the colony.
+  /// All arguments must outlive the colony.
   Colony(const Request& request, const ColonyParams& params, const Lattice& lattice);
 
-  /// Sends the walker's ant on its way: calls `follow`.
+  /// Walks the walker's ant: calls `follow`.
   virtual void walk(Walker& walker) const = 0;
-  /// Of an ant that has arrived: lists its places, and may shorten its way before; it then sets its
-  /// length.
+  /// For an ant that has arrived: may shorten its path, lists its places, and sets its length.
   virtual void bring_home(Walker& walker) const = 0;
-  /// Lays `amount` on each place of an ant. Pheromone has evaporated before.
+  /// Deposits `amount` on each place of an ant. Evaporation has been applied.
   virtual void lay(const Ant& ant, double amount) = 0;
   virtual void evaporate() = 0;
-  /// All is laid.
+  /// Called after all deposits.
   virtual void settle() = 0;
 
-  /// Steps, `choose(cell)` each, until the ant arrives or dies.
+  /// Steps by `choose(cell)` until the ant arrives or dies.
   template <class Choose>
   void follow(Walker& walker, const Choose& choose) const;
 
-  /// Whether cells alone decide on a leg; else `keeps_rules` must be asked too.
+  /// True if the cells alone decide on a leg; else `keeps_rules` must be called too.
   bool cells_decide() const { return cells_decide_; }
-  /// Whether the walker's ant may go on to the cell, by the rules that cells know nothing of.
+  /// True if the walker's ant may move to the cell by the constraints beyond the cells.
   bool keeps_rules(Walker& walker, std::uint32_t to) const;
-  /// The same of the leg between two cells of its way, for one behind it too.
+  /// The same for the leg between two cells of its path, including one back along it.
   bool keeps_rules(Walker& walker, std::size_t from, std::size_t to) const;
 
   Vec3 position(std::uint32_t cell) const { return lattice_.position(lattice_.cell(cell)); }
@@ -177,16 +176,16 @@ class ALTIPLAN_API Colony {
   std::vector<Walker> walkers_;
   std::vector<Ant> ants_;
   std::atomic<std::size_t> next_ant_{0};
-  std::atomic<std::uint64_t> walked_{0};  ///< steps of the ants of this iteration that are back
+  std::atomic<std::uint64_t> walked_{0};  ///< steps of this iteration's returned ants
   std::atomic<bool> stopped_{false};
   std::atomic<bool> cancelled_{false};
-  std::uint64_t max_steps_ = 0;  ///< of an ant of this iteration
+  std::uint64_t max_steps_ = 0;  ///< per ant in this iteration
   std::uint64_t expanded_ = 0;
-  /// Moves of the first ant that rules have refused: which ants a walker leads is left to chance.
+  /// Refused moves of the first ant only: the assignment of ants to walkers is not deterministic.
   std::string first_refused_;
   std::vector<Iteration> past_;
   Ant best_;
-  std::size_t alive_ = 0;  ///< of the last iteration
+  std::size_t alive_ = 0;  ///< in the last iteration
   std::size_t stuck_ = 0;
   std::size_t too_long_ = 0;
   std::int64_t traced_ = 0;
@@ -228,15 +227,15 @@ void Colony::follow(Walker& walker, const Choose& choose) const {
   }
 }
 
-/// What a planner by a colony does beside it.
+/// Common part of the planners that use a colony.
 class ALTIPLAN_API ColonyPlanner : public Planner {
  protected:
-  /// `params` must outlive the planner; `bytes_per_cell` is what its colony keeps.
+  /// `params` must outlive the planner; `bytes_per_cell` is the memory of its colony.
   ColonyPlanner(const char* name, const ColonyParams& params, std::size_t bytes_per_cell)
       : name_(name), params_(params), bytes_per_cell_(bytes_per_cell) {}
 
  private:
-  /// On a lattice of one level.
+  /// Searches a lattice of one level.
   virtual PlanResult search(const Request& request, const Lattice& lattice) const = 0;
   PlanResult do_plan(const Request& request) const final;
   Traits do_traits() const final;

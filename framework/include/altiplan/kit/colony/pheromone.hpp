@@ -11,7 +11,7 @@
 /// \file The pheromone of ant colonies (kit/colony.hpp), eqs. (2) to (4) of paper 004.
 namespace altiplan::kit {
 
-/// x^exponent, by products where the exponent is a small whole number.
+/// x^exponent, by repeated multiplication where the exponent is a small integer.
 class Power {
  public:
   explicit Power(double exponent)
@@ -35,13 +35,13 @@ class Power {
   int whole_;
 };
 
-/// Amounts of pheromone by place, all of which evaporate alike, eq. (4): they are kept in a unit
-/// that evaporates in their stead, and count from the initial amount. Only their ratios matter to
-/// an ant; what is so little beside the largest that its power alpha would underflow counts as the
-/// least that does not.
+/// Pheromone per place; all of it evaporates at the same rate, eq. (4): the unit of the stored
+/// values evaporates instead of them, and values are relative to the initial amount. Only ratios
+/// matter to an ant; a value so small beside the largest that its power alpha would underflow is
+/// raised to the smallest that does not.
 class ALTIPLAN_API Pheromone {
  public:
-  /// Starts anew with the initial amount, 1, at each place.
+  /// Resets every place to the initial amount, 1.
   void reset(std::size_t places, double evaporation, double alpha);
   void evaporate();
   void lay(std::size_t place, double amount) {
@@ -49,7 +49,7 @@ class ALTIPLAN_API Pheromone {
     there += amount * per_unit_;
     largest_ = largest_ < there ? there : largest_;
   }
-  /// To be called when all is laid. Whether every amount is another than before, in the unit.
+  /// Call after all deposits. True if every amount has changed, in the stored unit.
   bool settle();
   double operator[](std::size_t place) const { return amounts_[place]; }
 
@@ -59,11 +59,11 @@ class ALTIPLAN_API Pheromone {
   double per_unit_ = 1;
   double largest_ = 1;
   double least_ = 0;
-  bool all_changed_ = false;  ///< since the last time that all was settled
+  bool all_changed_ = false;  ///< since the last settle
 };
 
-/// What is laid in an iteration: sums by place, and the places that have any. Many ants lay on few
-/// places, which are then looked at once.
+/// Deposits of one iteration: sums per place, and the places with any. Many ants use few places,
+/// each of which is then processed once.
 template <class Real>
 class Deposits {
  public:

@@ -7,7 +7,7 @@
 
 namespace altiplan::kit {
 
-/// An open file's number, closed with this object; negative where none is open.
+/// Owns a file descriptor; negative where none is open.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}

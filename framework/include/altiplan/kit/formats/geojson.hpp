@@ -14,30 +14,30 @@ namespace altiplan::kit {
 struct ALTIPLAN_API GeoFeature {
   std::string id;  ///< the feature's id or name, else its number
   Polygon polygon;
-  std::map<std::string, std::string> properties;  ///< as JSON; null ones are left out
+  std::map<std::string, std::string> properties;  ///< as JSON; null values are omitted
 
-  /// "" where the feature has no such property.
+  /// The property as text; "" where the feature has none.
   std::string text(const std::string& property) const;
-  /// Metres, written as a number or as text. Throws Error where it is neither.
+  /// The property in metres, a number or text; throws Error if it is neither.
   std::optional<double> metres(const std::string& property) const;
 };
 
 struct ALTIPLAN_API GeoJson {
   std::vector<GeoFeature> features;
   std::size_t skipped = 0;        ///< features without an area: points, lines, no geometry
-  std::vector<std::string> flat;  ///< names of polygons that are flat, wholly or in part
-  std::string copyright;          ///< what the file says of its makers, "" where nothing
+  std::vector<std::string> flat;  ///< names of polygons that are degenerate, wholly or in part
+  std::string copyright;          ///< copyright notice of the file, "" where there is none
 
   /// "3 features without an area skipped ('pier')"
   std::string skipped_text() const;
 };
 
-/// Reads GeoJSON (RFC 7946). Throws Error, with the feature to blame, for what is not: damaged
-/// text, rings that are open or meet themselves, coordinates out of range.
+/// Reads GeoJSON (RFC 7946). Throws Error, naming the feature, for damaged text, rings that are
+/// open or intersect themselves, and coordinates out of range.
 ALTIPLAN_API GeoJson read_geojson(const std::string& file);
 
-/// A name that no feature has is a slip: what it stands for would silently be left out. Throws
-/// Error with the names that there are.
+/// Throws Error, listing the existing names, for a property that no feature has: most likely a
+/// typing error, which would otherwise silently drop data.
 ALTIPLAN_API void expect_properties(const std::string& file, const GeoJson& json,
                                     const std::vector<std::string>& names);
 }  // namespace altiplan::kit

@@ -9,6 +9,6 @@
 namespace altiplan::kit {
 
 /// Seconds since 1970-01-01 UTC of an ISO 8601 time: a date, or date and time of day, seconds and
-/// their fraction optional, ending in Z or an offset (+02:00); none where the text is no such time.
+/// their fraction optional, ending in Z or an offset (+02:00); none if the text is not such a time.
 ALTIPLAN_API std::optional<double> parse_iso_time(std::string_view text);
 }  // namespace altiplan::kit

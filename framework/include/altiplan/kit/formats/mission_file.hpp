@@ -7,11 +7,11 @@
 
 #include "altiplan/kit/layers/polygon.hpp"
 
-/// \file What ground stations write, in one form: QGroundControl's `.plan`, the `QGC WPL 110` text
-/// of `.waypoints` and `.txt`, KML, and the routes of GPX and GeoJSON.
+/// \file Missions of ground stations in one representation: QGroundControl's `.plan`, the `QGC WPL
+/// 110` text of `.waypoints` and `.txt`, KML, and the routes of GPX and GeoJSON.
 namespace altiplan::kit {
 
-/// What a height is counted from: mean sea level, the ground below the point, or the home position.
+/// Reference of an altitude: mean sea level, the ground below the point, or the home position.
 enum class AltitudeFrame { sea, ground, home };
 
 struct MissionPoint {
@@ -25,15 +25,15 @@ struct MissionItem {
   enum class Kind { takeoff, waypoint, loiter, land };
   Kind kind = Kind::waypoint;
   MissionPoint at;
-  double acceptance_m = 0;  ///< the item counts as passed within it; 0 where the file says nothing
-  std::string place;        ///< in the file, for messages: "mission.items.3", "line 5"
+  double acceptance_m = 0;  ///< acceptance radius; 0 where the file gives none
+  std::string place;        ///< position in the file, for messages: "mission.items.3", "line 5"
 };
 
 /// An area that must not be left (`keep_in`) or entered: a polygon, or a circle where the outline
 /// is empty.
 struct MissionZone {
   bool keep_in = false;
-  bool has_role = true;  ///< false: the file does not say which of the two (KML)
+  bool has_role = true;  ///< false: the file does not specify the role (KML)
   Polygon polygon;       ///< longitude, latitude
   Point2 centre{0, 0};
   double radius_m = 0;
@@ -48,19 +48,19 @@ struct MissionFile {
   std::string name;
   std::optional<MissionPoint> home;  ///< above sea level
   std::vector<MissionItem> items;
-  std::string route_problem;  ///< what keeps the items from being a route, "" where nothing
+  std::string route_problem;  ///< why the items are not a route, "" where they are
   std::vector<MissionZone> zones;
-  std::vector<std::string> flat;  ///< names of KML's polygons without an area, which are skipped
-  /// What was left out, a line each ("4 commands that are no places were skipped: 177, 178").
+  std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
+  /// Skipped parts, one per line ("4 commands that are not waypoints skipped: 177, 178").
   std::vector<std::string> notes;
 };
 
-/// Reads a mission file; which format it is in is told by what it holds. Throws Error, with the
-/// file and the line or item to blame, for what is damaged, of another version or another format.
+/// Reads a mission file; the format is detected from its content. Throws Error, naming the file and
+/// the line or item, for damaged data or another version or format.
 ALTIPLAN_API MissionFile read_mission(const std::string& file);
-/// The same from a text that is at hand; `file` is for messages.
+/// The same from a text in memory; `file` is for messages.
 ALTIPLAN_API MissionFile read_mission(const std::string& file, const std::string& text);
 
-/// Whether the file's ending is one of those that read_mission is for: plan, waypoints, txt, kml.
+/// True if the file's extension is one that read_mission reads: plan, waypoints, txt, kml.
 ALTIPLAN_API bool is_mission_file(const std::string& file);
 }  // namespace altiplan::kit

@@ -9,11 +9,11 @@
 
 namespace altiplan::kit {
 
-/// The open list of a search whose keys are whole numbers that never fall below the last one taken,
-/// which is what a consistent heuristic gives: the least key first, among equals the one pushed
-/// last. A key goes to a bucket by its highest byte that differs from the least key; buckets are
-/// split when their turn comes, so an entry moves at most three times, and one that never gets its
-/// turn not once. An improved node is pushed again; the caller skips what it has closed.
+/// A monotone integer priority queue for open lists: keys never fall below the last one popped,
+/// which a consistent heuristic guarantees. The smallest key comes first, among equals the last one
+/// pushed. A key goes to a bucket by its highest byte that differs from the least key; buckets are
+/// split when they become current, so an entry moves at most three times, and one that never
+/// becomes current never. An improved node is pushed again; the caller skips closed nodes.
 ///
 /// Multi-level buckets: E. V. Denardo, B. L. Fox, Shortest-Route Methods: 1. Reaching, Pruning, and
 /// Buckets. Operations Research 27(1), 1979, doi:10.1287/opre.27.1.161.
@@ -22,7 +22,7 @@ class BucketQueue {
   struct Entry {
     std::uint32_t key;
     std::uint32_t node;
-    std::uint32_t from;  ///< the caller's: how the node was reached
+    std::uint32_t from;  ///< for the caller: how the node was reached
   };
 
   /// Empties the queue; keys start at 0 again.
@@ -40,10 +40,10 @@ class BucketQueue {
   }
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
-  /// Used since the queue was emptied, whatever it had grown to before.
+  /// In use since the queue was emptied, whatever its capacity.
   std::size_t bytes() const { return chunks_.size() * sizeof(Chunk); }
 
-  /// A key below the last one taken counts as that one.
+  /// A key below the last one popped counts as that one.
   void push(std::uint32_t key, std::uint32_t node, std::uint32_t from) {
     ++size_;
     if (key > least_) {
@@ -57,7 +57,7 @@ class BucketQueue {
     has_top_ = true;
   }
 
-  /// Not to be called on an empty queue.
+  /// Requires a non-empty queue.
   Entry pop() {
     --size_;
     if (has_top_) {
@@ -84,14 +84,14 @@ class BucketQueue {
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  static constexpr std::size_t kWidth = 256;  // buckets a byte of the key
-  static constexpr std::size_t kLevels = 4;   // bytes a key
+  static constexpr std::size_t kWidth = 256;  // buckets per byte of the key
+  static constexpr std::size_t kLevels = 4;   // bytes per key
   static constexpr std::uint32_t kEntries = 10;
   struct Chunk {
     std::uint32_t below;  // the next older chunk of the bucket
     std::uint32_t count;
-    // Written and read as one word: what is pushed is often popped at once, and a load that spans
-    // two stores under way has to wait for both.
+    // Written and read as one word: entries are often popped right after the push, and a load that
+    // spans two pending stores has to wait for both.
     std::array<std::uint64_t, kEntries> key_and_node;
     std::array<std::uint32_t, kEntries> from;
 
@@ -160,7 +160,7 @@ class BucketQueue {
     word = filled ? word | bit : word & ~bit;
   }
 
-  /// First bucket of the lowest level that has any.
+  /// First non-empty bucket of the lowest non-empty level.
   std::size_t first_filled() const {
     std::size_t word = 0;
     while (filled_[word] == 0) {
@@ -179,11 +179,11 @@ class BucketQueue {
     std::uint32_t newest = heads_[bucket];
     if (chunks_[newest].count == 1 && chunks_[newest].below == kNone) {
       least_ = chunks_[newest].entry(0).key;
-      return bucket;  // alone there: taken as it lies
+      return bucket;  // alone in its bucket: used in place
     }
     heads_[bucket] = kNone;
     mark(bucket, false);
-    // From the oldest, so that what came last is still on top.
+    // Oldest first, so that the newest entry stays on top.
     std::uint32_t chunk = kNone;
     least_ = kNone;
     while (newest != kNone) {
@@ -208,7 +208,7 @@ class BucketQueue {
 
   std::vector<Chunk> chunks_;
   std::array<std::uint32_t, kLevels* kWidth> heads_ = none();
-  std::array<std::uint64_t, kLevels * kWidth / 64> filled_{};  // buckets, a bit each
+  std::array<std::uint64_t, kLevels * kWidth / 64> filled_{};  // one bit per bucket
   std::uint32_t free_ = kNone;
   std::uint32_t least_ = 0;
   std::size_t size_ = 0;

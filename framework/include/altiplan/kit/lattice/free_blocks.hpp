@@ -10,14 +10,15 @@
 
 namespace altiplan::kit {
 
-/// Which blocks of 8 x 8 x 8 cells of a grid have nothing blocked in them and right around them: a
-/// leg goes through such a block in one step.
+/// Marks the blocks of 8 x 8 x 8 cells of a grid with nothing blocked in or directly around them: a
+/// leg crosses such a block in one step.
 class ALTIPLAN_API FreeBlocks {
  public:
-  /// Made anew only for another grid than the last one.
+  /// Rebuilt only for another grid than the last one.
   void prepare(const std::shared_ptr<const VoxelGrid>& grid);
 
-  /// The answer of kit::line_of_sight on that grid, sooner where the leg is long and space is open.
+  /// Same answer as kit::line_of_sight on that grid, faster where the leg is long and space is
+  /// open.
   bool line_of_sight(const Cell& a, const Cell& b) const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace altiplan::kit {
 
-/// What searches by real numbers have in common, whether a node is a cell or an arrival at one: how
-/// the start and the goal join the lattice.
+/// Common part of searches with real-valued costs, whether a node is a cell or an arrival at one:
+/// the connections of start and goal to the lattice.
 class GoalSearch : protected LatticeSearch {
  protected:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -20,14 +20,13 @@ class GoalSearch : protected LatticeSearch {
              double best_cost, OpenList& open)
       : LatticeSearch(request, settings, lattice, best_cost), open_(open) {}
 
-  /// How the vehicle comes to a cell reached by the step `in`; nothing when it starts there without
-  /// a velocity.
+  /// The approach to a cell reached by the step `in`; nothing at the start without a velocity.
   std::optional<Approach> before(int in, const Vec3& here) const {
     return rules_.approach(in, here, at_start_);
   }
 
-  /// Reaches the goal from a node at cell c if that has a link to it, at the cost g and the length
-  /// of the way to the node.
+  /// Reaches the goal from a node at cell c if it has a link to the goal; g and length are those of
+  /// the path to the node.
   void try_goal(std::uint32_t node, double g, double length, const Cell& c, const Vec3& here,
                 const std::optional<Approach>& from) {
     if (const Lattice::Link* link = to_goal_.link_of(c)) {
@@ -52,6 +51,6 @@ class GoalSearch : protected LatticeSearch {
   double goal_g_ = kInfinity;
   std::uint32_t goal_parent_ = kNone;
   double fallback_g_ = kInfinity;
-  std::uint32_t fallback_ = kNone;  ///< ends within the tolerance, where the goal has no link
+  std::uint32_t fallback_ = kNone;  ///< a node within the tolerance, where the goal has no link
 };
 }  // namespace altiplan::kit

@@ -12,38 +12,38 @@
 
 namespace altiplan::kit {
 
-/// What a search by cell and heading knows of a cell.
+/// State of a cell in a search by cell and heading.
 struct HeadingCell {
-  double g;        ///< of the cheapest arrival that waits, or waited
+  double g;        ///< of the cheapest arrival that is or was open
   StepMask taken;  ///< steps out of the cell that need no further arrival
   MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
   std::uint8_t in;  ///< step of that arrival
-  bool is_open;     ///< steps that no arrival may take are among `taken`
+  bool is_open;     ///< steps that no arrival may take are included in `taken`
 };
 inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kHere, false};
 
-/// A node of the search: a cell, reached by a step.
+/// A node of the search: a cell reached by a step.
 struct Arrival {
   std::uint32_t cell;
-  std::uint32_t from;  ///< the arrival before
-  std::uint8_t in;     ///< the step that led here; kHere: linked to the start
+  std::uint32_t from;  ///< the previous arrival
+  std::uint8_t in;     ///< the step into the cell; kHere: linked to the start
 };
 
 struct HeadingMemory {
   NodeStore<HeadingCell> cells;
   OpenList open;
   std::vector<Arrival> arrivals;
-  std::vector<double> lengths;  ///< of the ways to them, where costs are others
+  std::vector<double> lengths;  ///< path lengths, where costs differ from them
 };
 
-/// A* over (cell, step by which it is reached): complete where rules look at two legs, and optimal
-/// under them.
+/// A* over (cell, step into it): complete where constraints depend on two legs, and optimal under
+/// them.
 ///
-/// What follows a step depends on the step alone. So the cheapest arrival at a cell that may take a
-/// step takes it for good, and arrivals later on, none of them cheaper, take what is left:
-/// each step is judged, and each node opened, once at most. An arrival that has nothing left to
-/// take, or may take nothing that a cheaper one at the cell could not, is dropped.
+/// The steps that may follow a step depend on that step alone. So the cheapest arrival at a cell
+/// that may take a step takes it for good, and later arrivals, none of them cheaper, take the rest:
+/// each step is checked, and each node opened, at most once. An arrival that has no step left to
+/// take, or none that a cheaper one at the cell could not take, is dropped.
 class HeadingSearch : GoalSearch {
  public:
   HeadingSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
@@ -113,7 +113,7 @@ class HeadingSearch : GoalSearch {
            to_goal_.link_of(lattice_.cell(arrival.cell)) == nullptr;
   }
 
-  /// Whether an arrival at the cell by a step can do nothing that another cannot, as cheaply.
+  /// True if another arrival at the cell can take every step that this one can, at no higher cost.
   bool is_needless(HeadingCell& cell, const Cell& c, int step, double g) const {
     const StepMask left = rules_.after(step) & ~cell.taken;
     const bool by_other = cell.g <= g && (left & ~rules_.after(cell.in)) == 0 &&
@@ -129,7 +129,7 @@ class HeadingSearch : GoalSearch {
   }
 
   void expand(std::uint32_t index, double g_here, HeadingCell& cell) {
-    const Arrival arrival = arrivals_[index];  // pushes move it
+    const Arrival arrival = arrivals_[index];  // a push may relocate it
     const Cell c = lattice_.cell(arrival.cell);
     const Vec3 here = arrival.in == kHere && at_start_ ? start_ : lattice_.position(c);
     const std::optional<Approach> from = before(arrival.in, here);
@@ -146,7 +146,8 @@ class HeadingSearch : GoalSearch {
       cell.is_open = true;
       cell.taken = ~steps_in(rules_.out_of(c));
     }
-    // A first step after a heading, or after a link, is no pair of steps: it is judged whole.
+    // The first step after a heading or a link is no pair of lattice steps: it is checked as a
+    // whole.
     const bool judged_whole = rules_.is_first(arrival.in) && from;
     const StepMask left = ~cell.taken;
     rules_.count_turns(left, rules_.after(arrival.in));
@@ -176,7 +177,7 @@ class HeadingSearch : GoalSearch {
     }
   }
 
-  /// Of this search, not of what the pool's memory has grown to.
+  /// Memory of this search, not the capacity that the pool has grown to.
   bool memory_full() const {
     return lattice_.size() * sizeof(HeadingCell) + arrivals_.size() * sizeof(Arrival) +
                open_.size() * sizeof(OpenList::Entry) >

@@ -19,18 +19,18 @@ enum class Neighbourhood {
 
 enum class CornerRule {
   any,       ///< a step needs its two cells free
-  free_box,  ///< a step needs every cell of the box that it spans free
+  free_box,  ///< a step needs every cell of its bounding box free
 };
 
-/// Directions to the cells around one are numbered x fastest, the cell itself in the middle; a set
-/// of them, or of those cells, is a mask with a bit for each.
+/// Directions to the neighbours of a cell are numbered x fastest, with the cell itself in the
+/// middle; a set of directions or neighbours is a mask with one bit each.
 using DirectionMask = std::uint32_t;
 inline constexpr int kDirections = 27;
 inline constexpr int kHere = 13;
 constexpr int direction(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }
 constexpr Cell offset(int d) { return {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1}; }
 constexpr int opposite(int d) { return kDirections - 1 - d; }
-/// The directions, and the place itself, whose offset `holds`.
+/// The directions, including the cell itself, whose offset satisfies `holds`.
 template <class Holds>
 constexpr DirectionMask directions_where(const Holds& holds) {
   DirectionMask mask = 0;
@@ -41,7 +41,7 @@ constexpr DirectionMask directions_where(const Holds& holds) {
 }
 inline constexpr DirectionMask kLevelDirections =
     directions_where([](const Cell& o) { return o[2] == 0; });
-/// Those along one axis, two, and three.
+/// Directions along one, two and three axes.
 inline constexpr std::array<DirectionMask, 3> kAlongAxes = [] {
   const auto along = [](int axes) {
     return directions_where(
@@ -50,7 +50,7 @@ inline constexpr std::array<DirectionMask, 3> kAlongAxes = [] {
   return std::array{along(1), along(2), along(3)};
 }();
 
-/// The opposites of the directions.
+/// The opposite directions.
 constexpr DirectionMask reversed(DirectionMask mask) {
   mask = (mask & 0x55555555) << 1 | (mask >> 1 & 0x55555555);
   mask = (mask & 0x33333333) << 2 | (mask >> 2 & 0x33333333);
@@ -58,7 +58,7 @@ constexpr DirectionMask reversed(DirectionMask mask) {
   return __builtin_bswap32(mask) >> (32 - kDirections);
 }
 
-/// The numbers of the cells of a box, x fastest.
+/// Indices of the cells of a box, x fastest.
 class CellIndex {
  public:
   CellIndex() = default;
@@ -79,14 +79,14 @@ class CellIndex {
     return {int(index - row * std::uint32_t(counts_[0])),
             int(row - level * std::uint32_t(counts_[1])), int(level)};
   }
-  /// Difference of index to the neighbour.
+  /// Index difference to the neighbour.
   std::int64_t stride(int d) const {
     const Cell o = offset(d);
     return (std::int64_t(o[2]) * counts_[1] + o[1]) * counts_[0] + o[0];
   }
 
  private:
-  /// floor((2^64 - 1) / d), and n / d by it: a division would be the dearest part of a step.
+  /// floor((2^64 - 1) / d), and n / d by it: a division would be the most expensive part of a step.
   static std::uint64_t divisor(int d) { return ~std::uint64_t{0} / std::uint64_t(d); }
   static std::uint32_t divided(std::uint32_t n, std::uint64_t divisor) {
     __extension__ using Wide = unsigned __int128;
@@ -98,23 +98,23 @@ class CellIndex {
   std::uint64_t per_level_ = 0;
 };
 
-/// How many bytes a search may keep, and how many it keeps for each cell.
+/// Memory limit of a search, and its memory per cell, in bytes.
 struct LatticeMemory {
   std::size_t max_bytes = ~std::size_t{0};
   std::size_t bytes_per_cell = 1;
 };
 
-/// The cells of a grid search. The start is the centre of a cell, unless a layer has cells of its
-/// own: those are taken then. Centres lie within the request's volume and its altitude bands over
-/// sea; level flight has one layer of cells, whose nodes are at level_m.
+/// The cells of a grid search. The start is the centre of a cell, unless a layer has its own cells,
+/// which are then used. Centres lie within the request's volume and its altitude bands over sea;
+/// level flight has one layer of cells, whose nodes are at level_m.
 class ALTIPLAN_API Lattice {
  public:
-  /// Throws ParameterError("cell_m", …) when the cells would need more memory than allowed.
+  /// Throws ParameterError("cell_m", …) if the cells would need more memory than allowed.
   Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neighbourhood,
           const LatticeMemory& memory);
 
   const GridSpec& spec() const { return spec_; }
-  /// Where the vehicle is when it is at the cell.
+  /// Position of the vehicle at the cell.
   Vec3 position(const Cell& c) const {
     Vec3 p = spec_.centre(c);
     if (level_m_) {
@@ -135,15 +135,15 @@ class ALTIPLAN_API Lattice {
     return spec_.cell.cwiseProduct(Vec3(o[0], o[1], o[2]));
   }
   double step_length(int d) const { return lengths_[std::size_t(d)]; }
-  /// Difference of index to the neighbour.
+  /// Index difference to the neighbour.
   std::int64_t stride(int d) const { return strides_[std::size_t(d)]; }
 
-  /// Length of the shortest route between two cells if none were blocked, exactly.
+  /// Length of the shortest path between two cells if none were blocked, exactly.
   ///
-  /// With all neighbours a route of n_i cells on axis i is a sum of steps, each along a set S of
+  /// With all neighbours a path of n_i cells on axis i is a sum of steps, each along a set S of
   /// axes with length L(S) = sqrt(sum of squared edges). L is the root of a modular function, hence
   /// submodular, so the cheapest sum is its Lovász extension: take as many steps along all three
-  /// axes as the least n_i, then along the two that remain, then along the last. That holds for
+  /// axes as the smallest n_i, then along the two that remain, then along the last. That holds for
   /// cells of any shape, and being a norm it makes a consistent heuristic.
   double distance(const Cell& a, const Cell& b) const;
 
@@ -152,10 +152,10 @@ class ALTIPLAN_API Lattice {
     Cell cell;
     double length;
   };
-  /// The cell whose centre is nearest to the point, one at the edge for a point beyond. The length
-  /// is 0 where within the judge's tolerance the point is that centre.
+  /// The cell with its centre nearest to the point; a boundary cell for a point outside. The length
+  /// is 0 if the point is that centre within the judge's tolerance.
   Link nearest(const Vec3& p) const;
-  /// How a point joins the lattice: by its own cell alone where it is that cell's centre, else by
+  /// Connections of a point to the lattice: its own cell alone where it is that cell's centre, else
   /// every cell at most one edge away from it on each axis.
   std::vector<Link> links(const Vec3& p) const;
 
@@ -169,13 +169,13 @@ class ALTIPLAN_API Lattice {
   std::array<std::int64_t, kDirections> strides_{};
 };
 
-/// The result of a search whose cells alone need more than the budget's memory; nothing where they
-/// do not.
+/// The result of a search whose cells alone need more than the budget's memory; nothing if they
+/// fit.
 ALTIPLAN_API std::optional<PlanResult> beyond_budget(const Lattice& lattice,
                                                      std::size_t bytes_per_cell,
                                                      const Budget& budget);
 
-/// The bits at and around the cell whose bit is number `at`, of an array laid out like the grid's
+/// Bits of the cell at bit number `at` and its neighbours, in an array laid out like the grid's
 /// words; with kLevel only those of its own level.
 template <bool kLevel = false>
 DirectionMask bits_around(const VoxelGrid& grid, const std::uint64_t* words, std::size_t at) {
@@ -192,14 +192,14 @@ DirectionMask bits_around(const VoxelGrid& grid, const std::uint64_t* words, std
                 : level(at - 1 - grid.level_bits()) | own | level(at - 1 + grid.level_bits()) << 18;
 }
 
-/// The blocked ones among the 27 cells at and around c.
+/// The blocked cells among c and its 26 neighbours.
 inline DirectionMask blocked_around(const VoxelGrid& grid, const Cell& c) {
   return bits_around(grid, grid.words().data(), grid.bit(c));
 }
 
-/// Directions in which a step is free under the rule, given the blocked cells around.
+/// Directions in which a step is free under the rule, given the blocked neighbours.
 inline DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
-  // Cells level with the middle one on each axis, and how far apart neighbours on it are.
+  // Neighbours with offset 0 on each axis, and the stride between neighbours on it.
   constexpr auto kLevelWith = [](std::size_t axis) {
     return directions_where([axis](const Cell& o) { return o[axis] == 0; });
   };
@@ -209,7 +209,8 @@ inline DirectionMask free_steps(DirectionMask blocked, CornerRule rule) {
   if ((blocked & kMiddle) != 0) {
     return 0;
   }
-  if (rule == CornerRule::free_box) {  // a blocked cell closes every step whose box holds it
+  if (rule == CornerRule::free_box) {  // a blocked cell closes every step whose bounding box
+                                       // contains it
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const DirectionMask level = blocked & kLevel[axis];
       blocked |= level << kApart[axis] | level >> kApart[axis];

@@ -13,17 +13,17 @@
 #include "altiplan/kit/lattice/step_costs.hpp"
 #include "altiplan/planner.hpp"
 
-/// \file What best-first searches over the cells of a lattice have in common: their settings, the
-/// estimate of the way to go, and what they say in the end.
+/// \file Common parts of best-first searches over the cells of a lattice: their settings, the
+/// estimate of the cost-to-go, and their final messages.
 namespace altiplan::kit {
 
 enum class Heuristic { octile, euclidean, manhattan, zero };
 
-/// What a node of the search is where a rule looks at two legs.
+/// State of the search where a constraint depends on two legs.
 enum class SearchState {
   parent,            ///< a cell, reached from one parent
-  cell_and_heading,  ///< a cell and the direction in which it is reached
-  automatic,         ///< the first, and the second where that finds nothing
+  cell_and_heading,  ///< a cell and the direction into it
+  automatic,         ///< the first, and the second if that finds nothing
 };
 
 struct SearchSettings {
@@ -40,21 +40,21 @@ struct SearchSettings {
   bool anytime = false;
   std::size_t max_bytes = ~std::size_t{0};
 
-  /// How many times the length of a step the heuristic may fall along it.
+  /// Maximum decrease of the heuristic along a step, in units of the step's length.
   double stretch() const {
     return heuristic == Heuristic::zero        ? 0
            : heuristic == Heuristic::manhattan ? std::sqrt(3.0)
                                                : 1;
   }
-  /// Whether no node's best way is found only after the node was closed.
+  /// True if the heuristic is consistent: a closed node never gets a better path.
   bool consistent() const {
     return weight_h <= weight_g && heuristic != Heuristic::manhattan &&
            (cost.length_alone() || cost.accumulate == Accumulate::length);
   }
 };
 
-/// The cost of the way between a cell and an end of the route, by the heuristic, and how that end
-/// joins the lattice.
+/// Heuristic cost of the path between a cell and an end of the route, and that end's connections to
+/// the lattice.
 class Estimate {
  public:
   Estimate(const SearchSettings& settings, const Lattice& lattice, const Vec3& end,
@@ -65,7 +65,7 @@ class Estimate {
         tolerance_m_(tolerance_m),
         per_metre_(cost_per_metre),
         links_(lattice.links(end)) {
-    // A link counts only where no other is on a way from it to the end that is as short.
+    // A link is dropped if another one is on an equally short path from it to the end.
     for (const Lattice::Link& link : links_) {
       bool needed = true;
       for (const Lattice::Link& other : ends_) {
@@ -77,7 +77,7 @@ class Estimate {
     }
   }
 
-  /// Lower bound of the cost (but for `manhattan`).
+  /// Lower bound of the cost (except with `manhattan`).
   double operator()(const Cell& c) const { return per_metre_ * metres(c); }
   /// Lower bound, whatever the heuristic.
   double at_least(const Vec3& p) const {
@@ -126,31 +126,33 @@ class Estimate {
   std::vector<Lattice::Link> ends_;
 };
 
-/// Lowest place of a search: of the lattice, or an end of the route.
+/// Minimum z of a search: of the lattice, or an end of the route.
 inline double lowest(const Request& request, const Lattice& lattice) {
   return std::min(
       {lattice.position({0, 0, 0}).z(), request.start.position.z(), request.goal.position.z()});
 }
 
-/// What a search has done so far.
+/// Statistics of a search so far.
 struct SearchStats {
   std::uint64_t expanded = 0;
   std::int64_t generated = 0;
-  Vec3 nearest{0, 0, 0};  ///< of the expanded cells to the goal
+  Vec3 nearest{0, 0, 0};  ///< the expanded cell nearest to the goal
   bool memory_full = false;
   bool too_long = false;  ///< route_length refused something
 };
 
-inline Counters counters(const SearchStats& progress, const Lattice& lattice, const MoveRules& rules) {
+inline Counters counters(const SearchStats& progress, const Lattice& lattice,
+                         const MoveRules& rules) {
   return {{"expanded", std::int64_t(progress.expanded)},
           {"generated", progress.generated},
           {"moves_checked", rules.moves_checked()},
           {"lattice_cells", std::int64_t(lattice.size())}};
 }
 
-/// Says why there is no route: how far the search came, and what stopped it.
-inline std::string explanation(PlanStatus status, const SearchStats& progress, const Request& request,
-                               const Lattice& lattice, const MoveRules& rules) {
+/// Explanation of a missing route: how far the search got, and what stopped it.
+inline std::string explanation(PlanStatus status, const SearchStats& progress,
+                               const Request& request, const Lattice& lattice,
+                               const MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"
                      : progress.memory_full            ? "the memory allowed was used up"
@@ -170,14 +172,14 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress, c
     text += "; refused moves: " + refusals;
   }
   if (progress.too_long) {
-    text += "; parts of the search left out by route_length";
+    text += "; parts of the search pruned by route_length";
   }
   return text;
 }
 
-/// The route from the start over the cells that led to `last`: `step_to(index, likely)` is the
-/// direction of the step to a cell, kHere at a cell that is linked to the start, and `likely` that
-/// of the step after it; `at_start(index)` is whether that link has no length.
+/// The route from the start over the cells to `last`: `step_to(index, likely)` is the direction of
+/// the step into a cell, kHere at a cell that is linked to the start, and `likely` that of the step
+/// after it; `at_start(index)` is true if that link has length zero.
 template <class StepTo, class AtStart>
 Route route_to(std::uint32_t last, const Request& request, const Lattice& lattice,
                const StepTo& step_to, const AtStart& at_start) {
@@ -195,15 +197,15 @@ Route route_to(std::uint32_t last, const Request& request, const Lattice& lattic
   return route;
 }
 
-/// What one search gave.
+/// Result of one search.
 struct SearchResult {
   PlanResult result;
   double cost = kInfinity;  ///< of the route
-  bool at_goal = false;     ///< not only within its tolerance
+  bool at_goal = false;     ///< exactly, not only within its tolerance
   bool parent_mattered = false;
 };
 
-/// Adds what a further search has counted; the size of the lattice stays.
+/// Adds the counters of a further search; the size of the lattice stays.
 inline void add(Counters& all, const Counters& more) {
   if (all.empty()) {
     all = more;
@@ -216,7 +218,7 @@ inline void add(Counters& all, const Counters& more) {
   }
 }
 
-/// The request with what is left of its budget.
+/// The request with the remaining budget.
 inline Request after(const Request& request, const Counters& spent) {
   Request rest = request;
   if (!spent.empty() && rest.budget.max_iterations != ~std::uint64_t{0}) {
@@ -225,7 +227,7 @@ inline Request after(const Request& request, const Counters& spent) {
   return rest;
 }
 
-/// The result without the route that it may have.
+/// The result with its route removed.
 inline PlanResult without_route(PlanResult result) {
   if (result.status == PlanStatus::solved) {
     result.status = PlanStatus::timed_out;
@@ -236,11 +238,11 @@ inline PlanResult without_route(PlanResult result) {
   return result;
 }
 
-/// Anytime search by restarts: at first the heuristic counts many times, in the end once, and no
-/// part of a search that cannot better the best route so far is looked at. `once(settings, request,
-/// cost)` is one search for a route that costs less. E. A. Hansen, R. Zhou, Anytime Heuristic
-/// Search, JAIR 28, 2007, doi:10.1613/jair.2096; restarts: S. Richter, J. Thayer, W. Ruml, The Joy
-/// of Forgetting, ICAPS 2010.
+/// Anytime search by restarts: the weight of the heuristic falls from large to one, and parts of a
+/// search that cannot improve on the best route are pruned. `once(settings, request, cost)` is one
+/// search for a route that costs less. E. A. Hansen, R. Zhou, Anytime Heuristic Search, JAIR 28,
+/// 2007, doi:10.1613/jair.2096; restarts: S. Richter, J. Thayer, W. Ruml, The Joy of Forgetting,
+/// ICAPS 2010.
 template <class Once>
 PlanResult improve(const SearchSettings& settings, const Request& request, const Once& once) {
   std::optional<SearchResult> best;
@@ -250,11 +252,12 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
     SearchSettings inflated = settings;
     inflated.weight_h *= inflation;
     const bool can_improve = best && best->at_goal;
-    SearchResult found = once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
+    SearchResult found =
+        once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
     add(spent, found.result.counters);
     ++searches;
     const bool cut_short = found.result.budget_hit || found.result.status == PlanStatus::cancelled;
-    // A route that ends within the tolerance counts only once the goal is known to be out of reach:
+    // A route that ends within the tolerance counts only once the goal is known to be unreachable:
     // otherwise more budget could give a longer route.
     const bool counts = found.result.status == PlanStatus::solved && (found.at_goal || !cut_short);
     if (counts && (!best || found.cost < best->cost)) {
@@ -273,7 +276,7 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
   return std::move(best->result);
 }
 
-/// Ends the route at the goal; `at_goal`: the last cell's centre is the goal but for rounding.
+/// Ends the route at the goal; `at_goal`: the last cell's centre equals the goal up to rounding.
 inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
   if (at_goal && route.size() > 1) {
     route.back() = goal;
@@ -293,9 +296,9 @@ inline PlanResult solved(Route route, const SearchStats& progress, const Lattice
   return result;
 }
 
-/// What every search over the cells of a lattice holds: the problem, its rules and costs, and what
-/// has been done so far. All that the constructor is given must outlive it; a route that costs
-/// `best_cost` or more is of no use.
+/// State of every search over the cells of a lattice: the problem, its constraints and costs, and
+/// the statistics. All constructor arguments must outlive it; routes that cost `best_cost` or more
+/// are discarded.
 class LatticeSearch {
  protected:
   LatticeSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
@@ -313,8 +316,8 @@ class LatticeSearch {
         longest_(request.limits.max_route_length + kLengthTolerance),
         best_cost_(best_cost) {}
 
-  /// Evaluations that differ by less are equal: far below a metre's share of any route, far above
-  /// the rounding of its sum.
+  /// Evaluations that differ by less are equal: far below any relevant difference, far above the
+  /// rounding of a sum.
   double quantum() const {
     const double of_length = settings_.cost.length > 0 ? std::min(settings_.cost.length, 1.0) : 1;
     return std::max((goal_ - start_).norm(), 1.0) * 1e-12 * of_length *
@@ -331,20 +334,20 @@ class LatticeSearch {
   double link_cost(const Vec3& a, const Vec3& b, double length) const {
     return length == 0 ? 0 : costs_.leg(a, b, length);
   }
-  /// Whether a way of that length to the place is too long, whatever follows.
+  /// True if every route over the position by a path of that length is too long.
   bool too_long(double length, const Vec3& at) {
     const bool beyond =
         longest_ < kInfinity && length + (goal_ - at).norm() - request_.goal.tolerance_m > longest_;
     progress_.too_long = progress_.too_long || beyond;
     return beyond;
   }
-  /// Whether a way of that cost to the place betters no route known.
+  /// True if no route over the position at that cost improves on the best one known.
   bool exceeds_incumbent(double g, const Vec3& at) const {
     return best_cost_ < kInfinity && g + to_goal_.at_least(at) >= best_cost_;
   }
-  /// Whether lengths are to be known beside costs.
+  /// True if lengths are tracked in addition to costs.
   bool keeps_lengths() const { return longest_ < kInfinity && !costs_.length_alone(); }
-  /// Whether what was left out as too long is too long on every way.
+  /// True if everything left out as too long is too long on every path.
   bool lengths_prove() const {
     return !progress_.too_long || (settings_.consistent() && !keeps_lengths());
   }
@@ -357,7 +360,7 @@ class LatticeSearch {
     }
   }
 
-  /// The status of a search that its budget ends.
+  /// Status of a search that its budget ends.
   PlanStatus ended() const {
     return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
   }
@@ -389,7 +392,7 @@ class LatticeSearch {
   BudgetWatch watch_;
   Vec3 start_;
   Vec3 goal_;
-  double longest_;  ///< metres that a route may have
+  double longest_;  ///< longest route allowed, metres
   double best_cost_;
   double nearest_ = kInfinity;
   SearchStats progress_;

@@ -10,10 +10,10 @@
 
 namespace altiplan::kit {
 
-/// Calls `visit(cell)` for every cell whose closed box the segment between the centres of a and b
-/// meets, a first; where the segment passes through an edge or a corner that is every cell that
-/// shares it. Stops and returns false as soon as a visit returns false. In whole numbers, so the
-/// set of cells is the same from both ends.
+/// Calls `visit(cell)` for every cell whose closed box intersects the segment between the centres
+/// of a and b, a first; at an edge or a corner that is every cell sharing it. Stops and returns
+/// false as soon as a visit returns false. In integers, so the set of cells is the same in both
+/// directions.
 template <class Visit>
 bool walk_cells(const Cell& a, const Cell& b, const Visit& visit) {
   std::int64_t steps[3];  // faces to cross on each axis
@@ -27,7 +27,8 @@ bool walk_cells(const Cell& a, const Cell& b, const Visit& visit) {
     return false;
   }
   std::int64_t crossed[3] = {0, 0, 0};
-  // Face number n of an axis is crossed at the time (2 n + 1) / (2 steps): compared crosswise.
+  // Face number n of an axis is crossed at the time (2 n + 1) / (2 steps): compared by
+  // cross-multiplication.
   const auto sooner = [&](std::size_t i, std::size_t j) {
     return (2 * crossed[i] + 1) * steps[j] < (2 * crossed[j] + 1) * steps[i];
   };
@@ -68,15 +69,15 @@ bool walk_cells(const Cell& a, const Cell& b, const Visit& visit) {
   return true;
 }
 
-/// Whether every cell that the segment between two centres meets is free: the cells that walk_cells
-/// visits. Both cells lie in the grid.
+/// True if every cell that the segment between two centres intersects is free: the cells that
+/// walk_cells visits. Both cells lie in the grid.
 ///
-/// The segment is the same seen from both ends, so half the way is walked, and with each cell the
-/// one that mirrors it is looked at. Cells are places of bits, which moves add to; times are whole
-/// numbers of a unit that fits all three axes: the middle comes after steps x * steps y * steps z.
+/// The segment is symmetric, so only half of it is walked, and each cell is tested together with
+/// its mirror image. Cells are bit positions, to which moves are added; times are integers in a
+/// unit common to all three axes: the middle is at time steps x * steps y * steps z.
 inline bool line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  constexpr int kMaxSteps = 1 << 20;  // their products stay whole numbers
+  constexpr int kMaxSteps = 1 << 20;  // their products stay integers
   const std::uint64_t* words = grid.row_words(0, 0);
   const std::int64_t stride[3] = {1, 64 * std::int64_t(grid.words_per_row()),
                                   64 * (grid.row_words(0, 1) - words)};
@@ -120,7 +121,7 @@ inline bool line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
       next[axis] += is_crossed ? 2 * unit[axis] : 0;
       crossed += is_crossed ? 1 : 0;
     }
-    // Through an edge or a corner: the cells beside the way, some of them twice.
+    // Through an edge or a corner: the cells beside the segment, some of them twice.
     if (crossed > 1 && !(is_free(at + part[0]) && is_free(at + part[1]) && is_free(at + part[2]) &&
                          is_free(at + part[0] + part[1]) && is_free(at + part[0] + part[2]) &&
                          is_free(at + part[1] + part[2]))) {
@@ -133,7 +134,7 @@ inline bool line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
   }
 }
 
-/// Whether the cells from `first` to `last` of a row of the grid are free.
+/// True if the cells from `first` to `last` of a row of the grid are free.
 inline bool row_is_free(const std::uint64_t* row, int first, int last) {
   const auto from = std::size_t(first + 1);
   const auto to = std::size_t(last + 1);
@@ -149,8 +150,7 @@ inline bool row_is_free(const std::uint64_t* row, int first, int last) {
   return blocked == 0;
 }
 
-/// The answer of line_of_sight for two cells of one level: row by row, all the cells of one at
-/// once.
+/// line_of_sight for two cells of one level: row by row, all cells of a row at once.
 inline bool level_line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
   const Cell& low = a[1] <= b[1] ? a : b;
   const Cell& high = a[1] <= b[1] ? b : a;
@@ -166,8 +166,8 @@ inline bool level_line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell
   if (rows == 0) {
     return is_free(0, across);
   }
-  // The segment leaves row n at across (2 n + 1) / (2 rows) cells from its lower end, a half more
-  // is the right side of a cell: a whole number where it meets the corner of two.
+  // The segment leaves row n at across (2 n + 1) / (2 rows) cells from its lower end; plus a half
+  // that is the right side of a cell: an integer at the corner of two cells.
   const std::int64_t half_cells = 2 * std::int64_t(rows);
   const int whole = across / rows;
   const std::int64_t rest = 2 * (std::int64_t(across) - std::int64_t(whole) * rows);

@@ -7,20 +7,19 @@
 
 namespace altiplan::kit {
 
-/// The open list of a best-first search: a heap of four children a node. The least f comes first,
-/// among equals the largest g (the one nearest to the goal), then the smallest node number, so the
-/// order does not depend on the order of pushes. An improved node is pushed again; the caller skips
-/// what it has closed.
+/// The open list of a best-first search: a 4-ary heap. The smallest f comes first, among equals the
+/// largest g (the one nearest to the goal), then the smallest node number, so the order does not
+/// depend on the order of pushes. An improved node is pushed again; the caller skips closed nodes.
 class OpenList {
  public:
   struct Entry {
-    double f = 0;  ///< in whole quanta
+    double f = 0;  ///< in multiples of the quantum
     double g = 0;
     std::uint32_t node = 0;
   };
 
   /// Empties the list. Sums of equal steps differ in their last bits by the order of addition: f is
-  /// compared in whole multiples of `quantum` (> 0), so that such ties are ties.
+  /// compared in integer multiples of `quantum` (> 0), so that such ties are ties.
   void clear(double quantum) {
     entries_.clear();
     per_quantum_ = 1 / quantum;
@@ -44,7 +43,7 @@ class OpenList {
     if (count == 0) {
       return first;
     }
-    // The hole goes down to a leaf, where the last entry nearly always belongs, and up from there.
+    // The hole sinks to a leaf, where the last entry nearly always belongs, and rises from there.
     std::size_t at = 0;
     std::size_t child = 1;
     for (; child + 4 <= count; child = 4 * at + 1) {
@@ -67,7 +66,7 @@ class OpenList {
   }
 
  private:
-  /// Puts the entry where it belongs on the way from there to the top.
+  /// Sifts the entry up from that position.
   void lift(std::size_t at, const Entry& entry) {
     while (at > 0) {
       const std::size_t parent = (at - 1) / 4;
@@ -80,7 +79,7 @@ class OpenList {
     entries_[at] = entry;
   }
 
-  /// Without branches: which of two children comes first no processor can guess.
+  /// Branch-free: no processor can predict which of two children comes first.
   static bool before(const Entry& a, const Entry& b) {
     const int by_node = a.node < b.node;
     const int by_g = int(a.g > b.g) | (int(a.g == b.g) & by_node);

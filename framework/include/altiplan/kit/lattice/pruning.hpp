@@ -7,26 +7,26 @@
 
 namespace altiplan::kit {
 
-/// The neighbours on its level of a cell that a way through it may go on to, for one direction of
-/// the step that led to the cell: those that no other way from the cell before reaches at most as
-/// late, with diagonal steps before straight ones among equals. D. Harabor, A. Grastien: Online
-/// Graph Pruning for Pathfinding on Grid Maps. AAAI 2011, doi:10.1609/aaai.v25i1.7994; without
-/// corners cut: Improving Jump Point Search. ICAPS 2014, doi:10.1609/icaps.v24i1.13633.
+/// Successors of a cell on its level, for one direction of the step into the cell: the neighbours
+/// that no other path from the preceding cell reaches at most as late, with diagonal steps before
+/// straight ones among equals. D. Harabor, A. Grastien: Online Graph Pruning for Pathfinding on
+/// Grid Maps. AAAI 2011, doi:10.1609/aaai.v25i1.7994; without corners cut: Improving Jump Point
+/// Search. ICAPS 2014, doi:10.1609/icaps.v24i1.13633.
 struct Pruning {
-  /// A blocked neighbour, and those that it bars from being reached otherwise.
+  /// A blocked neighbour, and the neighbours that it makes unreachable otherwise.
   struct Forced {
     DirectionMask if_blocked = 0;
     DirectionMask kept = 0;
   };
-  DirectionMask natural = 0;     ///< whatever is blocked
-  std::array<Forced, 2> forced;  ///< one a side
+  DirectionMask natural = 0;     ///< independent of blocked cells
+  std::array<Forced, 2> forced;  ///< one per side
 };
 
 constexpr DirectionMask level_bit(int dx, int dy) {
   return DirectionMask{1} << direction(dx, dy, 0);
 }
 
-/// For a step (dx, dy); none (the start): all neighbours.
+/// For a step (dx, dy); (0, 0), the start: all neighbours.
 constexpr Pruning pruning_after(int dx, int dy, CornerRule rule) {
   Pruning pruning;
   if (dx == 0 && dy == 0) {
@@ -69,7 +69,8 @@ constexpr std::array<Pruning, kDirections> prunings() {
 template <CornerRule kRule>
 inline constexpr std::array<Pruning, kDirections> kPrunings = prunings<kRule>();
 
-/// The free neighbours that only a way through the cell reaches as soon, beside the natural ones.
+/// The free neighbours that only a path through the cell reaches as soon, in addition to the
+/// natural ones.
 template <CornerRule kRule>
 DirectionMask forced(DirectionMask blocked, int in) {
   DirectionMask kept = 0;
@@ -79,14 +80,14 @@ DirectionMask forced(DirectionMask blocked, int in) {
   return kept & free_steps(blocked, kRule);
 }
 
-/// Directions in which a search goes on from a cell that was reached in direction `in`.
+/// Directions in which a search continues from a cell that was entered in direction `in`.
 template <CornerRule kRule>
 DirectionMask level_successors(DirectionMask blocked, int in) {
   return (kPrunings<kRule>[std::size_t(in)].natural & free_steps(blocked, kRule)) |
          forced<kRule>(blocked, in);
 }
 
-/// The same, looked up.
+/// The same from a table.
 class LevelSuccessors {
  public:
   static const LevelSuccessors& of(CornerRule rule) {
@@ -115,9 +116,9 @@ class LevelSuccessors {
 };
 
 using DirectionMasks = std::array<DirectionMask, kDirections>;
-/// In space: by the step to a cell, its successors where all around it is free, steps along some of
-/// the axes of that step. What they leave out costs as much, or less, by a way around the cell that
-/// goes along more axes first.
+/// In 3-D: by the step into a cell, its successors if all cells around it are free, steps along
+/// some of the axes of that step. The ones left out cost at least as much by a path around the cell
+/// that moves along more axes first.
 constexpr DirectionMasks natural_neighbours() {
   DirectionMasks natural{};
   for (int in = 0; in < kDirections; ++in) {

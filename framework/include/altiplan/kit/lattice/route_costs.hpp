@@ -9,10 +9,10 @@
 
 namespace altiplan::kit {
 
-/// How a route's altitude and its nearness to threats enter its cost.
+/// How the altitude of a route and its distance to threats enter its cost.
 enum class Accumulate {
   length,  ///< as integrals along the route
-  none,    ///< as values at the place reached, paper 002 eqs. (13) and (14)
+  none,    ///< as values at the node reached, paper 002 eqs. (13) and (14)
 };
 
 struct CostWeights {
@@ -26,14 +26,14 @@ struct CostWeights {
 };
 
 /// The cost g = w_L L + w_C C + w_T T of paper 002, eqs. (11) to (14), times the unit, so that it
-/// is the length in metres where w_L is 1 and nothing else counts. L is the length, C the altitude,
-/// T = 10 sum 1 / (distance on the plane to a threat's centre), all in units.
+/// is the length in metres if w_L is 1 and the other weights are 0. L is the length, C the
+/// altitude, T = 10 sum 1 / (horizontal distance to a threat's centre), all in units.
 ///
-/// So that no cost is below 0 or infinite, C counts from the lowest place of the search where that
-/// lies below sea, and a distance d to a centre counts as sqrt(d² + 1 m²).
+/// To keep costs finite and not negative, C counts from the lowest position of the search where
+/// that lies below sea, and a distance d to a centre counts as sqrt(d² + 1 m²).
 class RouteCosts {
  public:
-  /// `lowest`: no place of the search lies below.
+  /// `lowest`: lower bound of z in the search.
   RouteCosts(const CostWeights& weights, const Request& request, double lowest)
       : weights_(weights), base_(std::min(lowest, 0.0)) {
     sums_ = !weights.length_alone() && weights.accumulate == Accumulate::length;
@@ -47,12 +47,12 @@ class RouteCosts {
         weights.length + (sums_ ? weights.altitude * (lowest - base_) / weights.unit_m : 0);
   }
 
-  /// What a leg adds to the cost of the way to its first end.
+  /// Cost that a leg adds to the cost-to-come of its first end.
   double leg(const Vec3& a, const Vec3& b, double length) const {
     const double metres = weights_.length * length;
     return sums_ ? metres + terms_along(a, b, length) : metres;
   }
-  /// What a place adds to its own evaluation, and not to that of places after it.
+  /// Cost that a node adds to its own evaluation, but not to that of later nodes.
   double at(const Vec3& p) const {
     if (!at_places_) {
       return 0;
@@ -64,7 +64,7 @@ class RouteCosts {
     const double unit = weights_.unit_m;
     return weights_.altitude * (p.z() - base_) + weights_.threat * threat * unit * unit;
   }
-  /// No way is cheaper than this times its length.
+  /// Lower bound of the cost per metre of any path.
   double min_per_metre() const { return min_per_metre_; }
   bool length_alone() const { return weights_.length_alone() && weights_.length == 1; }
 
@@ -72,7 +72,7 @@ class RouteCosts {
   static constexpr double kGuard = 1;  // metres
   static double distance(double squared) { return std::sqrt(squared + kGuard * kGuard); }
 
-  /// Integrals along the leg: of the altitude by its middle, of 1 / distance in closed form.
+  /// Integrals along the leg: of the altitude by its midpoint, of 1 / distance in closed form.
   double terms_along(const Vec3& a, const Vec3& b, double length) const {
     const double unit = weights_.unit_m;
     double terms = weights_.altitude * ((a.z() + b.z()) / 2 - base_) / unit * length;
@@ -82,13 +82,13 @@ class RouteCosts {
     return terms;
   }
 
-  /// The integral of 1 / distance to the axis z along a leg.
+  /// The integral of 1 / distance to the z axis along a leg.
   static double over_distance(const Vec3& a, const Vec3& b, double length) {
     const double run = (b - a).head<2>().norm();
     if (run < 1e-9 * length) {
       return length / distance(a.head<2>().squaredNorm());
     }
-    // Along the leg's line on the plane, from its point nearest to the axis.
+    // Horizontally along the leg's line, from its point nearest to the axis.
     const double from = a.head<2>().dot((b - a).head<2>()) / run;
     const double beside = distance(std::max(a.head<2>().squaredNorm() - from * from, 0.0));
     return (std::asinh((from + run) / beside) - std::asinh(from / beside)) * length / run;

@@ -8,7 +8,7 @@
 
 namespace altiplan::kit {
 
-/// The parameters that searches over the cells of a lattice have in common.
+/// Common parameters of searches over the cells of a lattice.
 struct SearchParams {
   enum class Moves { automatic, exact, cells };
 
@@ -25,11 +25,11 @@ struct SearchParams {
        {"manhattan", Heuristic::manhattan},
        {"zero", Heuristic::zero}})
         .doc(
-            "estimate of the way to go: octile is the length on an empty lattice; manhattan is "
-            "not admissible with 26 neighbours, and octile with 6");
+            "estimate of the cost-to-go: octile is the length on an empty lattice; manhattan is "
+            "not admissible with 26 neighbours, nor octile with 6");
     f("weight_g", search.weight_g)
         .range(0, 1)
-        .doc("weight of the travelled cost in f, paper 002 eq. (10)");
+        .doc("weight of the cost-to-come g in f, paper 002 eq. (10)");
     f("weight_h", search.weight_h).range(0, 1).doc("weight of the heuristic in f");
     f.check(search.weight_g + search.weight_h > 0, "weight_g and weight_h must not both be 0");
     f.check(is_weight(search.weight_g) && is_weight(search.weight_h),
@@ -39,12 +39,11 @@ struct SearchParams {
        {"parent", SearchState::parent},
        {"cell_and_heading", SearchState::cell_and_heading}})
         .doc(
-            "what limits on turns are held against: the one parent of a cell, which can lose a "
-            "route, or every direction in which it is reached; auto: the second where the first "
-            "finds nothing");
+            "search state for turn limits: a cell with a single parent, which can miss a route, or "
+            "a cell and the direction into it; auto: the second if the first finds nothing");
     describe_costs(f);
     f("anytime", search.anytime)
-        .doc("a quick route first, then better ones, the last as good as without this");
+        .doc("find a route fast, then better ones, the last as good as without this option");
     describe_memory(f);
   }
 
@@ -52,28 +51,28 @@ struct SearchParams {
     f("cell_m", search.cell_m)
         .unit("m")
         .at_least(0.001)
-        .doc("edge of a cell on each axis; a layer with cells of its own sets them instead");
+        .doc("cell edge length on each axis; a layer with its own cells overrides it");
     f("neighbours", neighbours)
-        .doc("26 (8 in level flight) or 6 (4 in level flight) neighbours of a cell")
+        .doc("neighbours of a cell: 26 (8 in level flight) or 6 (4 in level flight)")
         .range(6, 26);
     f.check(neighbours == 6 || neighbours == 26, "neighbours must be 6 or 26");
     f("corner", search.corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
         .doc(
-            "with moves by cells: a step needs its two cells free (any), or every cell of the box "
-            "that it spans (free_box)");
+            "with moves by cells: a step needs its two cells free (any), or every cell of its "
+            "bounding box (free_box)");
     f("moves", moves,
       {{"auto", Moves::automatic}, {"exact", Moves::exact}, {"cells", Moves::cells}})
         .doc(
-            "how a move is held to the obstacles: the straight leg against the exact world, or "
-            "the cells it leads through; auto: cells where every layer has cells of its own and "
-            "the vehicle needs no clearance, else exact");
+            "how a move is checked against obstacles: the straight leg against the exact world, or "
+            "the cells that it crosses; auto: cells if every layer has its own cells and the "
+            "vehicle needs no clearance, else exact");
   }
 
   void describe_memory(Fields& f) {
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
-        .doc("a lattice that needs more is refused before anything is allocated");
+        .doc("memory limit of the lattice; a larger one is refused before allocation");
   }
 
   void describe_costs(Fields& f) {
@@ -86,11 +85,13 @@ struct SearchParams {
         .doc("weight w_C of the altitude above sea, eq. (13)");
     f("weight_threat", cost.threat)
         .range(0, 1000)
-        .doc("weight w_T of 10 / distance on the plane to a threat's centre, summed, eq. (14)");
+        .doc(
+            "weight w_T of the sum over threats of 10 / horizontal distance to the centre, eq. "
+            "(14)");
     f("accumulate", cost.accumulate, {{"length", Accumulate::length}, {"none", Accumulate::none}})
         .doc(
-            "altitude and threats count along the whole route (length), or as printed only where "
-            "a node is (none): they then order the search, and choose between no two ways");
+            "altitude and threats count along the whole route (length), or as printed only at the "
+            "node itself (none): they then order the search, but do not choose between paths");
     f("length_unit_m", cost.unit_m)
         .unit("m")
         .range(0.001, 1e6)
@@ -101,12 +102,13 @@ struct SearchParams {
             "weight_length, weight_altitude and weight_threat must not all be 0");
   }
 
-  /// What a planner that is made with them searches by.
+  /// Settings of the search for a planner with these parameters.
   SearchSettings settings() const {
     SearchSettings settings = search;
     settings.neighbours = neighbours == 26 ? Neighbourhood::all : Neighbourhood::faces;
     if (neighbours == 6 && search.heuristic == Heuristic::manhattan) {
-      // On an empty lattice of faces the two are one; beside it the goal's last leg is straight.
+      // On an empty lattice of faces the two are equal; octile also has the goal's straight last
+      // leg.
       settings.heuristic = Heuristic::octile;
     }
     return settings;
@@ -131,7 +133,7 @@ struct SearchParams {
   }
 
  private:
-  /// Sums of costs keep a digit of the least of them.
+  /// Sums of costs must keep a digit of the smallest weight.
   static bool is_weight(double weight) { return weight == 0 || weight >= 1e-9; }
 
   MoveCheck move_check(const Request& request) const {
@@ -147,14 +149,14 @@ struct SearchParams {
   }
 };
 
-/// Whether a search is to tell states apart by their heading from the first.
+/// True if a search has to distinguish states by their heading from the start.
 inline bool begins_by_heading(const SearchSettings& settings, const Request& request) {
   return settings.state == SearchState::cell_and_heading &&
          (request.limits.turns() || !request.constraints.empty());
 }
 
-/// Whether a search by (cell, heading), which keeps so many bytes a cell, may find what one with a
-/// single parent a cell has not found.
+/// True if a search by (cell, heading), with that memory per cell, may find a route where one with
+/// a single parent per cell has found none.
 inline bool heading_may_help(const SearchSettings& settings, double best_cost, std::size_t bytes,
                              SearchResult& found) {
   if (settings.state == SearchState::parent || found.result.status != PlanStatus::no_route ||
@@ -169,10 +171,10 @@ inline bool heading_may_help(const SearchSettings& settings, double best_cost, s
   return true;
 }
 
-/// The second search's answer, with what the first one took.
+/// The second search's result, with the statistics of the first one added.
 inline SearchResult after_one_parent(SearchResult second, const SearchResult& first) {
   add(second.result.counters, first.result.counters);
-  second.result.message += ", after one parent a cell led nowhere";
+  second.result.message += ", after the search with one parent per cell found no route";
   return second;
 }
 }  // namespace altiplan::kit

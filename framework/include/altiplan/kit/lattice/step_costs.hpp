@@ -11,43 +11,43 @@
 
 namespace altiplan::kit {
 
-/// Lengths of a lattice's steps as whole numbers of one small length, so that sums are exact, equal
-/// ways are equal, and four bytes hold the cost of a way.
+/// Lengths of a lattice's steps as integer multiples of a small length, so that sums are exact,
+/// equal paths have equal costs, and a cost takes four bytes.
 ///
-/// sqrt 2 and sqrt 3 are no ratios; on cells that are cubes (in level flight squares) the small
-/// length is one at which both are nearly whole, elsewhere it is as small as the longest way
-/// allows. `error()` says what remains.
+/// sqrt 2 and sqrt 3 are irrational; on cubic cells (square ones in level flight) the small length
+/// is one at which both are nearly integers, elsewhere it is as small as the longest path allows.
+/// `error()` gives the remaining error.
 class ALTIPLAN_API StepCosts {
  public:
   enum class Scale {
-    fine,    ///< cubes and squares: errors of 1e-7 and less; else as fine as 32 bits hold
-    finest,  ///< as fine as 32 bits hold: where other lengths than steps are to be exact too
+    fine,    ///< cubes and squares: errors of at most 1e-7; else as fine as 32 bits allow
+    finest,  ///< as fine as 32 bits allow: for exact lengths of other legs than steps
     ratio,   ///< small ratios: 41 : 58 : 71 for cubes, 70 : 99 for squares, else about as coarse
   };
-  /// Greatest cost of a way, so that the sum of two does not overflow.
+  /// Maximum cost of a path, so that the sum of two does not overflow.
   static constexpr std::uint32_t kMax = 2'000'000'000;
 
-  /// Costs of ways up to longest_m; a longer way may come to more than kMax.
+  /// Costs of paths up to longest_m; a longer path may exceed kMax.
   StepCosts(const Lattice& lattice, Scale scale, double longest_m);
 
   std::uint32_t operator[](int d) const { return costs_[std::size_t(d)]; }
   /// Cost nearest to a length.
   std::uint32_t of(double metres) const { return std::uint32_t(std::llround(metres * per_metre_)); }
-  /// A lower bound of the cost of a way of that length, which falls by no more along a step than
+  /// A lower bound of the cost of a path of that length, which falls by no more along a step than
   /// the step costs.
   std::uint32_t at_most(double metres) const { return std::uint32_t(metres * bound_per_metre_); }
   double metres(std::uint32_t cost) const { return cost / per_metre_; }
-  /// The scale wanted; finest instead of fine where the points are no centres of cells, so that
-  /// ways between them begin or end with links of any length.
+  /// The scale wanted; finest instead of fine if the points are no cell centres, so that paths
+  /// between them begin or end with links of any length.
   static Scale between(Scale wanted, const Lattice& lattice, const Vec3& start, const Vec3& goal);
-  /// Length of a way that costs kMax.
+  /// Length of a path that costs kMax.
   double longest_m() const { return kMax / per_metre_; }
-  /// Greatest relative error of a step's cost. A cheapest way is longer than a shortest by at most
-  /// twice this share.
+  /// Maximum relative error of a step's cost. A cheapest path is longer than a shortest by at most
+  /// twice this fraction.
   double error() const { return error_; }
 
-  /// Cost of the cheapest way between cells that are so far apart on each axis, if none were
-  /// blocked (see Lattice::distance).
+  /// Cost of the cheapest path between cells at that distance on each axis, if none were blocked
+  /// (see Lattice::distance).
   std::uint32_t apart(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     if (!alike_) {
       return apart_unlike({x, y, z});
@@ -67,7 +67,8 @@ class ALTIPLAN_API StepCosts {
 
   std::array<std::uint32_t, kDirections> costs_{};
   std::array<std::uint32_t, 8> along_{};  ///< cost of a step by its set of axes, as bits
-  bool alike_ = false;                    ///< whether steps along as many axes cost the same
+  bool alike_ = false;                    ///< true if steps along the same number of axes cost the
+                                          ///< same
   double per_metre_ = 1;
   double bound_per_metre_ = 1;
   double error_ = 0;

@@ -13,9 +13,9 @@
 
 namespace altiplan::kit {
 
-/// What a search has learned of the ground below the steps of its lattice. Steps above each other
-/// have the same ground below, and how high one is above it tells how high the others are: one
-/// question to the world answers for many of them.
+/// Cache of the ground below the steps of a lattice. Steps above each other share the ground below,
+/// and the height above ground of one gives that of the others: one query to the world answers for
+/// many of them.
 class StepGround {
  public:
   StepGround(const Lattice& lattice, const World& world)
@@ -25,14 +25,14 @@ class StepGround {
         pages_(columns_east_ * std::size_t(lattice.spec().counts[1]) / kColumns + 1) {
     for (const Layer& layer : world.layers()) {
       if (const Ground* ground = layer.environment->ground()) {
-        // Two grounds may meet in a step of their own, which no slope tells of.
+        // Two grounds may meet in a vertical step, which no slope bounds.
         only_ground_ = has_ground_ ? nullptr : ground;
         has_ground_ = true;
       }
     }
   }
 
-  /// Bounds of the highest ground below a step, metres above sea; kNone both where a part of it has
+  /// Bounds of the highest ground below a step, metres above sea; both kNone where part of it has
   /// no ground.
   struct Top {
     float least = kUnknown;
@@ -42,10 +42,10 @@ class StepGround {
   /// Height of the ground below the cell's centre, or less by rounding; kNone: there is none.
   float height(const Cell& c) { return column(c[0], c[1]).height; }
 
-  /// Of the step from c in direction d.
+  /// Bounds below the step from c in direction d.
   Top& below(const Cell& c, int d) {
-    // A step has the ground of the one back, and its height does not matter: of the nine ways that
-    // d may lead on the plane five are left, the last of them upright.
+    // A step shares the ground of its reverse, and its height does not matter: of the nine
+    // horizontal components of d five remain, the last of them vertical.
     const int flat = d % 9;
     const int east = c[0] + flat % 3 - 1;
     const int north = c[1] + flat / 3 - 1;
@@ -59,14 +59,14 @@ class StepGround {
     return top;
   }
 
-  /// Notes that a leg over that ground keeps `gap` above it, or more unless `exact`. `low` and
-  /// `high` are those of its ends.
+  /// Records that a leg over that ground keeps `gap` above it, or more unless `exact`. `low` and
+  /// `high` are the heights of its ends.
   static void learn(Top& top, double low, double high, double gap, bool exact) {
     if (gap == -kInfinity) {
       top = {kNone, kNone};
       return;
     }
-    // The ground is nowhere higher than the leg less the gap, and somewhere as high as that.
+    // The ground is nowhere higher than the leg minus the gap, and somewhere that high.
     top.most = std::min(top.most, std::nextafterf(float(high - gap), kNone));
     if (exact) {
       top.least = std::max(top.least, std::nextafterf(float(low - gap), -kNone));
@@ -80,7 +80,7 @@ class StepGround {
   static constexpr std::size_t kColumns = 64;
   struct Column {
     float height = kUnknown;
-    float slope = kNone;  ///< no ground as near as a cell's edges is steeper
+    float slope = kNone;  ///< no ground within a cell's edges is steeper
     std::array<Top, 5> tops;
   };
   using Page = std::array<Column, kColumns>;
@@ -109,12 +109,12 @@ class StepGround {
     }
   }
 
-  /// What the heights of the ground at both ends tell, and that its slope has a limit.
+  /// Bounds from the ground heights at both ends and the slope limit.
   static void begin(Top& top, const Column& from, const Column& to, double run) {
     top.least = std::max(from.height, to.height);
     const double slope = std::min(from.slope, to.slope);
     if (top.least < kNone && slope < kNone) {
-      constexpr double kRounding = 0.002;  // of heights and slopes kept in four bytes, in metres
+      constexpr double kRounding = 0.002;  // of heights and slopes stored in four bytes, in metres
       const double middle = (double(from.height) + to.height + slope * run) / 2;
       top.most = float(std::max(double(top.least), middle) * (1 + 1e-6) + kRounding);
     }

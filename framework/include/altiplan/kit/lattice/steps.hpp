@@ -5,9 +5,9 @@
 
 #include "altiplan/kit/lattice/lattice.hpp"
 
-/// \file Steps of a lattice with the heading that lasts through them. A step is numbered as its
-/// direction; one straight up or down, where the vehicle has a heading, by direction and heading,
-/// so that what may follow a step depends on the step alone.
+/// \file Steps of a lattice with the heading that persists through them. A step is numbered as its
+/// direction; a vertical one, where the vehicle has a heading, by direction and heading, so that
+/// the steps that may follow depend on the step alone.
 namespace altiplan::kit {
 
 using StepMask = std::uint64_t;
@@ -20,7 +20,7 @@ constexpr bool is_upright(int direction) { return direction == kDown || directio
 constexpr int direction_of(int step) {
   return step < kDirections ? step : step < kDirections + kHeadings ? kDown : kUp;
 }
-/// Number of the heading with which a step ends; -1 where the vehicle has none by its steps.
+/// Number of the heading at the end of a step; -1 where the vehicle has none by its steps.
 constexpr int heading_of(int step) {
   if (step >= kDirections) {
     return (step - kDirections) % kHeadings;
@@ -32,7 +32,7 @@ constexpr Cell heading_offset(int heading) {
   const int level = heading < 4 ? heading : heading + 1;
   return {level % 3 - 1, level / 3 - 1, 0};
 }
-/// The step in direction d of a vehicle that comes by the step `in`.
+/// The step in direction d of a vehicle that arrives by the step `in`.
 constexpr int step_after(int in, int d) {
   const int heading = heading_of(in);
   return is_upright(d) && heading >= 0 ? kDirections + (d == kUp ? kHeadings : 0) + heading : d;

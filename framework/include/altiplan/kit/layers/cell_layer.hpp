@@ -5,14 +5,13 @@
 
 namespace altiplan::kit {
 
-/// Boxes that cover the blocked cells and meet in faces: runs along x, equal runs of neighbouring
-/// rows together, and equal rectangles of neighbouring levels.
+/// Boxes that cover the blocked cells and share only faces: runs along x, equal runs of
+/// neighbouring rows merged, then equal rectangles of neighbouring levels.
 ALTIPLAN_API std::vector<Shape> boxes_of(const VoxelGrid& cells);
 
-/// An environment that is a grid of blocked and free cells: exact, as the closed union of the
-/// blocked ones. Outside of its grid it is free. What it says of itself are its cells and the
-/// notes. Cells are counted from the lower corner; a file that counts otherwise overrides
-/// `do_cell_centre`.
+/// An environment that is a grid of blocked and free cells: exact, the closed union of the blocked
+/// ones. Outside its grid it is free. Its info contains its cells and the notes. Cells are indexed
+/// from the lower corner; a file with another indexing overrides `do_cell_centre`.
 class ALTIPLAN_API CellLayer : public Environment {
  public:
   explicit CellLayer(VoxelGrid cells, std::vector<std::string> notes = {});
@@ -25,7 +24,7 @@ class ALTIPLAN_API CellLayer : public Environment {
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
     solid_.near(p, reach, sink);
   }
-  /// A grid of the same cells is taken over as it is.
+  /// A grid of the same cells is copied unchanged.
   void do_rasterize(VoxelGrid& grid) const override;
   double do_over_approximation() const override { return 0; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(boxes_of(cells_)); }
@@ -39,6 +38,6 @@ class ALTIPLAN_API CellLayer : public Environment {
 
   VoxelGrid cells_;
   LayerInfo info_;
-  ObstacleSet solid_;  ///< boxes that cover the blocked cells and meet in faces
+  ObstacleSet solid_;  ///< boxes that cover the blocked cells and share only faces
 };
 }  // namespace altiplan::kit

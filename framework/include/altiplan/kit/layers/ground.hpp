@@ -10,13 +10,13 @@
 
 #include "altiplan/voxel_grid.hpp"
 
-/// \file What layers with ground share, given two functions of theirs: height(x, y) and
+/// \file Common parts of layers with ground, given two functions: height(x, y) and
 /// highest(x0, y0, x1, y1), an upper bound of the heights in a closed box, +infinity where part
 /// of it has no ground.
 namespace altiplan::kit {
 
-/// Half the width and depth of the footprint that a column's highest ground is asked for in: the
-/// column's own (rule touched) or its middle alone (rule centre), grown by the inflation.
+/// Half width and half depth of the footprint in which a column's highest ground is queried: the
+/// column (rule touched) or its centre alone (rule centre), grown by the inflation.
 inline std::array<double, 2> half_footprint(const GridSpec& spec) {
   const double share = spec.rule == GridSpec::Rule::centre ? 0 : 0.5;
   return {share * spec.cell.x() + spec.inflation, share * spec.cell.y() + spec.inflation};
@@ -35,7 +35,8 @@ void block_below(VoxelGrid& grid, const Top& column_top) {
     for (int i = 0; i < spec.counts[0]; ++i) {
       const double top = column_top(i, j) + spec.inflation;
       const double levels = (top - spec.origin.z()) / spec.cell.z();
-      // Touched: the open cell lies below the top in part; centre: its centre does, or on it.
+      // Touched: the open cell lies partly below the top; centre: its centre lies at or below the
+      // top.
       const double count = centre ? std::floor(levels - 0.5) + 1 : std::ceil(levels);
       blocked_levels[std::size_t(i)] = int(std::clamp(count, 0.0, double(spec.counts[2])));
       most = std::max(most, blocked_levels[std::size_t(i)]);
@@ -54,7 +55,7 @@ void block_below(VoxelGrid& grid, const Top& column_top) {
   }
 }
 
-/// The same, asking highest for each column.
+/// The same, calling highest for each column.
 template <class Highest>
 void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
   const auto [half_x, half_y] = half_footprint(grid.spec());
@@ -64,12 +65,12 @@ void rasterize_ground(VoxelGrid& grid, const Highest& highest) {
   });
 }
 
-/// Height above the ground that keeps a distance from it, where its slope is at most `slope`.
+/// Height above the ground that guarantees a distance from it, where its slope is at most `slope`.
 inline double height_for(double distance, double slope) {
   return distance > 0 ? distance * std::hypot(1, slope) : distance;
 }
 
-/// The part of the leg below the height; none where all of it is at least that high.
+/// The part of the leg below the height; none where the whole leg is at least that high.
 inline std::optional<std::pair<Vec3, Vec3>> part_below(const Vec3& a, const Vec3& b, double z) {
   if (std::min(a.z(), b.z()) >= z) {
     return std::nullopt;
@@ -81,18 +82,18 @@ inline std::optional<std::pair<Vec3, Vec3>> part_below(const Vec3& a, const Vec3
   return a.z() < z ? std::pair(a, at) : std::pair(at, b);
 }
 
-/// What is known of a whole ground: no part is higher than `top`, and a height of `enough` above it
-/// serves everywhere.
+/// Bounds of a whole ground: no part is higher than `top`, and a height of `enough` above it is
+/// sufficient everywhere.
 struct GroundBounds {
   double top;
   double enough;
 };
 
-/// Whether the ground is nearer to the leg than r - 1e-6 m. The leg is halved, down to parts of
-/// `shortest` metres, for as long as the slope near a part leaves that in doubt; what lies r above
-/// the top is free for certain. gap(a, b, enough): as Ground::gap; slope(a, b, r): at
-/// least the steepest within r of the leg, and no less than for any part of it; meets(a, b, keep):
-/// whether the ground is nearer than that to a part which is at least so high above it.
+/// True if the ground is nearer to the leg than r - 1e-6 m. The leg is halved, down to parts of
+/// `shortest` metres, as long as the slope near a part leaves that undecided; everything r above
+/// the top is free. gap(a, b, enough): as Ground::gap; slope(a, b, r): at
+/// least the maximum within r of the leg, and no less than for any part of it; meets(a, b, keep):
+/// true if the ground is nearer than that to a part which is at least so high above it.
 template <class Gap, class Slope, class Meets>
 bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds& ground,
                      double shortest, const Gap& gap, const Slope& slope, const Meets& meets) {
@@ -118,8 +119,8 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds&
          too_near_ground(middle, b, r, least, shortest, gap, slope, meets);
 }
 
-/// The least distance of a leg above the ground from it, if that is below `least`, in the words of
-/// too_near_ground; nearest(a, b, least): the same of a part no longer than that.
+/// Minimum distance between the ground and a leg above it, if below `least`, with the callbacks of
+/// too_near_ground; nearest(a, b, least): the same for a part no longer than `shortest`.
 template <class Gap, class Slope, class Nearest>
 double ground_distance(const Vec3& a, const Vec3& b, double least, double top, double shortest,
                        const Gap& gap, const Slope& slope, const Nearest& nearest) {
@@ -127,7 +128,7 @@ double ground_distance(const Vec3& a, const Vec3& b, double least, double top, d
     return least;
   }
   const double height = std::max(gap(a, b), 0.0);
-  least = std::min(least, height);  // the ground straight below
+  least = std::min(least, height);  // the ground vertically below
   if (height >= height_for(least, slope(a, b, least))) {
     return least;
   }
@@ -139,9 +140,9 @@ double ground_distance(const Vec3& a, const Vec3& b, double least, double top, d
   return ground_distance(middle, b, least, top, shortest, gap, slope, nearest);
 }
 
-/// A point of the ground, within `over` (horizontally), whose distance from p is the least there is
-/// to within 5 %, and least among its neighbours to within 0.1 %. p must lie more than 1e-6 m above
-/// the ground, or above that at the nearest place within `over`.
+/// A ground point within `over` (horizontally) whose distance from p is minimal to within 5 %, and
+/// a local minimum to within 0.1 %. p must lie more than 1e-6 m above the ground, or above the
+/// ground at the nearest position within `over`.
 template <class Height, class Highest>
 class NearestGround {
  public:
@@ -159,7 +160,7 @@ class NearestGround {
 
  private:
   static constexpr double kPrune = 0.95;
-  static constexpr double kSmallest = 0.02;  ///< of the distance: not split any more
+  static constexpr double kSmallest = 0.02;  ///< of the distance: smaller ones are not split
   static constexpr double kFine = 1e-4;
 
   bool try_at(double x, double y) {

@@ -6,11 +6,11 @@
 
 #include "altiplan/geometry.hpp"
 
-/// \file How near a leg is to the ground below it.
+/// \file Distance between a leg and the ground below it.
 namespace altiplan::kit {
 
-/// The ground over a rectangle about (x, y): at most `off` metres above or below the plane of
-/// height z and slopes dx, dy, and nowhere above `top`, where it is cut off.
+/// The ground over a rectangle around (x, y): at most `off` metres above or below the plane of
+/// height z and slopes dx, dy, and nowhere above `top`, where it is truncated.
 struct GroundPiece {
   double x, y, z;
   double dx, dy;
@@ -18,21 +18,21 @@ struct GroundPiece {
   double top = kInfinity;
 };
 
-/// A place of a leg, as a share of it, a place of the map, and how far they are apart.
+/// A position along a leg, as a fraction of it, a map position, and the distance between the two.
 struct LegToPlane {
   double distance;
   double share;
   double x, y;
 };
 
-/// The least distance between the leg a–b and the piece's plane over the rectangle that reaches
-/// half_x, half_y to each side of the piece's middle.
+/// Minimum distance between the leg a–b and the piece's plane over the rectangle that extends
+/// half_x, half_y to each side of the piece's centre.
 ALTIPLAN_API LegToPlane leg_to_plane(const Vec3& a, const Vec3& b, const GroundPiece& piece,
                                      double half_x, double half_y);
 
-/// Whether ground is nearer than that to a leg which lies nowhere below it, or how near the nearest
-/// is, by branch and bound: the rectangles searched are halved for as long as that is in doubt, by
-/// more than 1e-8 m.
+/// Tests for ground nearer than a given distance to a leg that lies nowhere below it, or finds the
+/// minimum distance, by branch and bound: rectangles are halved as long as they may change the
+/// result by more than 1e-8 m.
 class GroundWithin {
  public:
   enum class Until { found, nearest };
@@ -40,16 +40,17 @@ class GroundWithin {
       : a_(a), b_(b), box_(leg_box(a, b)), distance_(distance), until_(until) {}
 
   bool found() const { return found_; }
-  /// Of the nearest ground that was found, or else the distance asked for.
+  /// Distance of the nearest ground found, else the distance asked for.
   double distance() const { return distance_; }
 
-  /// Whether the search goes on, and ground no higher than `top` over the rectangle may be so near.
+  /// True if the search continues, and ground no higher than `top` over the rectangle may be near
+  /// enough.
   bool may_be_in(double x0, double y0, double x1, double y1, double top) const {
     return !found_ && at_least(x0, y0, x1, y1, top) < distance_;
   }
 
-  /// Searches the rectangle; piece_of(x0, y0, x1, y1) is the ground over a rectangle within it, its
-  /// middle that of the rectangle.
+  /// Searches the rectangle; piece_of(x0, y0, x1, y1) is the ground over a rectangle within it,
+  /// with the same centre.
   template <class PieceOf>
   void search(double x0, double y0, double x1, double y1, const PieceOf& piece_of) {
     const double half_x = (x1 - x0) / 2;
@@ -69,7 +70,7 @@ class GroundWithin {
     }
     const LegToPlane found = leg_to_plane(a_, b_, piece, half_x, half_y);
     double bound = found.distance - piece.off;
-    if (piece.z + rise > piece.top) {  // cut off somewhere
+    if (piece.z + rise > piece.top) {  // truncated somewhere
       const GroundPiece flat{piece.x, piece.y, piece.top, 0, 0, 0};
       bound = std::min(bound, leg_to_plane(a_, b_, flat, half_x, half_y).distance);
     }
@@ -82,7 +83,7 @@ class GroundWithin {
     };
     Vec3 way = way_to(found.x, found.y);
     if (piece.z + rise > piece.top && way.squaredNorm() > 0) {
-      // Up or down the plane lies the edge of the cut, which may be nearer.
+      // The edge of the truncation lies up or down the plane, and may be nearer.
       const double slope2 = piece.dx * piece.dx + piece.dy * piece.dy;
       const double below =
           piece.top - piece.z - piece.dx * (found.x - piece.x) - piece.dy * (found.y - piece.y);
@@ -109,7 +110,7 @@ class GroundWithin {
   static constexpr double kFine = 1e-8;
   static constexpr double kSmallest = 1e-5;
 
-  /// Across the longer edge, first the half with what was found.
+  /// Splits the longer edge; the half with the point found comes first.
   template <class PieceOf>
   void search_halves(double x0, double y0, double x1, double y1, const GroundPiece& piece,
                      const LegToPlane& found, const PieceOf& piece_of) {
@@ -124,14 +125,14 @@ class GroundWithin {
     }
   }
 
-  /// How far the place is above the piece's plane, at a right angle.
+  /// Signed distance of the point above the piece's plane.
   static double above(const Vec3& p, const GroundPiece& piece) {
     return (p.z() - piece.z - piece.dx * (p.x() - piece.x) - piece.dy * (p.y() - piece.y)) /
            std::sqrt(1 + piece.dx * piece.dx + piece.dy * piece.dy);
   }
 
-  /// The unit vector of a way that leads to the leg there, turned so that no other place of the leg
-  /// lies farther back along it, where a little will do.
+  /// The unit vector toward the leg there, rotated if a small rotation suffices so that no other
+  /// point of the leg lies farther back along it.
   Vec3 off_the_leg(const Vec3& way, double share) const {
     const Vec3 leg = b_ - a_;
     const double along = way.dot(leg);
@@ -140,13 +141,13 @@ class GroundWithin {
     return across.squaredNorm() > 0 ? Vec3(across.normalized()) : Vec3(way.normalized());
   }
 
-  /// How far apart the leg and a piece that is cut off are along the unit vector n: the piece lies
-  /// below its plane and below its top. Near the edge of the cut, where neither of them comes near
-  /// the ground, nothing else tells.
+  /// Separation of the leg and a truncated piece along the unit vector n: the piece lies below its
+  /// plane and below its top. Near the edge of the truncation, where neither of them comes near the
+  /// ground, this is the only usable bound.
   double apart(const Vec3& n, const GroundPiece& piece, double half_x, double half_y) const {
     const double slope2 = piece.dx * piece.dx + piece.dy * piece.dy;
     const double uphill = -(n.x() * piece.dx + n.y() * piece.dy);
-    // n = of_plane (-dx, -dy, 1) + of_top (0, 0, 1) + a rest along the map.
+    // n = of_plane (-dx, -dy, 1) + of_top (0, 0, 1) + a horizontal remainder.
     const double of_plane = slope2 > 0 ? std::clamp(uphill / slope2, 0.0, std::max(n.z(), 0.0)) : 0;
     const double of_top = n.z() - of_plane;
     if (of_top < 0) {

@@ -13,12 +13,12 @@ namespace altiplan::kit {
 
 struct CellBoxes;
 
-/// A set of solid shapes with exact queries, each O(log n) through a tree of boxes: the answers
-/// are, bit by bit, those of the closed forms asked for every shape in turn.
+/// A set of solid shapes with exact queries, each O(log n) by a bounding box tree: the answers are
+/// bit by bit those of the closed forms evaluated for every shape.
 class ALTIPLAN_API ObstacleSet {
  public:
   explicit ObstacleSet(std::vector<Shape> shapes);
-  /// Boxes of cells, which take less memory than shapes; shapes() then has none.
+  /// Boxes of cells, which take less memory than shapes; shapes() is then empty.
   static ObstacleSet of_cells(CellBoxes boxes);
   ~ObstacleSet();
   ObstacleSet(ObstacleSet&&) noexcept;
@@ -26,10 +26,10 @@ class ALTIPLAN_API ObstacleSet {
 
   const std::vector<Shape>& shapes() const { return shapes_; }
   const Box& bounds() const { return bounds_; }
-  /// Signed distance to the nearest shape's surface, negative inside (minus the greatest depth);
+  /// Signed distance to the nearest shape's surface, negative inside (minus the maximum depth);
   /// infinite for an empty set.
   double clearance(const Vec3& p) const;
-  /// Whether the leg comes nearer than r - 1e-6 m to a shape; touching is free.
+  /// True if the leg comes nearer than r - 1e-6 m to a shape; touching is free.
   bool blocked(const Vec3& a, const Vec3& b, double r) const;
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const;
@@ -41,18 +41,18 @@ class ALTIPLAN_API ObstacleSet {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The shapes, each drawn in that role.
+/// The shapes, each with that role.
 ALTIPLAN_API Drawing drawing_of(const std::vector<Shape>& shapes,
                                 Drawn::Role role = Drawn::Role::obstacle);
 
-/// The discs around the shapes, seen from above.
+/// Bounding discs of the shapes, seen from above.
 ALTIPLAN_API std::vector<Threat> threats_of(const std::vector<Shape>& shapes);
 
 /// An environment that is a set of shapes.
 class ALTIPLAN_API ShapeLayer : public Environment {
  public:
   explicit ShapeLayer(std::vector<Shape> shapes);
-  /// Of which something else than the discs around its shapes is to be said.
+  /// With another info than the bounding discs of its shapes.
   ShapeLayer(std::vector<Shape> shapes, LayerInfo info)
       : set_(std::move(shapes)), info_(std::move(info)) {}
   const ObstacleSet& set() const { return set_; }

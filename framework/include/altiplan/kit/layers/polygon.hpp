@@ -18,16 +18,17 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-/// Drops points that repeat the one before (and the last, where it repeats the first).
+/// Drops points that repeat the preceding one (and the last, where it repeats the first).
 ALTIPLAN_API Ring without_repeats(const Ring& ring);
 
-/// Whether a polygon in longitude and latitude is but a point or a line, to 1e-9 degrees (0.1 mm).
+/// True if a polygon in longitude and latitude is degenerate (a point or a line), to 1e-9 degrees
+/// (0.1 mm).
 ALTIPLAN_API bool is_flat(const Polygon& polygon);
 
-/// "'park', 'pier' and 3 more": names for a note, which stays short.
+/// "'park', 'pier' and 3 more": a short list of names for a note.
 ALTIPLAN_API std::string names_text(const std::vector<std::string>& names);
 
-/// What is wrong with a polygon (a ring that meets itself or another one, a hole outside, no area),
-/// with the place in the ring's own units; "" where nothing is.
+/// The defect of a polygon (a ring that intersects itself or another one, a hole outside, no area),
+/// with its position in the ring's units; "" where there is none.
 ALTIPLAN_API std::string polygon_problem(const Polygon& polygon);
 }  // namespace altiplan::kit

@@ -12,7 +12,7 @@ inline double outside(const Box& box, const Vec3& p) {
   return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).norm();
 }
 
-/// Whether the leg may come as near to the box as `reach`: never wrongly false.
+/// True if the leg may come within `reach` of the box; never wrongly false.
 inline bool may_reach(const Box& box, const Vec3& a, const Vec3& b, double reach) {
   const Box grown = box.grown(reach);
   double enter = 0;
@@ -33,10 +33,10 @@ inline bool may_reach(const Box& box, const Vec3& a, const Vec3& b, double reach
   return enter <= leave;
 }
 
-/// Blocks the cells that the grid's rule blocks of a solid within `bounds`, given its signed
-/// distance from a place, distance(p), and whether it comes nearer to an open box than some metres,
-/// overlaps(box, by). The distance is 1-Lipschitz, so one look at a centre settles many cells; only
-/// those that the grown surface may cut are looked at exactly.
+/// Blocks the cells that the grid's blocking rule blocks for a solid within `bounds`, given its
+/// signed distance from a point, distance(p), and whether it comes nearer to an open box than some
+/// metres, overlaps(box, by). The distance is 1-Lipschitz, so one query at a centre decides many
+/// cells; only those that the grown surface may cut are tested exactly.
 template <class Distance, class Overlaps>
 void rasterize(VoxelGrid& grid, const Box& bounds, const Distance& distance,
                const Overlaps& overlaps) {

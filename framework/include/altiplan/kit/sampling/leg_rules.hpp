@@ -11,27 +11,28 @@
 
 namespace altiplan::kit {
 
-/// The judge's rules for the legs of planners that ask for any legs, many of them: the answers of
-/// leg_ok, sooner where all layers are cells of one grid and no clearance is needed. (As everywhere
-/// where cells decide, a layer's own cells are taken to be what it blocks.)
-/// Belongs to one search; remembers what was refused.
+/// The judge's constraints for planners that check many arbitrary legs: the answers of leg_ok,
+/// faster where all layers are cells of one grid and no clearance is required. (As everywhere where
+/// cells decide, a layer is taken to block exactly its own cells.)
+/// Belongs to one search; records the refusals.
 class ALTIPLAN_API LegRules {
  public:
-  /// The request must outlive the rules.
+  /// The request must outlive this object.
   explicit LegRules(const Request& request);
 
-  /// leg_ok.
+  /// Same answer as leg_ok.
   bool ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
-  /// Whether a rule looks at the point before a leg.
+  /// True if a constraint depends on the point before a leg.
   bool looks_back() const { return looks_back_; }
-  /// The rules of the leg a–b, known to be free, that look at the point before it.
+  /// True if the leg a–b, known to be free, satisfies the constraints that depend on the point
+  /// before it.
   bool follows(const Approach& before, const Vec3& a, const Vec3& b);
-  /// Whether a vehicle may be at p at all, by obstacles, ground and heights.
+  /// True if a vehicle may be at p, by obstacles, ground and altitude limits.
   bool point_ok(const Vec3& p) const;
 
   std::int64_t checked() const { return checked_; }
-  /// The rules and layers that refused the last legs, the busiest first: "ground_clearance (40),
-  /// 'radar' (7)"; "" if nothing was refused.
+  /// The constraints and layers that refused the last legs, the most frequent first:
+  /// "ground_clearance (40), 'radar' (7)"; "" if nothing was refused.
   std::string refusals() const;
 
  private:
@@ -46,7 +47,7 @@ class ALTIPLAN_API LegRules {
 
   bool leg_kept(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) const;
   Answer by_cells(const Vec3& a, const Vec3& b) const;
-  // Of places and legs in cells of the grid, from its lower corner.
+  // Points and legs are in cells of the grid, from its lower corner.
   bool in_grid(const Vec3& p) const;
   bool surely_blocked(const Vec3& p) const;
   Answer by_layers(const CellLeg& leg) const;
@@ -56,10 +57,11 @@ class ALTIPLAN_API LegRules {
 
   const Request& request_;
   bool looks_back_;
-  bool cells_alone_ = false;               ///< whether beside the grid only the volume counts
+  bool cells_alone_ = false;               ///< true if apart from the grid only the volume matters
   std::shared_ptr<const VoxelGrid> grid_;  ///< null where cells do not decide
   Vec3 per_cell_{1, 1, 1};
-  Request rest_;  ///< by cells: the problem without its layers; else: with what a point can keep
+  Request rest_;  ///< by cells: the problem without its layers; else: with the limits that a point
+                  ///< can satisfy
   std::int64_t checked_ = 0;
   std::uint64_t refused_count_ = 0;
   std::array<Refused, kRemembered> refused_;

@@ -9,8 +9,8 @@
 
 namespace altiplan::kit {
 
-/// Points that hang together by legs, as sampling planners grow them: each has a parent, or is a
-/// root. Nodes are numbered 0, 1, 2 … as added; a number is never used again.
+/// Trees of points joined by legs, as sampling planners grow them: each point has a parent, or is a
+/// root. Nodes are numbered 0, 1, 2 … as added; a number is never reused.
 class LegTree {
  public:
   using Node = std::int32_t;
@@ -24,10 +24,10 @@ class LegTree {
     points_.reserve(count);
     links_.reserve(count);
   }
-  /// Numbers given.
+  /// Number of nodes added.
   std::size_t size() const { return points_.size(); }
 
-  /// Adds a node below `parent`, a root where that is kNone.
+  /// Adds a node below `parent`, a root if that is kNone.
   Node add(const Vec3& p, Node parent) {
     const Node node = Node(points_.size());
     points_.push_back(p);
@@ -41,7 +41,7 @@ class LegTree {
   /// The next child of the same parent.
   Node sibling(Node node) const { return links_[std::size_t(node)].next; }
 
-  /// Hangs a node, with all below it, under another parent (not one of those), or makes it a root.
+  /// Moves a node, with its subtree, to another parent (outside that subtree), or makes it a root.
   void move(Node node, Node parent) {
     Links& links = links_[std::size_t(node)];
     if (links.previous != kNone) {
@@ -55,7 +55,7 @@ class LegTree {
     hang(node, parent);
   }
 
-  /// The node and all below it, each after its parent.
+  /// The node and its subtree, each after its parent.
   void below(Node node, std::vector<Node>& found) const {
     found.assign(1, node);
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -65,8 +65,8 @@ class LegTree {
     }
   }
 
-  /// How a vehicle comes to the node by the legs from `root`, to which it comes by `to_root`; from
-  /// the root of another tree, to which nothing is known to lead.
+  /// The approach to the node by the legs from `root`, itself reached by `to_root`; from the root
+  /// of another tree, which has no known approach.
   std::optional<Approach> approach(Node node, Node root,
                                    const std::optional<Approach>& to_root) const {
     const Node last = parent(node);
@@ -95,9 +95,9 @@ class LegTree {
  private:
   struct Links {
     Node parent = kNone;
-    Node child = kNone;     ///< the one added last
+    Node child = kNone;     ///< the last one added
     Node next = kNone;      ///< child of the same parent
-    Node previous = kNone;  ///< the other way
+    Node previous = kNone;  ///< the reverse link
   };
 
   void hang(Node node, Node parent) {

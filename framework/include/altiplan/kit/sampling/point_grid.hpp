@@ -9,10 +9,10 @@
 
 namespace altiplan::kit {
 
-/// Points spread over a volume, as sampling planners draw them, under their numbers 0, 1, 2 … as
-/// inserted. All queries are exact. Points lie in the buckets of a grid that is laid anew whenever
-/// they have doubled; fewer than kFewest are one bucket. (Where points crowd in few places, KdTree
-/// is the better index.)
+/// Points spread over a volume, as sampling planners generate them, with numbers 0, 1, 2 … in order
+/// of insertion. All queries are exact. Points lie in the buckets of a grid that is rebuilt
+/// whenever their number has doubled; fewer than kFewest are one bucket. (Where points cluster in
+/// few places, KdTree is the better index.)
 class ALTIPLAN_API PointGrid {
  public:
   static constexpr std::size_t kNone = ~std::size_t{0};
@@ -20,19 +20,19 @@ class ALTIPLAN_API PointGrid {
 
   PointGrid() { clear(); }
   void clear();
-  /// Numbers given, those of forgotten points included.
+  /// Number of points inserted, including those removed since.
   std::size_t size() const { return points_.size(); }
-  /// Points that are in.
+  /// Number of points in the grid.
   std::size_t count() const { return kept_.size(); }
   const Vec3& point(std::size_t number) const { return points_[number]; }
   /// Returns the point's number.
   std::size_t insert(const Vec3& p);
-  /// The point nearest to p, the smallest number among equals; kNone where there is none.
+  /// The point nearest to p, the smallest number among equals; kNone in an empty grid.
   std::size_t nearest(const Vec3& p) const;
-  /// Numbers of the points at most `radius` away, in an order that the insertions alone decide.
+  /// Numbers of the points at most `radius` away, in an order that depends on the insertions alone.
   /// `found` is emptied first.
   void within(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const;
-  /// Takes out every point for which `leaves(number)` holds; its number stays given.
+  /// Removes every point for which `leaves(number)` is true; its number is not reused.
   template <class Leaves>
   void forget_if(const Leaves& leaves) {
     std::erase_if(kept_, leaves);
@@ -63,7 +63,7 @@ class ALTIPLAN_API PointGrid {
   void visit_ring(const std::array<int, 3>& middle, int ring, const Visit& visit) const;
 
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> kept_;  ///< numbers of the points that are in
+  std::vector<std::uint32_t> kept_;  ///< numbers of the points in the grid
   std::vector<Chunk> chunks_;
   std::vector<std::uint32_t> first_;  ///< chunk of each bucket, 0 where it is empty
   std::vector<std::uint8_t> filled_;  ///< points of that chunk

@@ -9,7 +9,7 @@
 
 namespace altiplan::kit {
 
-/// The axes along which a sampling planner's points may differ.
+/// Number of axes along which a sampling planner's points may differ.
 inline int free_axes(const Box& box) {
   int axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -18,7 +18,7 @@ inline int free_axes(const Box& box) {
   return axes;
 }
 
-/// Where a planner draws its points: the volume, in level flight at the level.
+/// The box that a planner samples: the volume, in level flight at the level.
 inline Box sampled_box(const Request& request) {
   Box box = request.volume;
   if (request.level_m) {
@@ -27,15 +27,15 @@ inline Box sampled_box(const Request& request) {
   return box;
 }
 
-/// The range of a tree's legs, within the limits on their length; where a user leaves it open, a
-/// tenth of the volume's diagonal, or twice the least leg if that is more.
+/// Maximum length of a tree's legs, within the limits on their length; by default a tenth of the
+/// volume's diagonal, or twice the minimum leg if that is more.
 inline double range_of(const std::optional<double>& range, const Request& request) {
   const double open = (request.volume.max - request.volume.min).norm() / 10;
   const double wanted = range.value_or(std::max(open, 2 * request.limits.min_leg));
   return std::min(std::max(wanted, request.limits.min_leg), request.limits.max_leg);
 }
 
-/// Length, area or volume of the box along the axes that it has.
+/// Length, area or volume of the box over its non-degenerate axes.
 inline double measure_of(const Box& box) {
   double measure = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,12 +52,13 @@ class ALTIPLAN_API InformedSet {
   /// On a level `box` has no height, and both foci lie on it.
   InformedSet(const Vec3& start, const Vec3& goal, const Box& box);
 
-  /// No less than the distance of the foci; infinite at first.
+  /// At least the distance of the foci; infinite at first.
   void set_length(double length);
   bool contains(const Vec3& p) const { return (p - start_).norm() + (p - goal_).norm() <= length_; }
-  /// Of the set or of the box, whichever is less.
+  /// Of the set or of the box, whichever is smaller.
   double measure() const { return std::min(own_measure_, box_measure_); }
-  /// A point of both, uniformly; where the two hardly meet, of the box alone.
+  /// A uniform sample of the intersection with the box; of the box alone where the two hardly
+  /// overlap.
   Vec3 draw(RandomStream& random) const;
 
  private:
@@ -74,20 +75,20 @@ class ALTIPLAN_API InformedSet {
   Vec3 beside_;
 };
 
-/// The direction `wanted` from `at`, bent as little as keeps the limits on climb, and on turns for
-/// a vehicle that comes there by `before`.
+/// The direction `wanted` from `at`, rotated as little as possible to satisfy the limits on climb,
+/// and on turns for a vehicle that arrives by `before`.
 ALTIPLAN_API Vec3 bent(const std::optional<Approach>& before, const Vec3& at, const Vec3& wanted,
                        double range, const Limits& limits);
 
-/// The end of a leg from `at` toward `target`, at most `range` long: bent, where it would break the
-/// limits on climb, or on turns after coming by `before`, as little as keeps them, and no shorter
-/// than legs must be. `target` itself where nothing is in the way of that. What the limits together
-/// ask for, only leg_ok knows.
+/// The end of a leg from `at` toward `target`, at most `range` long: rotated as little as possible
+/// to satisfy the limits on climb, and on turns after arriving by `before`, and no shorter than the
+/// minimum leg. `target` itself if it satisfies all of these. Only leg_ok checks the limits
+/// together.
 inline Vec3 steer(const std::optional<Approach>& before, const Vec3& at, const Vec3& target,
                   double range, const Limits& limits) {
   const Vec3 wanted = target - at;
   const double run = wanted.norm();
-  constexpr double kLonger = 1 + 1e-9;  // off the limit
+  constexpr double kLonger = 1 + 1e-9;  // keeps the leg off the limit
   const double length =
       std::min(std::max(std::min(run, range), limits.min_leg * kLonger), limits.max_leg);
   Vec3 way = wanted;

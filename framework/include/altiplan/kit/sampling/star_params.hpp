@@ -6,7 +6,7 @@
 
 namespace altiplan::kit {
 
-/// The parameters of rrt_star and informed_rrt_star.
+/// Common parameters of rrt_star and informed_rrt_star.
 struct StarParams {
   AutoNumber range_m;
   double goal_bias = 0.05;
@@ -17,17 +17,17 @@ struct StarParams {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("longest leg that the tree grows by; auto: a tenth of the volume's diagonal");
+        .doc("maximum length of the tree's legs; auto: a tenth of the volume's diagonal");
     f("goal_bias", goal_bias)
         .range(0, 1)
         .was("goal_share")
         .doc("probability of sampling the goal, until it is in the tree");
     f("radius_scale", radius_scale)
         .range(1, 10)
-        .doc("radius of the neighbours over the least one that makes the length converge");
+        .doc("neighbour radius relative to the smallest one with which the length converges");
     f("max_iterations", max_iterations)
         .at_least(1)
-        .doc("samples; all of them are used if the budget allows");
+        .doc("number of samples; all are used if the budget allows");
   }
 
   StarSettings settings(const Request& request) const {

@@ -15,25 +15,25 @@
 namespace altiplan::kit {
 
 struct StarSettings {
-  double range = 0;         ///< metres; longest leg that the tree grows by (eta)
-  double goal_bias = 0;    ///< of the samples are the goal, until it is in the tree
-  double radius_scale = 1;  ///< times the least radius that converges
+  double range = 0;         ///< metres; maximum length of the tree's legs (eta)
+  double goal_bias = 0;     ///< fraction of samples that are the goal, until it is in the tree
+  double radius_scale = 1;  ///< in units of the smallest radius that converges
   std::uint64_t max_iterations = 0;
-  bool bounded = false;   ///< once there is a route, keep to places where a shorter one may lead
-  bool informed = false;  ///< and draw there alone
+  bool bounded = false;   ///< once a route is known, restrict the tree to points on shorter ones
+  bool informed = false;  ///< and sample only there
 };
 
-/// RRT* and Informed RRT* (see planners rrt_star and informed_rrt_star): one search, which draws
-/// from the whole volume or from the informed set. Under limits on turns a node keeps its
-/// children's turns: a parent is chosen, or changed, only where all of them still hold.
+/// RRT* and Informed RRT* (see planners rrt_star and informed_rrt_star): one search, which samples
+/// the whole volume or the informed set. Under turn limits, a parent is chosen or changed only if
+/// the turns into all of a node's children remain valid.
 class ALTIPLAN_API StarSearch {
  public:
-  /// What outlives a search, to be used again by the next.
+  /// Memory that the next search reuses.
   struct Memory {
     LegTree legs;
-    PointGrid points;                ///< under the numbers of `legs`
-    std::vector<double> cost;        ///< metres from the start, one entry a node
-    std::vector<std::uint8_t> ends;  ///< whether a node lies within the goal's tolerance
+    PointGrid points;                ///< with the numbers of `legs`
+    std::vector<double> cost;        ///< metres from the start, one entry per node
+    std::vector<std::uint8_t> ends;  ///< 1 if a node lies within the goal's tolerance
     std::vector<std::uint32_t> near;
     std::vector<LegTree::Node> moved;
   };
@@ -46,7 +46,7 @@ class ALTIPLAN_API StarSearch {
   struct Candidate {
     Node node;
     double metres;  ///< of the leg from it
-    double cost;    ///< of the way through it
+    double cost;    ///< of the path through it
   };
 
   bool may_go_on();
@@ -79,18 +79,18 @@ class ALTIPLAN_API StarSearch {
   Box box_;
   InformedSet set_;
   int axes_;
-  double straight_;  ///< no route is shorter
+  double straight_;  ///< lower bound of the route length
   std::size_t max_nodes_;
   std::vector<Candidate> candidates_;
   bool goal_is_in_ = false;
   bool budget_ended_ = false;
   Node best_end_ = LegTree::kNone;
   double best_ = kInfinity;
-  double known_ = kInfinity;  ///< the best of the iterations before
+  double known_ = kInfinity;  ///< the best of the previous iterations
   double forgotten_at_ = kInfinity;
   double nearest_ = kInfinity;  ///< of all nodes to the goal
   double radius_ = 0;
-  std::size_t radius_for_ = 0;  ///< nodes for which the radius was found
+  std::size_t radius_for_ = 0;  ///< number of nodes for which the radius was computed
   std::uint64_t expanded_ = 0;
   std::int64_t first_at_ = 0;
   std::int64_t improved_ = 0;

@@ -7,12 +7,12 @@
 
 namespace altiplan::kit {
 
-/// A uniform cubic B-spline near its control points, clamped: it begins at the first and ends at
-/// the last of them. Piece i runs from the knot near control point i to that near i + 1 and stays
-/// within the convex hull of the control points i - 1 to i + 2.
+/// A clamped uniform cubic B-spline: it begins at the first control point and ends at the last.
+/// Piece i runs from the knot near control point i to that near i + 1 and stays within the convex
+/// hull of the control points i - 1 to i + 2.
 class ALTIPLAN_API CubicSpline {
  public:
-  /// At least two control points.
+  /// Throws Error for fewer than two control points.
   explicit CubicSpline(std::vector<Vec3> control);
 
   std::size_t pieces() const { return control_.size() - 3; }

@@ -19,16 +19,19 @@ struct TrimParams {
   void describe(Fields& f) {
     f("longest_stride", longest_stride)
         .range(2, 100'000)
-        .doc("nodes that a straight leg of the first round skips to, paper 004 l_c,max");
+        .doc("stride of the first round in nodes, paper 004 l_c,max");
     f("shortest_stride", shortest_stride)
         .range(2, 100'000)
-        .doc("no round has a shorter stride, l_c,min");
-    f("decay", decay).range(0.01, 0.99).doc("of the stride from round to round, sigma of eq. (11)");
+        .doc("minimum stride, paper 004 l_c,min");
+    f("decay", decay)
+        .range(0.01, 0.99)
+        .doc("factor of the stride from round to round, sigma of eq. (11)");
     f.check(shortest_stride <= longest_stride,
             "shortest_stride must not be more than longest_stride");
   }
 
-  /// Of the rounds: floor(longest * decay^v) while that is no less than the shortest, each once.
+  /// Strides of the rounds: floor(longest * decay^v) while that is at least the shortest, each
+  /// once.
   std::vector<std::size_t> strides() const {
     std::vector<std::size_t> all;
     double stride = longest_stride;
@@ -41,10 +44,10 @@ struct TrimParams {
   }
 };
 
-/// One round: from each node that stays on, the straight leg to the node one stride ahead (or to
-/// the last) takes the place of what lies between where `is_free(from, to)` says so; else the next
-/// node stays too. `from` and `to` are places in `nodes`; the node before `from` is the one that
-/// stays before it, and behind `to` the nodes are as they were.
+/// One round: from each node kept, a straight leg to the node one stride ahead (or to the last)
+/// replaces the nodes between if `is_free(from, to)` is true; else the next node is kept too.
+/// `from` and `to` are indices of `nodes`; the node before `from` is the one kept before it, and
+/// the nodes after `to` are unchanged.
 template <class Node, class IsFree>
 void trim(std::vector<Node>& nodes, std::size_t stride, const IsFree& is_free) {
   if (nodes.empty()) {
