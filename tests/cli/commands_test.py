@@ -276,7 +276,7 @@ events:
     def test_the_files_in_the_documentation_are_valid(self):
         shutil.copytree(os.path.join(ROOT, "configs"), self.path("configs"))
         blocks = 0
-        for page in ("README.md", "docs/getting-started.md", "docs/files.md"):
+        for page in ("README.md", "docs/tutorials/first-route.md", "docs/reference/files.md"):
             with open(os.path.join(ROOT, page)) as stream:
                 files = re.findall(r"```yaml\n(altiplan: 1\n.*?)```", stream.read(), re.DOTALL)
             pipeline = next(text for text in files if "\nsteps:" in text)

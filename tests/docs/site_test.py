@@ -74,8 +74,8 @@ def main():
         builds(home)
         refused(home, "docs/of_nothing.md", "# Of nothing\n",
                 "docs/of_nothing.md stands in no group: name it in GROUPS")
-        refused(home, "docs/view.md", "\n[a picture](images/none.png)\n",
-                "docs/view.md: links to images/none.png, which is not there")
+        refused(home, "docs/how-to/view-results.md", "\n[a picture](images/none.png)\n",
+                "docs/how-to/view-results.md: links to images/none.png, which is not there")
         found(home, '<a href="#top">up</a>', "")
         found(home, '<a href="#bottom">down</a>', "'#bottom' leads nowhere")
         found(home, '<a href="other.html">on</a>', "'other.html' leads nowhere")

@@ -152,7 +152,7 @@ TEST(Structure, EveryFolderIsARoomThatTheArchitectureShows) {
   std::vector<std::string> all = rooms();
   const std::regex kRow("^\\| `((host|study|tune)[a-z_/]*)` \\|");
   std::vector<std::string> shown;
-  std::istringstream page(text_of(kSource / "docs/architecture.md"));
+  std::istringstream page(text_of(kSource / "docs/explanation/architecture.md"));
   for (std::string line; std::getline(page, line);) {
     if (std::smatch row; std::regex_search(line, row, kRow)) {
       shown.push_back(row[1]);

@@ -13,7 +13,7 @@ import tempfile
 import walk
 
 SOURCE, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-WALKED = {"docs/writing-a-plugin.md", "docs/planner-with-the-kit.md"}
+WALKED = {"docs/how-to/write-a-plugin.md", "docs/how-to/plan-with-the-kit.md"}
 NOT_RUN = {
     r"tools/(run|setup|test|docs|package)\b": "fetches packages, and builds all",
     r"tools/bench/": "draws what a benchmark of minutes measured",

@@ -10,8 +10,8 @@ namespace altiplan::host {
 
 /// Writes a run's search events as lines of JSON: first {"altiplan_trace": 1}, then for each event
 /// {"step", "kind", "node", "parent", "at": [x, y, z], "value"}, of an iteration of a population
-/// with "mean" and "alive" (docs/result.md). It takes its place when it is closed. Throws Error
-/// when the file cannot be written.
+/// with "mean" and "alive" (docs/reference/result.md). It takes its place when it is closed. Throws
+/// Error when the file cannot be written.
 class TraceFile final : public Trace {
  public:
   explicit TraceFile(std::filesystem::path file);

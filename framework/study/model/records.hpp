@@ -19,7 +19,7 @@ struct RunFacts {
   int place = 0;  ///< how many runs the process had done before (--reuse)
 };
 
-/// A run as the store holds it; the tables are in docs/study-database.md.
+/// A run as the store holds it; the tables are in docs/reference/study-database.md.
 struct StoredRun : RunFacts {
   std::string scenario;  ///< name of the variant
   std::string pipeline;

@@ -42,8 +42,8 @@ struct Written {
 /// Throws Error where the folder holds anything but an earlier report, or cannot be written.
 void expect_report_folder(const std::filesystem::path& folder);
 
-/// Writes index.html, runs.csv, figures/ and tables/ (docs/report.md) into the folder, in place of
-/// those of an earlier report. The same data give the same bytes.
+/// Writes index.html, runs.csv, figures/ and tables/ (docs/reference/report.md) into the folder, in
+/// place of those of an earlier report. The same data give the same bytes.
 Written write_report(const Source& source, const Options& options,
                      const std::filesystem::path& folder);
 }  // namespace altiplan::study::report

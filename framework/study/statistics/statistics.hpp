@@ -12,9 +12,9 @@
 
 namespace altiplan::study {
 
-// Statistics of samples, without knowledge of studies. docs/statistics.md has each one's source and
-// the SciPy call that it equals. Where a sample holds a NaN the answer is NaN or nothing, unless
-// the function says otherwise.
+// Statistics of samples, without knowledge of studies. docs/reference/statistics.md has each one's
+// source and the SciPy call that it equals. Where a sample holds a NaN the answer is NaN or
+// nothing, unless the function says otherwise.
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

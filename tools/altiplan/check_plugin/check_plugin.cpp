@@ -236,9 +236,10 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command
-      ->add_option("--sets", arguments->sets,
-                   "sets of parameters to check it with, as docs/conformance.md says; by default "
-                   "the plugin's own defaults")
+      ->add_option(
+          "--sets", arguments->sets,
+          "sets of parameters to check it with, as docs/reference/conformance.md says; by default "
+          "the plugin's own defaults")
       ->type_name("FILE");
   add_plugin_path(*command, arguments->overrides);
   command->add_option("--jobs", arguments->jobs, "tests at a time")

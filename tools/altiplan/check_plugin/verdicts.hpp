@@ -25,7 +25,7 @@ std::string reproduce(const CheckedLibrary& library, const Verdict& verdict);
 std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict);
 /// How many passed, failed and had nothing to do.
 std::string summary_text(const CheckedLibrary& library, const std::vector<Verdict>& verdicts);
-/// docs/check-plugin.md
+/// docs/reference/check-plugin.md
 nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
                                      const std::vector<Verdict>& verdicts);
 /// As build servers read it: a suite for each plugin, a case for each test.
