@@ -35,8 +35,8 @@ GROUPS = [
     ("Explanation", ["docs/explanation/*.md"]),
     ("Papers", ["docs/papers/README.md", "docs/papers/*.md"]),
     ("Decisions", ["docs/decisions/README.md", "docs/decisions/*.md"]),
-    ("Developers", ["CONTRIBUTING.md", "docs/developers/*.md", "tests/*/README.md",
-                    "tools/viewer/*.md", "CHANGELOG.md"]),
+    ("Developers", ["CONTRIBUTING.md", "docs/developers/*.md", "framework/*.md",
+                    "tests/*/README.md", "tools/viewer/*.md", "CHANGELOG.md"]),
 ]
 API = """# The API
 
@@ -129,7 +129,7 @@ def main():
     shutil.rmtree(SOURCE, ignore_errors=True)
     problems = []
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("tools/viewer/*.md"),
-                 *ROOT.glob("tests/*/README.md")]:
+                 *ROOT.glob("tests/*/README.md"), *ROOT.glob("framework/*.md")]:
         write(page.relative_to(ROOT), page.read_text(), problems)
     for page, text in plugins.pages(ROOT, PROGRAM, problems):
         write(page, text, problems)
