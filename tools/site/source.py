@@ -108,7 +108,8 @@ def nav(problems):
             for kind in patterns:
                 members = sorted(page for page in left if page.startswith(f"plugins/{kind}/"))
                 own = f"plugins/{kind}/README.md"
-                names = [{page.split("/")[2]: page} for page in members if page != own]
+                names = [{page.split("/")[2] + (" (design)" if page.endswith("design.md") else ""): page}
+                         for page in members if page != own]
                 kinds.append({plugins.plural(kind).capitalize(): [own, *names]})
                 left -= set(members)
             groups.append({heading: pages + kinds})
@@ -129,7 +130,8 @@ def main():
     shutil.rmtree(SOURCE, ignore_errors=True)
     problems = []
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("tools/viewer/*.md"),
-                 *ROOT.glob("tests/*/README.md"), *ROOT.glob("framework/*.md")]:
+                 *ROOT.glob("tests/*/README.md"), *ROOT.glob("framework/*.md"),
+                 *ROOT.glob("plugins/*/*/design.md")]:
         write(page.relative_to(ROOT), page.read_text(), problems)
     for page, text in plugins.pages(ROOT, PROGRAM, problems):
         write(page, text, problems)
