@@ -59,7 +59,7 @@ std::string of_smoother(const Factory<Smoother>& make, const Options& options) {
   std::string all;
   const auto smoother = make();
   for (std::uint64_t n = 0; n < 4; ++n) {
-    Scene scene = random_scene(options.unit_m, options.seed * 1000 + n, Flight::space);
+    Scene scene = random_scene(options.unit_m, options.seed * 1000 + n, Flight::spatial);
     scene.request.budget.max_iterations = options.iterations;
     RandomStream random = RandomStream(options.seed).sub("answers", n);
     scene.request.random = random;
@@ -76,7 +76,7 @@ std::string of_smoother(const Factory<Smoother>& make, const Options& options) {
 std::string of_constraint(const Factory<Constraint>& make, const Options& options) {
   std::ostringstream all;
   const auto constraint = make();
-  Scene scene = random_scene(100, options.seed, Flight::space);
+  Scene scene = random_scene(100, options.seed, Flight::spatial);
   scene.request.limits.max_leg = 1e4;
   Limits& limits = scene.request.limits;
   constraint->tighten(limits, scene.request);

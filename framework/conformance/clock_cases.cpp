@@ -14,10 +14,10 @@ using Clock = Budget::Clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
 constexpr const char* kDeadline =
-    "Planner law 4: a deadline is overrun by at most 50 ms at the 99th percentile";
-constexpr const char* kStop = "Planner law 4: a stop is heeded within 50 ms at the 99th percentile";
+    "Planner contract 4: a deadline is overrun by at most 50 ms at the 99th percentile";
+constexpr const char* kStop = "Planner contract 4: a stop is heeded within 50 ms at the 99th percentile";
 constexpr const char* kSmootherDeadline = "Smoother: a deadline is overrun by at most 50 ms";
-constexpr double kMost = 50;
+constexpr double kMax = 50;
 
 Clock::time_point after(double ms) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(Milliseconds(ms));
@@ -48,9 +48,9 @@ class FairClock {
 /// The least of three, as soon as one is short enough: what else the machine does only ever adds,
 /// as memory and caches are shared.
 template <class Measure>
-double least_of_three(const Measure& measure) {
+double min_of_three(const Measure& measure) {
   double least = measure();
-  for (int again = 0; again < 2 && least > kMost; ++again) {
+  for (int again = 0; again < 2 && least > kMax; ++again) {
     least = std::min(least, measure());
   }
   return least;
@@ -71,7 +71,7 @@ void deadlines(const PlannerBench& bench, Report& report) {
     for (int n = 0; n < 5; ++n) {
       scene.request.random = RandomStream(bench.options.seed).sub("clock", std::uint64_t(n));
       std::string said;
-      const double overrun = least_of_three([&] {
+      const double overrun = min_of_three([&] {
         const FairClock clock;
         scene.request.budget.deadline = after(allowed);
         const PlanResult result = planner->plan(scene.request);
@@ -79,7 +79,7 @@ void deadlines(const PlannerBench& bench, Report& report) {
         said = text(result);
         return took - allowed;
       });
-      report.expect(overrun <= kMost, kDeadline, [&] {
+      report.expect(overrun <= kMax, kDeadline, [&] {
         return scene.name + ": of " + text(allowed) + " ms the planner took " +
                text(allowed + overrun) + " ms; it said " + said;
       });
@@ -91,7 +91,7 @@ void stops(const PlannerBench& bench, Report& report) {
   const auto planner = bench.make();
   Scene scene = long_search(bench);
   for (const int delay : {1, 20, 100}) {
-    const double late = least_of_three([&] {
+    const double late = min_of_three([&] {
       std::stop_source source;
       scene.request.budget.stop = source.get_token();
       std::atomic<Clock::time_point> asked = Clock::now();
@@ -107,7 +107,7 @@ void stops(const PlannerBench& bench, Report& report) {
       stopper.join();
       return took - Milliseconds(asked.load() - from).count();
     });
-    report.expect(late <= kMost, kStop, [&] {
+    report.expect(late <= kMax, kStop, [&] {
       return scene.name + ": stopped after " + std::to_string(delay) + " ms the planner took " +
              text(late) + " ms more";
     });
@@ -116,7 +116,7 @@ void stops(const PlannerBench& bench, Report& report) {
 
 void smoother_deadlines(const Factory<Smoother>& make, const Options& options, Report& report) {
   const auto smoother = make();
-  Scene scene = crowded_scene(options.unit_m, Flight::space);
+  Scene scene = crowded_scene(options.unit_m, Flight::spatial);
   // A walk there and back between the obstacles.
   Route route;
   for (int i = 0; i <= 1000; ++i) {
@@ -129,13 +129,13 @@ void smoother_deadlines(const Factory<Smoother>& make, const Options& options, R
   scene.request.goal.position = route.back();
   scene.request.random = RandomStream(options.seed).sub("clock");
   for (const double allowed : {0.0, 5.0, 50.0}) {
-    const double overrun = least_of_three([&] {
+    const double overrun = min_of_three([&] {
       const FairClock clock;
       scene.request.budget.deadline = after(allowed);
       (void)smoother->smooth(route, scene.request);
       return clock.ms() - allowed;
     });
-    report.expect(overrun <= kMost, kSmootherDeadline, [&] {
+    report.expect(overrun <= kMax, kSmootherDeadline, [&] {
       return "a route of 1,001 points: of " + text(allowed) + " ms the smoother took " +
              text(allowed + overrun) + " ms";
     });

@@ -7,12 +7,12 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kPure = "Constraint law 1: pure and const, any number of threads may ask";
-constexpr const char* kTightens = "Constraint law 2: tighten only ever makes a limit stricter";
+constexpr const char* kPure = "Constraint contract 1: pure and const, any number of threads may ask";
+constexpr const char* kTightens = "Constraint contract 2: tighten only ever makes a limit stricter";
 constexpr const char* kLegAlone =
-    "Constraint law 3: admits depends on the leg alone, and is monotone under the parameter";
+    "Constraint contract 3: admits depends on the leg alone, and is monotone under the parameter";
 constexpr const char* kViolations =
-    "Constraint law 4: violations is empty if and only if the route keeps the rule";
+    "Constraint contract 4: violations is empty if and only if the route keeps the rule";
 constexpr const char* kNothing = "Suite: there must be something to judge";
 
 struct Bench {
@@ -98,7 +98,7 @@ Limits random_limits(RandomStream& random) {
 
 /// Over ground, among solids, of the size in which constraints are written: hundreds of metres.
 Scene scene_of(std::uint64_t seed) {
-  Scene scene = random_scene(100, seed, Flight::space);
+  Scene scene = random_scene(100, seed, Flight::spatial);
   scene.ridge = std::make_shared<Ridge>(1000, 120, 0.2);
   scene.request.world = std::make_shared<const World>(
       scene.request.world->with({"ridge", "conformance", scene.ridge, true}));

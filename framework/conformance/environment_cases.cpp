@@ -132,11 +132,11 @@ void blocked_legs(const Bench& bench, Report& report) {
     }
     const double gap = (b - a).norm() / kSamples / 2;  // no place is farther from a sample
     const double rounding = 1e-9 * (1 + a.cwiseAbs().maxCoeff());
-    const double clear = std::min(least - gap - layer.slack() - kDeep - rounding, 1e6);
+    const double clear = std::min(least - gap - layer.over_approximation() - kDeep - rounding, 1e6);
     report.expect(!(clear > 0) || !layer.blocked(a, b, clear), kEnvironmentBlocked, [&] {
       return text(a) + " to " + text(b) + " is blocked for r " + text(clear) +
              ", and all of it is at least " + text(least - gap) + " m clear, the slack being " +
-             text(layer.slack());
+             text(layer.over_approximation());
     });
   }
 }
@@ -211,7 +211,7 @@ void near_by(const Bench& bench, Report& report) {
         clearance <= nearest + kDeep + 1e-9 * std::abs(nearest), kEnvironmentNear,
         told("an obstacle is " + text(nearest) + " m away, clearance says " + text(clearance)));
     const Vec3 beside = probe.around(p, r);
-    report.expect(!probe.inside(beside) || nearest <= (beside - p).norm() + layer.slack() + kDeep,
+    report.expect(!probe.inside(beside) || nearest <= (beside - p).norm() + layer.over_approximation() + kDeep,
                   kEnvironmentNear,
                   told("nothing is reported within " + text((beside - p).norm()) + " m, and " +
                        text(beside) + " lies inside the layer"));
@@ -303,8 +303,8 @@ void kin(const Bench& bench, Report& report) {
   Probe probe(bench, "kin");
   const Environment& layer = probe.layer();
   const LayerInfo& info = layer.info();
-  report.expect(layer.slack() >= 0 && std::isfinite(layer.slack()), kEnvironmentKin,
-                [&] { return "slack is " + text(layer.slack()); });
+  report.expect(layer.over_approximation() >= 0 && std::isfinite(layer.over_approximation()), kEnvironmentKin,
+                [&] { return "slack is " + text(layer.over_approximation()); });
   const Box bounds = layer.bounds();
   report.expect(!bounds.min.hasNaN() && !bounds.max.hasNaN(), kEnvironmentBounds,
                 [&] { return "bounds are " + text(bounds.min) + " to " + text(bounds.max); });

@@ -63,7 +63,7 @@ std::string text(const Observation& seen) {
 
 namespace {
 
-/// Holds a step to laws 1 and 2, and to its own word.
+/// Holds a step to contract 1 and 2, and to its own word.
 void judge(Report& report, const PilotStep& step, const Observation& seen, const Request& request) {
   const double dt = step.next.time_s - seen.state.time_s;
   if (step.outcome == PilotStep::Outcome::stuck) {

@@ -11,12 +11,12 @@
 namespace altiplan::conformance::pilots {
 
 // The laws of Pilot, and what goes with them.
-inline constexpr const char* kContinues = "Pilot law 1: continues from the observed state";
+inline constexpr const char* kContinues = "Pilot contract 1: continues from the observed state";
 inline constexpr const char* kTimeAndSpeed =
-    "Pilot law 2: 0 < next.time - state.time <= max_dt, and the speed kept is the vehicle's";
-inline constexpr const char* kNoAllocation = "Pilot law 3: no allocation in a step";
+    "Pilot contract 2: 0 < next.time - state.time <= max_dt, and the speed kept is the vehicle's";
+inline constexpr const char* kNoAllocation = "Pilot contract 3: no allocation in a step";
 inline constexpr const char* kEqualSteps =
-    "Pilot law 4: equal observations in equal order give equal steps";
+    "Pilot contract 4: equal observations in equal order give equal steps";
 inline constexpr const char* kReach = "Pilot::reach_m: obstacles farther away do not move it";
 inline constexpr const char* kArrived = "PilotStep: arrived means within the goal's tolerance";
 inline constexpr const char* kOpen = "Pilot: arrives in an open world";
@@ -48,7 +48,7 @@ struct Bench {
     request.vehicle.speed_mps = 0.01 * reach;
     request.vehicle.radius_m = request.limits.min_clearance = 0.001 * reach;
     request.random = RandomStream(options.seed);
-    return make()->traits().space ? request : in_level_flight(request);
+    return make()->traits().spatial ? request : in_level_flight(request);
   }
 };
 

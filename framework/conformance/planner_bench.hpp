@@ -10,15 +10,15 @@ namespace altiplan::conformance {
 
 // The laws of planner.hpp, and what goes with them.
 inline constexpr const char* kPlannerEnds =
-    "Planner law 1: the route starts at the start exactly and ends within the goal's tolerance";
-inline constexpr const char* kPlannerLegs = "Planner law 2: every leg satisfies leg_ok";
+    "Planner contract 1: the route starts at the start exactly and ends within the goal's tolerance";
+inline constexpr const char* kPlannerLegs = "Planner contract 2: every leg satisfies leg_ok";
 inline constexpr const char* kPlannerStatus =
-    "Planner law 3: solved if and only if a route is returned; no route is a status, never an "
+    "Planner contract 3: solved if and only if a route is returned; no route is a status, never an "
     "exception";
 inline constexpr const char* kPlannerBudget =
-    "Planner law 4: the budget is kept, the stop token honoured within 1,024 iterations";
+    "Planner contract 4: the budget is kept, the stop token honoured within 1,024 iterations";
 inline constexpr const char* kPlannerPure =
-    "Planner law 5: equal requests give equal results, on any threads, in any order";
+    "Planner contract 5: equal requests give equal results, on any threads, in any order";
 inline constexpr const char* kNothingToJudge = "Suite: there must be something to judge";
 
 /// What the cases of one planner share.
@@ -30,15 +30,15 @@ struct PlannerBench {
   std::vector<Flight> flights() const {
     const Traits traits = make()->traits();
     std::vector<Flight> all;
-    if (traits.space) {
-      all.push_back(Flight::space);
+    if (traits.spatial) {
+      all.push_back(Flight::spatial);
     }
-    if (traits.plane) {
+    if (traits.planar) {
       all.push_back(Flight::level);
     }
     return all;
   }
-  Flight flight() const { return make()->traits().space ? Flight::space : Flight::level; }
+  Flight flight() const { return make()->traits().spatial ? Flight::spatial : Flight::level; }
   /// Gives the scene the budget of one plan, and its own seed.
   Scene budgeted(Scene scene) const {
     scene.request.budget.max_iterations = options.iterations;
@@ -53,12 +53,12 @@ struct PlannerBench {
   }
 };
 
-/// A case of a planner: what escapes breaks law 3, but where Planner::plan has found a route's ends
+/// A case of a planner: what escapes breaks contract 3, but where Planner::plan has found a route's ends
 /// wrong.
 Case planner_case(const PlannerBench& bench, const char* name,
                   void (*body)(const PlannerBench&, Report&));
 
-/// Holds a result to laws 1 to 3; whether it is solved.
+/// Holds a result to contract 1 to 3; whether it is solved.
 bool judge(Report& report, const PlanResult& result, const Scene& scene);
 
 Cases planner_law_cases(const PlannerBench& bench);

@@ -13,7 +13,7 @@ Case planner_case(const PlannerBench& bench, const char* name,
     try {
       body(bench, report);
     } catch (const PluginError& error) {
-      if (error.reason() != Reason::law_of_ends) {
+      if (error.reason() != Reason::contract_of_ends) {
         throw;
       }
       report.add(kPlannerEnds, error.what());
@@ -139,7 +139,7 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
       judge(report, bench.make()->plan(scene.request), scene);
     }
   }
-  if (bench.make()->traits().space) {
+  if (bench.make()->traits().spatial) {
     const Scene ridge = bench.budgeted(ridge_scene(bench.options.unit_m));
     judge(report, bench.make()->plan(ridge.request), ridge);
   }

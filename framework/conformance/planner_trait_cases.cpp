@@ -13,10 +13,10 @@ constexpr const char* kAnyAngle =
     "Planner trait `any_angle`: never longer than the grid's shortest";
 constexpr const char* kAnytime = "Planner trait `anytime`: more budget never gives a longer route";
 constexpr const char* kProved =
-    "Planner law 3: no_route is `proved` only where the planner's search space holds no route";
+    "Planner contract 3: no_route is `proved` only where the planner's search space holds no route";
 
 constexpr Lanes kFewest{6, true};
-constexpr Lanes kMost{26, false};
+constexpr Lanes kMax{26, false};
 
 /// Cells to search, drawn by hand and at random.
 std::vector<Scene> mazes(const PlannerBench& bench) {
@@ -31,7 +31,7 @@ std::vector<Scene> mazes(const PlannerBench& bench) {
                              {"S#......../##......../........../........../.........G"}, flight));
     all.push_back(cell_scene(unit, "cells that meet in a corner only",
                              {"S..#....../...#....../..#......./###......./.........G"}, flight));
-    if (flight == Flight::space) {
+    if (flight == Flight::spatial) {
       all.push_back(cell_scene(
           unit, "a shaft of one cell between two floors",
           {"S..../...../.....", "#####/###.#/#####", "#####/###.#/#####", "...../...../G...."},
@@ -66,7 +66,7 @@ void complete(const PlannerBench& bench, Report& report) {
     report.expect(!surely_open || solved, kComplete, [&] {
       return scene.name + ": there is a route, the planner said " + text(result);
     });
-    if (shortest(scene, kMost) == kInfinity) {
+    if (shortest(scene, kMax) == kInfinity) {
       report.expect(result.status == PlanStatus::no_route, kComplete, [&] {
         return scene.name + ": expected no_route, the planner said " + text(result);
       });

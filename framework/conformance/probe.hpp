@@ -13,20 +13,20 @@ namespace altiplan::conformance {
 
 // The laws of environment.hpp.
 inline constexpr const char* kEnvironmentPure =
-    "Environment law 1: pure, built from (parameters, Site) alone; const functions may run on many "
+    "Environment contract 1: pure, built from (parameters, Site) alone; const functions may run on many "
     "threads";
 inline constexpr const char* kEnvironmentClearance =
-    "Environment law 2: clearance is signed, 1-Lipschitz, never more than the true distance";
+    "Environment contract 2: clearance is signed, 1-Lipschitz, never more than the true distance";
 inline constexpr const char* kEnvironmentBlocked =
-    "Environment law 3: blocked where the least distance is below r - 1e-6 m, free above r + "
+    "Environment contract 3: blocked where the least distance is below r - 1e-6 m, free above r + "
     "slack; "
     "touching is free";
 inline constexpr const char* kEnvironmentSymmetric =
-    "Environment law 4: blocked is symmetric in a and b, and monotone in r";
+    "Environment contract 4: blocked is symmetric in a and b, and monotone in r";
 inline constexpr const char* kEnvironmentGround =
-    "Environment law 5: height, gap and their kin tell one ground; beyond it nothing is blocked";
+    "Environment contract 5: height, gap and their kin tell one ground; beyond it nothing is blocked";
 inline constexpr const char* kEnvironmentRaster =
-    "Environment law 6: rasterize never leaves a cell free that the grid's rule blocks";
+    "Environment contract 6: rasterize never leaves a cell free that the grid's rule blocks";
 inline constexpr const char* kEnvironmentNear =
     "Environment::near: each obstacle in reach, once, in agreement with clearance";
 inline constexpr const char* kEnvironmentBounds =

@@ -8,9 +8,9 @@
 namespace altiplan::conformance {
 
 void Report::add(const std::string& law, std::string message) {
-  constexpr std::ptrdiff_t kMost = 3;
-  const auto same = [&](const Finding& finding) { return finding.law == law; };
-  if (std::count_if(findings_.begin(), findings_.end(), same) < kMost) {
+  constexpr std::ptrdiff_t kMax = 3;
+  const auto same = [&](const Finding& finding) { return finding.contract == law; };
+  if (std::count_if(findings_.begin(), findings_.end(), same) < kMax) {
     findings_.push_back({law, std::move(message)});
   }
 }

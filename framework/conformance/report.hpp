@@ -11,7 +11,7 @@ namespace altiplan::conformance {
 /// Collects the findings of one case.
 class Report {
  public:
-  /// Of one law the first few are kept: a broken law breaks everywhere.
+  /// Of one law the first few are kept: a violated contract breaks everywhere.
   void add(const std::string& law, std::string message);
   /// Adds the finding unless the law is kept; `message` is called only then.
   template <class Message>

@@ -7,8 +7,8 @@ namespace altiplan::conformance {
 namespace {
 
 constexpr const char* kContinues =
-    "Session law 1: update continues from the given state, where its route begins";
-constexpr const char* kKeepsResult = "Session law 2: after an update, result() is what it returned";
+    "Session contract 1: update continues from the given state, where its route begins";
+constexpr const char* kKeepsResult = "Session contract 2: after an update, result() is what it returned";
 constexpr const char* kIncremental =
     "Planner trait `incremental`: the session keeps what it searched";
 
@@ -33,12 +33,12 @@ class Flown {
     try {
       said = session_->update(request.start, request.goal, request.world, changes, request.budget);
     } catch (const PluginError& error) {  // Session::update holds it to both laws
-      const bool law_of_results = error.reason() == Reason::law_of_results;
-      if (!law_of_results && error.reason() != Reason::law_of_ends) {
+      const bool contract_of_results = error.reason() == Reason::contract_of_results;
+      if (!contract_of_results && error.reason() != Reason::contract_of_ends) {
         throw;
       }
       report_.add(
-          law_of_results ? kKeepsResult : kContinues,
+          contract_of_results ? kKeepsResult : kContinues,
           told.name + ", the state at " + text(request.start.position) + ": " + error.what());
       return said;
     }

@@ -7,11 +7,11 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kEnds = "Smoother law 1: first and last points stay";
+constexpr const char* kEnds = "Smoother contract 1: first and last points stay";
 constexpr const char* kExcess =
-    "Smoother law 2: for every constraint the worst excess does not grow; a sound route stays "
+    "Smoother contract 2: for every constraint the worst excess does not grow; a sound route stays "
     "sound";
-constexpr const char* kShort = "Smoother law 3: routes of one or two points come back as they are";
+constexpr const char* kShort = "Smoother contract 3: routes of one or two points come back as they are";
 constexpr const char* kPure =
     "Smoother: const and shareable; equal requests give equal routes, on any threads, in any order";
 constexpr const char* kStatus = "Smoother: what it cannot do is a status, never an exception";
@@ -22,7 +22,7 @@ struct Bench {
 
   Scene world(int n) const {
     Scene scene =
-        random_scene(options.unit_m, options.seed * 1000 + std::uint64_t(n), Flight::space);
+        random_scene(options.unit_m, options.seed * 1000 + std::uint64_t(n), Flight::spatial);
     scene.request.budget.max_iterations = options.iterations;
     scene.request.random = RandomStream(options.seed).sub("smooth");
     return scene;
@@ -50,7 +50,7 @@ Scene ending_as(Scene scene, const Route& route) {
   return scene;
 }
 
-/// Smooths and holds the result to laws 1 and 2; the route, or the input where there is none.
+/// Smooths and holds the result to contract 1 and 2; the route, or the input where there is none.
 Route judged(Report& report, const Smoother& smoother, const Route& route, const Scene& scene) {
   const Route before = route;
   const auto input = [&] { return scene.name + ", smoothing " + text(before); };
@@ -58,7 +58,7 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
   try {
     result = smoother.smooth(route, scene.request);
   } catch (const PluginError& error) {  // Smoother::smooth has looked at the ends already
-    report.add(error.reason() == Reason::law_of_ends ? kEnds : kStatus,
+    report.add(error.reason() == Reason::contract_of_ends ? kEnds : kStatus,
                input() + ": the smoother failed: " + error.what());
   }
   report.expect(route == before, kPure, [&] { return input() + ": the input was changed"; });

@@ -8,19 +8,19 @@ namespace altiplan::conformance {
 namespace {
 
 constexpr const char* kInside =
-    "Tuner law 1: ask returns points inside the space, all groups summing to 1; an empty batch "
+    "Tuner contract 1: ask returns points inside the space, all groups summing to 1; an empty batch "
     "ends "
     "the search";
 constexpr const char* kScores =
-    "Tuner law 2: tell follows ask, a score a point, lower is better, infinity a failure";
-constexpr const char* kEqual = "Tuner law 3: equal spaces, streams and scores give equal batches";
+    "Tuner contract 2: tell follows ask, a score a point, lower is better, infinity a failure";
+constexpr const char* kEqual = "Tuner contract 3: equal spaces, streams and scores give equal batches";
 
 using Point = std::vector<double>;
 using Batch = std::vector<Point>;
 using Score = std::function<double(const Point&)>;
 
 /// A search that asks for more has no end, as far as a study is concerned.
-constexpr std::size_t kMostPoints = 100'000;
+constexpr std::size_t kMaxPoints = 100'000;
 
 struct Bench {
   Factory<Tuner> make;
@@ -82,7 +82,7 @@ std::vector<Batch> search(const Bench& bench, const std::vector<Dimension>& spac
   }
   std::vector<Batch> batches;
   std::size_t points = 0;
-  while (points < kMostPoints) {
+  while (points < kMaxPoints) {
     batches.push_back(search->ask());
     std::vector<double> scores;
     for (const Point& point : batches.back()) {

@@ -25,7 +25,7 @@ class CellLayer final : public Environment {
     boxes_.near(p, reach, sink);
   }
   void do_rasterize(VoxelGrid& grid) const override { boxes_.rasterize(grid); }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return Vec3(spec_.origin +

@@ -22,7 +22,7 @@ class Balls final : public Environment {
   double do_clearance(const Vec3& p) const override;
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::vector<Sphere> balls_;
   LayerInfo info_;
@@ -54,7 +54,7 @@ class Ridge final : public Environment, public Ground {
   Box do_bounds() const override;
   double do_clearance(const Vec3& p) const override;
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const Ground* do_ground() const override { return this; }
   std::optional<double> do_height(double x, double) const override { return height_at(x); }
   double do_gap(const Vec3& a, const Vec3& b, double enough) const override;
@@ -80,7 +80,7 @@ class Watched final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override;
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override;
   void do_rasterize(VoxelGrid& grid) const override;
-  double do_slack() const override { return inner_->slack(); }
+  double do_over_approximation() const override { return inner_->over_approximation(); }
   const LayerInfo& do_info() const override { return info_; }
   std::shared_ptr<const Environment> inner_;
   Asked asked_;

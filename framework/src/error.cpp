@@ -33,7 +33,7 @@ ParameterError::~ParameterError() = default;
 PluginError::~PluginError() = default;
 BudgetSpent::~BudgetSpent() = default;
 
-void blame(const std::string& who) {
+void attribute_to(const std::string& who) {
   try {
     throw;
   } catch (const std::bad_alloc& error) {

@@ -51,13 +51,13 @@ Curves curves_of(const Tuning& tuning) {
 
 /// "Length, m" of a value, an expression as it is: its names carry their units.
 std::string score_label(const TunePlan& plan, const Axis& up) {
-  constexpr std::size_t kMostCharacters = 60;
+  constexpr std::size_t kMaxCharacters = 60;
   const std::string metric = study::report::printable(plan.request.metric);
   const auto& values = plan.objective.values;
   const bool is_value = values.size() == 1 && values.front().name == metric;
   return study::report::axis_label(
       study::report::shortened(is_value ? study::report::metric_label(metric) : metric,
-                               kMostCharacters),
+                               kMaxCharacters),
       up);
 }
 }  // namespace

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
@@ -142,11 +142,11 @@ host::Json make_tuner(TunePlan& plan) {
   const PluginEntry& entry = plugin(*plan.config.registry, "tuner", request.tuner);
   const std::string who = "the tuner '" + request.tuner + "'";
   const ParamReport report =
-      blamed([&] { return "describing " + who; }, [&] { return entry.describe(&with, ""); });
+      attributed([&] { return "describing " + who; }, [&] { return entry.describe(&with, ""); });
   if (!report.problems.empty()) {
     throw ConfigError(report.problems);
   }
-  plan.tuner = blamed([&] { return "making " + who; }, [&] { return entry.tuner(&with); });
+  plan.tuner = attributed([&] { return "making " + who; }, [&] { return entry.tuner(&with); });
   host::Json json = {{"name", request.tuner},
                      {"build", plan.config.registry->offering("tuner", request.tuner)->build}};
   for (const BoundField& field : report.fields) {

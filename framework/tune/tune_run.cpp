@@ -30,14 +30,14 @@ auto of_tuner(const TunePlan& plan, const Call& call) {
   } catch (const PluginError& error) {
     throw PluginError(who + error.what(), error.reason());
   } catch (...) {
-    blame(who);
+    attribute_to(who);
   }
 }
 
 /// How many points the tuner asks for when nothing is better than anything.
 std::size_t rehearsed(const TunePlan& plan, const RandomStream& random) {
-  constexpr std::size_t kMost = 1'000'000;
-  const auto limit = std::size_t(plan.request.evaluations.value_or(kMost));
+  constexpr std::size_t kMax = 1'000'000;
+  const auto limit = std::size_t(plan.request.evaluations.value_or(kMax));
   const auto search = plan.tuner->begin(plan.space(), random);
   std::size_t points = 0;
   while (points < limit) {

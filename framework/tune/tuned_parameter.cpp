@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "host/config/config_check.hpp"
 #include "host/result/result_json.hpp"
 
@@ -131,9 +131,9 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
                       ", but the parameter is " + low +
                       (low.empty() || high.empty() ? "" : " and ") + high);
   }
-  constexpr double kMostWhole = 1e15;
+  constexpr double kMaxWhole = 1e15;
   if (spec.type == FieldType::integer && (std::ceil(entry.min) > std::floor(entry.max) ||
-                                          entry.min < -kMostWhole || entry.max > kMostWhole)) {
+                                          entry.min < -kMaxWhole || entry.max > kMaxWhole)) {
     refuse(entry, "takes whole numbers, of which there is none, or too many, from " +
                       host::Json(entry.min).dump() + " to " + host::Json(entry.max).dump());
   }
@@ -192,7 +192,7 @@ TunedParameter find_parameter(const host::Config& config, const OverEntry& entry
   }
   const std::string kind = host::kind_of_step(*config.registry, *step);
   const ParamReport report =
-      blamed([&] { return "describing the " + kind + " '" + step->plugin + "'"; },
+      attributed([&] { return "describing the " + kind + " '" + step->plugin + "'"; },
              [&] {
                return plugin(*config.registry, kind, step->plugin)
                    .describe(&step->with, step->path + ".with");

@@ -40,7 +40,7 @@ def run(row):
         write("s.yaml", SCENARIO + ("" if scenario == "-" else scenario + "\n"))
         write("p.yaml", "altiplan: 1\nscenario: s.yaml\nsteps: [" + steps + "]\n")
         done = subprocess.run(
-            [PROGRAM, "run", "p.yaml", "--json", "--out", "r.json", "--patience", "0.5",
+            [PROGRAM, "run", "p.yaml", "--json", "--out", "r.json", "--timeout", "0.5",
              "--plugin-path", PLUGINS, "--plugin-path",
              os.path.join(os.path.dirname(PLUGINS), "broken_plugins")],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

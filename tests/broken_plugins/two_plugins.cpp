@@ -7,9 +7,9 @@
 namespace {
 
 struct Params {
-  double least_m = 5;
+  double min_m = 5;
   void describe(altiplan::Fields& f) {
-    f("least_m", least_m).unit("m").at_least(1).doc("a distance");
+    f("min_m", min_m).unit("m").at_least(1).doc("a distance");
   }
 };
 

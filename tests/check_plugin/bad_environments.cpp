@@ -62,7 +62,7 @@ class Spoilt final : public Environment {
   void do_rasterize(VoxelGrid& grid) const override {
     spoils_.rasterize ? spoils_.rasterize(grid) : sound().rasterize(grid);
   }
-  double do_slack() const override { return spoils_.slack.value_or(0); }
+  double do_over_approximation() const override { return spoils_.slack.value_or(0); }
   const LayerInfo& do_info() const override { return spoils_.info; }
 
   Spoils spoils_;

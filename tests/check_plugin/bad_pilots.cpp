@@ -122,7 +122,7 @@ using ThroughByItsWord = StraightOn<Flaw::through, avoids_nothing>;
 using FastByItsWord = StraightOn<Flaw::fast, avoids_nothing>;
 Traits on_the_plane() {
   Traits traits;
-  traits.space = false;
+  traits.spatial = false;
   return traits;
 }
 using OnTheLevel = StraightOn<Flaw::none, on_the_plane>;

@@ -97,7 +97,7 @@ class Bad:
             if verdict["status"] == "failed":
                 name = named(verdict["name"])[1]
                 self.failed.append(name)
-                self.laws[name] = verdict["findings"][0]["law"]
+                self.laws[name] = verdict["findings"][0]["contract"]
         if done.returncode != (4 if self.failed else 0):
             return "%s: exit code %d, failed %s" % (self.key, done.returncode, self.failed)
         return ""

@@ -211,7 +211,7 @@ class CheckPlugin(unittest.TestCase):
                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   timeout=60)
             self.assertEqual(done.returncode, 4, told[0]["again"] + done.stdout + done.stderr)
-            self.assertIn(told[0]["findings"][0]["law"], done.stdout)
+            self.assertIn(told[0]["findings"][0]["contract"], done.stdout)
 
     def processes(self):
         """Those that have this test's TMPDIR above them."""

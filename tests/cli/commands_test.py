@@ -289,7 +289,7 @@ events:
     def test_numbers_of_the_call_are_finite(self):
         self.call("run", self.pipeline, "--out", "result.json")
         tune = ("tune", self.pipeline, "--over", "a=0..1", "--metric", "length_m", "--out", "folder")
-        calls = {("run", self.pipeline): ["--patience"],
+        calls = {("run", self.pipeline): ["--timeout"],
                  ("view", "result.json", "--png", "picture.png"): ["--cut"],
                  ("export", "result.json", "--to", "csv"): ["--home-altitude"],
                  ("compare", "a.db", "b.db"): ["--tolerance"],

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """interfaces_test.py SOURCE: the pages of docs/interfaces say what the code does.
 
-Between their marks stand the laws of the headers, the files of `altiplan new`, which tests/sdk/new_test.py
+Between their marks are the contracts of the headers, the files of `altiplan new`, which tests/sdk/new_test.py
 builds, and pieces of snippets.cpp; with ALTIPLAN_UPDATE=1 they are written. What a page quotes as a message is in
 the source, and no building block of the kit is missing from its page.
 """
@@ -14,37 +14,37 @@ import textwrap
 SOURCE = pathlib.Path(sys.argv[1])
 PAGES = SOURCE / "docs/interfaces"
 TEMPLATES = SOURCE / "tools/altiplan/templates"
-BESIDE = {"environment": ["ground"]}  # headers of what a kind may bring, with laws of its own
+BESIDE = {"environment": ["ground"]}  # headers of what a kind may bring, with contract of its own
 KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name != "shared")
-MARK = re.compile(r"^(<!-- (laws of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
+MARK = re.compile(r"^(<!-- (contract of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
 COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)
 
 
-def laws(text):
-    """[(class, [law])] of a header, in its order. Laws are numbered from 1."""
+def contract(text):
+    """[(class, [clause])] of a header, in its order. Clauses are numbered from 1."""
     found = []
     for comment, name in COMMENT_AND_CLASS.findall(text):
         words = " ".join(re.sub(r"^ *///", "", comment, flags=re.M).split())
-        _, begins, listed = words.partition("Laws")
+        _, begins, listed = words.partition("Contract")
         parts = []
-        while begins and (law := re.search(rf"(?:^|\s){len(parts) + 1}\. ", listed)):
-            parts.append(listed[:law.start()].strip())
-            listed = listed[law.end():]
+        while begins and (clause := re.search(rf"(?:^|\s){len(parts) + 1}\. ", listed)):
+            parts.append(listed[:clause.start()].strip())
+            listed = listed[clause.end():]
         if parts:
             found.append((name, [*parts[1:], listed.strip()]))
     return found
 
 
-def law_list(kind):
-    """The laws of the interface itself first."""
+def contract_list(kind):
+    """The contract of the interface itself first."""
     found = []
     for header in [kind, *BESIDE.get(kind, [])]:
-        its = laws((SOURCE / f"framework/include/altiplan/{header}.hpp").read_text())
-        assert its, f"no laws in {header}.hpp"
+        its = contract((SOURCE / f"framework/include/altiplan/{header}.hpp").read_text())
+        assert its, f"no contract in {header}.hpp"
         found += [(header, name, listed) for name, listed in its]
     found.sort(key=lambda entry: entry[1].lower() != kind.replace("_", ""))
     return "\n".join(f"Of `{name}`, in `altiplan/{header}.hpp`:\n\n"
-                     + "".join(f"{number}. {law}\n" for number, law in enumerate(listed, 1))
+                     + "".join(f"{number}. {clause}\n" for number, clause in enumerate(listed, 1))
                      for header, name, listed in found)
 
 
@@ -63,7 +63,7 @@ def snippet(name):
 
 def filled(match):
     opening, what, name, closing = match.groups()
-    text = {"laws of": law_list, "code": snippet,
+    text = {"contract of": contract_list, "code": snippet,
             "example": lambda kind: file_of(kind, "@name@.cpp"),
             "test": lambda kind: file_of(kind, "@name@_test.cpp")}[what](name)
     return opening + text + closing
@@ -81,8 +81,8 @@ def up_to_date(page):
 def parts_of(kind):
     text = (PAGES / f"{kind}.md").read_text()
     marks = [(what, of) for _, what, of, _ in MARK.findall(text) if what != "code"]
-    return ([] if marks == [("laws of", kind), ("example", kind), ("test", kind)] else
-            [f"{kind}.md: expected the marks of its laws, example and test, found {marks}"])
+    return ([] if marks == [("contract of", kind), ("example", kind), ("test", kind)] else
+            [f"{kind}.md: expected the marks of its contract, example and test, found {marks}"])
 
 
 def sources():

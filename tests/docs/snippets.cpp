@@ -76,19 +76,19 @@ class LittleClimbing final : public Constraint {
     double climbed = 0;
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       climbed += std::max(0.0, route[i + 1].z() - route[i].z());
-      if (climbed > most_m_ + kLengthTolerance) {
+      if (climbed > max_m_ + kLengthTolerance) {
         Violation broken;
         broken.at = i;  // the leg from waypoint i to the next
         broken.value = climbed;
-        broken.limit = most_m_;
-        broken.message = "the route climbs more than " + std::to_string(most_m_) + " m in all";
+        broken.limit = max_m_;
+        broken.message = "the route climbs more than " + std::to_string(max_m_) + " m in all";
         return {broken};
       }
     }
     return {};  // the rule is kept
   }
 
-  double most_m_ = 500;
+  double max_m_ = 500;
 };
 // }
 

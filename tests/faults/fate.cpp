@@ -26,14 +26,14 @@ struct Failed {
   std::int32_t process;
   std::array<char, 248> path;
 };
-constexpr std::size_t kMostKept = 64;
+constexpr std::size_t kMaxKept = 64;
 
 struct State {
   std::array<std::atomic<std::uint32_t>, kCalls> counted;  ///< by kind, in the scope
   std::atomic<std::uint32_t> together;                     ///< of the kinds that were asked for
   std::atomic<std::uint32_t> failures;
   std::atomic<std::int32_t> first_process;
-  std::array<Failed, kMostKept> kept;
+  std::array<Failed, kMaxKept> kept;
 };
 
 enum class Scope { tree, process, children };
@@ -134,7 +134,7 @@ int fate(Call call, const char* path) {
       (settings.times != 0 && n >= settings.nth + settings.times)) {
     return 0;
   }
-  if (const std::uint32_t at = state->failures.fetch_add(1); at < kMostKept) {
+  if (const std::uint32_t at = state->failures.fetch_add(1); at < kMaxKept) {
     Failed& kept = state->kept[at];
     kept.call = call;
     kept.process = process;

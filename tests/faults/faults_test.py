@@ -167,7 +167,7 @@ class Campaign:
         elif not killed:
             self.judge_message(name, fault, ended)
         self.judge_files(name, fault, ended)
-        until = time.time() + 5  # the warden ends what a killed parent leaves
+        until = time.time() + 5  # the supervisor ends what a killed parent leaves
         while with_id(ended.mark) and time.time() < until:
             time.sleep(0.02)
         expect(not with_id(ended.mark), "processes are left")

@@ -88,7 +88,7 @@ void expect_equal(const KdTree& tree, const Plain& plain, const Vec3& p, const V
   EXPECT_EQ(tree.nearest(p), plain.least([&](const Vec3& x) { return (x - p).squaredNorm(); }));
   for (const double p_weight : {1.0, 0.0}) {
     const double q_weight = whole(random, 3) / 2;
-    EXPECT_EQ(tree.least_sum(p, p_weight, q, q_weight), plain.least([&](const Vec3& x) {
+    EXPECT_EQ(tree.min_sum(p, p_weight, q, q_weight), plain.least([&](const Vec3& x) {
       return p_weight * (x - p).norm() + q_weight * (x - q).norm();
     })) << p_weight
         << ' ' << q_weight;
@@ -147,7 +147,7 @@ void run_kind(const Kind& kind, KdTree& tree) {
 TEST(KdTree, EqualsLookingAtEachPoint) {
   KdTree tree;
   EXPECT_EQ(tree.nearest({0, 0, 0}), KdTree::kNone);
-  EXPECT_EQ(tree.least_sum({0, 0, 0}, 1, {1, 0, 0}, 1), KdTree::kNone);
+  EXPECT_EQ(tree.min_sum({0, 0, 0}, 1, {1, 0, 0}, 1), KdTree::kNone);
   for (const Kind& kind : kKinds) {
     run_kind(kind, tree);
   }

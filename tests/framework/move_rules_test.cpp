@@ -69,7 +69,7 @@ TEST(Sees, IsTheJudgesAnswerOverFreeCells) {
   int with_ground = 0;
   int without_limits = 0;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
-    const auto problem = reference::random_problem(seed, {.most_cells = 12});
+    const auto problem = reference::random_problem(seed, {.max_cells = 12});
     Request& request = problem->request;
     if (!point_problem(request.start.position, request).empty()) {
       continue;  // no planner is asked, and the lattice may have no cell

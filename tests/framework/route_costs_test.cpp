@@ -20,7 +20,7 @@ TEST(RouteCosts, LengthAloneIsMetres) {
   EXPECT_TRUE(costs.length_alone());
   EXPECT_EQ(costs.leg({0, 0, 0}, {3, 4, 0}, 5), 5);
   EXPECT_EQ(costs.at({1, 2, 3}), 0);
-  EXPECT_EQ(costs.least_per_metre(), 1);
+  EXPECT_EQ(costs.min_per_metre(), 1);
 }
 
 TEST(RouteCosts, ValuesAtAPlaceAreThePapers) {
@@ -30,7 +30,7 @@ TEST(RouteCosts, ValuesAtAPlaceAreThePapers) {
   const double threat = 10 / std::hypot(4, 9) + 10 / std::hypot(8, 20);
   EXPECT_NEAR(costs.at({52e3, 50e3, 2200}), 1000 * (0.3 * 2.2 + 0.2 * threat), 1e-3);
   EXPECT_EQ(costs.leg({0, 0, 0}, {3, 4, 0}, 5), 2.5);
-  EXPECT_EQ(costs.least_per_metre(), 0.5);
+  EXPECT_EQ(costs.min_per_metre(), 0.5);
 }
 
 TEST(RouteCosts, AlongALegTheyAreTheIntegral) {
@@ -55,7 +55,7 @@ TEST(RouteCosts, AlongALegTheyAreTheIntegral) {
     const double leg = costs.leg(a, b, length);
     EXPECT_NEAR(leg, 0.5 * length + sum, 1e-5 * leg);
     EXPECT_NEAR(leg, costs.leg(b, a, length), 1e-9 * leg);
-    EXPECT_GE(leg, costs.least_per_metre() * length);
+    EXPECT_GE(leg, costs.min_per_metre() * length);
   }
 }
 
@@ -65,7 +65,7 @@ TEST(RouteCosts, NoCostIsInfiniteOrNegative) {
   const Vec3 centre(48e3, 41e3, -400);
   EXPECT_GT(costs.leg(centre, centre + Vec3(0, 0, 100), 100), 0);
   EXPECT_LT(costs.leg(centre - Vec3(500, 0, 0), centre + Vec3(500, 0, 0), 1000), 1e9);
-  EXPECT_EQ(costs.least_per_metre(), 0);
+  EXPECT_EQ(costs.min_per_metre(), 0);
 }
 }  // namespace
 }  // namespace altiplan::kit

@@ -25,7 +25,7 @@ const double kOverTheWall = 2 * std::hypot(35, 20) + 10;
 StarSettings settings(std::uint64_t iterations, bool bounded, bool informed) {
   StarSettings settings;
   settings.range = 20;
-  settings.goal_share = 0.05;
+  settings.goal_bias = 0.05;
   settings.radius_scale = 1.1;
   settings.max_iterations = iterations;
   settings.bounded = bounded;

@@ -203,7 +203,7 @@ TEST(Environment, SphereTracingKeepsItsLaws) {
     EXPECT_EQ(blocked, ball.blocked(b, a, r));
     if (distance < r - kLengthTolerance) {
       EXPECT_TRUE(blocked);
-    } else if (distance > r + ball.slack()) {
+    } else if (distance > r + ball.over_approximation()) {
       EXPECT_FALSE(blocked);
     }
   }

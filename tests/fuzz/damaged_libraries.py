@@ -152,13 +152,13 @@ class Bench:
 
     def run(self, file, folder):
         pipeline = self.folder / "problems" / file.stem / "pipeline.yaml"
-        return self.call(["run", "--json", str(pipeline), "--patience", "5"], folder,
+        return self.call(["run", "--json", str(pipeline), "--timeout", "5"], folder,
                          self.folder / "others" / file.stem)
 
     def run_undamaged(self, file):
         """Its exit code, and what of its result no clock decides."""
         run = self.run(file, self.folder / "only" / file.stem)
-        # The planner of two_plugins breaks a law, which is the 4 of a step that failed.
+        # The planner of two_plugins violates the contract, which is the 4 of a step that failed.
         if run.returncode not in ((4,) if "_alpha" in file.name else (0, 1)):
             sys.exit("%s, undamaged: exit %d: %s" % (file.name, run.returncode, run.stderr))
         self.undamaged[file] = (run.returncode, untimed(run.stdout))

@@ -25,7 +25,7 @@ TEST(ClaimText, IsRead) {
   for (const char* that :
        {"median(astar.length_m)", " mean ( astar . length_m )", "p05(astar.steps.route.time_s)",
         "p99(-(astar.length_m + 1) * 2.5e-3 / jps.length_m)", "share(astar.solved)",
-        "share(astar.steps.route.stands and jps.steps.x.budget_hit)",
+        "share(astar.steps.route.accepted and jps.steps.x.budget_hit)",
         "share(astar.length_m <= 1.05 * fusion[weight_g=0.3].length_m)",
         "share(astar.solved and (jps.flight.reached or jps[corner=any].expanded > 3))",
         "max(astar.flight.collisions)", "min(astar.length_m - jps.length_m)"}) {

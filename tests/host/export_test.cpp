@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
-#include "host/import_export/foreign_route.hpp"
+#include "host/import_export/imported_route.hpp"
 #include "host/import_export/thinning.hpp"
 #include "host/judge/judge.hpp"
 #include "support/files.hpp"
@@ -119,8 +119,8 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
                                    ? "above the ground"
                                    : "relative to home, which is 120 m"));
       EXPECT_EQ(says(result, "warning: judged with straight legs"), frame == AltitudeFrame::ground);
-      const ForeignRoute back =
-          read_foreign_route(file, *result.text, scene.mission.truth, kAround.front());
+      const ImportedRoute back =
+          read_imported_route(file, *result.text, scene.mission.truth, kAround.front());
       EXPECT_EQ(back.route.front(), kAround.front());
       EXPECT_LT(farthest(back.route, kAround), 0.01);
       EXPECT_GT(farthest(back.route, kAround), 0);
@@ -227,7 +227,7 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
       EXPECT_EQ(read.items.back().at.altitude_m, frame == AltitudeFrame::sea ? 120 : 0);
       EXPECT_EQ(read.items.back().at.lat, read.items[kAround.size() - 1].at.lat);
       EXPECT_EQ(
-          read_foreign_route(file, *result.text, scene.mission.truth, kAround.front()).route.size(),
+          read_imported_route(file, *result.text, scene.mission.truth, kAround.front()).route.size(),
           kAround.size());
     }
   }
@@ -338,7 +338,7 @@ TEST(Export, OptionsThatDoNotGoTogether) {
   }
 }
 
-TEST(ForeignRoute, FramesAreResolvedInTheWorld) {
+TEST(ImportedRoute, FramesAreResolvedInTheWorld) {
   const Scene scene;
   const World& world = scene.mission.truth;
   const std::optional<kit::MissionPoint> home = kit::MissionPoint{-84.3, 36.5, 55};
@@ -349,10 +349,10 @@ TEST(ForeignRoute, FramesAreResolvedInTheWorld) {
   EXPECT_THROW(to_local({-84.3, 36.5, 7, AltitudeFrame::ground}, home, World()), Error);
 }
 
-TEST(ForeignRoute, RefusesTablesWithTheLine) {
+TEST(ImportedRoute, RefusesTablesWithTheLine) {
   const auto refusal = [](const std::string& text) {
     try {
-      read_foreign_route("r.csv", text, World(), {0, 0, 0});
+      read_imported_route("r.csv", text, World(), {0, 0, 0});
     } catch (const Error& error) {
       return std::string(error.what());
     }

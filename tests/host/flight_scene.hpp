@@ -50,12 +50,12 @@ struct Scene {
 };
 
 /// A sound flight with commands in turn.
-inline void expect_flown(const FlightResult& result, std::size_t least_handovers) {
+inline void expect_flown(const FlightResult& result, std::size_t min_handovers) {
   EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_TRUE(result.reached);
   EXPECT_TRUE(result.check.ok());
   EXPECT_EQ(result.collisions, 0);
-  ASSERT_GE(result.handovers.size(), least_handovers);
+  ASSERT_GE(result.handovers.size(), min_handovers);
   for (std::size_t i = 0; i < result.handovers.size(); ++i) {
     EXPECT_EQ(result.handovers[i].to, i % 2 == 0 ? "apf" : "route");
     EXPECT_FALSE(result.handovers[i].why.empty());

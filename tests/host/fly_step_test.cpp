@@ -22,7 +22,7 @@ TEST_F(FlyStepTest, FollowsTheRoute) {
   EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.exit_code(), 0);
   EXPECT_TRUE(result.flight->reached);
-  EXPECT_HAS(result.message, "the route of 'told' stands; the flight: reached the goal");
+  EXPECT_HAS(result.message, "route accepted (from 'told'); the flight: reached the goal");
   const RunResult from =
       run("steps: [{plan: told, id: a, with: {does: past, past_m: [500, 700, 500]}}, {plan: told}, "
           "{fly: route, from: a}]\n");
@@ -33,7 +33,7 @@ TEST_F(FlyStepTest, WhatIsNotKnownIsJudgedInFlight) {
   scenario(
       "environment:\n  - box: {min_m: [400, 400, 0], max_m: [410, 600, 1000]}\n    known: false\n");
   const RunResult result = fly("fly: route");
-  EXPECT_TRUE(result.steps[0].stands) << "the planner could not know";
+  EXPECT_TRUE(result.steps[0].accepted) << "the planner could not know";
   EXPECT_EQ(result.status, RunStatus::collided);
   EXPECT_EQ(result.exit_code(), 1);
   EXPECT_EQ(result.flight->collisions, 1);
@@ -46,7 +46,7 @@ TEST_F(FlyStepTest, PilotsThatMisbehave) {
         fly("fly: told_pilot, command: always, with: {does: " + std::string(does) + "}");
     EXPECT_EQ(result.status, RunStatus::failed) << does;
     EXPECT_EQ(result.exit_code(), 1) << "a route stands";
-    EXPECT_FALSE(result.steps[1].stands);
+    EXPECT_FALSE(result.steps[1].accepted);
     EXPECT_HAS(result.message, "the flight with 'told_pilot' failed: ");
   }
   const RunResult stuck = fly("fly: told_pilot, command: always, with: {does: stuck}");
@@ -65,7 +65,7 @@ TEST_F(FlyStepTest, AlternativesAreFlownUntilOneArrives) {
   EXPECT_EQ(result.steps[2].status, RunStatus::failed);
   EXPECT_EQ(result.steps[3].plugin, "route");
   EXPECT_EQ(result.steps[3].instead_of, "first");
-  EXPECT_TRUE(result.steps[3].stands);
+  EXPECT_TRUE(result.steps[3].accepted);
 }
 
 TEST_F(FlyStepTest, ReplansWithTheSessionOfAStep) {

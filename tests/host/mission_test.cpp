@@ -143,7 +143,7 @@ TEST_F(MissionTest, JudgesViaPointsInOrder) {
   const CheckResult wrong = judge({start, two, one, goal}, made.request, made.via);
   ASSERT_EQ(wrong.violations.size(), 1U);
   EXPECT_EQ(wrong.violations[0].message, "the route does not pass via point 1");
-  EXPECT_EQ(blamed_layer(wrong), nullptr);
+  EXPECT_EQ(violated_layer(wrong), nullptr);
   EXPECT_FALSE(judge({start, goal}, made.request, made.via).ok()) << "a via point is a waypoint";
   EXPECT_FALSE(judge({}, made.request, {}).ok());
 }

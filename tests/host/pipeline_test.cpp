@@ -22,7 +22,7 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
     int exit_code;
     const char* message;
   } cases[] = {
-      {"straight", RunStatus::solved, 0, "the route of 'told' stands"},
+      {"straight", RunStatus::solved, 0, "route accepted (from 'told')"},
       {"no_route", RunStatus::no_route, 1, "told: walls all around"},
       {"throws", RunStatus::failed, 4, "told: threw: the attic is on fire"},
       {"throws_int", RunStatus::failed, 4, "threw something that is not a std::exception"},
@@ -37,7 +37,7 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
     EXPECT_EQ(result.exit_code(), exit_code) << does;
     EXPECT_HAS(result.message, message);
     ASSERT_EQ(result.steps.size(), 1U);
-    EXPECT_EQ(result.steps[0].stands, status == RunStatus::solved) << does;
+    EXPECT_EQ(result.steps[0].accepted, status == RunStatus::solved) << does;
   }
 }
 
@@ -116,7 +116,7 @@ TEST_F(PipelineTest, AlternativesAreTriedInOrderUntilOneStands) {
   EXPECT_EQ(result.steps[1].instead_of, "told");
   EXPECT_EQ(result.steps[2].id, "told_pilot");
   EXPECT_EQ(result.steps[2].instead_of, "told");
-  EXPECT_EQ(result.standing, 2U);
+  EXPECT_EQ(result.accepted, 2U);
   EXPECT_EQ(run("steps: [{plan: told, with: {does: throws}, else: [{plan: told, with: "
                 "{does: no_route}}]}]\n")
                 .exit_code(),
@@ -130,7 +130,7 @@ TEST_F(PipelineTest, ASmootherThatDoesNotStandLeavesTheRoute) {
                             "  - {smooth: told_smoother, with: {does: cuts}, id: cut}\n"
                             "  - {smooth: told_smoother, with: {does: moves_end}, id: shift}\n");
   EXPECT_EQ(cut.status, RunStatus::solved);
-  EXPECT_EQ(cut.standing, 0U);
+  EXPECT_EQ(cut.accepted, 0U);
   EXPECT_EQ(cut.steps[1].status, RunStatus::rejected);
   EXPECT_EQ(cut.steps[1].route.size(), 2U);
   EXPECT_HAS(cut.steps[1].message, "; the route stays as it was");
@@ -210,7 +210,7 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   EXPECT_EQ(result.steps[1].message,
             "to via point 0: nothing to smooth; to via point 1: nothing to smooth; to the goal: "
             "nothing to smooth");
-  EXPECT_TRUE(result.steps[2].stands) << result.steps[2].message;
+  EXPECT_TRUE(result.steps[2].accepted) << result.steps[2].message;
   scenario("via: [{at_m: [300, 700, 500]}, {at_m: [500, 1200, 500]}]\n");
   const RunResult outside = run(told("straight"));
   EXPECT_EQ(outside.status, RunStatus::invalid_problem);

@@ -190,7 +190,7 @@ TEST_F(RegistryTest, LoadsAtTheFirstCallFromManyThreads) {
   }
   EXPECT_STREQ(seen[0]->name, "alpha");
   EXPECT_NE(seen[0]->planner(nullptr), nullptr);
-  EXPECT_EQ(seen[0]->describe(nullptr, "").fields.at(0).spec.name, "least_m");
+  EXPECT_EQ(seen[0]->describe(nullptr, "").fields.at(0).spec.name, "min_m");
   EXPECT_NE(registry.get("constraint", "beta").constraint(nullptr), nullptr);
 }
 
@@ -333,7 +333,7 @@ TEST_F(RegistryTest, AChildsReportNeedsNoDescriptor) {
 
 TEST_F(RegistryTest, AParameterWithoutAProperNameIsAPluginError) {
   std::string bytes = bytes_of(kBroken / "two_plugins.so");
-  const std::size_t at = bytes.find(std::string("least_m") + '\0');
+  const std::size_t at = bytes.find(std::string("min_m") + '\0');
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, 2, "\xF1\0", 2);
   const fs::path file = write("two.so", bytes);

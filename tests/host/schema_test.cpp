@@ -157,8 +157,8 @@ TEST_F(SchemaTest, OfThePluginsOfThisBuild) {
   const Choices choices = choices_of(registry);
   EXPECT_EQ(
       check(any_file_schema(choices, fields_of<StudyFile>()),
-            {{true, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"least_m": 2}}]})"},
-             {false, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"least_m": 0}}]})"}}),
+            {{true, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"min_m": 2}}]})"},
+             {false, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"min_m": 0}}]})"}}),
       "")
       << "a plugin's declaration is the schema";
 }
@@ -169,7 +169,7 @@ TEST(Describe, TextJsonAndTable) {
   ASSERT_EQ(found.size(), 1U);
   const std::string text = describe_text(found[0]);
   EXPECT_NE(text.find("planner alpha: finds no route"), std::string::npos) << text;
-  EXPECT_NE(text.find("  least_m: number [m], ≥ 1, default 5\n      a distance"), std::string::npos)
+  EXPECT_NE(text.find("  min_m: number [m], ≥ 1, default 5\n      a distance"), std::string::npos)
       << text;
   const Json json = describe_json(found[0]);
   EXPECT_EQ(json["parameters"][0]["default"], 5);
@@ -178,7 +178,7 @@ TEST(Describe, TextJsonAndTable) {
   EXPECT_EQ(json["traits"]["complete"], false);
   EXPECT_EQ(parameter_table(found[0].parameters),
             "| key | type | unit | default | range | meaning |\n|---|---|---|---|---|---|\n"
-            "| `least_m` | number | m | `5` | ≥ 1 | a distance |\n");
+            "| `min_m` | number | m | `5` | ≥ 1 | a distance |\n");
   EXPECT_EQ(parameter_table({}), "None.\n");
   EXPECT_THROW(describe_plugin(registry, "alhpa"), Error);
 }

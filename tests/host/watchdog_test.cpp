@@ -11,7 +11,7 @@ namespace {
 class WatchdogTest : public testing::Files {
  protected:
   /// Ends the process with the exit code of the result so far, which it prints.
-  RunOptions last_words() const {
+  RunOptions crash_report() const {
     RunOptions options;
     options.on_stuck = [](const RunResult& result) {
       for (const StepResult& step : result.steps) {
@@ -55,17 +55,17 @@ TEST(Watchdog, FiresTheTokenAndKnowsWhy) {
 
 TEST_F(WatchdogTest, APlannerThatNeverStopsEndsTheProcess) {
   EXPECT_EXIT(
-      run("steps: [{plan: told, within_s: 0.1, with: {does: never_stops}}]\n", last_words()),
+      run("steps: [{plan: told, within_s: 0.1, with: {does: never_stops}}]\n", crash_report()),
       ::testing::ExitedWithCode(4),
       "^told failed; all failed: told: the planner 'told' .steps.0. did not stop within two "
       "seconds");
 }
 
-TEST_F(WatchdogTest, TheRouteSoFarIsInTheLastWords) {
+TEST_F(WatchdogTest, TheRouteSoFarIsInTheCrashReport) {
   EXPECT_EXIT(
       run("steps: [{plan: told}, {smooth: told_smoother, id: s, within_s: 0.1, with: "
           "{does: nothing}}, {plan: told_pilot, within_s: 0.1, with: {does: never_stops}}]\n",
-          last_words()),
+          crash_report()),
       ::testing::ExitedWithCode(1),
       "^told solved; s solved; told_pilot failed; all failed: told_pilot: the local_planner "
       "'told_pilot'");
@@ -74,7 +74,7 @@ TEST_F(WatchdogTest, TheRouteSoFarIsInTheLastWords) {
 TEST_F(WatchdogTest, APilotThatNeverStopsEndsTheProcess) {
   EXPECT_EXIT(run("steps: [{plan: told}, {fly: told_pilot, command: always, within_s: 0.1, with: "
                   "{does: never_stops}}]\n",
-                  last_words()),
+                  crash_report()),
               ::testing::ExitedWithCode(1), "^told solved; told_pilot failed; all failed");
 }
 }  // namespace

@@ -44,7 +44,7 @@ TEST_P(Faults, DamagesItsRecords) {
 
 TEST_P(Faults, DamagesItsRecordAlways) {
   const Ended ended = among_others([&](const Job& job) {
-    fs::path own = job.last_words;
+    fs::path own = job.crash_report;
     std::ofstream(own.replace_extension(".records"), std::ios::app) << "garbage";
   });
   EXPECT_EQ(ended.how, Ending::garbled);
@@ -52,7 +52,7 @@ TEST_P(Faults, DamagesItsRecordAlways) {
 
 TEST_P(Faults, RemovesItsRecords) {
   const Ended ended = among_others([&](const Job& job) {
-    fs::path own = job.last_words;
+    fs::path own = job.crash_report;
     fs::remove(own.replace_extension(".records"));
   });
   EXPECT_EQ(ended.how, Ending::done);

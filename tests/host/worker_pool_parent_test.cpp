@@ -30,7 +30,7 @@ TEST_F(WorkerPoolTest, FullDiskIsAnErrorOfTheStudy) {
         numbers(10),
         [&](const Job& job) {
           if (job.index == 5) {  // as if the disk were full from now on
-            fs::path records = job.last_words;
+            fs::path records = job.crash_report;
             fs::create_symlink("/dev/full", records.replace_extension(".records"));
           }
           return std::string("x");
@@ -217,7 +217,7 @@ TEST_P(Faults, NothingOutlivesAKilledParent) {
     return "";
   });
   const auto began = std::chrono::steady_clock::now();
-  const WorkFolder folder(path_);  // waits for the warden
+  const WorkFolder folder(path_);  // waits for the supervisor
   EXPECT_TRUE(folder.processes().find().empty());
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
 }
@@ -241,10 +241,10 @@ TEST_P(Faults, RecordsOfAKilledParentAreFound) {
   folder.clear();
 }
 
-TEST_F(WorkerPoolTest, AWardenThatWasKilledIsReplaced) {
+TEST_F(WorkerPoolTest, ASupervisorThatWasKilledIsReplaced) {
   const pid_t self = ::getpid();
   const auto all = run(20, [&](const Job& job) {
-    if (job.index == 3 || job.index == 12) {  // the warden is the parent's only other child
+    if (job.index == 3 || job.index == 12) {  // the supervisor is the parent's only other child
       for (const pid_t sibling : children_of(self)) {
         if (sibling != ::getpid()) {
           ::kill(sibling, SIGKILL);

@@ -58,15 +58,15 @@ TEST_P(Faults, EveryFatalSignal) {
        {SIGSEGV, SIGBUS,  SIGILL,  SIGFPE, SIGABRT, SIGTRAP, SIGSYS,  SIGPIPE,   SIGALRM, SIGUSR1,
         SIGUSR2, SIGKILL, SIGTERM, SIGINT, SIGHUP,  SIGQUIT, SIGXCPU, SIGVTALRM, SIGPROF, SIGIO}) {
     const Ended ended = among_others([&](const Job& job) {
-      std::fputs("these are my last words", stderr);
-      std::ofstream(job.last_words) << "left in a file";
+      std::fputs("these are my crash report", stderr);
+      std::ofstream(job.crash_report) << "left in a file";
       die_of(number);
     });
     EXPECT_EQ(ended.how, Ending::killed) << number;
     EXPECT_EQ(ended.signal, number);
     EXPECT_EQ(ended.note, "job 4 is at work");
-    EXPECT_EQ(ended.said, "these are my last words");
-    EXPECT_EQ(ended.last_words, "left in a file");
+    EXPECT_EQ(ended.said, "these are my crash report");
+    EXPECT_EQ(ended.crash_report, "left in a file");
   }
 }
 

@@ -56,7 +56,7 @@ Tally fly_over(const std::vector<int>& seeds, int peaks) {
     EXPECT_TRUE(result.flight->reached);
     EXPECT_EQ(result.flight->collisions, 0);
     EXPECT_TRUE(result.flight->check.ok());
-    const double planned = result.steps.at(*result.standing).measures->length_m;
+    const double planned = result.steps.at(*result.accepted).measures->length_m;
     const double ratio = result.flight->measures.length_m / planned;
     if (ratio > kLongest) {
       std::cout << peaks << " peaks, seed " << seed << ": flown " << ratio << " of the route\n";

@@ -205,7 +205,7 @@ TEST(JudgeOfEveryLayer, WhatTheGroundHidesFromARadarIsFree) {
   const Made ground = terrain(ridge);
   const Made radar =
       masked_radar(ground, "{at_m: [1000, 1500, 110], range_m: 5000, masking: true}");
-  const double slack = radar->slack();
+  const double slack = radar->over_approximation();
   EXPECT_GT(slack, 0);
   // The line of sight over the ridge rises by a tenth of the way: at x = 3000 it is 310 m high.
   EXPECT_FALSE(free(radar, {3000, 1500, 310}, {3000, 1500, 320}, 0.1));
@@ -276,7 +276,7 @@ TEST(LawsOfEveryLayer, HoldOnRandomLegs) {
         EXPECT_TRUE(blocked || made.clearance(side) > -1e-5 || (side - on).norm() > r - 1e-5);
       }
       // What the samples' clearances, 1-Lipschitz, prove to be free.
-      if (least - run / kSamples / 2 > r * (1 + 1e-9) + made.slack() + 1e-6) {
+      if (least - run / kSamples / 2 > r * (1 + 1e-9) + made.over_approximation() + 1e-6) {
         EXPECT_FALSE(blocked) << "clearance " << least << " over r " << r;
       }
     }

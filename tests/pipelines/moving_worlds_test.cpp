@@ -7,7 +7,7 @@
 #include <iostream>
 #include <numeric>
 
-#include "reference/escape_blame.hpp"
+#include "reference/escape_cause.hpp"
 #include "reference/moving_worlds.hpp"
 
 namespace altiplan::reference {
@@ -40,13 +40,13 @@ std::ostream& operator<<(std::ostream& out, const Tally& tally) {
 
 /// The way out must hold under the host's own judge, among all that was known at its step; and so
 /// must its end, for good, unless that is the goal.
-void expect_sound(const Blame& blame, const host::FlightSetup& setup,
+void expect_sound(const Cause& cause, const host::FlightSetup& setup,
                   const host::FlightResult& result) {
-  for (const Look& look : BlameSearch(setup, result).looks_of_flight()) {
-    if (look.step != blame.last_step) {
+  for (const Look& look : CauseSearch(setup, result).looks_of_flight()) {
+    if (look.step != cause.last_step) {
       continue;
     }
-    const auto& legs = blame.way_out.legs;
+    const auto& legs = cause.way_out.legs;
     for (std::size_t i = 0; i + 1 < legs.size(); ++i) {
       const auto& [t0, a] = legs[i];
       const auto& [t1, b] = legs[i + 1];
@@ -69,23 +69,23 @@ void expect_sound(const Blame& blame, const host::FlightSetup& setup,
 
 void judge_end(std::uint64_t seed, const MovingWorld& world, const host::FlightResult& result,
                Tally& tally, bool tell) {
-  const Blame blame = BlameSearch(world.setup, result).judge();
-  const auto count = [&](Blame::Verdict verdict, int& of, const char* words) {
-    of += blame.verdict == verdict;
-    if (blame.verdict == verdict && tell) {
+  const Cause cause = CauseSearch(world.setup, result).judge();
+  const auto count = [&](Cause::Verdict verdict, int& of, const char* words) {
+    of += cause.verdict == verdict;
+    if (cause.verdict == verdict && tell) {
       std::cout << "seed " << seed << ' ' << words << ": " << result.message << " at "
                 << result.track.back().first << " s (step " << result.track.size() - 1
                 << "); last way out at step "
-                << (blame.last_step ? std::to_string(*blame.last_step) : "-") << ", "
-                << blame.last_s << " s; " << world.tells << '\n';
+                << (cause.last_step ? std::to_string(*cause.last_step) : "-") << ", "
+                << cause.last_s << " s; " << world.tells << '\n';
     }
   };
-  count(Blame::Verdict::avoidable, tally.avoidable, "avoidable");
-  count(Blame::Verdict::given_up, tally.given_up, "a way out");
-  count(Blame::Verdict::all_knowing, tally.all_knowing, "all-knowing");
-  count(Blame::Verdict::unsolvable, tally.unsolvable, "no way");
-  count(Blame::Verdict::undecided, tally.undecided, "undecided");
-  expect_sound(blame, world.setup, result);
+  count(Cause::Verdict::avoidable, tally.avoidable, "avoidable");
+  count(Cause::Verdict::given_up, tally.given_up, "a way out");
+  count(Cause::Verdict::all_knowing, tally.all_knowing, "all-knowing");
+  count(Cause::Verdict::unsolvable, tally.unsolvable, "no way");
+  count(Cause::Verdict::undecided, tally.undecided, "undecided");
+  expect_sound(cause, world.setup, result);
 }
 
 /// Flies the world with its pilot, or the route alone.

@@ -76,7 +76,7 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
   for (const host::Json& p : result["route"]) {
     route.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
   }
-  const auto least_height = [&](const Vec3& a, const Vec3& b) {
+  const auto min_height = [&](const Vec3& a, const Vec3& b) {
     double least = kInfinity;
     const int steps = 1 + int((b - a).norm() / 5);
     for (int i = 0; i <= steps; ++i) {
@@ -86,9 +86,9 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
     return least;
   };
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-    EXPECT_GE(least_height(route[i], route[i + 1]), kGroundClearance - 1e-6) << i;
+    EXPECT_GE(min_height(route[i], route[i + 1]), kGroundClearance - 1e-6) << i;
   }
-  EXPECT_LT(least_height(route.front(), route.back()), kGroundClearance)
+  EXPECT_LT(min_height(route.front(), route.back()), kGroundClearance)
       << "the straight line is free: this case shows nothing";
 }
 

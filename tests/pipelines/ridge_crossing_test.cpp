@@ -119,7 +119,7 @@ TEST(RidgeCrossing, AJudgedRouteAndAFlightAroundWhatWasNotKnown) {
   EXPECT_EQ(result["steps"][0]["plugin"], "astar");
   EXPECT_GT(result["steps"][0]["counters"]["expanded"], 0);
   for (const Json& step : result["steps"]) {
-    EXPECT_TRUE(step["stands"]) << step["id"] << step["message"];
+    EXPECT_TRUE(step["accepted"]) << step["id"] << step["message"];
   }
   EXPECT_TRUE(result["check"]["ok"]);
   EXPECT_GE(result["metrics"]["length_m"], 25e3);

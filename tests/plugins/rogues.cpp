@@ -305,7 +305,7 @@ class RogueLayer final : public Environment {
       never_return();
     }
   }
-  double do_slack() const override {
+  double do_over_approximation() const override {
     return does_ == "slack_negative" ? -1 : does_ == "slack_nan" ? kNan : 0.05;
   }
   std::string does_;

@@ -76,7 +76,7 @@ class Flight:
         self.judge = rules.Judge(mission, limits)
         self.mission, self.limits = mission, limits
         self.separation, self.contact_at = None, None
-        self.least_gap = np.inf
+        self.min_gap = np.inf
         self.world = World(mission)
         self.fly()
 
@@ -115,7 +115,7 @@ class Flight:
         grounds = self.world.grounds()
         gaps = self.judge.heights(at, a, b, grounds)
         if grounds:
-            self.least_gap = min(self.least_gap, float(np.nanmin(gaps)))
+            self.min_gap = min(self.min_gap, float(np.nanmin(gaps)))
 
     def meet(self, at, a, b):
         """What moves, in legs from the time of one point to that of the next."""

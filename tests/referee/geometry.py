@@ -30,7 +30,7 @@ def convex_min(f, a, b):
     return best
 
 
-def least_by_bounds(f, bound, a, b, tolerance=1e-7):
+def min_by_bounds(f, bound, a, b, tolerance=1e-7):
     """The least value on all legs together of an f that changes by at most 1 m in a metre, and of
     which `bound` gives lower bounds on short pieces. The tighter they are the sooner it ends."""
     a, b = np.asarray(a, float).reshape(-1, 3), np.asarray(b, float).reshape(-1, 3)

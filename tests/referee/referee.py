@@ -154,12 +154,12 @@ def judge_flight(mission, limits, flight, tolerance=AGREES):
 def is_separation(told, own, found):
     """Of ground a bound is known: no less than the height over the steepest slope, and no more than
     the height."""
-    if told is None or own.separation is None and own.least_gap == np.inf:
+    if told is None or own.separation is None and own.min_gap == np.inf:
         return told is own.separation
     low = high = np.inf if own.separation is None else own.separation
-    if own.least_gap < np.inf:
+    if own.min_gap < np.inf:
         steepest = max(g.steepest() for g in own.world.grounds())
-        low, high = min(low, own.least_gap / np.hypot(1, steepest)), min(high, own.least_gap)
+        low, high = min(low, own.min_gap / np.hypot(1, steepest)), min(high, own.min_gap)
     allowed = found.allowed("separation", low)
     return low - allowed <= told <= high + allowed
 
@@ -174,9 +174,9 @@ def judge_result(result, scene=None):
         if len(step["route"]) > 1 and step["check"] is not None:
             found += judge_route(mission, limits, step["route"], step["check"], step["metrics"],
                                  f"step '{step['id']}'", tolerance)
-            if step["stands"] and not step["check"]["ok"]:
+            if step["accepted"] and not step["check"]["ok"]:
                 found.append(f"step '{step['id']}': stands with violations")
-        if step["stands"] and step["verb"] != "fly":
+        if step["accepted"] and step["verb"] != "fly":
             standing = step["route"]
     if result["route"]:
         found += judge_route(mission, limits, result["route"], result["check"], result["metrics"],

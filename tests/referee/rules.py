@@ -21,7 +21,7 @@ class Limits:
     turn_space: float = 180.0
     radius: float = 0.0
     climb: float = 90.0
-    least_leg: float = 0.0
+    min_leg: float = 0.0
     greatest_leg: float = np.inf
     length: float = np.inf
 
@@ -46,7 +46,7 @@ def limits_of(mission):
         elif rule == "climb_angle":
             limits.climb = min(limits.climb, float(of["max_deg"]))
         elif rule == "leg_length":
-            limits.least_leg = max(limits.least_leg, low or 0)
+            limits.min_leg = max(limits.min_leg, low or 0)
             limits.greatest_leg = min(limits.greatest_leg, np.inf if high is None else high)
         elif rule == "route_length" and high is not None:
             limits.length = min(limits.length, high)
@@ -150,8 +150,8 @@ class Judge:
                 self.above("turn_radius", i, radius, limits.radius)
         for i, length in enumerate(np.linalg.norm(np.diff(route, axis=0), axis=1)):
             self.below("leg_length", i, length, limits.greatest_leg)
-            if limits.least_leg > 0:
-                self.above("leg_length", i, length, limits.least_leg)
+            if limits.min_leg > 0:
+                self.above("leg_length", i, length, limits.min_leg)
 
     def steepness(self, route):
         for i, climb in enumerate(np.abs(climbs(route))):

@@ -60,7 +60,7 @@ class Solid:
         return -self.depths(a, b)[1]
 
     def least(self, a, b):
-        return geometry.least_by_bounds(self.at, self.bound, a, b)
+        return geometry.min_by_bounds(self.at, self.bound, a, b)
 
 
 def sphere(centre, radius, layer=""):

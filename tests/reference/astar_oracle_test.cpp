@@ -135,7 +135,7 @@ void compare(const Problem& problem, std::uint64_t seed, Tally& tally) {
 void compare(std::uint64_t seed, bool cells, Tally& tally) {
   Mix mix;
   mix.prisms = mix.ground = !cells;
-  mix.most_cells = seed % 20 == 5 ? 12 : 6;
+  mix.max_cells = seed % 20 == 5 ? 12 : 6;
   const auto problem = random_problem(seed, mix);
   problem->lattice.cells = cells;
   problem->lattice.free_box = seed % 4 >= 2;
@@ -260,7 +260,7 @@ void hold_turns(const PlanResult& result, const Setting& setting, double to_goal
 /// cell and heading the route is the shortest.
 void compare_turns(std::uint64_t seed, TurnTally& tally) {
   Mix mix;
-  mix.most_cells = 4.5;
+  mix.max_cells = 4.5;
   mix.ground = false;
   const auto problem = random_problem(seed, mix);
   Request& request = problem->request;

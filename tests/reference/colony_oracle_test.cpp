@@ -19,9 +19,9 @@ struct Drawn {
 };
 
 /// A level of cells of 10 m, of a size and density drawn from the seed.
-Drawn draw_level(std::uint64_t seed, int least_columns, int most_columns) {
+Drawn draw_level(std::uint64_t seed, int min_columns, int max_columns) {
   SplitMix64 random(seed);
-  const int columns = random.integer(least_columns, most_columns);
+  const int columns = random.integer(min_columns, max_columns);
   const int rows = random.integer(4, 24);
   std::string level = testing::random_levels(random, columns, rows, 1, 0.2).front();
   Drawn drawn{testing::draw({level}, 10), level};

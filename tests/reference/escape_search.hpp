@@ -22,12 +22,12 @@ struct Lattice {
   int headings =
       48;          ///< of the straight legs tried from each place, level; with climb the square / 8
   int speeds = 2;  ///< of those: whole, and even parts of it
-  std::size_t most_places = 1'000'000;
+  std::size_t max_places = 1'000'000;
 
   Lattice halved() const {
     Lattice finer = *this;
     finer.step_s /= 2;
-    finer.most_places *= 16;
+    finer.max_places *= 16;
     return finer;
   }
 };
@@ -58,7 +58,7 @@ class EscapeSearch {
       for (int y = -lattice.cells; y <= lattice.cells; ++y) {
         for (int z = -up; z <= up; ++z) {
           const Vec3 by = h * Vec3(x, y, z);
-          if (scene.least_time({0, 0, 0}, by) <= lattice.step_s * (1 + 1e-12)) {
+          if (scene.min_time({0, 0, 0}, by) <= lattice.step_s * (1 + 1e-12)) {
             moves_.push_back({{x, y, z}, by});
           }
         }
@@ -135,7 +135,7 @@ class EscapeSearch {
     const std::vector<Vec3>* around = &closer;
     int speeds = 2 * lattice_.speeds;
     while (!way.found() && !frontier.open.empty()) {
-      if (frontier.places.size() > lattice_.most_places) {
+      if (frontier.places.size() > lattice_.max_places) {
         way.outcome = Way::Outcome::undecided;
         break;
       }
@@ -167,7 +167,7 @@ class EscapeSearch {
           scene_.is_free(here.at, here.time, next.at, then)) {
         // Out of danger late is out of danger; to the goal soon.
         frontier.add(next, frontier.to_goal
-                               ? -then - 1.5 * scene_.least_time(next.at, goal_.position)
+                               ? -then - 1.5 * scene_.min_time(next.at, goal_.position)
                                : then);
       }
     }
@@ -178,7 +178,7 @@ class EscapeSearch {
                                                   const std::vector<Vec3>& around,
                                                   int speeds) const {
     const double until_s = frontier.until_s;
-    const double there = here.time + scene_.least_time(here.at, goal_.position);
+    const double there = here.time + scene_.min_time(here.at, goal_.position);
     if (there <= until_s && scene_.is_free(here.at, here.time, goal_.position, there)) {
       return std::pair(there, goal_.position);
     }

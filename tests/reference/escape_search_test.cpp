@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for ways out, and who is to blame: cases whose answer is known, and laws.
+// The search for ways out, and who is to cause: cases whose answer is known, and laws.
 #include <gtest/gtest.h>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
-#include "reference/escape_blame.hpp"
+#include "reference/escape_cause.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::reference {
@@ -185,7 +185,7 @@ TEST(EscapeSearch, KeepsToTheVolumeTheLevelAndTheClimb) {
 
 TEST(EscapeSearch, SaysWhenItGivesUp) {
   Lattice small;
-  small.most_places = 10;
+  small.max_places = 10;
   EXPECT_EQ(escape(scene_with(ring(12, 500, 140, kSpeed / 2)), small).outcome,
             Way::Outcome::undecided);
 }
@@ -263,7 +263,7 @@ TEST(EscapeSearch, OneMoverMoreLeavesNoMoreWays) {
   EXPECT_GT(lost, 10);
 }
 
-// ---- who is to blame: flights made by hand -----------------------------------------------------
+// ---- who is to cause: flights made by hand -----------------------------------------------------
 
 struct Flight {
   host::FlightSetup setup;
@@ -280,39 +280,39 @@ struct Flight {
     setup.truth = setup.truth.with_moving(std::move(moving));
   }
   /// East, a step a second, into the mover of that name.
-  Blame collide_east(int seconds, const std::string& id) {
+  Cause collide_east(int seconds, const std::string& id) {
     result.message = "collided with '" + id + "' near there";
     for (int t = 0; t <= seconds; ++t) {
       result.track.emplace_back(t, Vec3(kSpeed * t, 0, 1000));
     }
-    return BlameSearch(setup, result).judge();
+    return CauseSearch(setup, result).judge();
   }
 };
 
 /// Twice as fast as the vehicle, so it must be left at R w / v = 404 m. It comes at 90 m/s: from
 /// 1,200 m off it is 480 m off at 8 s, and 390 m at 9 s.
-TEST(Blame, IsThePilotsWhoFliesOnTowardWhatItSees) {
+TEST(Cause, IsThePilotsWhoFliesOnTowardWhatItSees) {
   Flight flight(1000);
   flight.add("fast", {1200, 0, 1000}, {-2 * kSpeed, 0, 0}, 200);
-  const Blame blame = flight.collide_east(12, "fast");
-  EXPECT_EQ(blame.verdict, Blame::Verdict::avoidable);
-  EXPECT_EQ(blame.last_step, 8U);
-  EXPECT_TRUE(blame.was_known);
+  const Cause cause = flight.collide_east(12, "fast");
+  EXPECT_EQ(cause.verdict, Cause::Verdict::avoidable);
+  EXPECT_EQ(cause.last_step, 8U);
+  EXPECT_TRUE(cause.was_known);
 }
 
 /// The same, seen from 100 m before its edge: 390 m off it is not seen, 300 m off it is too late.
-TEST(Blame, IsNobodysWhereTheSensorShowsItTooLate) {
+TEST(Cause, IsNobodysWhereTheSensorShowsItTooLate) {
   Flight flight(100);
   flight.add("fast", {1200, 0, 1000}, {-2 * kSpeed, 0, 0}, 200);
-  const Blame blame = flight.collide_east(12, "fast");
-  EXPECT_EQ(blame.verdict, Blame::Verdict::all_knowing);
-  EXPECT_EQ(blame.last_step, 9U);
-  EXPECT_FALSE(blame.was_known);
+  const Cause cause = flight.collide_east(12, "fast");
+  EXPECT_EQ(cause.verdict, Cause::Verdict::all_knowing);
+  EXPECT_EQ(cause.last_step, 9U);
+  EXPECT_FALSE(cause.was_known);
 }
 
 /// In a lane that is as wide as what comes: from ahead, seen from 400 m before its edge, which is
 /// at 13 s, and from behind, as fast as the vehicle.
-Blame between_two(double behind) {
+Cause between_two(double behind) {
   Flight flight(400);
   const Layer walls{"walls", "shape",
                     std::make_shared<kit::ShapeLayer>(
@@ -326,52 +326,52 @@ Blame between_two(double behind) {
   return flight.collide_east(21, "ahead");
 }
 
-TEST(Blame, IsNobodysWhereNewsCloseTheWay) {
-  const Blame seen_late = between_two(-300);
-  EXPECT_EQ(seen_late.verdict, Blame::Verdict::all_knowing);
+TEST(Cause, IsNobodysWhereNewsCloseTheWay) {
+  const Cause seen_late = between_two(-300);
+  EXPECT_EQ(seen_late.verdict, Cause::Verdict::all_knowing);
   EXPECT_EQ(seen_late.last_step, 12U);
   EXPECT_FALSE(seen_late.was_known);
 }
 
 /// What it never saw is no excuse: by what it knew, it could have gone back.
-TEST(Blame, IsThePilotsByWhatItKnew) {
-  const Blame blame = between_two(-3000);
-  EXPECT_EQ(blame.verdict, Blame::Verdict::avoidable);
-  EXPECT_GT(blame.last_step, 12U);
-  EXPECT_TRUE(blame.was_known);
+TEST(Cause, IsThePilotsByWhatItKnew) {
+  const Cause cause = between_two(-3000);
+  EXPECT_EQ(cause.verdict, Cause::Verdict::avoidable);
+  EXPECT_GT(cause.last_step, 12U);
+  EXPECT_TRUE(cause.was_known);
 }
 
-TEST(Blame, IsNobodysWhereNotEvenTheAllKnowingArrives) {
+TEST(Cause, IsNobodysWhereNotEvenTheAllKnowingArrives) {
   Flight flight(1000);
   flight.add("goal", flight.setup.request.goal.position, {0, 0, 0}, 300);
   for (const Mover& mover : ring(12, 600, 200, kSpeed)) {
     flight.add("ring" + std::to_string(flight.setup.truth.moving().size()), mover.at_0,
                mover.velocity, mover.radius);
   }
-  const Blame blame = flight.collide_east(7, "ring1");
-  EXPECT_EQ(blame.verdict, Blame::Verdict::unsolvable);
-  EXPECT_EQ(blame.last_step, std::nullopt);
+  const Cause cause = flight.collide_east(7, "ring1");
+  EXPECT_EQ(cause.verdict, Cause::Verdict::unsolvable);
+  EXPECT_EQ(cause.last_step, std::nullopt);
 }
 
-TEST(Blame, TellsWhoGivesUpWithAWayOut) {
+TEST(Cause, TellsWhoGivesUpWithAWayOut) {
   Flight flight(1000);
   flight.result.status = host::RunStatus::not_reached;
   flight.add("slow", {1000, 0, 1000}, {-1, 0, 0}, 100);
-  const Blame blame = flight.collide_east(20, "none");
-  EXPECT_EQ(blame.verdict, Blame::Verdict::given_up);
-  EXPECT_EQ(blame.last_step, 20U);
+  const Cause cause = flight.collide_east(20, "none");
+  EXPECT_EQ(cause.verdict, Cause::Verdict::given_up);
+  EXPECT_EQ(cause.last_step, 20U);
 }
 
 /// On the route it looks around each `step_s`, whatever corners lie between; under the pilot each
 /// leg.
-TEST(Blame, LooksAroundWhereTheHostSenses) {
+TEST(Cause, LooksAroundWhereTheHostSenses) {
   Flight flight(1000);
   for (const double t : {0.0, 0.4, 1.0, 2.0, 2.3, 2.6, 3.0, 4.0}) {
     flight.result.track.emplace_back(t, Vec3(kSpeed * t, 0, 1000));
   }
   flight.result.handovers = {{2.0, "apf", ""}, {2.6, "route", ""}};
   std::vector<std::size_t> steps;
-  for (const Look& look : BlameSearch(flight.setup, flight.result).looks_of_flight()) {
+  for (const Look& look : CauseSearch(flight.setup, flight.result).looks_of_flight()) {
     steps.push_back(look.step);
   }
   EXPECT_EQ(steps, (std::vector<std::size_t>{0, 2, 3, 4, 5}));

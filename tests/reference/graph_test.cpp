@@ -11,7 +11,7 @@ namespace {
 
 TEST(DijkstraItself, EqualsAllSimplePathsOnTinyGrids) {
   Mix mix;
-  mix.most_cells = 3;
+  mix.max_cells = 3;
   mix.ground = false;
   int reached = 0;
   int cut_off = 0;

@@ -45,7 +45,7 @@ struct Scene {
         climb_speed(speed * std::sin(std::min(request.limits.max_climb, kPi / 2))) {}
 
   /// Least time that the vehicle takes from a to b.
-  double least_time(const Vec3& a, const Vec3& b) const {
+  double min_time(const Vec3& a, const Vec3& b) const {
     const double climb = std::abs(b.z() - a.z());
     return std::max((b - a).norm() / speed, climb == 0 ? 0 : climb / climb_speed);
   }

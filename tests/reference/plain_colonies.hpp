@@ -34,7 +34,7 @@ struct PlainColony {
   double alpha = 6;
   double beta = 3;
   double rho = 0.6;
-  static constexpr double kLeast = 1e-50;  ///< that evaporation leaves, so that no power is 0
+  static constexpr double kMin = 1e-50;  ///< that evaporation leaves, so that no power is 0
   RandomStream random;
 
   std::size_t best_alive = 0;  ///< ants that have arrived in the last iteration
@@ -189,7 +189,7 @@ struct PlainLegColony : PlainColony {
   void evaporate() override {
     for (auto& place : tau) {
       for (double& amount : place) {
-        amount = std::max((1 - rho) * amount, kLeast);
+        amount = std::max((1 - rho) * amount, kMin);
       }
     }
   }
@@ -293,7 +293,7 @@ struct PlainRegionColony : PlainColony {
   }
   void evaporate() override {
     for (double& amount : tau) {
-      amount = std::max((1 - rho) * amount, kLeast);
+      amount = std::max((1 - rho) * amount, kMin);
     }
   }
   /// On nodes resampled every l_c.

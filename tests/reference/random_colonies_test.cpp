@@ -62,7 +62,7 @@ struct Case {
 };
 
 Case among_solids(std::uint64_t seed) {
-  Case world{{}, reference::random_problem(seed, {.limits = false, .most_cells = 20})};
+  Case world{{}, reference::random_problem(seed, {.limits = false, .max_cells = 20})};
   Request& request = world.request;
   request = world.kept->request;
   request.goal.position.z() = request.start.position.z();
@@ -172,7 +172,7 @@ std::string random_settings(oracle::Draw& draw, int ants, bool improved) {
   all += text(", reach_cells: %g, spacing_cells: %g", reach,
               reach == 40 ? 6 + draw.below(100) : draw.below(4));
   if (draw.below(6) == 0) {
-    all += text(", least_steps: %g", 1 + draw.below(100));
+    all += text(", min_steps: %g", 1 + draw.below(100));
   }
   word("leg_test", {"remembered", "guard_zone", "always"});
   word("tilt", {"0", "0.999", "0.9"});
@@ -267,7 +267,7 @@ void expect_promises_kept(const Planner& planner, const Request& request, std::i
   try {
     result = planner.plan(request);
   } catch (const ParameterError&) {
-    return;  // least_steps can ask for too many candidates
+    return;  // min_steps can ask for too many candidates
   }
   ++counts[name(result.status)];
   expect_sound(result, request);

@@ -55,7 +55,7 @@ struct Case {
 
 Case among_solids(std::uint64_t seed) {
   Case world;
-  world.kept = reference::random_problem(seed, {.most_cells = 10});
+  world.kept = reference::random_problem(seed, {.max_cells = 10});
   world.request = world.kept->request;
   world.cell = world.kept->lattice.cell;
   oracle::Draw draw(seed + 1000);

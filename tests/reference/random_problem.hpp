@@ -35,7 +35,7 @@ class GroundPlane final : public Environment, public Ground {
   double do_slope(const Box&) const override {
     return std::hypot(plane_.slope[0], plane_.slope[1]);
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
 
   Plane plane_;
 };
@@ -70,7 +70,7 @@ struct Mix {
   bool prisms = true;
   bool ground = true;
   bool limits = true;
-  double most_cells = 6;  ///< on an axis
+  double max_cells = 6;  ///< on an axis
 };
 
 inline void draw_limits(oracle::Draw& draw, Problem& problem) {
@@ -116,7 +116,7 @@ inline std::unique_ptr<Problem> random_problem(std::uint64_t seed, const Mix& mi
   const bool level = draw.below(4) == 0;
   const Vec3 low = draw.within({-50, -50, -5}, {50, 50, 5});
   const Vec3 size = cell.cwiseProduct(
-      draw.within({2, 2, 1}, {mix.most_cells, mix.most_cells, mix.most_cells * 0.7}));
+      draw.within({2, 2, 1}, {mix.max_cells, mix.max_cells, mix.max_cells * 0.7}));
   const Box volume{low, low + size};
   const auto inside = [&] { return draw.within(volume.min, volume.max); };
   const Vec3 start = inside();

@@ -16,7 +16,7 @@ struct Planned {
 Planned planned_route(std::uint64_t seed) {
   oracle::Draw draw(seed + 17);
   Mix mix;
-  mix.most_cells = 9;
+  mix.max_cells = 9;
   Planned planned{random_problem(seed, mix), {}};
   Request& request = planned.problem->request;
   if (draw.below(2) == 0) {

@@ -79,14 +79,14 @@ inline Observation first_observation(const Request& request) {
 }
 
 /// Flies until the pilot arrives or is stuck; `between` may change what it sees before a step.
-inline Flown flight(const Request& request, std::string_view yaml = "{}", int most_steps = 41000,
+inline Flown flight(const Request& request, std::string_view yaml = "{}", int max_steps = 41000,
                     const std::function<void(Observation&, int)>& between = {}) {
   const auto planner = altiplan::testing::make_local_planner("velocity_field", yaml);
   const auto pilot = planner->begin(request);
   Flown flown;
   flown.route = {request.start.position};
   Observation seen = first_observation(request);
-  for (int n = 0; n < most_steps && flown.outcome == PilotStep::Outcome::flying; ++n) {
+  for (int n = 0; n < max_steps && flown.outcome == PilotStep::Outcome::flying; ++n) {
     if (between) {
       between(seen, n);
     }
@@ -106,7 +106,7 @@ inline Flown flight(const Request& request, std::string_view yaml = "{}", int mo
 }
 
 /// Least radius of the circle through three points in a row.
-inline double least_radius(const Route& route) {
+inline double min_radius(const Route& route) {
   double least = kInfinity;
   for (std::size_t i = 2; i < route.size(); ++i) {
     least = std::min(least, radius_through(route[i - 2], route[i - 1], route[i]));

@@ -68,7 +68,7 @@ Place random_place(std::uint64_t seed, bool prisms) {
   return place;
 }
 
-double least_distance(const Scene& scene, const Vec3& a, const Vec3& b) {
+double min_distance(const Scene& scene, const Vec3& a, const Vec3& b) {
   double least = kInfinity;
   for (const oracle::Solid& solid : scene.solids) {
     least = std::min(least, oracle::leg_distance(solid, a, b));
@@ -76,7 +76,7 @@ double least_distance(const Scene& scene, const Vec3& a, const Vec3& b) {
   return least;
 }
 
-double least_clearance(const Scene& scene, const Vec3& p) {
+double min_clearance(const Scene& scene, const Vec3& p) {
   double least = kInfinity;
   for (const oracle::Solid& solid : scene.solids) {
     least = std::min(least, oracle::signed_distance(solid, p));
@@ -95,9 +95,9 @@ void hold_queries(std::uint64_t from, std::uint64_t to) {
     for (int n = 0; n < 40; ++n) {
       const Vec3 a = draw.within({-1, -1, -1}, {11, 9, 7});
       const Vec3 b = draw.within({-1, -1, -1}, {11, 9, 7});
-      EXPECT_NEAR(place.world.clearance(a), least_clearance(place.scene, a), 1e-6);
+      EXPECT_NEAR(place.world.clearance(a), min_clearance(place.scene, a), 1e-6);
       for (const double r : {0.0, 0.4}) {
-        const double least = least_distance(place.scene, a, b);
+        const double least = min_distance(place.scene, a, b);
         if (least > 0 && std::abs(least - r) < kDoubt) {
           continue;
         }
@@ -180,13 +180,13 @@ void hold_rasters(std::uint64_t from, std::uint64_t to) {
       for (int n = 0; n < 8 && !all->blocked(c); ++n) {
         const Box box = spec.cell_box(c);
         const Vec3 p = draw.within(box.min, box.max);
-        EXPECT_GE(least_clearance(place.scene, p), spec.inflation - 1e-6);
+        EXPECT_GE(min_clearance(place.scene, p), spec.inflation - 1e-6);
       }
     });
     spec.rule = GridSpec::Rule::centre;
     const auto centres = place.world.voxels(spec);
     each_cell(spec, [&](const Cell& c) {
-      const double clearance = least_clearance(place.scene, spec.centre(c));
+      const double clearance = min_clearance(place.scene, spec.centre(c));
       if (std::abs(clearance - spec.inflation) > kDoubt) {
         EXPECT_EQ(centres->blocked(c), clearance < spec.inflation);
       }

@@ -121,7 +121,7 @@ def edge_of_the_volume(folder, shell):
         "volume: {min_m: [6, 6, 0], max_m: [114, 114, 10]}\nlevel_flight_at_m: 5\n"
         "start: {at_m: [8, 7, 5]}\ngoal: {at_m: [112.5, 113.5, 5]}\n")
     step = run(shell, folder, "edge")
-    assert step["stands"] and step["route"][0] == [8, 7, 5], step
+    assert step["accepted"] and step["route"][0] == [8, 7, 5], step
     assert step["route"][-1] == [112.5, 113.5, 5], step
 
 
@@ -143,7 +143,7 @@ def budgets(folder, shell):
     assert step["status"] == "timed_out" and step["budget_hit"], step
     step = run(shell, folder, "scenario", constraints="route_length: {max_m: 1300}")
     assert step["status"] == "no_route" and not step["proved"], step
-    assert run(shell, folder, "scenario")["stands"]
+    assert run(shell, folder, "scenario")["accepted"]
 
 
 def main():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """kills_test.py PROGRAM PLUGINS KILLS RUNS [SEED]: random `kill -9` during studies: of the program, of
-one of its processes (a worker, the warden), of its process group. After each the study goes on, with
+one of its processes (a worker, the supervisor), of its process group. After each the study goes on, with
 or without --reuse. In the end nothing is missing, nothing is there twice, every run is as in a study
 that nobody disturbed, and no process is left."""
 import os

@@ -136,17 +136,17 @@ class Cluster:
                 return
             dead = [daemon for daemon in self.daemons if daemon.poll() is not None]
             if dead and fails:
-                raise Unavailable(f"{dead[0].args[0]} ended: {self.last_words(dead[0])}")
+                raise Unavailable(f"{dead[0].args[0]} ended: {self.crash_report(dead[0])}")
             time.sleep(0.1)
         if fails:
             raise Unavailable(f"after {patience} s not: {what}; {self.logs()}")
 
-    def last_words(self, daemon):
+    def crash_report(self, daemon):
         with open(os.path.join(self.folder, os.path.basename(daemon.args[0]) + ".out")) as out:
             return out.read()[-500:]
 
     def logs(self):
-        return "; ".join(self.last_words(daemon) for daemon in self.daemons)
+        return "; ".join(self.crash_report(daemon) for daemon in self.daemons)
 
     def queue(self):
         """State by the number of job or task, of those waiting, running or about to end."""

@@ -71,7 +71,7 @@ def profile_of(route, ground_height, speed=20.0):
 
 
 def step(ident, plugin, route, stands=True, status="solved", message="", check=None):
-    return {"id": ident, "verb": "plan", "plugin": plugin, "instead_of": None, "stands": stands,
+    return {"id": ident, "verb": "plan", "plugin": plugin, "instead_of": None, "accepted": stands,
             "status": status, "message": message, "route": route, "metrics": None, "check": check}
 
 

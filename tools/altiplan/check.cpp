@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
-#include "host/import_export/foreign_route.hpp"
+#include "host/import_export/imported_route.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
@@ -86,7 +86,7 @@ int check_result(const Arguments& arguments) {
     warn(changed + " is not the file that the result was made from");
   }
   if (!stored.route) {
-    std::cout << "there is no standing route in " << stored.file << '\n';
+    std::cout << "there is no accepted route in " << stored.file << '\n';
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
@@ -98,7 +98,7 @@ int check_result(const Arguments& arguments) {
 int check_route(const Arguments& arguments) {
   const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
   const host::Mission mission = host::build_mission(config, 1);
-  const host::ForeignRoute foreign = host::read_foreign_route(*arguments.route, mission);
+  const host::ImportedRoute foreign = host::read_imported_route(*arguments.route, mission);
   for (const std::string& note : foreign.notes) {
     info(note);
   }
@@ -107,7 +107,7 @@ int check_route(const Arguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("check", "judge a stored or a foreign route again");
+  CLI::App* command = app.add_subcommand("check", "judge a stored or a imported route again");
   auto arguments = std::make_shared<Arguments>();
   auto* result = command->add_option("result", arguments->result, "a result of altiplan run");
   auto* route = command

@@ -45,7 +45,7 @@ void say(const std::string& message) {
   }
 }
 
-/// The standing route, or the track that was flown; none where the result has not got it.
+/// The accepted route, or the track that was flown; none where the result has not got it.
 std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bool flight) {
   host::ExportSource source;
   if (flight) {
@@ -74,7 +74,7 @@ int export_result(const Arguments& arguments) {
   expect_apart(arguments.out, "-o", files_of(stored));
   std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
   if (!source) {
-    say("there is no " + std::string(arguments.flight ? "flight" : "standing route") + " in " +
+    say("there is no " + std::string(arguments.flight ? "flight" : "accepted route") + " in " +
         stored.file);
     return kNoRoute;
   }

@@ -58,10 +58,10 @@ int hand_out(std::FILE* to, const Arguments& arguments, const study::StoredRun& 
 }
 
 /// What is said where a plugin ends the process.
-host::ProcessGuard::LastWords last_words(const Arguments& arguments, const host::Config& config,
+host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const host::Config& config,
                                          const study::StoredRun& stored,
                                          const host::RunResult& result) {
-  host::ProcessGuard::LastWords words;
+  host::ProcessGuard::CrashReport words;
   const bool as_then = stored.outcome == "crashed";
   words.for_user = "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
                    (as_then ? "crashed, as the stored run did: " + stored.message
@@ -82,13 +82,13 @@ int run_again(const Arguments& arguments, const study::Store& store,
   const std::string key = study::key_of(config, budget, study::run_name(stored), stored.seed);
   Interrupt interrupt;
   host::RunOptions options;
-  options.patience_s = budget.wall_s;
+  options.timeout_s = budget.wall_s;
   options.trace = arguments.trace;
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
   options.on_call = [&](const host::RunResult& result) {
-    process->set_last_words(last_words(arguments, config, stored, result));
+    process->set_crash_report(crash_report(arguments, config, stored, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
     // The plugin still runs, and may print: what it has for stdout is not given back.

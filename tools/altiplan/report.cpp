@@ -49,12 +49,12 @@ int write_page(const Arguments& arguments) {
   options.scenes.plugin_path = arguments.overrides.plugin_path;
   const study::report::Written written =
       study::report::write_report(source, options, arguments.folder);
-  constexpr std::size_t kMostChanges = 5;
-  for (std::size_t n = 0; n < written.changed.size() && n < kMostChanges; ++n) {
+  constexpr std::size_t kMaxChanges = 5;
+  for (std::size_t n = 0; n < written.changed.size() && n < kMaxChanges; ++n) {
     warn(study::report::printable(written.changed[n]));
   }
-  if (written.changed.size() > kMostChanges) {
-    warn(std::to_string(written.changed.size() - kMostChanges) +
+  if (written.changed.size() > kMaxChanges) {
+    warn(std::to_string(written.changed.size() - kMaxChanges) +
          " more have changed, which the page tells");
   }
   if (!written.notes.empty()) {

@@ -21,7 +21,7 @@ struct RunArguments {
   std::optional<std::string> trace;
   std::optional<std::string> out;
   bool json = false;
-  double patience_s = host::kDefaultStepSeconds;
+  double timeout_s = host::kDefaultStepSeconds;
 };
 
 void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
@@ -72,7 +72,7 @@ void print_table(std::FILE* to, const host::RunResult& result) {
   for (const host::StepResult& step : result.steps) {
     const bool flown =
         result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
-    print_row(to, step.id, step.plugin, step.stands && !flown ? "stands" : name(step.status),
+    print_row(to, step.id, step.plugin, step.accepted && !flown ? "accepted" : name(step.status),
               flown ? result.flight->measures : step.measures, step.time_s);
   }
   if (result.flight) {
@@ -80,7 +80,7 @@ void print_table(std::FILE* to, const host::RunResult& result) {
   }
   for (const host::StepResult& step : result.steps) {
     const std::string& said = result.message;  // printed last
-    if (!step.stands && (step.message.empty() || said.find(step.message) == said.npos)) {
+    if (!step.accepted && (step.message.empty() || said.find(step.message) == said.npos)) {
       std::fprintf(to, "  %s: %s\n", step.id.c_str(), step.message.c_str());
     }
   }
@@ -112,9 +112,9 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
 }
 
 /// What is said where a plugin ends the process: the result as it is before that plugin is called.
-host::ProcessGuard::LastWords last_words(const RunArguments& arguments, const host::Config& config,
+host::ProcessGuard::CrashReport crash_report(const RunArguments& arguments, const host::Config& config,
                                          const host::RunResult& result) {
-  host::ProcessGuard::LastWords words;
+  host::ProcessGuard::CrashReport words;
   words.for_user = "altiplan: " + result.message + "\n";
   words.exit_code = result.exit_code();
   if (arguments.out || arguments.json) {
@@ -140,14 +140,14 @@ int run(const RunArguments& arguments) {
   expect_apart(arguments.trace, "--trace", read);
   Interrupt interrupt;
   host::RunOptions options;
-  options.patience_s = arguments.patience_s;
+  options.timeout_s = arguments.timeout_s;
   options.threads = arguments.threads;
   options.trace = arguments.trace;
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
   options.on_call = [&](const host::RunResult& result) {
-    process->set_last_words(last_words(arguments, config, result));
+    process->set_crash_report(crash_report(arguments, config, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
     // The plugin still runs, and may print: what it has for stdout is not given back.
@@ -188,7 +188,7 @@ void add_run(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->add_option("-o,--out", arguments->out, "write the result as JSON")->type_name("FILE");
   command
-      ->add_option("--patience", arguments->patience_s,
+      ->add_option("--timeout", arguments->timeout_s,
                    "seconds for a step without within_s, and for all that has no time of its own: "
                    "making plugins and layers, judging")
       ->check(number_from(0.001, 1e8));

@@ -34,7 +34,7 @@ struct Arguments {
 };
 
 /// Slurm's MaxArraySize is 1001 unless the cluster says otherwise.
-constexpr double kMostShards = 1000;
+constexpr double kMaxShards = 1000;
 /// As many pairs of scenario and repetition are run for an estimate, where there are as many.
 constexpr double kSamplePairs = 5;
 /// Of a task, beside what its runs may take.
@@ -159,7 +159,7 @@ int shards_of(const Arguments& arguments, const study::SlurmJob& job, const stud
     return shards;
   }
   const double wanted = std::ceil(seconds / job.jobs / (arguments.chunk_minutes * 60));
-  const double most = std::min(kMostShards, double(plan.runs.size()));
+  const double most = std::min(kMaxShards, double(plan.runs.size()));
   return int(std::clamp(wanted, 1.0, std::max(1.0, most)));
 }
 

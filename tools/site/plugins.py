@@ -11,8 +11,8 @@ TRAITS = {
     "any_angle": "never longer than the grid's shortest",
     "anytime": "more budget never gives a longer route",
     "incremental": "its session keeps what it searched",
-    "plane": "plans level flight",
-    "space": "plans in three dimensions",
+    "planar": "plans level flight",
+    "spatial": "plans in three dimensions",
     "avoids_obstacles": "no leg through a known obstacle",
 }
 

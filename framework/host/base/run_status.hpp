@@ -15,7 +15,7 @@ enum class RunStatus {
   cancelled,
   invalid_problem,
   rejected,     ///< the judge did not agree
-  failed,       ///< a plugin threw, broke a law of its interface, or never stopped
+  failed,       ///< a plugin threw, violated the contract of its interface, or never stopped
   collided,     ///< of a flight
   not_reached,  ///< of a flight
 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/config/shapes.hpp"
@@ -39,7 +39,7 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
     problem(where, key, error.what() + built_in);
     return;
   }
-  check_report(blamed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },
+  check_report(attributed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },
                       [&] { return entry->describe(&parameters, path); }),
                path);
 }

@@ -96,7 +96,7 @@ constexpr PluginEntry kEnvironments[] = {
         "prism", "an upright prism over a polygon")};
 
 /// Metres a second; with more, places after a flight's time are no numbers any more.
-constexpr double kMostSpeed = 1e6;
+constexpr double kMaxSpeed = 1e6;
 
 template <class Params>
 struct Moving {
@@ -105,7 +105,7 @@ struct Moving {
   void describe(Fields& f) {
     params.describe(f);
     f("velocity_mps", velocity_mps).unit("m/s").required().doc("east, north, up");
-    f.check((velocity_mps.array().abs() <= kMostSpeed).all(),
+    f.check((velocity_mps.array().abs() <= kMaxSpeed).all(),
             "expected each of velocity_mps from -1e6 to 1e6 m/s");
   }
 };
@@ -161,6 +161,6 @@ void RandomMoving::describe(Fields& f) {
   f("count", count).range(1, 100000).doc("how many");
   f("seed", seed).at_least(0).doc("default: the run's seed");
   f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius of each");
-  f("speed_mps", speed_mps).unit("m/s").range(0, kMostSpeed).required().doc("speed of each");
+  f("speed_mps", speed_mps).unit("m/s").range(0, kMaxSpeed).required().doc("speed of each");
 }
 }  // namespace altiplan::host

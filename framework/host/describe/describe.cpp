@@ -157,8 +157,8 @@ std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
           {"any_angle", traits.any_angle},
           {"anytime", traits.anytime},
           {"incremental", traits.incremental},
-          {"plane", traits.plane},
-          {"space", traits.space},
+          {"planar", traits.planar},
+          {"spatial", traits.spatial},
           {"avoids_obstacles", traits.avoids_obstacles}};
 }
 

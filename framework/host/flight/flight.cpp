@@ -12,7 +12,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr int kMostSteps = 1'000'000;
+constexpr int kMaxSteps = 1'000'000;
 constexpr double kTimesDuration = 10;
 }  // namespace
 
@@ -65,7 +65,7 @@ void Flight::fly_to_the_end() {
   meet_events();
   while (!ended_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
-    if (late || ++steps_ > kMostSteps) {
+    if (late || ++steps_ > kMaxSteps) {
       end_flight(RunStatus::not_reached, late ? Reason::deadline : Reason::iterations,
                  (late ? time_out()
                        : "the most steps of a flight were used up (step_s is "

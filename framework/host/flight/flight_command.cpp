@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kMargin = 0.05;         ///< of the pilot's reach: nearer than this the pilot flies
 constexpr double kClearMargin = 0.075;   ///< and beyond this the route is clear again
-constexpr double kLeastWay = 1e-3;       ///< metres: the rest of a leg is flown with the step
-constexpr double kLeastShare = 1e-9;     ///< of a step: what rounding leaves of it is not flown
+constexpr double kMinWay = 1e-3;       ///< metres: the rest of a leg is flown with the step
+constexpr double kMinShare = 1e-9;     ///< of a step: what rounding leaves of it is not flown
 const double kGentleTurn = radians(30);  ///< of a hand-back, at both ends of its leg
-constexpr int kMostStuck = 3;
+constexpr int kMaxStuck = 3;
 }  // namespace
 
 double Flight::speed() const {
@@ -32,11 +32,11 @@ void Flight::fly_route() {
     }
   }
   double left = setup_.step_s;
-  while (!ended_ && left > kLeastShare * setup_.step_s) {
+  while (!ended_ && left > kMinShare * setup_.step_s) {
     const Vec3 next = path_.next_waypoint(progress_);
     const Vec3 way = next - state_.position;
     const double to_next = way.norm();
-    if (to_next <= kLeastWay && progress_ + kLeastWay >= path_.length()) {
+    if (to_next <= kMinWay && progress_ + kMinWay >= path_.length()) {
       if (!request_.goal.reached_at(state_.position)) {
         end_flight(RunStatus::not_reached, Reason::route_ended,
                    "the route ended " + away() + " from the goal");
@@ -48,7 +48,7 @@ void Flight::fly_route() {
       continue;
     }
     const double v = speed();
-    const bool whole = to_next - v * left <= kLeastWay;
+    const bool whole = to_next - v * left <= kMinWay;
     const double run = whole ? to_next : v * left;
     progress_ = whole ? path_.end_of_leg(progress_) : progress_ + run;
     const double dt = run / v;
@@ -87,14 +87,14 @@ void Flight::fly_pilot() {
   const double dt = step.next.time_s - state_.time_s;
   const double run = (step.next.position - state_.position).norm();
   if (run > top_speed(request_.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-    throw PluginError("broke a law of its interface: a step faster than the vehicle", Reason::law);
+    throw PluginError("violated the contract of its interface: a step faster than the vehicle", Reason::contract);
   }
   fly_leg(step.next);
 }
 
 void Flight::stuck(const std::string& why) {
   ask_replan();
-  if (++stuck_ > kMostStuck) {
+  if (++stuck_ > kMaxStuck) {
     end_flight(RunStatus::not_reached, Reason::stuck,
                "the pilot '" + setup_.pilot_name + "' is stuck at " + place(state_.position) +
                    ", " + away() + " from the goal: " + why);
@@ -116,7 +116,7 @@ bool Flight::hand_back() {
     const double s = std::min(progress_ + reach_ * k / 8, path_.length());
     const Vec3 q = path_.at(s);
     const Vec3 leg = q - state_.position;
-    if (leg.norm() <= kLeastWay) {
+    if (leg.norm() <= kMinWay) {
       continue;
     }
     const Vec3 onward = s < path_.length() ? Vec3(path_.next_waypoint(s) - q) : leg;

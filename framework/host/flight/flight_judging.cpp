@@ -58,12 +58,12 @@ void Flight::finish() {
   if (!ended_) {
     const CheckResult& check = result_.check;
     result_.status = check.ok() ? RunStatus::solved : RunStatus::rejected;
-    result_.reason = check.ok() ? Reason::none : Reason::rule;
-    result_.message = check.ok() ? "reached the goal" : "reached the goal, but " + blame();
+    result_.reason = check.ok() ? Reason::none : Reason::constraint;
+    result_.message = check.ok() ? "reached the goal" : "reached the goal, but " + attribute_to();
   }
 }
 
-std::string Flight::blame() const {
+std::string Flight::attribute_to() const {
   const Violation& first = result_.check.violations.front();
   if (first.constraint == "route_length") {
     return first.message;  // of the whole track

@@ -41,7 +41,7 @@ void Flight::replan_when_due() {
   } else {
     Replan& refused = result_.replans.back();
     refused.status = RunStatus::rejected;
-    refused.reason = Reason::rule;
+    refused.reason = Reason::constraint;
     refused.message = verdict_sentence(found, found.violations.front());
   }
 }

@@ -64,7 +64,7 @@ class Flight {
   void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);
   void finish();
   /// The first rule that was broken, with time and place.
-  std::string blame() const;
+  std::string attribute_to() const;
   /// What check() asks of a route as a whole; the legs were judged in the world of their time.
   void judge_whole(const Route& track);
 

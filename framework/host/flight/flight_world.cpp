@@ -37,7 +37,7 @@ class Carried final : public Environment, public Ground {
       sink(carried);
     });
   }
-  double do_slack() const override { return original_->slack(); }
+  double do_over_approximation() const override { return original_->over_approximation(); }
   const LayerInfo& do_info() const override { return info_; }
 
   const Ground* do_ground() const override { return ground_ != nullptr ? this : nullptr; }

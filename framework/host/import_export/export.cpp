@@ -3,7 +3,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/import_export/fence.hpp"
-#include "host/import_export/foreign_route.hpp"
+#include "host/import_export/imported_route.hpp"
 #include "host/import_export/thinning.hpp"
 #include "host/judge/judge.hpp"
 
@@ -288,7 +288,7 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
     const std::string written =
         options.format ? mission_text(text)
                        : csv_text(source, place, mission.truth.frame().has_position(), decimals);
-    const ForeignRoute read = read_foreign_route(file_name(options.format), written, mission.truth,
+    const ImportedRoute read = read_imported_route(file_name(options.format), written, mission.truth,
                                                  mission.request.start.position);
     const std::string now = problem_of(mission, source, read.route);
     if (now.empty()) {

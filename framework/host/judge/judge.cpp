@@ -10,11 +10,11 @@ namespace {
 
 constexpr const char* kLayerRule = "layer";
 
-/// Samples of the route at which a layer says two things; law 3 of Environment.
-void cross_examine(const Layer& layer, const Route& route, std::vector<Violation>& found) {
+/// Samples of the route at which a layer says two things; contract 3 of Environment.
+void check_consistency(const Layer& layer, const Route& route, std::vector<Violation>& found) {
   constexpr int kSamples = 8;  // a leg; this looks for lies, it does not judge the route
   const Environment& environment = *layer.environment;
-  const double slack = environment.slack();
+  const double slack = environment.over_approximation();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     for (int k = 0; k < kSamples; ++k) {
       const Vec3 p = route[i] + (route[i + 1] - route[i]) * (double(k) / kSamples);
@@ -58,7 +58,7 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
   }
   for (const Layer& layer : request.world->layers()) {
     try {
-      cross_examine(layer, route, result.violations);
+      check_consistency(layer, route, result.violations);
     } catch (const std::exception& error) {
       throw PluginError("the layer '" + layer.id + "' (" + layer.plugin +
                         ") threw: " + error.what());
@@ -74,7 +74,7 @@ std::string verdict_sentence(const CheckResult& result, const Violation& shown) 
          shown.constraint + "): " + shown.message;
 }
 
-const Violation* blamed_layer(const CheckResult& result) {
+const Violation* violated_layer(const CheckResult& result) {
   const auto found = std::find_if(result.violations.begin(), result.violations.end(),
                                   [](const Violation& v) { return v.constraint == kLayerRule; });
   return found == result.violations.end() ? nullptr : &*found;

@@ -21,5 +21,5 @@ std::vector<std::size_t> via_indices(const Route& route, const std::vector<Goal>
 std::string verdict_sentence(const CheckResult& result, const Violation& shown);
 
 /// The violation that says that a layer contradicts itself; null where there is none.
-const Violation* blamed_layer(const CheckResult& result);
+const Violation* violated_layer(const CheckResult& result);
 }  // namespace altiplan::host

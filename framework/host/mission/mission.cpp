@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <tuple>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/iso_time.hpp"
@@ -167,21 +167,21 @@ void expect_sound(const Layer& layer) {
     throw PluginError("made no object");
   }
   const auto [slack, box] =
-      blamed([] { return "when asked for its bounds, ground, cells, threats or notes"s; },
+      attributed([] { return "when asked for its bounds, ground, cells, threats or notes"s; },
              [&] {
                const Environment& asked = *layer.environment;
                // What throws at all does it here, and not to those who ask later.
                (void)(asked.ground(), asked.info());
-               return std::pair(asked.slack(), asked.bounds());
+               return std::pair(asked.over_approximation(), asked.bounds());
              });
   if (!(slack >= 0 && std::isfinite(slack))) {
-    throw PluginError("broke a law of its interface: its slack is " + std::to_string(slack) +
+    throw PluginError("violated the contract of its interface: its slack is " + std::to_string(slack) +
                       ", expected a length of at least 0");
   }
   for (int axis = 0; axis < 3; ++axis) {
     const bool crossed = std::isfinite(box.min[axis]) && box.max[axis] < box.min[axis];
     if (crossed || std::isnan(box.min[axis]) || std::isnan(box.max[axis])) {
-      throw PluginError("broke a law of its interface: its bounds reach from " +
+      throw PluginError("violated the contract of its interface: its bounds reach from " +
                         std::to_string(box.min[axis]) + " to " + std::to_string(box.max[axis]) +
                         " on an axis");
     }

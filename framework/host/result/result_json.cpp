@@ -40,7 +40,7 @@ Json step_json(const StepResult& step) {
   json["verb"] = name(step.verb);
   json["plugin"] = step.plugin;
   json["instead_of"] = step.instead_of ? Json(*step.instead_of) : Json(nullptr);
-  json["stands"] = step.stands;
+  json["accepted"] = step.accepted;
   json["status"] = name(step.status);
   json["reason"] = reason_json(step.reason);
   json["message"] = step.message;
@@ -55,11 +55,11 @@ Json step_json(const StepResult& step) {
   return json;
 }
 
-/// Metrics of the whole run: of the standing route, and of the planning that led to it.
+/// Metrics of the whole run: of the accepted route, and of the planning that led to it.
 Json run_metrics(const RunResult& result) {
   Json json = to_json(Measures{});
-  if (result.standing) {
-    json = to_json(*result.steps[*result.standing].measures);
+  if (result.accepted) {
+    json = to_json(*result.steps[*result.accepted].measures);
   } else {
     for (auto& [key, value] : json.items()) {
       value = nullptr;
@@ -245,11 +245,11 @@ Json result_json(const Config& config, const RunResult& result) {
   for (const StepResult& step : result.steps) {
     json["steps"].push_back(step_json(step));
   }
-  const StepResult* standing = result.standing ? &result.steps[*result.standing] : nullptr;
-  json["route"] = standing ? to_json(standing->route) : Json(nullptr);
-  json["route_lonlat"] = standing ? lonlat_json(standing->route, result.frame) : Json(nullptr);
+  const StepResult* accepted = result.accepted ? &result.steps[*result.accepted] : nullptr;
+  json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
+  json["route_lonlat"] = accepted ? lonlat_json(accepted->route, result.frame) : Json(nullptr);
   json["metrics"] = run_metrics(result);
-  json["check"] = standing ? to_json(*standing->check) : Json(nullptr);
+  json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
   json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);
   return json;

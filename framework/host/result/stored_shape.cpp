@@ -48,7 +48,7 @@ constexpr Key kStep[] = {
     {"verb", kText},
     {"plugin", kText},
     {"instead_of", kText | kNull},
-    {"stands", kTruth},
+    {"accepted", kTruth},
     {"status", kStatus},
     {"message", kText},
     {"route", kList | kNull},

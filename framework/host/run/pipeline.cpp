@@ -47,7 +47,7 @@ RunResult Run::operator()() {
     if (interrupted()) {
       break;
     }
-    if (step.verb != Verb::plan && !result_.standing) {
+    if (step.verb != Verb::plan && !result_.accepted) {
       continue;  // there is no route to work on
     }
     if (step.verb == Verb::fly) {
@@ -72,13 +72,13 @@ void Run::attempt(const StepEntry& step) {
   if (step.verb == Verb::smooth) {
     leaves = input_of(step);
   }
-  bool stands = one_attempt(step, std::nullopt);
+  bool accepted = one_attempt(step, std::nullopt);
   for (auto other = step.otherwise.begin();
        other != step.otherwise.end() && !stands && !interrupted(); ++other) {
     stands = one_attempt(*other, step.id);
   }
   if (stands) {
-    leaves = result_.standing;
+    leaves = result_.accepted;
     left_by_[result_.steps.back().id] = *leaves;
   }
   if (leaves) {
@@ -120,10 +120,10 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
   }
   const std::lock_guard lock(mutex_);
   result_.steps.back() = step;
-  if (step.stands) {
-    result_.standing = result_.steps.size() - 1;
+  if (step.accepted) {
+    result_.accepted = result_.steps.size() - 1;
   }
-  return step.stands;
+  return step.accepted;
 }
 
 void Run::set_budget(Budget& budget, const StepEntry& entry) {
@@ -148,7 +148,7 @@ void Run::name_caller(std::string who) {
   RunResult ended = result_;
   ended.status = RunStatus::failed;
   ended.reason = Reason::process_ended;
-  ended.message = caller_ + " " + ProcessGuard::LastWords::kCause;
+  ended.message = caller_ + " " + ProcessGuard::CrashReport::kCause;
   if (!ended.steps.empty()) {
     ended.steps.back().status = RunStatus::failed;
     ended.steps.back().reason = Reason::process_ended;
@@ -160,7 +160,7 @@ void Run::name_caller(std::string who) {
 
 void Run::enter(std::string who, std::optional<double> memory_mb) {
   name_caller(std::move(who));
-  arm(options_.patience_s, memory_mb);
+  arm(options_.timeout_s, memory_mb);
 }
 
 std::stop_token Run::arm(double seconds, std::optional<double> memory_mb) {
@@ -209,7 +209,7 @@ Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
   request.trace = trace_.get();
   set_budget(request.budget, entry);
   name_caller(named(entry));
-  request.budget.stop = arm(entry.within_s.value_or(options_.patience_s), entry.within_mb);
+  request.budget.stop = arm(entry.within_s.value_or(options_.timeout_s), entry.within_mb);
   return request;
 }
 
@@ -261,7 +261,7 @@ void Run::take_answer(StepResult& step, PlanResult answer) {
 
 std::size_t Run::input_of(const StepEntry& entry) const {
   const auto named = entry.from ? left_by_.find(*entry.from) : left_by_.end();
-  return named != left_by_.end() ? named->second : *result_.standing;
+  return named != left_by_.end() ? named->second : *result_.accepted;
 }
 
 void Run::conclude() {
@@ -270,22 +270,22 @@ void Run::conclude() {
   if (interrupted()) {
     result_.status = RunStatus::cancelled;
     result_.message = "interrupted";
-    if (result_.standing) {
-      result_.message += "; the route of '" + result_.steps[*result_.standing].id + "' stands";
+    if (result_.accepted) {
+      result_.message += "; the route of '" + result_.steps[*result_.accepted].id + "' stands";
     }
     return;
   }
-  if (!result_.standing) {
+  if (!result_.accepted) {
     const StepResult& last = result_.steps.back();
     result_.status = last.status;
     result_.reason = last.reason;
     result_.message = last.id + ": " + last.message;
     return;
   }
-  const std::string standing = result_.steps[*result_.standing].id;
+  const std::string accepted = result_.steps[*result_.accepted].id;
   result_.status = result_.flight ? result_.flight->status : RunStatus::solved;
   result_.reason = result_.flight ? result_.flight->reason : Reason::none;
-  result_.message = "the route of '" + standing + "' stands" +
+  result_.message = "the route of '" + accepted + "' stands" +
                     (result_.flight ? "; the flight: " + result_.flight->message : "");
 }
 
@@ -319,7 +319,7 @@ int RunResult::exit_code() const {
   const bool failed = std::any_of(steps.begin(), steps.end(), [](const StepResult& step) {
     return step.status == RunStatus::failed;
   });
-  return !standing && (failed || status == RunStatus::failed) ? 4 : 1;
+  return !accepted && (failed || status == RunStatus::failed) ? 4 : 1;
 }
 
 RunResult run(const Config& config, const RunOptions& options) { return Run(config, options)(); }

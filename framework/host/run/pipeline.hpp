@@ -20,11 +20,11 @@ struct RunOptions {
   std::function<void(const RunResult&)> on_stuck;
   std::stop_token stop;  ///< interrupted
   /// Told before each call of a plugin what the result is should that call end the process, with
-  /// LastWords::kCause in its message.
+  /// CrashReport::kCause in its message.
   std::function<void(const RunResult&)> on_call;
   ProcessGuard* process = nullptr;  ///< what plugins must leave alone; not watched where null
   /// What a step without a time of its own may take, and all that has none: constructors, judging.
-  double patience_s = kDefaultStepSeconds;
+  double timeout_s = kDefaultStepSeconds;
 };
 
 /// Runs a pipeline: every step, its alternatives, the judge after each, the flight.

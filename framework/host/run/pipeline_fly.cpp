@@ -100,7 +100,7 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
                                                 : "the step's computing time ended: ") +
                      flight.message;
   }
-  step.stands = flight.status == RunStatus::solved;
+  step.accepted = flight.status == RunStatus::solved;
   step.status = flight.status;
   step.reason = flight.reason;
   step.message = flight.message;

@@ -44,7 +44,7 @@ class Run {
   static void set_budget(Budget& budget, const StepEntry& entry);
   /// The mission's request with the step's budget, stream and trace.
   Request request_for(const StepEntry& entry, std::uint64_t index);
-  /// Says who is at work from now on, for the watchdog and for the last words.
+  /// Says who is at work from now on, for the watchdog and for the crash report.
   void name_caller(std::string who);
   /// The same for work without a budget: under the watchdog, with the patience of the options.
   void enter(std::string who, std::optional<double> memory_mb = std::nullopt);

@@ -52,7 +52,7 @@ void Run::smooth(const StepEntry& entry, StepResult& step) {
   guarded(entry, step,
           [&](const Request& request) { return between_via(*smoother, before, request); });
   judge_step(step, mission_.request);
-  if (!step.stands) {
+  if (!step.accepted) {
     step.message += step.message.empty() ? "" : "; ";
     step.message += "the route stays as it was";
   }
@@ -116,7 +116,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
     step.message = "judging the route, a layer or constraint threw";
   }
   if (const std::string changed = leave(); !changed.empty()) {
-    step.stands = false;
+    step.accepted = false;
     step.status = RunStatus::failed;
     step.reason = Reason::process_changed;
     step.message = "judging the route, a layer or constraint " + changed;
@@ -125,13 +125,13 @@ void Run::judge_step(StepResult& step, const Request& request) {
 
 void Run::take_verdict(StepResult& step) {
   const std::vector<Violation>& found = step.check->violations;
-  step.stands = found.empty();
-  if (step.stands) {
+  step.accepted = found.empty();
+  if (step.accepted) {
     return;
   }
-  const Violation* worst = blamed_layer(*step.check);
+  const Violation* worst = violated_layer(*step.check);
   step.status = worst != nullptr ? RunStatus::failed : RunStatus::rejected;
-  step.reason = worst != nullptr ? Reason::law : Reason::rule;
+  step.reason = worst != nullptr ? Reason::contract : Reason::constraint;
   if (worst == nullptr) {
     worst = &found.front();
   }

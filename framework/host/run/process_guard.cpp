@@ -62,9 +62,9 @@ struct State {
   std::locale cxx_locale;
   std::fenv_t floating{};
   std::array<struct sigaction, kWatched.size()> actions{};
-  std::atomic<const ProcessGuard::LastWords*> words = nullptr;
-  std::unique_ptr<const ProcessGuard::LastWords> kept;
-  std::unique_ptr<const ProcessGuard::LastWords> before;  ///< a handler may still read it
+  std::atomic<const ProcessGuard::CrashReport*> words = nullptr;
+  std::unique_ptr<const ProcessGuard::CrashReport> kept;
+  std::unique_ptr<const ProcessGuard::CrashReport> before;  ///< a handler may still read it
   std::string file_beside;
   std::string kept_beside;  ///< a file that is still written
   std::string kept_place;
@@ -89,7 +89,7 @@ bool write_with_cause(int to, std::string_view text, std::string_view cause) {
   constexpr std::string_view kEscaped = "\\u0001";
   while (!text.empty()) {
     const std::size_t escaped = text.find(kEscaped);
-    const std::size_t plain = text.find(ProcessGuard::LastWords::kCause);
+    const std::size_t plain = text.find(ProcessGuard::CrashReport::kCause);
     const std::size_t at = std::min(escaped, plain);
     if (!write_all(to, text.substr(0, at))) {
       return false;
@@ -121,7 +121,7 @@ bool drain(State& state) {
 }
 
 /// As OutputFile writes, which a handler cannot call.
-void write_file_with_cause(const ProcessGuard::LastWords& words, std::string_view cause) {
+void write_file_with_cause(const ProcessGuard::CrashReport& words, std::string_view cause) {
   const char* beside = the_state->file_beside.c_str();
   const int file = ::open(beside, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file < 0) {
@@ -135,7 +135,7 @@ void write_file_with_cause(const ProcessGuard::LastWords& words, std::string_vie
   }
 }
 
-[[noreturn]] void say_last_words(const ProcessGuard::LastWords& words, std::string_view cause) {
+[[noreturn]] void write_crash_report(const ProcessGuard::CrashReport& words, std::string_view cause) {
   State& state = *the_state;
   drain(state);
   write_with_cause(STDERR_FILENO, words.for_user, cause);
@@ -174,10 +174,10 @@ void leave_core(int number) {
 }
 
 void on_fatal(int number) {
-  const ProcessGuard::LastWords* words = the_state != nullptr && the_state->owner == ::getpid()
+  const ProcessGuard::CrashReport* words = the_state != nullptr && the_state->owner == ::getpid()
                                              ? the_state->words.exchange(nullptr)
                                              : nullptr;
-  if (words == nullptr) {  // no run, or the last words themselves crash
+  if (words == nullptr) {  // no run, or the crash report themselves crash
     ::signal(number, SIG_DFL);
     ::raise(number);  // comes when the handler returns
     return;
@@ -185,7 +185,7 @@ void on_fatal(int number) {
   leave_core(number);
   for (const Fatal& fatal : kFatal) {
     if (fatal.number == number) {
-      say_last_words(*words, fatal.cause);
+      write_crash_report(*words, fatal.cause);
     }
   }
 }
@@ -194,9 +194,9 @@ void on_exit() {
   if (the_state == nullptr || the_state->owner != ::getpid()) {
     return;
   }
-  if (const ProcessGuard::LastWords* words = the_state->words.exchange(nullptr)) {
+  if (const ProcessGuard::CrashReport* words = the_state->words.exchange(nullptr)) {
     std::fflush(stdout);
-    say_last_words(*words, "ended the process by exit()");
+    write_crash_report(*words, "ended the process by exit()");
   }
 }
 
@@ -344,11 +344,11 @@ bool ProcessGuard::pass_on_output() {
   return ::fstat(the_state->capture, &captured) == 0 && captured.st_size > 0 && drain(*the_state);
 }
 
-void ProcessGuard::set_last_words(LastWords words) {
+void ProcessGuard::set_crash_report(CrashReport words) {
   State& state = *the_state;
   state.words = nullptr;
   state.file_beside = words.file.empty() ? "" : name_beside(words.file).string();
-  state.before = std::exchange(state.kept, std::make_unique<const LastWords>(std::move(words)));
+  state.before = std::exchange(state.kept, std::make_unique<const CrashReport>(std::move(words)));
   state.words = state.kept.get();
 }
 

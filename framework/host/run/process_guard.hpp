@@ -9,7 +9,7 @@ namespace altiplan::host {
 /// the locale, the rounding mode, and what happens when the process ends. One at a time.
 ///
 /// While it lives, what is written to stdout is kept apart and goes to stderr; the way the process
-/// ends (a fatal signal, exit) is caught and answered with the last words.
+/// ends (a fatal signal, exit) is caught and answered with the crash report.
 class ProcessGuard {
  public:
   ProcessGuard();
@@ -31,7 +31,7 @@ class ProcessGuard {
   double kept_mb() const;
 
   /// What to say when the process ends before its time; kCause in it stands for what ended it.
-  struct LastWords {
+  struct CrashReport {
     static constexpr char kCause = '\1';
     std::string for_user;  ///< on stderr
     std::string result;    ///< on stdout and in `file`; "" where none is wanted
@@ -39,7 +39,7 @@ class ProcessGuard {
     std::string file;  ///< absolute; "" where none is wanted
     int exit_code = 4;
   };
-  void set_last_words(LastWords words);
+  void set_crash_report(CrashReport words);
   /// The same moment puts this file in its place as far as it is written; absolute names.
   void keep_as_it_is(std::string beside, std::string place);
 };

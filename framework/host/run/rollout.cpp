@@ -12,7 +12,7 @@ namespace altiplan::host {
 namespace {
 
 /// A pilot that neither arrives nor gives up is stopped here, budget or none.
-constexpr std::uint64_t kMostSteps = 1'000'000;
+constexpr std::uint64_t kMaxSteps = 1'000'000;
 constexpr double kStepSeconds = 1;
 
 /// What Pilot::step does not see: a step is no faster than the vehicle, and `arrived` is at the
@@ -21,14 +21,14 @@ void expect_lawful(const PilotStep& step, const Observation& seen, const Request
   const double run = (step.next.position - seen.state.position).norm();
   const double dt = step.next.time_s - seen.state.time_s;
   if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
-    throw PluginError("the pilot broke a law of its interface: a step faster than the vehicle",
-                      Reason::law);
+    throw PluginError("the pilot violated the contract of its interface: a step faster than the vehicle",
+                      Reason::contract);
   }
   if (step.outcome == PilotStep::Outcome::arrived && !request.goal.reached_at(step.next.position)) {
-    throw PluginError("the pilot broke a law of its interface: it says arrived " +
+    throw PluginError("the pilot violated the contract of its interface: it says arrived " +
                           std::to_string((step.next.position - request.goal.position).norm()) +
                           " m from the goal",
-                      Reason::law);
+                      Reason::contract);
   }
 }
 }  // namespace
@@ -69,7 +69,7 @@ PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
       }
       break;
     }
-    if (steps == kMostSteps) {
+    if (steps == kMaxSteps) {
       result.status = PlanStatus::no_route;
       result.message = "the pilot did not arrive in " + std::to_string(steps) + " steps";
       break;

@@ -17,7 +17,7 @@ struct StepResult {
   Verb verb = Verb::plan;
   std::string plugin;
   std::optional<std::string> instead_of;
-  bool stands = false;
+  bool accepted = false;
   RunStatus status = RunStatus::failed;
   Reason reason = Reason::none;
   std::string message;
@@ -38,7 +38,7 @@ struct RunResult {
   std::string message;
   bool budget_hit = false;
   std::vector<StepResult> steps;
-  std::optional<std::size_t> standing;  ///< index of the step whose route stands
+  std::optional<std::size_t> accepted;  ///< index of the step whose route stands
   std::optional<FlightResult> flight;
   Frame frame;
   double setup_time_s = 0;

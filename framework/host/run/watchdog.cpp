@@ -23,9 +23,9 @@ double resident_mb() {
 }
 }  // namespace
 
-Watchdog::Watchdog(std::function<void(const std::string&)> last_words,
+Watchdog::Watchdog(std::function<void(const std::string&)> crash_report,
                    std::function<double()> held_mb)
-    : last_words_(std::move(last_words)),
+    : crash_report_(std::move(crash_report)),
       held_mb_(std::move(held_mb)),
       thread_([this](const std::stop_token& done) { watch(done); }) {}
 
@@ -102,7 +102,7 @@ void Watchdog::watch(const std::stop_token& done) {
         stopped_at_ = now;
         stop_.request_stop();
       } else if (grown > 2 * *memory_mb_ + 64) {  // it does not stop: before the machine suffers
-        last_words_("used more memory than its within_mb and did not stop when told to");
+        crash_report_("used more memory than its within_mb and did not stop when told to");
       }
     }
     if (!stopped_ && now >= stop_at_) {
@@ -110,7 +110,7 @@ void Watchdog::watch(const std::stop_token& done) {
       stopped_at_ = now;
       stop_.request_stop();
     } else if (stopped_ && now >= due()) {
-      last_words_(out_of_memory_
+      crash_report_(out_of_memory_
                       ? "used more memory than its within_mb and did not stop when told to"
                   : interrupted_ ? "did not stop within half a second of the interruption"
                                  : "did not stop within two seconds of the end of its time");

@@ -15,13 +15,13 @@ namespace altiplan::host {
 
 /// Ends a step that outstays its welcome. While armed, it fires the stop token when the time is
 /// over (or the process has grown by more memory than allowed), and two seconds later, when the
-/// step has still not returned, it calls `last_words`, which does not return. A user who interrupts
+/// step has still not returned, it calls `crash_report`, which does not return. A user who interrupts
 /// waits for half a second.
 class Watchdog {
  public:
-  /// `last_words` gets the sentence that says why; `held_mb` tells of memory that does not count as
+  /// `crash_report` gets the sentence that says why; `held_mb` tells of memory that does not count as
   /// resident.
-  explicit Watchdog(std::function<void(const std::string&)> last_words,
+  explicit Watchdog(std::function<void(const std::string&)> crash_report,
                     std::function<double()> held_mb = {});
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
@@ -43,7 +43,7 @@ class Watchdog {
   /// When the step is stopped, or given up where it has been.
   Clock::time_point due() const;
 
-  std::function<void(const std::string&)> last_words_;
+  std::function<void(const std::string&)> crash_report_;
   std::function<double()> held_mb_;
   std::mutex mutex_;
   std::condition_variable_any changed_;

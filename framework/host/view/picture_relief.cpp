@@ -9,7 +9,7 @@
 namespace altiplan::host::picture {
 namespace {
 
-constexpr int kMostPixels = 700;  // on a side
+constexpr int kMaxPixels = 700;  // on a side
 
 struct Heights {
   int nx = 0;
@@ -29,7 +29,7 @@ Heights heights_for_picture(const Json& ground) {
   const int nx = ground.at("nx").get<int>();
   const int ny = ground.at("ny").get<int>();
   const auto all = numbers<float>(ground.at("heights"));
-  const int every = (std::max(nx, ny) + kMostPixels - 1) / kMostPixels;
+  const int every = (std::max(nx, ny) + kMaxPixels - 1) / kMaxPixels;
   Heights heights{(nx - 1) / every + 1,
                   (ny - 1) / every + 1,
                   ground.at("dx").get<double>() * every,

@@ -99,8 +99,8 @@ Map::Map(const Json& box, const Area& room) {
 namespace {
 
 constexpr double kWidth = 1600;
-constexpr double kMostHeight = 1000;
-constexpr double kLeastMap = 300;  // leaves the legend some room
+constexpr double kMaxHeight = 1000;
+constexpr double kMinMap = 300;  // leaves the legend some room
 constexpr double kMargin = 24;
 constexpr double kTitle = 36;
 constexpr double kLegend = 380;
@@ -125,9 +125,9 @@ std::string picture_svg(const Json& scene) {
   using namespace picture;
   const double below = has_profile(scene) ? kProfile : 0;
   const Area room{kMargin, kMargin + kTitle, kWidth - 3 * kMargin - kLegend,
-                  kMostHeight - 2 * kMargin - kTitle - below};
+                  kMaxHeight - 2 * kMargin - kTitle - below};
   const Map map(scene.at("box"), room);
-  const double bottom = std::max(map.area().bottom(), room.top + kLeastMap);
+  const double bottom = std::max(map.area().bottom(), room.top + kMinMap);
   const double height = bottom + below + kMargin;
   const std::string title = scene.at("title").get<std::string>();
   const std::string size = "width=\"" + pixels(kWidth) + "\" height=\"" + pixels(height) + "\"";

@@ -242,8 +242,8 @@ Json rounded(const std::optional<double>& value) { return value ? rounded(*value
 Json rounded(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
 Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) {
-  constexpr double kLeastShare = 0.01;  // of the longest edge; a level flight has no height
-  constexpr double kLeastEdge = 1;
+  constexpr double kMinShare = 0.01;  // of the longest edge; a level flight has no height
+  constexpr double kMinEdge = 1;
   Box box = mission.request.volume;
   box = box.with(mission.request.start.position).with(mission.request.goal.position);
   for (const Goal& via : mission.via) {
@@ -257,7 +257,7 @@ Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) 
       box = box.with(p);
     }
   }
-  const double least = std::max(kLeastEdge, kLeastShare * (box.max - box.min).maxCoeff());
+  const double least = std::max(kMinEdge, kMinShare * (box.max - box.min).maxCoeff());
   for (int axis = 0; axis < 3; ++axis) {
     const double missing = std::max(0.0, least - (box.max[axis] - box.min[axis]));
     box.min[axis] -= missing / 2;

@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kMostCells = 1'000'000;
+constexpr double kMaxCells = 1'000'000;
 
 /// What is kept of the layer's cells: not those within its ground, which is drawn as such.
 VoxelGrid without_ground(const Ground& ground, const VoxelGrid& cells) {
@@ -35,10 +35,10 @@ Drawing drawing_by_cells(const Layer& layer, const Box& box, SceneNotes& notes) 
     return {};
   }
   GridSpec spec;
-  const double edge = std::cbrt(size.prod() / kMostCells);
+  const double edge = std::cbrt(size.prod() / kMaxCells);
   double cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    spec.counts[axis] = int(std::clamp(std::floor(size[axis] / edge), 1.0, kMostCells / cells));
+    spec.counts[axis] = int(std::clamp(std::floor(size[axis] / edge), 1.0, kMaxCells / cells));
     spec.cell[axis] = size[axis] / spec.counts[axis];
     cells *= spec.counts[axis];
   }

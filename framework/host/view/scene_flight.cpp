@@ -13,7 +13,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::size_t kMostPoints = 20'000;
+constexpr std::size_t kMaxPoints = 20'000;
 
 /// For each event the first point of the track to which it happens.
 std::vector<std::optional<std::size_t>> points_of_events(const Track& track,
@@ -288,7 +288,7 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   const Json& flight = stored.json.at("flight");
   const auto points = points_of_events(track, events);
   const std::set<std::size_t> must = happenings(flight, track, points);
-  const std::set<std::size_t> shown = thinned(track, must, kMostPoints);
+  const std::set<std::size_t> shown = thinned(track, must, kMaxPoints);
   if (shown.size() < track.size()) {
     notes.add(stored.file + ": the flight is shown by " + std::to_string(shown.size()) +
               " of its " + std::to_string(track.size()) + " points");

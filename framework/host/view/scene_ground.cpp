@@ -9,9 +9,9 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kMostPosts = 1'000'000;
+constexpr double kMaxPosts = 1'000'000;
 /// A model a little above that is shown as it is: every other post would be a quarter of it.
-constexpr double kMostNativePosts = 1'050'000;
+constexpr double kMaxNativePosts = 1'050'000;
 /// Samples on the longer side of a ground that has no posts of its own.
 constexpr double kSamples = 400;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -68,7 +68,7 @@ Json of_field(const HeightField& field, const std::string& id, const Box& box, S
   const Window north = window(box.min.y(), box.max.y(), y0, dy, field.rows());
   const double count = double(east.count) * north.count;
   const int every =
-      count <= kMostNativePosts ? 1 : std::max(2, int(std::ceil(std::sqrt(count / kMostPosts))));
+      count <= kMaxNativePosts ? 1 : std::max(2, int(std::ceil(std::sqrt(count / kMaxPosts))));
   const Posts posts{(east.count - 1) / every + 1,
                     (north.count - 1) / every + 1,
                     x0 + east.first * dx,
@@ -91,9 +91,9 @@ Json of_samples(const World& world, const Box& area, double spacing, SceneNotes&
   if (!(size.x() > 0 && size.y() > 0)) {
     return nullptr;
   }
-  spacing = std::max(spacing, std::sqrt(size.x() * size.y() / kMostPosts));
+  spacing = std::max(spacing, std::sqrt(size.x() * size.y() / kMaxPosts));
   const auto steps = [&](double length) {
-    return int(std::clamp(std::floor(length / spacing), 1.0, kMostPosts / 2));
+    return int(std::clamp(std::floor(length / spacing), 1.0, kMaxPosts / 2));
   };
   const Posts posts{steps(size.x()) + 1, steps(size.y()) + 1,        area.min.x(),
                     area.min.y(),        size.x() / steps(size.x()), size.y() / steps(size.y())};

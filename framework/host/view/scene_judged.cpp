@@ -12,7 +12,7 @@ namespace altiplan::host {
 
 std::string status_of(const CheckResult& check) {
   return name(check.ok()                       ? RunStatus::solved
-              : blamed_layer(check) != nullptr ? RunStatus::failed
+              : violated_layer(check) != nullptr ? RunStatus::failed
                                                : RunStatus::rejected);
 }
 

@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::size_t kMostViolations = 1000;
+constexpr std::size_t kMaxViolations = 1000;
 
 /// The limit that routes are held to, null where there is none.
 Json limits_json(const Request& request) {
@@ -43,13 +43,13 @@ Json no_metrics() {
   return metrics;
 }
 
-Json step_scene(const Json& step, const StoredResult& stored, const std::optional<Judged>& standing,
+Json step_scene(const Json& step, const StoredResult& stored, const std::optional<Judged>& accepted,
                 const Mission& mission, SceneNotes& notes) {
   const std::string whose = stored.file + ": " + step.at("id").get<std::string>();
   Json json;
   copy_texts(json, step, {"id", "verb", "plugin", "status", "message"});
   json["instead_of"] = step.at("instead_of");
-  json["stands"] = step.at("stands").get<bool>();
+  json["accepted"] = step.at("accepted").get<bool>();
   json["route"] = nullptr;
   json["metrics"] = metrics_scene(step.at("metrics"));
   json["check"] = check_scene(step.at("check"), whose, notes);
@@ -58,7 +58,7 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
     return json;
   }
   Route places = route_of(route, stored.file);
-  const Judged now = standing && standing->route == places ? *standing : judged(places, mission);
+  const Judged now = accepted && accepted->route == places ? *accepted : judged(places, mission);
   json["route"] = to_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
   if (!json.at("check").is_null()) {  // else the run did not get as far as a verdict
@@ -69,16 +69,16 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
 }
 
 /// The status of the run: that of its route, and where that is valid of its flight.
-void conclude(Json& json, const StoredResult& stored, const std::optional<Judged>& standing,
+void conclude(Json& json, const StoredResult& stored, const std::optional<Judged>& accepted,
               SceneNotes& notes) {
   const Json& flight = json.at("flight");
-  if (!standing) {
+  if (!accepted) {
     json["judged"] = nullptr;
     if (json.at("status") == name(RunStatus::solved)) {
       set_status(json, stored.file, name(RunStatus::no_route), "there is no route in it");
     }
-  } else if (!standing->check.ok() || flight.is_null()) {
-    set_status(json, stored.file, status_of(standing->check), first_found(standing->check));
+  } else if (!accepted->check.ok() || flight.is_null()) {
+    set_status(json, stored.file, status_of(accepted->check), first_found(accepted->check));
   } else {
     const bool differs = !flight.at("judged").is_null();
     set_status(json, stored.file, flight.at("status").get<std::string>(),
@@ -112,10 +112,10 @@ Json check_scene(Json check, const std::string& whose, SceneNotes& notes) {
     return check;
   }
   auto& violations = check.at("violations").get_ref<Json::array_t&>();
-  if (violations.size() > kMostViolations) {
-    notes.add(whose + ": the first " + std::to_string(kMostViolations) + " of " +
+  if (violations.size() > kMaxViolations) {
+    notes.add(whose + ": the first " + std::to_string(kMaxViolations) + " of " +
               std::to_string(violations.size()) + " violations are listed");
-    violations.resize(kMostViolations);
+    violations.resize(kMaxViolations);
   }
   for (const Json& violation : violations) {
     violation.at("at").get<std::size_t>();
@@ -128,29 +128,29 @@ Json check_scene(Json check, const std::string& whose, SceneNotes& notes) {
 Json result_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
   const Json& result = stored.json;
-  std::optional<Judged> standing;
+  std::optional<Judged> accepted;
   if (stored.route) {
-    standing = judged(*stored.route, mission);
+    accepted = judged(*stored.route, mission);
   }
   Json json{{"name", std::filesystem::path(stored.file).stem().string()}, {"file", stored.file}};
   copy_texts(json, result, {"status", "message"});
   json["judged"] = nullptr;
   json["seed"] = result.at("seed");
   json["metrics"] =
-      metrics_now(result.at("metrics"), standing ? to_json(standing->measures) : no_metrics());
+      metrics_now(result.at("metrics"), accepted ? to_json(accepted->measures) : no_metrics());
   result.at("check");  // or it is no result
   json["check"] =
-      check_scene(standing ? to_json(standing->check) : Json(nullptr), stored.file, notes);
+      check_scene(accepted ? to_json(accepted->check) : Json(nullptr), stored.file, notes);
   json["steps"] = Json::array();
   for (const Json& step : result.at("steps")) {
-    json["steps"].push_back(step_scene(step, stored, standing, mission, notes));
+    json["steps"].push_back(step_scene(step, stored, accepted, mission, notes));
   }
-  json["route"] = standing ? to_json(standing->route) : Json(nullptr);
+  json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
   json["profile"] =
-      standing ? route_profile(standing->route, mission.request, samples) : Json(nullptr);
+      accepted ? route_profile(accepted->route, mission.request, samples) : Json(nullptr);
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
-  conclude(json, stored, standing, notes);
+  conclude(json, stored, accepted, notes);
   json["trace"] = trace_scene(stored, notes);
   return json;
 }

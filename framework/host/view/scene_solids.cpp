@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "host/base/base64.hpp"
 #include "host/base/words.hpp"
 #include "host/view/scene_parts.hpp"
@@ -115,7 +115,7 @@ Json packed_boxes(Json part, const std::vector<Box>& boxes, const Box& whole) {
 }
 
 Drawing drawing_of(const Layer& layer, const Box& box, SceneNotes& notes) {
-  return blamed(
+  return attributed(
       [&] {
         return "the environment '" + layer.plugin + "' (" + layer.id +
                "), when asked what it looks like,";

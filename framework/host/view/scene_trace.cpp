@@ -12,9 +12,9 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::size_t kMostEvents = 200'000;
-constexpr std::size_t kMostIterations = 20'000;  // of those
-constexpr std::size_t kMostSteps = 256;
+constexpr std::size_t kMaxEvents = 200'000;
+constexpr std::size_t kMaxIterations = 20'000;  // of those
+constexpr std::size_t kMaxSteps = 256;
 /// In the order of their numbers in the scene.
 constexpr std::array<std::string_view, 5> kKinds{"expanded", "added", "removed", "rewired",
                                                  "iteration"};
@@ -64,7 +64,7 @@ class Thinned {
   std::size_t most_;
   std::size_t every_ = 1;
   std::size_t greatest_ = 0;
-  std::array<std::size_t, kMostSteps> counts_{};
+  std::array<std::size_t, kMaxSteps> counts_{};
   std::vector<Event> kept_;
 };
 
@@ -148,8 +148,8 @@ class Reader {
   std::uint8_t step_number(const std::string& id) {
     if (steps_.empty() || id != steps_[step_]) {
       step_ = std::size_t(std::find(steps_.begin(), steps_.end(), id) - steps_.begin());
-      if (step_ == kMostSteps) {
-        throw Error("more than " + std::to_string(kMostSteps) + " steps");
+      if (step_ == kMaxSteps) {
+        throw Error("more than " + std::to_string(kMaxSteps) + " steps");
       }
       if (step_ == steps_.size()) {
         steps_.push_back(id);
@@ -175,8 +175,8 @@ class Reader {
   std::vector<std::string> steps_;
   std::unordered_map<std::int64_t, Point> nodes_;
   bool is_population_ = false;  // the search: what it adds is routes
-  Thinned iterations_{kMostIterations};
-  Thinned others_{kMostEvents - kMostIterations};
+  Thinned iterations_{kMaxIterations};
+  Thinned others_{kMaxEvents - kMaxIterations};
 };
 
 bool begins_a_trace(const std::string& line) {

@@ -31,7 +31,7 @@ namespace {
 /// Lists shorter than that are not worth it.
 constexpr std::size_t kLongList = 64;
 constexpr double kPerUnit = 1000;
-constexpr double kMostUnits = 0x1p45;
+constexpr double kMaxUnits = 0x1p45;
 
 /// Whether the number is one of so many thousandths, or null.
 bool is_packable(const Json& value) {
@@ -43,7 +43,7 @@ bool is_packable(const Json& value) {
   }
   const auto number = value.get<double>();
   const double units = std::round(number * kPerUnit);
-  return std::abs(units) < kMostUnits && units / kPerUnit == number;
+  return std::abs(units) < kMaxUnits && units / kPerUnit == number;
 }
 
 /// Whole numbers, seven bits a byte.

@@ -68,7 +68,7 @@ struct ALTIPLAN_API Site {
 ///  1. Pure: built from (parameters, Site) alone; const functions may run on many threads.
 ///  2. clearance is signed (negative inside), 1-Lipschitz, and never more than the true distance.
 ///  3. blocked(a, b, r) is true whenever the least distance between the leg and the layer is below
-///     r - 1e-6 m; it may be true up to slack() metres above r; touching is free.
+///     r - 1e-6 m; it may be true up to over_approximation() metres above r; touching is free.
 ///  4. blocked is symmetric in a and b, and monotone in r.
 ///  5. Its ground, if it has one, holds the laws of Ground. Beyond it the layer blocks nothing: a
 ///     leg with no ground below part of it is the judge's to refuse.
@@ -84,7 +84,7 @@ class ALTIPLAN_API Environment {
   /// Calls the sink once for each obstacle whose distance from p is at most `reach`.
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
-  double slack() const { return do_slack(); }
+  double over_approximation() const { return do_over_approximation(); }
   /// The ground that the layer brings, or null; as the layer's info, the same for its whole life.
   const Ground* ground() const { return do_ground(); }
   const LayerInfo& info() const { return do_info(); }
@@ -98,14 +98,14 @@ class ALTIPLAN_API Environment {
  private:
   virtual Box do_bounds() const = 0;
   virtual double do_clearance(const Vec3& p) const = 0;
-  /// Default: sphere tracing on clearance in steps of at least slack().
+  /// Default: sphere tracing on clearance in steps of at least over_approximation().
   virtual bool do_blocked(const Vec3& a, const Vec3& b, double r) const;
   /// Default: one obstacle, by clearance and its gradient.
   virtual void do_near(const Vec3& p, double reach, const NearSink& sink) const;
   /// Default: by clearance at cell centres, blocking every cell in doubt.
   virtual void do_rasterize(VoxelGrid& grid) const;
   /// Default 0.05 m.
-  virtual double do_slack() const;
+  virtual double do_over_approximation() const;
   /// Default: null. A layer with a ground is one itself, as a second base, or has one.
   virtual const Ground* do_ground() const;
   /// Default: nothing to say. A layer that says something keeps it.

@@ -65,7 +65,7 @@ class ALTIPLAN_API ParameterError : public Error {
   std::string key_;
 };
 
-/// A plugin threw, broke a law of its interface, or could not be loaded; the text names it.
+/// A plugin threw, violated the contract of its interface, or could not be loaded; the text names it.
 class ALTIPLAN_API PluginError : public Error {
  public:
   explicit PluginError(const std::string& message, Reason reason = Reason::none)
@@ -79,7 +79,7 @@ class ALTIPLAN_API PluginError : public Error {
 
 /// Within a `catch`: throws what was caught as a PluginError, "WHOthrew: …"; `who` ends with a
 /// space or is empty.
-[[noreturn]] ALTIPLAN_API void blame(const std::string& who);
+[[noreturn]] ALTIPLAN_API void attribute_to(const std::string& who);
 
 /// The time of a budget ended, or its stop was requested, while the framework worked for a planner:
 /// whoever called the planner answers with `timed_out` or `cancelled`.

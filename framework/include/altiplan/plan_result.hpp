@@ -47,8 +47,8 @@ struct Traits {
   bool any_angle = false;        ///< never longer than the grid's shortest
   bool anytime = false;          ///< more budget never gives a longer route
   bool incremental = false;      ///< its session keeps what it searched
-  bool plane = true;             ///< level flight
-  bool space = true;             ///< three dimensions
+  bool planar = true;            ///< level flight
+  bool spatial = true;           ///< three dimensions
   bool avoids_obstacles = true;  ///< no leg through a known one; false: a local planner's may lead
                                  ///< there, and the judge says so
 };

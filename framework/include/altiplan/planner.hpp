@@ -12,7 +12,7 @@ namespace altiplan {
 
 /// A plan that goes on while the vehicle flies: knows its last result and takes changes.
 /// Laws: 1. update continues from the given state; the first point of its route is that position.
-/// 2. After an update, result() is what update returned. What breaks a law, or throws, is a
+/// 2. After an update, result() is what update returned. What violates the contract, or throws, is a
 /// PluginError, after which the session may be asked again.
 class ALTIPLAN_API Session {
  public:
@@ -39,7 +39,7 @@ ALTIPLAN_API std::optional<PlanResult> impossible_ends(const Request& request);
 ///  1. The route starts at request.start.position exactly and ends within the goal's tolerance.
 ///  2. Every leg satisfies leg_ok of check.hpp.
 ///  3. `solved` if and only if a route is returned; no route is a status, never an exception. What
-///     breaks a law, or throws, is a PluginError.
+///     violates the contract, or throws, is a PluginError.
 ///  4. The budget is kept, the stop token honoured within 1,024 iterations.
 ///  5. Two calls with equal requests give equal results, on any threads, in any order.
 class ALTIPLAN_API Planner {

@@ -174,7 +174,7 @@ std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
   } catch (const Error&) {
     throw;
   } catch (...) {
-    blame("");
+    attribute_to("");
   }
 }
 

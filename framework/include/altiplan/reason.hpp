@@ -19,19 +19,19 @@ enum class Reason {
   // Of a failure.
   threw,
   out_of_memory,    ///< std::bad_alloc
-  law_of_ends,      ///< a route that does not begin or end where it must
-  law_of_results,   ///< a session that shows another result than it returned
-  law,              ///< another law of an interface
+  contract_of_ends,      ///< a route that does not begin or end where it must
+  contract_of_results,   ///< a session that shows another result than it returned
+  contract,              ///< another law of an interface
   process_changed,  ///< it changed what belongs to the process: locale, working folder, …
   never_stopped,    ///< it went on after its budget and was ended
   process_ended,    ///< by a signal, or by a call of exit
   // Of a route or a track that was judged.
-  rule,  ///< it breaks a rule
+  constraint,  ///< it breaks a rule
   // Of a flight that does not arrive; the deadline is its max_time_s.
   stuck,        ///< the pilot finds no way on
   route_ended,  ///< away from the goal
 };
 
-/// The word of a reason in results ("law_of_ends"); "" for none.
+/// The word of a reason in results ("contract_of_ends"); "" for none.
 ALTIPLAN_API const char* name(Reason reason);
 }  // namespace altiplan

@@ -24,7 +24,7 @@ struct Dimension {
 class ALTIPLAN_API Search {
  public:
   virtual ~Search();
-  /// Throws PluginError where the batch breaks law 1.
+  /// Throws PluginError where the batch breaks contract 1.
   std::vector<std::vector<double>> ask();
   /// Throws Error where there is not a score a point, or one that is not a number.
   void tell(std::span<const double> scores);

@@ -90,7 +90,7 @@ class ALTIPLAN_API World {
   double ground_gap_max(const Vec3& a, const Vec3& b) const;
   std::vector<Threat> threats() const;
   /// Greatest slack of the layers.
-  double slack() const;
+  double over_approximation() const;
   std::optional<GridSpec> native_grid() const;
 
   /// Occupancy of all layers under the spec; built once per spec and revision, a change patches it

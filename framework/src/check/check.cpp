@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "altiplan/measures.hpp"
 #include "altiplan/what_blocks.hpp"
 
@@ -274,7 +274,7 @@ namespace {
 /// The answer of a constraint; what it throws gets its name.
 template <class Ask>
 auto answer_of(const NamedConstraint& named, const Ask& ask) {
-  return blamed([&] { return "the constraint '" + named.name + "'"; },
+  return attributed([&] { return "the constraint '" + named.name + "'"; },
                 [&] { return ask(*named.constraint); });
 }
 }  // namespace
@@ -320,7 +320,7 @@ CheckResult check(const Route& route, const Request& request) {
              named, [&](const Constraint& asked) { return asked.violations(route, request); })) {
       if (violation.at >= route.size()) {
         throw PluginError("the constraint '" + named.name +
-                          "' broke a law of its interface: it blames waypoint " +
+                          "' violated the contract of its interface: it blames waypoint " +
                           std::to_string(violation.at) + " of " + std::to_string(route.size()));
       }
       violation.constraint = named.name;
@@ -377,7 +377,7 @@ void apply_constraints(Request& request, std::vector<NamedConstraint> constraint
       if (!no_looser(request.limits, before)) {
         throw PluginError(
             "the constraint '" + named.name +
-            "' broke a law of its interface: it loosened a limit, or made it no number");
+            "' violated the contract of its interface: it loosened a limit, or made it no number");
       }
       request.constraints.push_back(std::move(named));
     }

@@ -56,7 +56,7 @@ double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, c
     return total / vehicle.speed_mps;
   }
   // Clearance changes by at most a metre a metre: the speed holds until a threshold can be met.
-  constexpr double kLeastStep = 1;
+  constexpr double kMinStep = 1;
   double time = 0;
   double along = 0;
   while (along < total) {
@@ -65,7 +65,7 @@ double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, c
     for (const SpeedNear& near : vehicle.speed_near) {
       step = std::min(step, std::abs(clearance - near.within_m));
     }
-    step = std::min(std::max(step, kLeastStep), total - along);
+    step = std::min(std::max(step, kMinStep), total - along);
     time += step / vehicle.speed_at(clearance);
     along += step;
   }

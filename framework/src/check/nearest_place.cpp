@@ -80,7 +80,7 @@ DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& 
 std::optional<NearestLeg> nearest_leg(const Environment& environment, const Route& route,
                                       double enough) {
   std::vector<NearestLeg> candidates;
-  const double spare = environment.slack() + 2 * kLengthTolerance;
+  const double spare = environment.over_approximation() + 2 * kLengthTolerance;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     const double clearance = environment.clearance((route[i] + route[i + 1]) / 2);
     const double at_least = clearance - (route[i + 1] - route[i]).norm() / 2 - spare;
@@ -152,7 +152,7 @@ double place_clearance(const Environment& environment, const Vec3& p) {
     // The distance itself, as with most layers, or up to the slack less.
     for (met = free; free > 0 && !is_free(free);) {
       met = free;
-      free = std::max(0.0, free - environment.slack() - kFine);
+      free = std::max(0.0, free - environment.over_approximation() - kFine);
     }
   } else if (const Ground* ground = environment.ground(); ground != nullptr && ground->is_all()) {
     environment.near(p, kInfinity,

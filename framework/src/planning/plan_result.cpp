@@ -37,20 +37,20 @@ const char* name(Reason reason) {
       return "threw";
     case Reason::out_of_memory:
       return "out_of_memory";
-    case Reason::law_of_ends:
-      return "law_of_ends";
-    case Reason::law_of_results:
-      return "law_of_results";
-    case Reason::law:
-      return "law";
+    case Reason::contract_of_ends:
+      return "contract_of_ends";
+    case Reason::contract_of_results:
+      return "contract_of_results";
+    case Reason::contract:
+      return "contract";
     case Reason::process_changed:
       return "process_changed";
     case Reason::never_stopped:
       return "never_stopped";
     case Reason::process_ended:
       return "process_ended";
-    case Reason::rule:
-      return "rule";
+    case Reason::constraint:
+      return "constraint";
     case Reason::stuck:
       return "stuck";
     case Reason::route_ended:

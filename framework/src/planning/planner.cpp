@@ -49,7 +49,7 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
     result.counters = {{"expanded", 0}};
     return result;
   } catch (...) {
-    blame("");
+    attribute_to("");
   }
 }
 
@@ -80,25 +80,25 @@ PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal,
     result.reason = spent_part(result, budget);
   }
   const auto broken = [](Reason law, const std::string& how) {
-    return PluginError("the planner broke a law of its interface: " + how, law);
+    return PluginError("the planner violated the contract of its interface: " + how, law);
   };
   if (result.status == PlanStatus::no_route && result.message.empty()) {
-    throw broken(Reason::law, "returns no route and does not say why");
+    throw broken(Reason::contract, "returns no route and does not say why");
   }
   if (result.status != PlanStatus::solved) {
     return result;
   }
   if (result.route.empty()) {
-    throw broken(Reason::law, "says solved but returns no route");
+    throw broken(Reason::contract, "says solved but returns no route");
   }
   if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
-    throw broken(Reason::law, "returns a route with a coordinate that is not finite");
+    throw broken(Reason::contract, "returns a route with a coordinate that is not finite");
   }
   if (result.route.front() != start) {
-    throw broken(Reason::law_of_ends, "returns a route that does not begin at the start");
+    throw broken(Reason::contract_of_ends, "returns a route that does not begin at the start");
   }
   if (!goal.reached_at(result.route.back())) {
-    throw broken(Reason::law_of_ends,
+    throw broken(Reason::contract_of_ends,
                  "returns a route that ends " +
                      std::to_string((result.route.back() - goal.position).norm()) +
                      " m from the goal, outside its tolerance");
@@ -180,8 +180,8 @@ PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr
   const PlanResult shown = guarded([&] { return do_result(); });
   if (!same(said, shown)) {
     throw PluginError(
-        "the session broke a law of its interface: result() is not what update returned",
-        Reason::law_of_results);
+        "the session violated the contract of its interface: result() is not what update returned",
+        Reason::contract_of_results);
   }
   return said;
 }
@@ -202,7 +202,7 @@ std::unique_ptr<Session> Planner::begin(const Request& request) const {
   guarded([&] {
     session = do_begin(request);
     if (session == nullptr) {
-      throw PluginError("begin returned no session", Reason::law);
+      throw PluginError("begin returned no session", Reason::contract);
     }
     return held_to_law(session->result(), request.start.position, request.goal, request.budget);
   });
@@ -216,8 +216,8 @@ std::unique_ptr<Session> Planner::do_begin(const Request& request) const {
 std::unique_ptr<Pilot> LocalPlanner::begin(const Request& request) const {
   std::unique_ptr<Pilot> pilot = do_begin(request);
   if (pilot == nullptr) {
-    throw PluginError("the local planner broke a law of its interface: begin returned no pilot",
-                      Reason::law);
+    throw PluginError("the local planner violated the contract of its interface: begin returned no pilot",
+                      Reason::contract);
   }
   return pilot;
 }
@@ -228,8 +228,8 @@ double Pilot::reach_m() const {
   const double reach = do_reach_m();
   if (!(reach >= 0 && std::isfinite(reach))) {
     throw PluginError(
-        "the pilot broke a law of its interface: its reach is " + std::to_string(reach) + " m",
-        Reason::law);
+        "the pilot violated the contract of its interface: its reach is " + std::to_string(reach) + " m",
+        Reason::contract);
   }
   return reach;
 }
@@ -240,9 +240,9 @@ PilotStep Pilot::step(const Observation& seen) {
     const double dt = step.next.time_s - seen.state.time_s;
     if (!is_finite(step.next.position) || !(dt > 0) || dt > seen.max_dt_s * (1 + 1e-9)) {
       throw PluginError(
-          "the pilot broke a law of its interface: a step must end at a finite place "
+          "the pilot violated the contract of its interface: a step must end at a finite place "
           "after more than 0 and at most max_dt seconds",
-          Reason::law);
+          Reason::contract);
     }
   }
   return step;
@@ -264,8 +264,8 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
        result.route.back() != route.back() ||
        !std::all_of(result.route.begin(), result.route.end(), is_finite))) {
     throw PluginError(
-        "the smoother broke a law of its interface: first and last points must stay, all finite",
-        Reason::law_of_ends);
+        "the smoother violated the contract of its interface: first and last points must stay, all finite",
+        Reason::contract_of_ends);
   }
   return result;
 }

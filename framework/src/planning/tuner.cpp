@@ -35,7 +35,7 @@ void expect_sound(const std::vector<Dimension>& space) {
 }
 
 [[noreturn]] void break_law_1(const std::string& how) {
-  throw PluginError("broke a law of its interface: " + how);
+  throw PluginError("violated the contract of its interface: " + how);
 }
 
 void expect_inside(const std::vector<double>& point, const std::vector<Dimension>& space) {
@@ -93,7 +93,7 @@ std::unique_ptr<Search> Tuner::begin(std::vector<Dimension> space, RandomStream 
   expect_sound(space);
   std::unique_ptr<Search> search = do_begin(space, random);
   if (search == nullptr) {
-    throw PluginError("broke a law of its interface: it began no search");
+    throw PluginError("violated the contract of its interface: it began no search");
   }
   search->space_ = std::move(space);
   return search;

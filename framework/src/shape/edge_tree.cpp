@@ -96,7 +96,7 @@ void EdgeTree::unite(std::size_t node, std::size_t other) {
 
 bool EdgeTree::covers(double x, double y) const {
   bool inside = false;
-  std::array<std::int32_t, kMostLevels> open{0};
+  std::array<std::int32_t, kMaxLevels> open{0};
   std::size_t waiting = empty() ? 0 : 1;
   while (waiting > 0) {
     const std::int32_t index = open[--waiting];

@@ -49,7 +49,7 @@ class EdgeTree {
 
  private:
   static constexpr std::int32_t kLeafEdges = 6;
-  static constexpr std::size_t kMostLevels = 64;
+  static constexpr std::size_t kMaxLevels = 64;
 
   struct Node {
     Rectangle box;
@@ -82,7 +82,7 @@ void EdgeTree::visit(const Gap& gap, const Limit& limit, const Visit& visit) con
     std::int32_t node;
     double gap;
   };
-  std::array<Open, kMostLevels> open;
+  std::array<Open, kMaxLevels> open;
   std::size_t waiting = 0;
   if (!empty()) {
     open[waiting++] = {0, gap(nodes_[0].box)};

@@ -100,7 +100,7 @@ double Ground::gap_max(const Vec3& a, const Vec3& b) const {
 bool Environment::do_blocked(const Vec3& a, const Vec3& b, double r) const {
   // Clearance is 1-Lipschitz: the ball of radius (clearance - r) around a point is free. With the
   // slack added to the threshold no step is shorter than the slack.
-  const double slack = std::max(do_slack(), kLengthTolerance);
+  const double slack = std::max(do_over_approximation(), kLengthTolerance);
   const double total = (b - a).norm();
   double along = 0;
   while (true) {
@@ -150,7 +150,7 @@ void Environment::do_rasterize(VoxelGrid& grid) const {
   }
 }
 
-double Environment::do_slack() const { return 0.05; }
+double Environment::do_over_approximation() const { return 0.05; }
 const Ground* Environment::do_ground() const { return nullptr; }
 const LayerInfo& Environment::do_info() const {
   static const LayerInfo kNothing;

@@ -149,7 +149,7 @@ struct GapSearch {
 // roof(block column, block row) is the highest ground of a block of cells, above which they are
 // skipped.
 template <class Roof>
-double least_gap(const HeightField& field, double sign, const Vec3& a_in, const Vec3& b_in,
+double min_gap(const HeightField& field, double sign, const Vec3& a_in, const Vec3& b_in,
                  double enough, int block, const Roof& roof) {
   // One sense for both, so that the answer is symmetric to the last bit.
   const bool swapped =
@@ -284,12 +284,12 @@ double HeightField::gap(const Vec3& a, const Vec3& b, double enough) const {
       extent.holds(b.x(), b.y())) {
     return lowest - max_height_;
   }
-  return least_gap(*this, 1, a, b, enough, kBlock, [this](int i, int j) {
+  return min_gap(*this, 1, a, b, enough, kBlock, [this](int i, int j) {
     return double(block_max_[block(i * kBlock, j * kBlock)]);
   });
 }
 
 double HeightField::gap_max(const Vec3& a, const Vec3& b) const {
-  return -least_gap(*this, -1, a, b, kInfinity, kBlock, [](int, int) { return kInfinity; });
+  return -min_gap(*this, -1, a, b, kInfinity, kBlock, [](int, int) { return kInfinity; });
 }
 }  // namespace altiplan

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <utility>
 
-#include "altiplan/blame.hpp"
+#include "altiplan/attributed.hpp"
 #include "altiplan/request.hpp"
 #include "cells_touching.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 /// The answer of a layer; what it throws gets its name.
 template <class Ask>
 auto answer_of(const Layer& layer, const Ask& ask) {
-  return blamed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
+  return attributed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
                 [&] { return ask(*layer.environment); });
 }
 
@@ -287,10 +287,10 @@ std::vector<Threat> World::threats() const {
   return all;
 }
 
-double World::slack() const {
+double World::over_approximation() const {
   double greatest = 0;
   for (const Layer& layer : layers_) {
-    greatest = std::max(greatest, layer.environment->slack());
+    greatest = std::max(greatest, layer.environment->over_approximation());
   }
   return greatest;
 }

@@ -265,6 +265,6 @@ void expect_logical(const ClaimExpression& expression, const ClaimQuantity& quan
   }
   ClaimReader::fail(expression.at,
                     "expected a comparison (such as a.length_m <= b.length_m), or a value that is "
-                    "0 or 1 (solved, flight.reached, steps.ID.stands, steps.ID.budget_hit)");
+                    "0 or 1 (solved, flight.reached, steps.ID.accepted, steps.ID.budget_hit)");
 }
 }  // namespace altiplan::study

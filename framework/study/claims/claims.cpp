@@ -143,7 +143,7 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
 bool is_yes_or_no(std::string_view value) {
   const bool is_of_step = value.starts_with("steps.");
   return value == "solved" || value == "flight.reached" ||
-         (is_of_step && (value.ends_with(".stands") || value.ends_with(".budget_hit")));
+         (is_of_step && (value.ends_with(".accepted") || value.ends_with(".budget_hit")));
 }
 
 bool is_of_every_run(std::string_view value) {

@@ -45,7 +45,7 @@ std::string wanted(const ClaimEntry& claim);
 /// them.
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
 
-/// Values that are 0 or 1: solved, flight.reached, steps.ID.stands and steps.ID.budget_hit.
+/// Values that are 0 or 1: solved, flight.reached, steps.ID.accepted and steps.ID.budget_hit.
 bool is_yes_or_no(std::string_view value);
 /// Those, flight.collisions, flight.min_separation_m and peak_memory_mb: leaving out the runs that
 /// did not solve would leave out what a claim on these is about.

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLogarithmicFrom = 30;  // times between the least and the greatest
 constexpr double kCharacter = 7.4;       // width in units of a figure
-constexpr std::size_t kMostTicks = 12;
+constexpr std::size_t kMaxTicks = 12;
 
-constexpr double kLeast = std::numeric_limits<double>::min();
+constexpr double kMin = std::numeric_limits<double>::min();
 constexpr double kGreatest = std::numeric_limits<double>::max();
 
 /// 1, 2 or 5 times a power of ten, at least so long.
@@ -44,7 +44,7 @@ Axis Axis::around(const std::vector<double>& values, double from, double to) {
   }
   if (low > 0 && high / low > kLogarithmicFrom) {
     const double margin = std::pow(high / low, 0.03);
-    return {std::max(low / margin, kLeast), std::min(high * margin, kGreatest), true, from, to};
+    return {std::max(low / margin, kMin), std::min(high * margin, kGreatest), true, from, to};
   }
   const double least = std::max(std::abs(low), std::abs(high)) * 1e-6;
   double margin = std::max((high - low) * 0.04, least);
@@ -61,14 +61,14 @@ double Axis::operator()(double value) const {
 
 std::vector<Axis::Tick> Axis::even_ticks() const {
   const double room = std::abs(to_ - from_);
-  const double wanted = (high_ / 2 - low_ / 2) * 2 / std::clamp(room / 64, 2.0, double(kMostTicks));
+  const double wanted = (high_ / 2 - low_ / 2) * 2 / std::clamp(room / 64, 2.0, double(kMaxTicks));
   if (!(wanted > 0) || !std::isfinite(wanted)) {
     return {};
   }
   const double step = round_step(wanted);
   std::vector<Tick> ticks;
   const double first = std::ceil(low_ / step);
-  for (double n = first; n * step <= high_ && ticks.size() < 2 * kMostTicks; ++n) {
+  for (double n = first; n * step <= high_ && ticks.size() < 2 * kMaxTicks; ++n) {
     const double value = n * step;
     // As many digits as it takes to tell two ticks apart.
     const double size = std::max(std::abs(low_), std::abs(high_));

@@ -58,7 +58,7 @@ RunValues values_of(const host::Json& result) {
   values.add("setup_time_s", result.at("setup_time_s"));
   for (const host::Json& step : result.at("steps")) {
     const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
-    for (const char* name : {"time_s", "setup_time_s", "stands", "budget_hit"}) {
+    for (const char* name : {"time_s", "setup_time_s", "accepted", "budget_hit"}) {
       values.add(prefix + name, step.at(name));
     }
     values.add_each(prefix + "counters.", step.at("counters"));
@@ -82,7 +82,7 @@ std::string why_no_value(const std::string& name) {
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
                         "wall_time_s", "cpu_time_s", "peak_memory_mb"});
   static const std::vector<std::string> kOfStep =
-      joined(kOfRoute, {"time_s", "setup_time_s", "stands", "budget_hit"});
+      joined(kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit"});
   static const std::vector<std::string> kOfFlight = joined(
       kOfRoute,
       {"collisions", "min_separation_m", "reached", "replans", "replan_time_s", "handovers"});

@@ -11,7 +11,7 @@
 namespace altiplan::study {
 namespace {
 
-constexpr std::size_t kMostCells = 1000000;
+constexpr std::size_t kMaxCells = 1000000;
 
 /// FROM..TO, both within.
 using Range = std::pair<std::int64_t, std::int64_t>;
@@ -41,7 +41,7 @@ std::optional<Range> range_of(const Value& value, const std::string& key) {
         "expected FROM..TO, two whole numbers, the first not greater, found " + value.what());
   }
   // Unsigned, as the difference may exceed what is signed.
-  if (std::uint64_t(*to) - std::uint64_t(*from) >= kMostCells) {
+  if (std::uint64_t(*to) - std::uint64_t(*from) >= kMaxCells) {
     throw ConfigError(value.where, key,
                       "expected at most 1000000 values, found the range " + value.text);
   }
@@ -138,7 +138,7 @@ std::vector<GridCell> grid_of(const Value& set, const std::string& path) {
   std::vector<GridCell> cells{GridCell{}};
   for (const Value::Entry& entry : set.entries) {
     const std::vector<Assignment> values = values_of(entry, path + "." + entry.key);
-    if (cells.size() * values.size() > kMostCells) {
+    if (cells.size() * values.size() > kMaxCells) {
       throw ConfigError(entry.where, path, "makes more than 1000000 combinations");
     }
     std::vector<GridCell> finer;

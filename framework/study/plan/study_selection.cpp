@@ -14,7 +14,7 @@
 namespace altiplan::study {
 namespace {
 
-constexpr std::size_t kMostRuns = 10000000;
+constexpr std::size_t kMaxRuns = 10000000;
 
 /// 53 bits of a hash: whole in JSON too.
 std::int64_t number_of(const std::string& text) {
@@ -48,7 +48,7 @@ class Filter {
 std::vector<PlannedRun> all_runs(const StudyPlan& plan) {
   const std::size_t repetitions = std::size_t(plan.file.repetitions);
   const std::size_t pairs = plan.scenarios.size() * repetitions;
-  if (pairs > kMostRuns || pairs * plan.pipelines.size() > kMostRuns) {
+  if (pairs > kMaxRuns || pairs * plan.pipelines.size() > kMaxRuns) {
     throw ConfigError(Location{plan.path.string(), 0, 0, ""}, "",
                       std::to_string(plan.scenarios.size()) + " scenarios, " +
                           std::to_string(plan.pipelines.size()) + " pipelines and " +

@@ -12,7 +12,7 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr std::size_t kMostPoints = 150;  // of a figure
+constexpr std::size_t kMaxPoints = 150;  // of a figure
 constexpr double kBestWithin = 1.01;
 constexpr double kMeanWithin = 1.03;
 
@@ -41,12 +41,12 @@ std::vector<double> numbers_of(const std::vector<Run>& runs) {
     }
   }
   const std::vector<double> numbers(all.begin(), all.end());
-  if (numbers.size() <= kMostPoints) {
+  if (numbers.size() <= kMaxPoints) {
     return numbers;
   }
   std::vector<double> kept;
-  for (std::size_t n = 0; n < kMostPoints; ++n) {
-    kept.push_back(numbers[n * (numbers.size() - 1) / (kMostPoints - 1)]);
+  for (std::size_t n = 0; n < kMaxPoints; ++n) {
+    kept.push_back(numbers[n * (numbers.size() - 1) / (kMaxPoints - 1)]);
   }
   return kept;
 }

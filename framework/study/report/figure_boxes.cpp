@@ -15,7 +15,7 @@ constexpr double kFirst = 16;
 /// So few runs are all shown, each as a point.
 constexpr std::size_t kFew = 40;
 /// Points of a box beyond that would be a smear.
-constexpr std::size_t kMostPoints = 150;
+constexpr std::size_t kMaxPoints = 150;
 
 /// The sample's indices that are shown as points: all of a few, else outliers, those farthest out.
 std::vector<std::size_t> shown_points(const Sample& sample) {
@@ -30,7 +30,7 @@ std::vector<std::size_t> shown_points(const Sample& sample) {
   const auto far = [&](std::size_t at) { return std::abs(sample.values[at] - sample.box->median); };
   std::stable_sort(shown.begin(), shown.end(),
                    [&](std::size_t a, std::size_t b) { return far(a) > far(b); });
-  shown.resize(std::min(shown.size(), kMostPoints));
+  shown.resize(std::min(shown.size(), kMaxPoints));
   return shown;
 }
 

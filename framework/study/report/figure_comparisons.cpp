@@ -13,7 +13,7 @@ constexpr double kRight = kFigureWidth - 16;
 constexpr double kFirst = 16;
 constexpr double kRow = 44;
 constexpr double kSecondLine = 15;
-constexpr std::size_t kMostRows = 16;
+constexpr std::size_t kMaxRows = 16;
 
 using Rows = std::vector<const Comparison*>;
 
@@ -25,12 +25,12 @@ Rows drawn(const MetricAnalysis& metric) {
       all.push_back(&comparison);
     }
   }
-  if (all.size() > kMostRows) {
+  if (all.size() > kMaxRows) {
     std::stable_sort(all.begin(), all.end(), [](const Comparison* a, const Comparison* b) {
       const auto p = [](const Comparison* c) { return std::isnan(c->p_holm) ? 2 : c->p_holm; };
       return p(a) < p(b);
     });
-    all.resize(kMostRows);
+    all.resize(kMaxRows);
   }
   return all;
 }

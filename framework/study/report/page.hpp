@@ -42,7 +42,7 @@ struct Content {
   std::vector<std::vector<Figure>> metric_figures;  ///< one list per metric of the analysis
   std::vector<Figure> effort_figures;
   std::vector<Convergence> convergence;
-  std::vector<Figure> convergence_figures;  ///< of the first kMostConvergence
+  std::vector<Figure> convergence_figures;  ///< of the first kMaxConvergence
   Builds builds;
   Scenes scenes;
 };
@@ -79,7 +79,7 @@ std::string page_data(const Content& content, const Table& scenarios);
 std::string page_text(const Content& content);
 
 /// Figures of convergence that the page carries.
-constexpr std::size_t kMostConvergence = 48;
+constexpr std::size_t kMaxConvergence = 48;
 /// Rows of the scenario table that stand in the page; the script adds the others.
 constexpr std::size_t kRowsShown = 50;
 }  // namespace altiplan::study::report

@@ -11,7 +11,7 @@ namespace altiplan::study::report {
 namespace {
 
 /// Packed, some 6 bytes each.
-constexpr std::size_t kMostValues = 300'000;
+constexpr std::size_t kMaxValues = 300'000;
 
 /// Six digits are more than the page shows; all would only make it larger.
 std::string short_number(std::string_view metric, double value) {
@@ -57,7 +57,7 @@ host::Json names(const std::vector<StoredVariant>& variants) {
 /// that are compared.
 std::vector<std::size_t> shown_columns(const Content& content) {
   const StudyData& data = content.data;
-  const bool all = data.rows.size() * data.columns.size() <= kMostValues;
+  const bool all = data.rows.size() * data.columns.size() <= kMaxValues;
   std::vector<std::size_t> shown;
   for (std::size_t at = 0; at < data.columns.size(); ++at) {
     const std::string& name = data.columns[at];

@@ -37,7 +37,7 @@ std::string claims_in_short(const std::vector<JudgedClaim>& claims) {
   return text;
 }
 
-std::size_t most_repetitions(const StudyData& data) {
+std::size_t max_repetitions(const StudyData& data) {
   int most = 0;
   for (const RunRow& row : data.rows) {
     most = std::max(most, row.repetition + 1);
@@ -75,7 +75,7 @@ std::string summary(const Content& content) {
   }
   std::string text = counted(data.pipelines.size(), "pipeline") + " on " +
                      counted(data.scenarios.size(), "scenario");
-  if (const std::size_t repetitions = most_repetitions(data); repetitions > 1) {
+  if (const std::size_t repetitions = max_repetitions(data); repetitions > 1) {
     text += ", " + grouped(repetitions) + " repetitions";
   }
   text += ": " + grouped(solved) + " of " + counted(data.rows.size(), "run") + " solved";

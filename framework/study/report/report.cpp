@@ -112,7 +112,7 @@ void draw(Content& content) {
   }
   std::set<std::string> names;
   for (const Convergence& convergence : content.convergence) {
-    if (names.size() < kMostConvergence) {
+    if (names.size() < kMaxConvergence) {
       content.convergence_figures.push_back(convergence_figure(data, convergence));
       std::string& name = content.convergence_figures.back().name;
       while (!names.insert(name).second) {

@@ -22,7 +22,7 @@ constexpr char kMade = 'm';
 constexpr char kFailed = 'f';
 constexpr char kNotGiven = 'n';  // by the machine
 constexpr char kEnd = '.';
-constexpr std::size_t kMostBytes = 64'000'000;
+constexpr std::size_t kMaxBytes = 64'000'000;
 
 /// Memory too, whoever has asked for it.
 bool is_of_machine(const std::exception& error) {
@@ -66,7 +66,7 @@ std::string read_within(int from, unsigned seconds, bool& late) {
   const auto deadline = Clock::now() + std::chrono::seconds(seconds);
   std::string text;
   char buffer[65536];
-  while (text.size() < kMostBytes) {
+  while (text.size() < kMaxBytes) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     pollfd ready{from, POLLIN, 0};

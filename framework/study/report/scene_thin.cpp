@@ -11,8 +11,8 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr int kMostPosts = 140;  // on the longer side
-constexpr std::size_t kMostSamples = 240;
+constexpr int kMaxPosts = 140;  // on the longer side
+constexpr std::size_t kMaxSamples = 240;
 constexpr float kHeightSteps = 8;  // to the metre; finer heights would not compress
 
 std::vector<float> floats(const std::string& text) {
@@ -29,7 +29,7 @@ void thin_ground(host::Json& scene) {
   }
   const int nx = ground.at("nx").get<int>();
   const int ny = ground.at("ny").get<int>();
-  const int every = (std::max(nx, ny) - 1) / kMostPosts + 1;
+  const int every = (std::max(nx, ny) - 1) / kMaxPosts + 1;
   if ((nx - 1) / every < 1 || (ny - 1) / every < 1) {
     return;  // a strip: it has few posts
   }
@@ -86,14 +86,14 @@ void thin_profile(host::Json& profile) {
     return;
   }
   const std::size_t count = profile.at("s").size();
-  if (count <= kMostSamples) {
+  if (count <= kMaxSamples) {
     return;
   }
   const host::Json& turns = profile.at("turn");
   const auto corners = std::size_t(std::count_if(
       turns.begin(), turns.end(), [](const host::Json& turn) { return !turn.is_null(); }));
-  const bool keep_corners = corners <= kMostSamples / 2;
-  const std::size_t every = (count - 1) / (kMostSamples - (keep_corners ? corners : 0)) + 1;
+  const bool keep_corners = corners <= kMaxSamples / 2;
+  const std::size_t every = (count - 1) / (kMaxSamples - (keep_corners ? corners : 0)) + 1;
   std::set<std::size_t> kept{count - 1};
   for (std::size_t at = 0; at < count; ++at) {
     if (at % every == 0 || (keep_corners && !turns[at].is_null())) {

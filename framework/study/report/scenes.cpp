@@ -16,7 +16,7 @@ namespace altiplan::study::report {
 namespace {
 
 constexpr unsigned kSeconds = 20;        // to build one scene
-constexpr std::size_t kMostRoutes = 12;  // in one scene; more would hide each other
+constexpr std::size_t kMaxRoutes = 12;  // in one scene; more would hide each other
 
 /// Takes one of each list in turn, so that every kind has its examples.
 std::vector<std::size_t> in_turn(const std::vector<std::vector<std::size_t>>& lists) {
@@ -151,11 +151,11 @@ class SceneMaker {
     std::vector<std::string> texts;
     for (const std::size_t row : chosen) {
       std::string text = results_(data_.rows[row]);
-      if (!text.empty() && texts.size() < kMostRoutes) {
+      if (!text.empty() && texts.size() < kMaxRoutes) {
         texts.push_back(std::move(text));
         rows.push_back(row);
       } else if (!text.empty()) {
-        why_not_[row] = "a scene holds " + std::to_string(kMostRoutes) + " runs at most";
+        why_not_[row] = "a scene holds " + std::to_string(kMaxRoutes) + " runs at most";
       }
     }
     if (texts.empty()) {
@@ -215,10 +215,10 @@ class SceneMaker {
     if (made.rows.empty()) {
       return;
     }
-    if (made.data.size() > options_.most_bytes_each) {
+    if (made.data.size() > options_.max_bytes_each) {
       leave_out(chosen, "its scene has " + grouped(made.data.size()) + " bytes, the limit is " +
-                            grouped(options_.most_bytes_each));
-    } else if (bytes_ + made.data.size() <= options_.most_bytes) {
+                            grouped(options_.max_bytes_each));
+    } else if (bytes_ + made.data.size() <= options_.max_bytes) {
       bytes_ += made.data.size();
       scenes_.push_back(std::move(made));
     } else {

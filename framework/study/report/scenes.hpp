@@ -20,8 +20,8 @@ struct SceneOptions {
   std::vector<std::filesystem::path> plugin_path;
   bool times = true;
   std::size_t most = 48;               ///< scenes
-  std::size_t most_bytes = 2'200'000;  ///< of all of them, packed
-  std::size_t most_bytes_each = 400'000;
+  std::size_t max_bytes = 2'200'000;  ///< of all of them, packed
+  std::size_t max_bytes_each = 400'000;
 };
 
 /// The runs of one pair in their world, packed.

@@ -203,7 +203,7 @@ void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs
 
 /// What a killed call had run and not stored, of this selection or another; one that is out of date
 /// is found out by its key when it is asked for again.
-std::size_t harvest(const Study& study, const StudyPlan& plan, const WorkFolder& folder,
+std::size_t recover(const Study& study, const StudyPlan& plan, const WorkFolder& folder,
                     Store& store, std::int64_t session) {
   const std::vector<Ended> records = folder.records();
   if (records.empty()) {
@@ -249,7 +249,7 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
   session.reuse = options.reuse;
   session.limits = pool.limits_kept();
   const std::int64_t session_id = store.add_session(session);
-  if (const std::size_t found = harvest(study, plan, folder, store, session_id)) {
+  if (const std::size_t found = recover(study, plan, folder, store, session_id)) {
     options.say(host::counted(found, "run") + " of the call before had ended unstored: stored now");
   }
   folder.clear();

@@ -13,7 +13,7 @@ namespace altiplan::study {
 
 struct StudyProgress {
   std::size_t runs = 0;    ///< that are wanted
-  std::size_t before = 0;  ///< stored when this call began, harvested ones included
+  std::size_t before = 0;  ///< stored when this call began, recovered ones included
   std::size_t done = 0;    ///< by this call
   std::map<std::string, std::size_t> outcomes;  ///< of this call
   double elapsed_s = 0;

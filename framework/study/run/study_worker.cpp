@@ -23,7 +23,7 @@
 namespace altiplan::study {
 namespace {
 
-// Exit codes of a worker that has left the result as far as it goes in Job::last_words; one that
+// Exit codes of a worker that has left the result as far as it goes in Job::crash_report; one that
 // has crashed has also written how, on the last line of its stderr.
 constexpr int kCrashed = 81;
 constexpr int kStuck = 82;
@@ -101,7 +101,7 @@ RunOutcome outcome_of_payload(const std::string& payload) {
 
 /// A message that ends with what the process cannot say any more: how it ended.
 std::string without_cause(std::string message) {
-  if (const std::size_t at = message.find(host::ProcessGuard::LastWords::kCause);
+  if (const std::size_t at = message.find(host::ProcessGuard::CrashReport::kCause);
       at != message.npos) {
     message.resize(at);
   }
@@ -111,12 +111,12 @@ std::string without_cause(std::string message) {
   return message;
 }
 
-host::ProcessGuard::LastWords last_words(const Job& job, const host::Config& config,
+host::ProcessGuard::CrashReport crash_report(const Job& job, const host::Config& config,
                                          const host::RunResult& result) {
-  host::ProcessGuard::LastWords words;
-  words.for_user = std::string("\n") + host::ProcessGuard::LastWords::kCause;
+  host::ProcessGuard::CrashReport words;
+  words.for_user = std::string("\n") + host::ProcessGuard::CrashReport::kCause;
   words.result = host::file_text(host::result_json(config, result));
-  words.file = job.last_words;
+  words.file = job.crash_report;
   words.exit_code = kCrashed;
   return words;
 }
@@ -149,7 +149,7 @@ RunOutcome outcome_of_result(const host::RunResult& result, const StudyBudget& b
 RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyBudget& budget,
                         bool trace) {
   host::RunOptions options;
-  options.patience_s = std::numeric_limits<double>::max();  // the pool's limits decide
+  options.timeout_s = std::numeric_limits<double>::max();  // the pool's limits decide
   if (trace) {
     options.trace = job.scratch;
   }
@@ -157,11 +157,11 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
   options.process = &*process;
   options.on_call = [&](const host::RunResult& result) {
     job.note(without_cause(result.message));
-    process->set_last_words(last_words(job, config, result));
+    process->set_crash_report(crash_report(job, config, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
     try {
-      host::write_file(job.last_words, host::file_text(host::result_json(config, result)));
+      host::write_file(job.crash_report, host::file_text(host::result_json(config, result)));
     } catch (const Error&) {  // its note says who is stuck
     }
     ::_exit(kStuck);
@@ -280,11 +280,11 @@ std::string cause_of(const Ended& ended, std::string& said) {
 RunOutcome crashed(const Ended& ended) {
   std::string said = ended.said;
   RunOutcome run = without_result(Outcome::crashed, ended.note + " " + cause_of(ended, said));
-  const host::Json result = host::Json::parse(ended.last_words, nullptr, false);
+  const host::Json result = host::Json::parse(ended.crash_report, nullptr, false);
   if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
     run.outcome = ended.exit_code == kStuck ? Outcome::failed : Outcome::crashed;
     run.message = result["message"].get<std::string>();
-    run.result = ended.last_words;
+    run.result = ended.crash_report;
     run.values = values_of(result);
   }
   run.message = with_said(run.message, said);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A task that gains nothing from being started again must not be for ever.
-constexpr int kMostRestarts = 20;
+constexpr int kMaxRestarts = 20;
 /// In which a study ends its runs before Slurm ends the task.
 constexpr int kGraceSeconds = 60;
 
@@ -138,7 +138,7 @@ std::string array_script(const SlurmJob& job) {
       << "if $out_of_time; then\n"
       << "  wait $study\n"
       << "  code=$?\n"
-      << "  if [[ $code -ne 0 && ${SLURM_RESTART_COUNT:-0} -lt " << kMostRestarts << " ]]; then\n"
+      << "  if [[ $code -ne 0 && ${SLURM_RESTART_COUNT:-0} -lt " << kMaxRestarts << " ]]; then\n"
       << "    echo \"out of time: queued again\"\n"
       << "    scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$task\" && sleep " << kGraceSeconds << "\n"
       << "  fi\n"

@@ -93,10 +93,10 @@ fs::path new_file_in(const fs::path& folder) {
 }  // namespace
 
 fs::path place_of(const fs::path& file) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code error;
   fs::path place = fs::absolute(file);
-  for (int n = 0; n < kMostLinks && fs::is_symlink(host::link_status_of(place)); ++n) {
+  for (int n = 0; n < kMaxLinks && fs::is_symlink(host::link_status_of(place)); ++n) {
     const fs::path target = fs::read_symlink(place, error);
     place = place.parent_path() / target;  // the target alone, where it is absolute
   }

@@ -16,9 +16,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kVersion = 1;
 /// Of a result or a trace unpacked, more than any run leaves: a few kB of zeros make a gigabyte.
-constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+constexpr std::size_t kMaxBytes = std::size_t(1) << 30;
 /// Of a result's lists and objects in each other; each takes a call of a function to compare.
-constexpr int kMostLevels = 500;
+constexpr int kMaxLevels = 500;
 
 constexpr const char* kSchema = R"sql(
   CREATE TABLE study(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -55,7 +55,7 @@ std::int64_t pragma(const Sqlite& database, const char* sql) {
   return statement.step() ? statement.integer(0) : 0;
 }
 
-/// Whether lists and objects are in each other deeper than kMostLevels.
+/// Whether lists and objects are in each other deeper than kMaxLevels.
 bool is_too_deep(std::string_view json) {
   int level = 0;
   bool is_text = false;
@@ -66,7 +66,7 @@ bool is_too_deep(std::string_view json) {
     } else if (is_text) {
       n += letter == '\\' ? 1 : 0;
     } else if (letter == '[' || letter == '{') {
-      if (++level > kMostLevels) {
+      if (++level > kMaxLevels) {
         return true;
       }
     } else if (letter == ']' || letter == '}') {
@@ -246,7 +246,7 @@ std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
   const std::string name = std::string("the ") + what + " of '" + run_name(run) + "' ";
   std::optional<std::string> text;
   try {
-    text = host::decompressed(bytes, kMostBytes);
+    text = host::decompressed(bytes, kMaxBytes);
   } catch (const Error&) {
     fail_damaged(name + "cannot be unpacked");
   }
@@ -254,7 +254,7 @@ std::string StoreDatabase::unpacked(const StoredRun& run, const char* what,
     fail_damaged(name + "is larger than 1 GB unpacked, which no run leaves");
   }
   if (is_too_deep(*text)) {
-    fail_damaged(name + "is nested deeper than " + std::to_string(kMostLevels) + " levels");
+    fail_damaged(name + "is nested deeper than " + std::to_string(kMaxLevels) + " levels");
   }
   return *std::move(text);
 }

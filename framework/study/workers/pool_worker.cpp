@@ -21,21 +21,21 @@ namespace {
 
 constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are told
 constexpr off_t kSaidAtMost = 1 << 20;  ///< … that are kept
-constexpr std::size_t kLastWordsAtMost = 256 << 20;
+constexpr std::size_t kMaxCrashReport = 256 << 20;
 }  // namespace
 
 PoolWorker::PoolWorker() {
-  void* shared = ::mmap(nullptr, sizeof(Blackboard), PROT_READ | PROT_WRITE,
+  void* shared = ::mmap(nullptr, sizeof(WorkerStatus), PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   said_ = ::memfd_create("altiplan worker", MFD_CLOEXEC);
   if (shared == MAP_FAILED || said_ < 0 || ::fcntl(said_, F_SETFL, O_APPEND) != 0) {
     throw Error(std::string("no memory for a worker: ") + std::strerror(errno));
   }
-  board_ = new (shared) Blackboard;
+  board_ = new (shared) WorkerStatus;
 }
 
 PoolWorker::~PoolWorker() {
-  ::munmap(board_, sizeof(Blackboard));
+  ::munmap(board_, sizeof(WorkerStatus));
   ::close(said_);
 }
 
@@ -43,13 +43,13 @@ bool PoolWorker::start(const WorkFolder& folder, std::size_t serial, WorkerTask 
                        const Work& work) {
   task_ = std::move(task);
   task_.records = folder.file(serial, "records");
-  task_.last_words = folder.file(serial, "last");
+  task_.crash_report = folder.file(serial, "last");
   task_.scratch = folder.file(serial, "scratch");
   task_.said = said_;
   task_.parent = ::getpid();
   task_.mark = folder.processes(0, serial).mark;
-  new (board_) Blackboard;
-  for (const std::string& file : {task_.records, task_.last_words, task_.scratch}) {
+  new (board_) WorkerStatus;
+  for (const std::string& file : {task_.records, task_.crash_report, task_.scratch}) {
     ::unlink(file.c_str());  // whoever has put something there
   }
   if (::ftruncate(said_, 0) != 0) {
@@ -167,7 +167,7 @@ std::optional<Ended> PoolWorker::unfinished(Ending how) {
   ended.how = how;
   ended.place = int(known_);
   if (unread_.empty()) {
-    ended.last_words = read(task_.last_words, 0, kLastWordsAtMost);
+    ended.crash_report = read(task_.crash_report, 0, kMaxCrashReport);
   }
   ended.note = note();
   ended.said = said();
@@ -200,7 +200,7 @@ std::size_t PoolWorker::clear_away(const std::vector<pid_t>& others) {
   for (const pid_t orphan : orphans()) {
     ::waitpid(orphan, nullptr, WNOHANG);
   }
-  ::unlink(task_.last_words.c_str());
+  ::unlink(task_.crash_report.c_str());
   ::unlink(task_.scratch.c_str());
   return left;
 }

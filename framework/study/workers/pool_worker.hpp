@@ -60,7 +60,7 @@ class PoolWorker {
   void look_at_job();
   std::string read(const std::string& file, std::size_t offset, std::size_t at_most);
 
-  Blackboard* board_ = nullptr;  ///< shared with the process
+  WorkerStatus* board_ = nullptr;  ///< shared with the process
   int said_ = -1;                ///< a file in memory: its stdout and stderr
   pid_t process_ = -1;
   WorkerTask task_;

@@ -52,7 +52,7 @@ Holder holder(int lock) {
   return holder;
 }
 
-/// Its parent has ended, and its warden will have done so in a moment.
+/// Its parent has ended, and its supervisor will have done so in a moment.
 bool gone(const Holder& holder) {
   return holder.process > 0 && holder.host == host_name() && ::kill(holder.process, 0) != 0 &&
          errno == ESRCH;

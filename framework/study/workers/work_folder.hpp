@@ -35,7 +35,7 @@ struct Ended {
   std::string key;
   Ending how = Ending::done;
   std::string payload;     ///< what the work returned
-  std::string last_words;  ///< where it did not return: the file Job::last_words, if it was written
+  std::string crash_report;  ///< where it did not return: the file Job::crash_report, if it was written
   std::string note;        ///< …: who was at work (Job::note)
   std::string said;        ///< …: the last 2 kB that was written to stdout and stderr
   int exit_code = 0;       ///< of `exited`

@@ -89,13 +89,13 @@ std::size_t threads() {
 
 class Worker {
  public:
-  Worker(const WorkerTask& task, Blackboard& board, const Work& work)
+  Worker(const WorkerTask& task, WorkerStatus& board, const Work& work)
       : task_(task),
         board_(board),
         work_(work),
         memory_at_birth_mb_(use_of(::getpid()).memory_mb),
         threads_at_birth_(threads()) {
-    job_.last_words = task.last_words;
+    job_.crash_report = task.crash_report;
     job_.scratch = task.scratch;
     job_.note = [this](std::string_view who) {
       const std::size_t size = std::min(who.size(), board_.note.size() - 1);
@@ -207,7 +207,7 @@ class Worker {
   }
 
   const WorkerTask& task_;
-  Blackboard& board_;
+  WorkerStatus& board_;
   const Work& work_;
   Job job_;
   double memory_at_birth_mb_;
@@ -225,7 +225,7 @@ std::int64_t steady_ns() {
       .count();
 }
 
-void be_worker(const WorkerTask& task, Blackboard& board, const Work& work) {
+void be_worker(const WorkerTask& task, WorkerStatus& board, const Work& work) {
   stand_alone(task);
   Worker(task, board, work).all();
   ::_exit(0);

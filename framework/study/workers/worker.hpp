@@ -15,7 +15,7 @@ namespace altiplan::study {
 
 /// What a worker tells its parent while it is at it, in memory that both have. A plugin may have
 /// written anything over it: the parent trusts the records alone, and takes this for hints.
-struct Blackboard {
+struct WorkerStatus {
   std::atomic<std::uint32_t> begun = 0;      ///< jobs of its batch that have begun
   std::atomic<std::uint32_t> handed_in = 0;  ///< records that it has written
   std::atomic<std::int64_t> began_ns = 0;    ///< when the last of them has, on the steady clock
@@ -33,7 +33,7 @@ struct WorkerTask {
   std::vector<std::size_t> batch;  ///< jobs, one after the other
   std::vector<std::string> keys;
   std::string records;     ///< the files for its records, …
-  std::string last_words;  ///< …
+  std::string crash_report;  ///< …
   std::string scratch;
   std::string group;  ///< entrance of its control group, if it has one
   std::uint64_t mark = 0;
@@ -43,5 +43,5 @@ struct WorkerTask {
 };
 
 /// The life of a worker, in the process that was forked for it.
-[[noreturn]] void be_worker(const WorkerTask& task, Blackboard& board, const Work& work);
+[[noreturn]] void be_worker(const WorkerTask& task, WorkerStatus& board, const Work& work);
 }  // namespace altiplan::study

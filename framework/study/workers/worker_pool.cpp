@@ -19,7 +19,7 @@
 #include "study/workers/pool_worker.hpp"
 #include "study/workers/retries.hpp"
 #include "study/workers/signals.hpp"
-#include "study/workers/warden.hpp"
+#include "study/workers/supervisor.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -74,7 +74,7 @@ class PoolRun {
         serial_(serial),
         waiting_(jobs.begin(), jobs.end()),
         retries_(options),
-        warden_(folder),
+        supervisor_(folder),
         workers_(std::size_t(options.jobs)) {}
 
   WorkerPool::Finish operator()() {
@@ -161,8 +161,8 @@ class PoolRun {
       const auto worker = std::ranges::find(workers_, reaped.process, &PoolWorker::process);
       if (worker != workers_.end()) {
         settle(*worker, reaped, std::nullopt);
-      } else if (reaped.process == warden_.process()) {
-        warden_.replace();
+      } else if (reaped.process == supervisor_.process()) {
+        supervisor_.replace();
       }  // else an orphan that a worker has left
     }
   }
@@ -263,7 +263,7 @@ class PoolRun {
 
   /// Ends what the worker has left behind; its last job is told of it where it was between jobs.
   void clear_away(PoolWorker& worker, bool between_jobs) {
-    std::vector<pid_t> others{warden_.process()};
+    std::vector<pid_t> others{supervisor_.process()};
     for (const PoolWorker& other : workers_) {
       if (&other != &worker && other.busy()) {
         others.push_back(other.process());
@@ -317,7 +317,7 @@ class PoolRun {
   std::vector<std::string> records_;  ///< files that are of no use when those are kept
   std::vector<std::string> unread_;   ///< that may hold jobs which the next call finds
   const Signals signals_;
-  Warden warden_;
+  Supervisor supervisor_;
   std::deque<PoolWorker> workers_;
   long kernel_kills_ = kernel_kills();
   double next_look_s_ = 0;

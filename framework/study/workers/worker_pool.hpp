@@ -30,8 +30,8 @@ struct Job {
   std::size_t index = 0;
   int place = 0;  ///< how many jobs this process has done before
   /// Where to write what shall be known should the process end before its time; read into
-  /// Ended::last_words. Absolute, and not there when the work begins.
-  std::filesystem::path last_words;
+  /// Ended::crash_report. Absolute, and not there when the work begins.
+  std::filesystem::path crash_report;
   /// A file for the work to use and to remove again, e.g. for a trace.
   std::filesystem::path scratch;
   /// Who is at work from now on: kept where no end of the process can take it away.
@@ -73,7 +73,7 @@ struct PoolOptions {
 ///
 /// Workers are forked without exec from this process, which must have one thread only. A worker has
 /// a session of its own, keeps no descriptor of the parent's, and is killed when the parent ends;
-/// processes that it has started are then ended by the warden. One that gets a signal that the pool
+/// processes that it has started are then ended by the supervisor. One that gets a signal that the pool
 /// has not sent, and that somebody else may have sent (SIGKILL, SIGTERM …), or whose record is
 /// damaged, is not blamed for it at once: its job is done again, up to three times. Where the
 /// machine fails (no process, no file), the pool waits a little and tries again, for two seconds or

@@ -7,7 +7,7 @@
 namespace {
 using namespace altiplan;
 
-enum class Plane { horizontal, space };
+enum class Plane { horizontal, spatial };
 
 struct Params {
   double max_deg = 180;
@@ -19,7 +19,7 @@ struct Params {
         .range(0, 180)
         .required()
         .doc("greatest change of direction between two legs");
-    f("plane", plane, {{"horizontal", Plane::horizontal}, {"space", Plane::space}})
+    f("plane", plane, {{"horizontal", Plane::horizontal}, {"spatial", Plane::spatial}})
         .doc("the turn as seen from above, or in three dimensions");
   }
 };
@@ -32,7 +32,7 @@ class TurnAngle final : public Constraint {
   AppliesTo do_applies_to() const override { return AppliesTo::route; }
   void do_tighten(Limits& limits, const Request&) const override {
     double& limit =
-        params_.plane == Plane::space ? limits.max_turn_space : limits.max_turn_horizontal;
+        params_.plane == Plane::spatial ? limits.max_turn_space : limits.max_turn_horizontal;
     limit = std::min(limit, radians(params_.max_deg));
   }
 

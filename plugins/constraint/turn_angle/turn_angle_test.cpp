@@ -15,7 +15,7 @@ Request problem(const std::string& yaml, AppliesTo to = AppliesTo::route) {
 }
 
 TEST(TurnAngle, RefusesWrongParameters) {
-  EXPECT_EQ(parameter_problems("constraint", "turn_angle", "{max_deg: 55, plane: space}"), "");
+  EXPECT_EQ(parameter_problems("constraint", "turn_angle", "{max_deg: 55, plane: spatial}"), "");
   EXPECT_NE(parameter_problems("constraint", "turn_angle", "{}"), "");
   EXPECT_NE(parameter_problems("constraint", "turn_angle", "{max_deg: -1}"), "");
   EXPECT_NE(parameter_problems("constraint", "turn_angle", "{max_deg: 181}"), "");
@@ -29,8 +29,8 @@ TEST(TurnAngle, OnlyTightens) {
   make_constraint("turn_angle", "{max_deg: 90}")->tighten(limits, request);
   EXPECT_DOUBLE_EQ(limits.max_turn_horizontal, radians(55));
   EXPECT_EQ(limits.max_turn_space, kPi);
-  make_constraint("turn_angle", "{max_deg: 60, plane: space}")->tighten(limits, request);
-  make_constraint("turn_angle", "{max_deg: 70, plane: space}")->tighten(limits, request);
+  make_constraint("turn_angle", "{max_deg: 60, plane: spatial}")->tighten(limits, request);
+  make_constraint("turn_angle", "{max_deg: 70, plane: spatial}")->tighten(limits, request);
   EXPECT_DOUBLE_EQ(limits.max_turn_space, radians(60));
   EXPECT_DOUBLE_EQ(limits.max_turn_horizontal, radians(55));
 }
@@ -39,8 +39,8 @@ TEST(TurnAngle, TheJudgeMeasuresInItsPlane) {
   // Straight on as seen from above, 90 degrees in space.
   const Route hump{{0, 0, 100}, {500, 0, 600}, {1000, 0, 100}};
   EXPECT_TRUE(check(hump, problem("{max_deg: 1}")).ok());
-  EXPECT_TRUE(check(hump, problem("{max_deg: 90, plane: space}")).ok());
-  const CheckResult result = check(hump, problem("{max_deg: 89, plane: space}"));
+  EXPECT_TRUE(check(hump, problem("{max_deg: 90, plane: spatial}")).ok());
+  const CheckResult result = check(hump, problem("{max_deg: 89, plane: spatial}"));
   ASSERT_EQ(result.violations.size(), 1u);
   EXPECT_EQ(result.violations[0].constraint, "turn_angle");
   EXPECT_EQ(result.violations[0].at, 1u);

@@ -142,7 +142,7 @@ class City final : public Environment {
     layer_->near(p, reach, sink);
   }
   void do_rasterize(VoxelGrid& grid) const override { layer_->rasterize(grid); }
-  double do_slack() const override { return layer_->slack(); }
+  double do_over_approximation() const override { return layer_->over_approximation(); }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override {
     return layer_->cell_centre(cell);

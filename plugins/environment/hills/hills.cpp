@@ -219,7 +219,7 @@ class Hills final : public Environment, public Ground {
   }
 
   // The search beside the edge of the plateau ends there.
-  double do_slack() const override { return 1e-5; }
+  double do_over_approximation() const override { return 1e-5; }
 
   std::optional<Drawing> do_drawing() const override { return Drawing{}; }
   const LayerInfo& do_info() const override { return info_; }

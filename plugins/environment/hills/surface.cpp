@@ -13,11 +13,11 @@ using altiplan::Vec3;
 
 constexpr double square(double v) { return v * v; }
 
-// (w² - 1) exp(-w² / 2), the second derivative of a bell: from -1 at its middle up to kMostBend at
+// (w² - 1) exp(-w² / 2), the second derivative of a bell: from -1 at its middle up to kMaxBend at
 // w = √3, then down to 0.
 double bell_bend(double w) { return (w * w - 1) * std::exp(-w * w / 2); }
-const double kMostBendAt = std::sqrt(3.0);
-const double kMostBend = bell_bend(kMostBendAt);
+const double kMaxBendAt = std::sqrt(3.0);
+const double kMaxBend = bell_bend(kMaxBendAt);
 
 /// The ground along a leg, over the share t of the leg: a sum of one-dimensional bells.
 class Profile {
@@ -61,10 +61,10 @@ class Profile {
       double most = 0;
       if (sign < 0) {
         most = -std::min(bell_bend(near), bell_bend(far));
-      } else if (far < kMostBendAt) {
+      } else if (far < kMaxBendAt) {
         most = bell_bend(far);
       } else {
-        most = near > kMostBendAt ? bell_bend(near) : kMostBend;
+        most = near > kMaxBendAt ? bell_bend(near) : kMaxBend;
       }
       bound += bell.height / square(bell.width) * most;
     }
@@ -208,7 +208,7 @@ double Surface::bend(double x, double y, double r) const {
     const double w = std::max(
         std::sqrt(square((x - peak.x) / peak.sx) + square((y - peak.y) / peak.sy)) - r / narrow,
         0.0);
-    const double most = w > kMostBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMostBend);
+    const double most = w > kMaxBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMaxBend);
     bound += peak.height / square(narrow) * most;
   }
   return bound;
@@ -269,12 +269,12 @@ struct Factors {
 // by the greatest of each bell instead.
 std::vector<double> Surface::highest(const Intervals& east, const Intervals& north,
                                      double within) const {
-  constexpr int kMostPieces = 12;
+  constexpr int kMaxPieces = 12;
   double sag = 0;  // of a box that is one piece
   for (const Peak& peak : peaks_) {
     sag += peak.height * (square(east.half / peak.sx) + square(north.half / peak.sy)) / 2;
   }
-  const int pieces = int(std::clamp(std::ceil(std::sqrt(sag / within)), 1.0, double(kMostPieces)));
+  const int pieces = int(std::clamp(std::ceil(std::sqrt(sag / within)), 1.0, double(kMaxPieces)));
   std::vector<Factors> x;
   std::vector<Factors> y;
   for (const Peak& peak : peaks_) {
@@ -333,9 +333,9 @@ double Surface::steepest() const {
     const Local at = local(x, y);
     const double r = std::hypot(half_x, half_y);
     const double slope = std::hypot(at.dx, at.dy);
-    const double most_bend = bend(x, y, r);
-    const bool capped = at.sum - slope * r - most_bend * r * r / 2 >= cap_;
-    return std::pair(at.sum < cap_ ? slope : 0.0, capped ? 0.0 : slope + most_bend * r);
+    const double max_bend = bend(x, y, r);
+    const bool capped = at.sum - slope * r - max_bend * r * r / 2 >= cap_;
+    return std::pair(at.sum < cap_ ? slope : 0.0, capped ? 0.0 : slope + max_bend * r);
   };
   const Vec3 middle = (box.min + box.max) / 2;
   const Vec3 half = (box.max - box.min) / 2;

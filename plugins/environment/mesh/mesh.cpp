@@ -133,7 +133,7 @@ class Mesh final : public Environment {
   }
 
   Box do_bounds() const override { return surface_.bounds(); }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return Drawing{{}, surface_.triangles()}; }
 

@@ -157,12 +157,12 @@ std::string obj_without_looks(const std::string& file, const std::string& text,
       }
       ++vertices;
     } else if (words[0] == "f") {
-      bool is_face = words.size() >= 4 && words.size() <= kMostCorners + 1;
+      bool is_face = words.size() >= 4 && words.size() <= kMaxCorners + 1;
       for (std::size_t i = 1; is_face && i < words.size(); ++i) {
         is_face = is_vertex_of(vertex_of(words[i]), vertices);
       }
       if (!is_face) {
-        lines.refuse("'f' and 3 to " + std::to_string(kMostCorners) + " of the vertices before it");
+        lines.refuse("'f' and 3 to " + std::to_string(kMaxCorners) + " of the vertices before it");
       }
       triangles += std::int64_t(words.size()) - 3;
       lines.count(triangles, max_triangles);

@@ -7,7 +7,7 @@
 namespace altiplan::mesh {
 
 /// Most corners of an OBJ face: cutting one into triangles takes the square of it.
-inline constexpr std::size_t kMostCorners = 1000;
+inline constexpr std::size_t kMaxCorners = 1000;
 
 // The text formats, held against their grammar before anything is built from them: assimp reads on
 // where numbers are missing, and its error messages name no line. Throw ParameterError("file") with

@@ -91,10 +91,10 @@ TEST(OctoMap, ReadsWhatOctoMapWrites) {
       const std::string unknown = blocked ? ", unknown: blocked" : ", unknown: free";
       expect_equal(*load(full, unknown), tree, blocked);
     }
-    octomap::OcTree most_likely(tree);
+    octomap::OcTree max_likely(tree);
     const std::string binary = (folder / "binary.bt").string();
-    ASSERT_TRUE(most_likely.writeBinary(binary));  // makes the tree one of yes and no
-    expect_equal(*load(binary), most_likely, true);
+    ASSERT_TRUE(max_likely.writeBinary(binary));  // makes the tree one of yes and no
+    expect_equal(*load(binary), max_likely, true);
   }
 }
 

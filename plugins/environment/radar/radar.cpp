@@ -179,7 +179,7 @@ class Radar final : public Environment {
     }
   }
 
-  double do_slack() const override { return ground_ != nullptr ? kMaskedSlack : 0; }
+  double do_over_approximation() const override { return ground_ != nullptr ? kMaskedSlack : 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override {
     return kit::drawing_of(ball_.shapes(), Drawn::Role::threat);

@@ -68,7 +68,7 @@ TEST(Radar, IsABallAroundItsAntenna) {
   EXPECT_NEAR(radar->clearance({100, 900, z}), 200, 1e-9);
   EXPECT_FALSE(radar->blocked({-900, 702, z}, {900, 702, z}, 2));
   EXPECT_TRUE(radar->blocked({-900, 702, z}, {900, 702, z}, 2.1));
-  EXPECT_EQ(radar->slack(), 0);
+  EXPECT_EQ(radar->over_approximation(), 0);
   ASSERT_EQ(radar->info().threats.size(), 1U);
   EXPECT_EQ(radar->info().threats[0].kind, "radar");
   EXPECT_EQ(radar->info().threats[0].radius, 500);
@@ -103,7 +103,7 @@ TEST(Radar, MaskedPointsAreThoseWithoutLineOfSight) {
   const auto radar = make_environment(
       "radar", "{at_m: [0, 0], above_ground_m: 20, range_m: 1900, masking: true}", place.site);
   const Vec3 antenna(0, 0, *place.hills->field().at(0, 0) + 20);
-  EXPECT_EQ(radar->slack(), 1);
+  EXPECT_EQ(radar->over_approximation(), 1);
   RandomStream random;
   int hidden = 0;
   for (int n = 0; n < 20000; ++n) {
@@ -151,7 +151,7 @@ TEST(Radar, MaskedLegsAreNeverFreeWhereAPlaceIsCovered) {
     (blocked ? blocked_legs : free_legs) += 1;
     if (least < r - 1e-6) {
       EXPECT_TRUE(blocked) << n;
-    } else if (least > r + radar->slack() + (b - a).norm() / 500) {
+    } else if (least > r + radar->over_approximation() + (b - a).norm() / 500) {
       EXPECT_FALSE(blocked) << n;
     }
     EXPECT_EQ(blocked, radar->blocked(b, a, r));

@@ -63,12 +63,12 @@ std::vector<fs::path> files_of(const Params& params) {
 
 /// What is larger is read from the disk, so that a part of it costs no more than that part.
 bool is_small(const std::vector<fs::path>& files) {
-  constexpr std::uintmax_t kMost = 16'000'000;
+  constexpr std::uintmax_t kMax = 16'000'000;
   std::uintmax_t bytes = 0;
   for (const fs::path& file : files) {
     bytes += fs::file_size(file);
   }
-  return bytes <= kMost;
+  return bytes <= kMax;
 }
 
 gdal::Dataset open(const Params& params) {

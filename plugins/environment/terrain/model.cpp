@@ -24,11 +24,11 @@ bool is_bounded(const Box& volume) {
 /// How far about the volume questions are expected to go: hardly ever farther than a place in it is
 /// above the ground.
 double margin(const Box& volume, double radius, const Layout& layout) {
-  constexpr int kLeastPosts = 128;
+  constexpr int kMinPosts = 128;
   const Vec3 size = volume.max - volume.min;
   const double above = std::clamp(volume.max.z() - kLowest, 0.0, kHighest - kLowest);
-  return radius + std::min(above, std::max({size.x(), size.y(), kLeastPosts * layout.spacing[0],
-                                            kLeastPosts * layout.spacing[1]}));
+  return radius + std::min(above, std::max({size.x(), size.y(), kMinPosts * layout.spacing[0],
+                                            kMinPosts * layout.spacing[1]}));
 }
 
 /// First post and number of posts of the blocks that the range touches.

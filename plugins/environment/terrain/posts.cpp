@@ -14,7 +14,7 @@ using gdal::api;
 /// The file's numbers in metres, NaN where they mark a void; how many those are, or -1 where a
 /// height is none that the Earth has.
 std::int64_t to_metres(const Dem& dem, float* row, int count) {
-  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr float kMax = std::numeric_limits<float>::max();
   const auto [nodata, asked_nodata] = dem.nodata;
   int voids = 0;
   int wrong = 0;
@@ -22,7 +22,7 @@ std::int64_t to_metres(const Dem& dem, float* row, int count) {
     const float read = row[k];
     const auto height = float(dem.unit * (dem.scale * read + dem.offset));
     const bool is_void =
-        !(std::abs(read) <= kMost) || read == nodata || read == asked_nodata || std::isnan(height);
+        !(std::abs(read) <= kMax) || read == nodata || read == asked_nodata || std::isnan(height);
     voids += is_void ? 1 : 0;
     wrong += is_void || (height >= kLowest && height <= kHighest) ? 0 : 1;
     row[k] = is_void ? NAN : height;

@@ -229,7 +229,7 @@ class Terrain final : public Environment, public Ground {
 
   // A sphere of the vehicle's size may be kept off by the slope though the ground is a little
   // farther away than its radius.
-  double do_slack() const override {
+  double do_over_approximation() const override {
     return vehicle_radius_ * (std::hypot(1, model_.field().max_slope()) - 1) + kInDoubt;
   }
 

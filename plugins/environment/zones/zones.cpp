@@ -303,7 +303,7 @@ class Zones final : public Environment {
       keep_in_.rasterize(grid);
     }
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
 

@@ -66,7 +66,7 @@ TEST(Zones, KeepOutCylinderHasFloorCeilingAndThreat) {
   ASSERT_EQ(layer->info().threats.size(), 1U);
   EXPECT_EQ(layer->info().threats[0].id, "tower");
   EXPECT_EQ(layer->info().threats[0].kind, "zone");
-  EXPECT_EQ(layer->slack(), 0);
+  EXPECT_EQ(layer->over_approximation(), 0);
 }
 
 TEST(Zones, PolygonWithAHoleIsFreeInTheHole) {

@@ -73,7 +73,7 @@ class Fan {
  public:
   static constexpr int kHalf = 36;
   static constexpr int kClimbs = 5;
-  static constexpr int kMost = kClimbs * 2 * kHalf;
+  static constexpr int kMax = kClimbs * 2 * kHalf;
 
   Fan() {
     for (int k = 0; k <= kHalf; ++k) {

@@ -19,7 +19,7 @@ class Pillar final : public Environment {
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return leg_distance(shape_, a, b) < r - kLengthTolerance;
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
 };
 
 TEST(Apf, AllocatesNothingInAStep) {
@@ -120,7 +120,7 @@ class Asked final : public Environment {
     ++legs;
     return false;
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
 };
 
 TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
@@ -150,7 +150,7 @@ TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
     seen.state = pilot->step(seen).next;
     return asked->legs;
   };
-  constexpr int kMostLooks = 128;  // each but the first is one leg away from another
+  constexpr int kMaxLooks = 128;  // each but the first is one leg away from another
   int most = 0;
   int least = std::numeric_limits<int>::max();
   for (int step = 0; step < 12; ++step) {
@@ -158,7 +158,7 @@ TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
     most = std::max(most, legs);
     least = std::min(least, legs);
   }
-  EXPECT_LE(most - least, kMostLooks);
+  EXPECT_LE(most - least, kMaxLooks);
   EXPECT_GT(most, least) << "it searches,";
   EXPECT_EQ(legs_asked(0), least) << "and no more once all searches have failed,";
   EXPECT_GT(legs_asked(10), least) << "until all fly otherwise";

@@ -24,7 +24,7 @@ struct Flown {
   std::string why;
   Counters counters;
   double end_s = 0;
-  double least_separation = kInfinity;  ///< from the moving obstacle
+  double min_separation = kInfinity;  ///< from the moving obstacle
 
   std::int64_t counter(std::string_view name) const {
     for (const Counter& counter : counters) {
@@ -37,7 +37,7 @@ struct Flown {
 };
 
 /// Flies from start to goal with the goal as target, past an optional moving sphere.
-Flown flight(const Request& request, std::string_view yaml, int most_steps = 4000,
+Flown flight(const Request& request, std::string_view yaml, int max_steps = 4000,
              std::optional<MovingObstacle> moving = std::nullopt) {
   const auto planner = make_local_planner("apf", yaml);
   const auto pilot = planner->begin(request);
@@ -48,7 +48,7 @@ Flown flight(const Request& request, std::string_view yaml, int most_steps = 400
   seen.goal = request.goal;
   seen.local_target = request.goal.position;
   seen.world = request.world.get();
-  while (flown.outcome == PilotStep::Outcome::flying && --most_steps > 0) {
+  while (flown.outcome == PilotStep::Outcome::flying && --max_steps > 0) {
     SensedObstacle sensed;
     if (moving) {
       const Sphere sphere = std::get<Sphere>(moving->at(seen.state.time_s));
@@ -62,7 +62,7 @@ Flown flight(const Request& request, std::string_view yaml, int most_steps = 400
       break;
     }
     if (moving) {
-      flown.least_separation = std::min(flown.least_separation,
+      flown.min_separation = std::min(flown.min_separation,
                                         separation(*moving, seen.state.position, seen.state.time_s,
                                                    step.next.position, step.next.time_s));
     }
@@ -197,7 +197,7 @@ TEST(Apf, KeepsAwayFromWhatCrosses) {
       const Flown flown = flight(request, "{}", 4000, moving);
       EXPECT_EQ(flown.outcome, PilotStep::Outcome::arrived)
           << flown.why << speed << " m/s at " << angle << " end " << flown.route.back().transpose();
-      EXPECT_GT(flown.least_separation, 2) << speed << " m/s at " << angle;
+      EXPECT_GT(flown.min_separation, 2) << speed << " m/s at " << angle;
     }
   }
 }

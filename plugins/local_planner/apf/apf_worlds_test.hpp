@@ -18,7 +18,7 @@ class Slope final : public Environment, public Ground {
   double do_clearance(const Vec3& p) const override {
     return (p.z() - ground_at(p.x())) / std::sqrt(1 + kRise * kRise);
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return std::min(do_clearance(a), do_clearance(b)) < r - kLengthTolerance;
   }

@@ -9,7 +9,7 @@
 namespace apf {
 
 Escape::Escape(const Request& request) : request_(request), seen_(std::size_t(1) << kTableBits) {
-  known_.reserve(Outlook::kMostMovers);
+  known_.reserve(Outlook::kMaxMovers);
   const int up = request.level_m ? 0 : kCells;
   for (int x = kCells; x >= -kCells; --x) {
     for (int y = kCells; y >= -kCells; --y) {
@@ -45,7 +45,7 @@ bool Escape::find(const Outlook& outlook, const Instant& here, double speed, con
   if ((searched_ == 0 || searched_ == kSearches.size()) && learns(outlook)) {
     searched_ = 0;
   }
-  looks_left_ = kMostLooks;
+  looks_left_ = kMaxLooks;
   for (Outcome outcome = Outcome::none; outcome == Outcome::none && searched_ < kSearches.size();) {
     const Search& what = kSearches[searched_++];
     outcome = search(what);
@@ -74,10 +74,10 @@ bool Escape::learns(const Outlook& outlook) {
 }
 
 Escape::Outcome Escape::search(const Search& what) {
-  step_s_ = std::max(2.0, 2 * horizon_s_ / kMostLegs) * what.share;
+  step_s_ = std::max(2.0, 2 * horizon_s_ / kMaxLegs) * what.share;
   // Ways of two legs first: depth first, those that begin otherwise would come late.
   const Outcome outcome = look_on(what.aim, 0, 1);
-  return outcome == Outcome::none ? look_on(what.aim, 2, kMostLegs - 2) : outcome;
+  return outcome == Outcome::none ? look_on(what.aim, 2, kMaxLegs - 2) : outcome;
 }
 
 Escape::Outcome Escape::look_on(Aim aim, int from, int to) {
@@ -195,7 +195,7 @@ void Escape::keep(const Instant& corner, const Instant& end, double speed) {
   searched_ = 0;
 }
 
-std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here, double most_s) {
+std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here, double max_s) {
   const auto end = legs_.begin() + size_;
   const auto leg = std::find_if(legs_.begin(), end, [&](const Instant& corner) {
     return corner.time_s > here.time_s + 1e-9;
@@ -218,7 +218,7 @@ std::optional<Instant> Escape::next(const Outlook& outlook, const Instant& here,
                outlook.seconds_to_safety(from.at, from.time_s - here.time_s, Vec3(0, 0, 0), 0, 0)
                    .has_value();
   const double lasts = leg->time_s - here.time_s;
-  const double share = std::min(1.0, most_s / lasts);
+  const double share = std::min(1.0, max_s / lasts);
   return Instant{here.time_s + lasts * share, here.at + (leg->at - here.at) * share};
 }
 }  // namespace apf

@@ -36,7 +36,7 @@ class Escape {
             const Vec3& aside);
   /// Where the way leads within so many seconds of here, its next corner at the farthest; none
   /// where it has ended, is left, or is not clear any more.
-  std::optional<Instant> next(const Outlook& outlook, const Instant& here, double most_s);
+  std::optional<Instant> next(const Outlook& outlook, const Instant& here, double max_s);
   /// Keeps the way of these two legs, found elsewhere; as `find` does, to a place as safe.
   void keep(const Instant& corner, const Instant& end, double speed);
   /// Whether a better way should be looked for: movers may come to the end of this one, and the
@@ -80,9 +80,9 @@ class Escape {
   double seconds() const { return (size_tried_ - 1) * step_s_; }
 
   static constexpr int kCells = 4;        ///< flown in a step of time along an axis
-  static constexpr int kMostLooks = 128;  ///< places that a step looks on from
+  static constexpr int kMaxLooks = 128;  ///< places that a step looks on from
   static constexpr int kLooksHere = 8;    ///< what the first place, looked around closely, counts
-  static constexpr int kMostLegs = 64;
+  static constexpr int kMaxLegs = 64;
   static constexpr int kTableBits = 14;
   static constexpr double kRoom = 0.05;
   static constexpr double kPause = 2;            ///< seconds
@@ -98,7 +98,7 @@ class Escape {
   double horizon_s_ = 0;
   std::vector<Cell> neighbours_;
   std::array<std::array<double, 2>, 192> headings_{};  ///< cosines and sines
-  std::array<Place, kMostLegs> tried_{};               ///< the way so far
+  std::array<Place, kMaxLegs> tried_{};               ///< the way so far
   int size_tried_ = 0;
   int looks_left_ = 0;
   std::size_t searched_ = 0;  ///< of kSearches, since something new was seen
@@ -106,7 +106,7 @@ class Escape {
   std::uint64_t revision_ = 0;
   std::vector<std::uint64_t> seen_;
   std::size_t seen_count_ = 0;
-  std::array<Instant, kMostLegs> legs_{};
+  std::array<Instant, kMaxLegs> legs_{};
   int size_ = 0;
   bool ends_safe_ = false;
   double next_look_s_ = 0;

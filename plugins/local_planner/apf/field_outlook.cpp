@@ -30,7 +30,7 @@ void Outlook::see_movers(const Observation& seen, double speed) {
                       id,
                       pace,
                       pace > 0 ? Vec3(velocity / pace) : velocity};
-    if (count_ < kMostMovers) {
+    if (count_ < kMaxMovers) {
       movers_[count_++] = mover;
     } else if (const auto farthest = std::max_element(
                    movers_.begin(), movers_.end(),
@@ -47,15 +47,15 @@ void Outlook::see_world(const World& world, const Vec3& here) {
   clearance_ = world.clearance(here);
   layers_size_ = 0;
   for (const Layer& layer : world.layers()) {
-    if (layers_size_ < kMostLayers) {
+    if (layers_size_ < kMaxLayers) {
       const Environment& environment = *layer.environment;
-      layers_[layers_size_++] = {&layer, environment.clearance(here) - environment.slack()};
+      layers_[layers_size_++] = {&layer, environment.clearance(here) - environment.over_approximation()};
     }
   }
 }
 
 bool Outlook::is_blocked(const Vec3& a, const Vec3& b, double room) const {
-  if (world_->layers().size() > kMostLayers) {
+  if (world_->layers().size() > kMaxLayers) {
     return world_->blocked(a, b, room);
   }
   const double reach = std::max((a - here_).norm(), (b - here_).norm()) + room;
@@ -117,11 +117,11 @@ bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
 
 std::optional<double> Outlook::seconds_to_safety(const Vec3& from, double after_s,
                                                  const Vec3& velocity, double room,
-                                                 double least_s) const {
-  const double meets = seconds_to_contact(from, after_s, velocity, room, least_s);
-  std::array<Span, kMostMovers> spans;
+                                                 double min_s) const {
+  const double meets = seconds_to_contact(from, after_s, velocity, room, min_s);
+  std::array<Span, kMaxMovers> spans;
   std::size_t known = 0;
-  double until = least_s;
+  double until = min_s;
   for (std::size_t i = 0; i < count_ && until < meets;) {
     if (i == known) {
       spans[known++] = seconds_in_the_way(movers_[i], from, after_s, velocity, room);

@@ -24,7 +24,7 @@ struct Mover {
 /// What is seen in one step, and what it means for a straight flight.
 class Outlook {
  public:
-  static constexpr std::size_t kMostMovers = 256;  ///< the nearest of more
+  static constexpr std::size_t kMaxMovers = 256;  ///< the nearest of more
 
   /// `margin`: metres kept off what moves, beyond the clearance required.
   Outlook(const Request& request, double required, double margin, double reaction_s)
@@ -55,11 +55,11 @@ class Outlook {
   /// the ground.
   bool is_open(const Vec3& a, const Vec3& b, double room) const;
   bool is_open(const Vec3& a, const Vec3& b) const { return is_open(a, b, required_); }
-  /// Seconds, no fewer than `least_s`, that such a flight takes to a safe place: where no mover
+  /// Seconds, no fewer than `min_s`, that such a flight takes to a safe place: where no mover
   /// comes any more, as long as all fly on as they do. None where it leads to none, or meets
   /// something before.
   std::optional<double> seconds_to_safety(const Vec3& from, double after_s, const Vec3& velocity,
-                                          double room, double least_s) const;
+                                          double room, double min_s) const;
 
  private:
   /// Where it is not observed: from where it was seen last.
@@ -82,19 +82,19 @@ class Outlook {
     const Layer* layer;
     double free_m;
   };
-  static constexpr std::size_t kMostLayers = 256;  ///< of more, none is known to be far
+  static constexpr std::size_t kMaxLayers = 256;  ///< of more, none is known to be far
 
   const World* world_ = nullptr;
   Vec3 here_{0, 0, 0};
   double clearance_ = kInfinity;
-  std::array<Near, kMostLayers> layers_{};
+  std::array<Near, kMaxLayers> layers_{};
   std::size_t layers_size_ = 0;
   double speed_ = 0;
   double time_s_ = 0;
   double before_s_ = 0;
   std::size_t count_ = 0;
   std::size_t count_before_ = 0;
-  std::array<Mover, kMostMovers> movers_{};
-  std::array<Mover, kMostMovers> movers_before_{};
+  std::array<Mover, kMaxMovers> movers_{};
+  std::array<Mover, kMaxMovers> movers_before_{};
 };
 }  // namespace apf

@@ -101,7 +101,7 @@ class FieldPilot final : public Pilot {
   double length_along(Passing passing) const;
   /// The way past that side; nothing aside where it is longer than `most` for certain.
   Detour past(const Vec3& way, Passing passing, double most) const;
-  std::optional<Vec3> least_turned(const Vec3& way, Passing passing, double most) const;
+  std::optional<Vec3> min_turned(const Vec3& way, Passing passing, double most) const;
 
   // What is flown of it: field_heading.cpp.
   /// Straight to the goal over the last steps, where nothing forbids it: the field would push the
@@ -152,7 +152,7 @@ class FieldPilot final : public Pilot {
   Outlook outlook_;
   Escape escape_;
   Fan fan_;
-  std::array<Prospect, Fan::kMost + 1> prospects_{};  ///< the clamped wish, then the fan's
+  std::array<Prospect, Fan::kMax + 1> prospects_{};  ///< the clamped wish, then the fan's
   int count_ = 0;                                     ///< of them, so far
   std::array<Past, kWindow> past_{};
   double flown_ = 0;

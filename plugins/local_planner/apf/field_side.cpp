@@ -9,7 +9,7 @@ namespace {
 /// Another side than the one chosen is taken where the way past it is no longer than this share: a
 /// choice for good may be wrong, one that follows every change goes to and fro.
 constexpr double kMuchShorter = 0.8;
-constexpr int kMostParts = 32;
+constexpr int kMaxParts = 32;
 constexpr int kParts = 8;  ///< of the way aside, after each of which the rest may be straight
 
 Passing opposite(Passing passing) {
@@ -57,7 +57,7 @@ double FieldPilot::length_along(Passing passing) const {
   Vec3 at = here_;
   double flown = 0;
   int turn = 1;
-  for (int part = 0; part < kMostParts; ++part) {
+  for (int part = 0; part < kMaxParts; ++part) {
     const Vec3 left = target - at;
     const Vec3 way = left.normalized() * std::min(left.norm(), target_);
     if (is_free_way(at, flown / speed_, way)) {
@@ -138,7 +138,7 @@ std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const V
 }
 
 FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double most) const {
-  Detour detour{passing, least_turned(way, passing, most), kInfinity};
+  Detour detour{passing, min_turned(way, passing, most), kInfinity};
   if (detour.aside) {
     const Vec3& aside = *detour.aside;
     detour.length = 2 * aside.norm() + (way - aside).norm();
@@ -153,7 +153,7 @@ FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double mos
   return detour;
 }
 
-std::optional<Vec3> FieldPilot::least_turned(const Vec3& way, Passing passing, double most) const {
+std::optional<Vec3> FieldPilot::min_turned(const Vec3& way, Passing passing, double most) const {
   const bool level = is_level(passing);
   const int sign = passing == Passing::left || passing == Passing::above ? 1 : -1;
   constexpr int kClimbs = 4;

@@ -41,7 +41,7 @@ struct Field {
     const double surface = surface_ratio * pull;
     if (d < r) {
       const double inner = d / r;
-      return surface / std::max(inner * inner, kLeast);
+      return surface / std::max(inner * inner, kMin);
     }
     const double outer = (d - r) / length();
     return surface / (1 + outer * outer);
@@ -66,21 +66,21 @@ struct Field {
   }
 
   /// In a threat's very middle the push is not infinite.
-  static constexpr double kLeast = 1e-12;
+  static constexpr double kMin = 1e-12;
 };
 
 /// The greatest change of heading, eq. (13): of a step that is a chord of the least circle.
-inline double most_turn(double step, double least_radius) {
-  const double half = step / (2 * least_radius);
+inline double max_turn(double step, double min_radius) {
+  const double half = step / (2 * min_radius);
   return half < 1 ? 2 * std::asin(half) : kPi;
 }
 
 /// The least circle of whose chords steps of that length are made: of R_min, and wide enough that
 /// the judge's fillet between two steps has the radius of a turn_radius constraint (0: there is
 /// none).
-inline double least_circle(double step, double least_radius, double least_fillet) {
-  return least_fillet > 0 ? std::max(least_radius, std::hypot(least_fillet, step / 2))
-                          : least_radius;
+inline double min_circle(double step, double min_radius, double min_fillet) {
+  return min_fillet > 0 ? std::max(min_radius, std::hypot(min_fillet, step / 2))
+                          : min_radius;
 }
 
 /// A bound on the change of heading, made once for many steps.

@@ -108,7 +108,7 @@ struct Params {
 
   Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }
   /// R_min, eq. (10) where it is not given.
-  double least_radius() const {
+  double min_radius() const {
     constexpr double kGravity = 9.80665;
     return min_turn_radius_m.value
                ? *min_turn_radius_m.value

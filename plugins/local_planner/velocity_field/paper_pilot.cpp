@@ -12,10 +12,10 @@ PaperPilot::PaperPilot(const Params& params, const Request& request)
     : p_(params),
       field_(params.field()),
       vehicle_(request.vehicle),
-      least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
-      least_fillet_(request.limits.min_turn_radius),
-      most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
-      most_step_(request.limits.max_leg),
+      min_radius_(std::max(params.min_radius(), request.limits.min_turn_radius)),
+      min_fillet_(request.limits.min_turn_radius),
+      max_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
+      max_step_(request.limits.max_leg),
       turn_limit_(kPi),
       feed_(request, params.ring_m),
       virtual_targets_(field_.balance(), params.release_m) {
@@ -97,7 +97,7 @@ Vec2 PaperPilot::flyable(const Vec2& wish, double step) {
   }
   if (step != limit_step_) {
     turn_limit_ = TurnLimit(
-        std::min(most_turn(step, least_circle(step, least_radius_, least_fillet_)), most_turn_));
+        std::min(max_turn(step, min_circle(step, min_radius_, min_fillet_)), max_turn_));
     limit_step_ = step;
   }
   const Vec2 held = turn_limit_.held(*heading_, wish);
@@ -112,7 +112,7 @@ double PaperPilot::speed(const Observation& seen) const {
 }
 
 double PaperPilot::step_time(const Observation& seen, double speed) const {
-  return std::min({p_.step_s, seen.max_dt_s, most_step_ / speed});
+  return std::min({p_.step_s, seen.max_dt_s, max_step_ / speed});
 }
 
 PilotStep PaperPilot::fly(const Observation& seen, const Vec3& ahead, double speed, double dt) {

@@ -42,10 +42,10 @@ class PaperPilot final : public Pilot {
   Params p_;
   Field field_;
   Vehicle vehicle_;
-  double least_radius_;
-  double least_fillet_;
-  double most_turn_;
-  double most_step_;
+  double min_radius_;
+  double min_fillet_;
+  double max_turn_;
+  double max_step_;
   TurnLimit turn_limit_;
   double limit_step_ = 0;  ///< the length of step that turn_limit_ is for
   ThreatFeed feed_;

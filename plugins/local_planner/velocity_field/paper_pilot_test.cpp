@@ -64,7 +64,7 @@ TEST(PaperPilot, StepsAndTurnsOnRandomMaps) {
       const Flown flown = flight(request, "{}", 8000);
       EXPECT_NE(flown.outcome, PilotStep::Outcome::stuck);
       EXPECT_LE(uneven(flown.route, 30), 1e-6) << kind << number;
-      EXPECT_GE(least_radius(flown.route), 500 - 1e-6) << kind << number;
+      EXPECT_GE(min_radius(flown.route), 500 - 1e-6) << kind << number;
       EXPECT_LE(flown.counter("virtual_targets_used"), flown.counter("trap_entries"));
       EXPECT_LE(flown.counter("virtual_targets_inside_threats"), flown.counter("trap_entries"));
     }
@@ -104,7 +104,7 @@ TEST(PaperPilot, ContinuesFromTheObservedState) {
   const PilotStep step = pilot->step(seen);
   EXPECT_NEAR((step.next.position - seen.state.position).norm(), 30, 1e-9);
   EXPECT_NEAR(step.next.time_s, 501, 1e-12);
-  EXPECT_NEAR(turn_angle_in_space(seen.state.velocity, step.next.velocity), most_turn(30, 500),
+  EXPECT_NEAR(turn_angle_in_space(seen.state.velocity, step.next.velocity), max_turn(30, 500),
               1e-9);
 }
 
@@ -116,7 +116,7 @@ TEST(PaperPilot, FirstHeadingIsFreeWhereNoneIsGiven) {
   request.start.velocity = {0, -30, 0};
   EXPECT_NEAR(turn_angle_in_space(flight(request, "{}", 1).route[1] - request.start.position,
                                   request.start.velocity),
-              most_turn(30, 500), 1e-9);
+              max_turn(30, 500), 1e-9);
 }
 
 TEST(PaperPilot, ShortStepsOfTheHostKeepTheRadius) {
@@ -124,20 +124,20 @@ TEST(PaperPilot, ShortStepsOfTheHostKeepTheRadius) {
   const Flown flown =
       flight(request, "{}", 3000, [](Observation& seen, int) { seen.max_dt_s = 0.25; });
   EXPECT_LE(uneven(flown.route, 7.5), 1e-6);
-  EXPECT_GE(least_radius(flown.route), 500 - 1e-6);
+  EXPECT_GE(min_radius(flown.route), 500 - 1e-6);
 }
 
 TEST(PaperPilot, LimitsOfTheRequestTighten) {
   Request request = table1();
   request.limits.min_turn_radius = 900;
-  EXPECT_GE(least_radius(flight(request).route), 900 - 1e-6);
+  EXPECT_GE(min_radius(flight(request).route), 900 - 1e-6);
   request.limits.min_turn_radius = 100;
-  EXPECT_GE(least_radius(flight(request).route), 500 - 1e-6);
+  EXPECT_GE(min_radius(flight(request).route), 500 - 1e-6);
   // V_min^2 / (g tan 30 degrees)
   const double radius = 50 * 50 / (9.80665 * std::tan(kPi / 6));
   const Flown banked =
       flight(table1(), "{min_turn_radius_m: auto, min_speed_mps: 50, max_bank_deg: 30}", 2000);
-  EXPECT_NEAR(least_radius(banked.route), radius, 1e-3);
+  EXPECT_NEAR(min_radius(banked.route), radius, 1e-3);
 }
 
 TEST(PaperPilot, ThreatsGrowByTheClearanceAskedFor) {

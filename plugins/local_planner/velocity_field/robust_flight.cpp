@@ -44,11 +44,11 @@ void RobustFlight::find_guide(const Vec2& at, const std::optional<Vec2>& course)
   circling_ = 0;
   guide_ = guide_with(least, at, course);
   pushed_ = false;
-  const double most_m = kDetour * guide_.length_m();
+  const double max_m = kDetour * guide_.length_m();
   for (double berth = std::min(field_.balance(), radius); berth > least && !guide_.empty();
        berth /= 4) {
     Guide wide = guide_with(berth, at, course);
-    if (!wide.empty() && wide.length_m() <= most_m) {
+    if (!wide.empty() && wide.length_m() <= max_m) {
       guide_ = std::move(wide);
       pushed_ = berth == std::min(field_.balance(), radius);
       return;

@@ -35,7 +35,7 @@ class Sequence {
       }
       const Pose next = flight_.step(at_, course_);
       penetrations_ += enters_one(discs_, at_, next.at);
-      if (course_ && cross_turn(*course_, next.course) > most_turn(30, 500) + 1e-7) {
+      if (course_ && cross_turn(*course_, next.course) > max_turn(30, 500) + 1e-7) {
         ++tight_turns_;
       }
       at_ = next.at;

@@ -17,7 +17,7 @@ constexpr double kTouch = 1e-6;  ///< metres that a tangent may be inside by rou
 constexpr std::size_t kMany = 200;
 constexpr double kHaste = 1.02;
 /// Given up then, by which it holds 1 GB; 80 discs have fewer.
-constexpr std::size_t kMostTangents = 10'000'000;
+constexpr std::size_t kMaxTangents = 10'000'000;
 
 double angle_of(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
@@ -64,7 +64,7 @@ class TangentSearch {
       expand(n);
     }
     while (!open_.empty()) {
-      effort_.given_up = offered_ >= kMostTangents || watch_.spent(0);
+      effort_.given_up = offered_ >= kMaxTangents || watch_.spent(0);
       if (effort_.given_up) {
         break;
       }

@@ -39,10 +39,10 @@ RobustPilot::RobustPilot(const Params& params, const Request& request)
     : p_(params),
       field_(params.field()),
       speed_(request.vehicle.speed_mps),
-      least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
-      least_fillet_(request.limits.min_turn_radius),
-      most_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
-      most_step_(request.limits.max_leg),
+      min_radius_(std::max(params.min_radius(), request.limits.min_turn_radius)),
+      min_fillet_(request.limits.min_turn_radius),
+      max_turn_(std::min(request.limits.max_turn_horizontal, request.limits.max_turn_space)),
+      max_step_(request.limits.max_leg),
       feed_(request, std::max(params.ring_m, Freedom::reach_m(steps_of(params.step_s)))),
       flight_(field_, feed_.threats(), steps_of(params.step_s), request.budget),
       dt_(params.step_s) {
@@ -54,8 +54,8 @@ RobustPilot::RobustPilot(const Params& params, const Request& request)
 }
 
 Steps RobustPilot::steps_of(double step_s) const {
-  const double length = std::min(speed_ * step_s, most_step_);
-  return {length, least_circle(length, least_radius_, least_fillet_), most_turn_};
+  const double length = std::min(speed_ * step_s, max_step_);
+  return {length, min_circle(length, min_radius_, min_fillet_), max_turn_};
 }
 
 PilotStep RobustPilot::do_step(const Observation& seen) {
@@ -71,7 +71,7 @@ PilotStep RobustPilot::do_step(const Observation& seen) {
   }
   const Vec2 here = seen.state.position.head<2>();
   const std::optional<Vec2> course = course_of(seen.state);
-  const double dt = std::min({p_.step_s, seen.max_dt_s, most_step_ / speed_});
+  const double dt = std::min({p_.step_s, seen.max_dt_s, max_step_ / speed_});
   take_news(seen, here, course, dt);
   if (steps_ == 0 && !flight_.is_safe()) {
     return stuck(seen, course ? "from the course here no turn is known that enters no threat"
@@ -96,7 +96,7 @@ void RobustPilot::take_news(const Observation& seen, const Vec2& here,
   const double off = (here - expected_.at).norm();
   const bool turned = course && (*course - expected_.course).norm() > kAngleTolerance;
   const bool other_guide = other_steps && steps_ == 0;
-  if (feed_.update(seen) || off > least_radius_ || other_guide) {
+  if (feed_.update(seen) || off > min_radius_ || other_guide) {
     flight_.set_world(seen.goal.position.head<2>(),
                       tolerance_at(seen.goal, seen.state.position.z()), here, course);
   } else if (other_steps || turned || off > kLengthTolerance) {

@@ -30,10 +30,10 @@ class RobustPilot final : public Pilot {
   Params p_;
   Field field_;
   double speed_;
-  double least_radius_;
-  double least_fillet_;
-  double most_turn_;
-  double most_step_;
+  double min_radius_;
+  double min_fillet_;
+  double max_turn_;
+  double max_step_;
   ThreatFeed feed_;
   RobustFlight flight_;
   Pose expected_;  ///< where the last step led to

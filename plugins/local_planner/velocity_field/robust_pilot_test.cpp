@@ -29,7 +29,7 @@ void fly_map(const std::vector<Disc>& discs, double shortest, const Request& req
   EXPECT_TRUE(arrived) << name << ": " << flown.why.back();
   EXPECT_FALSE(entered) << name;
   EXPECT_LE(uneven(flown.route, 30), 1e-6) << name;
-  EXPECT_GE(least_radius(flown.route), 500 - 1e-6) << name;
+  EXPECT_GE(min_radius(flown.route), 500 - 1e-6) << name;
   ++tally.flown;
   tally.arrived += arrived;
   tally.entered += entered;
@@ -107,7 +107,7 @@ TEST(RobustPilot, KeepsTheStartsCourse) {
     ASSERT_EQ(flown.outcome, PilotStep::Outcome::arrived) << degree;
     Route route = flown.route;
     route.insert(route.begin(), request.start.position - request.start.velocity);
-    EXPECT_GE(least_radius(route), 500 - 1e-6) << degree;
+    EXPECT_GE(min_radius(route), 500 - 1e-6) << degree;
   }
 }
 
@@ -188,7 +188,7 @@ TEST(RobustPilot, TakesShorterStepsWhereTheHostDoes) {
     seen.max_dt_s = n % 400 < 200 ? 0.25 : 1;
   });
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::arrived);
-  EXPECT_GE(least_radius(flown.route), 400) << "between steps of two lengths the circle is another";
+  EXPECT_GE(min_radius(flown.route), 400) << "between steps of two lengths the circle is another";
 }
 }  // namespace
 }  // namespace velocity_field

@@ -9,11 +9,11 @@ constexpr double kRounding = 1e-6;
 constexpr double kDrift = 1e-3;
 }  // namespace
 
-Steps::Steps(double length_m, double least_radius_m, double most_turn)
+Steps::Steps(double length_m, double min_radius_m, double max_turn)
     : length_m_(length_m),
       radius_m_(
-          std::max(least_radius_m, length_m / (2 * std::sin(std::min(most_turn, kPi / 2) / 2)))),
-      limit_(velocity_field::most_turn(length_m, radius_m_)),
+          std::max(min_radius_m, length_m / (2 * std::sin(std::min(max_turn, kPi / 2) / 2)))),
+      limit_(velocity_field::max_turn(length_m, radius_m_)),
       half_(limit_.most() / 2) {}
 
 Pose Steps::turned(const Pose& pose, int side) const {

@@ -18,7 +18,7 @@ struct Pose {
 /// circle of the least radius.
 class Steps {
  public:
-  Steps(double length_m, double least_radius_m, double most_turn);
+  Steps(double length_m, double min_radius_m, double max_turn);
   double length_m() const { return length_m_; }
   double radius_m() const { return radius_m_; }
   Vec2 limited(const Vec2& course, const Vec2& wish) const {

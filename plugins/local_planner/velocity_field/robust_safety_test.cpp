@@ -115,7 +115,7 @@ TEST(WayOut, EntersNoThreat) {
         next = kSteps.after(pose.at, out.courses.back());
         out.courses.pop_back();
         const double turn = std::acos(std::min(1.0, next.course.dot(pose.course)));
-        ASSERT_LE(turn, most_turn(30, 500) + 1e-7) << n;
+        ASSERT_LE(turn, max_turn(30, 500) + 1e-7) << n;
       }
       ASSERT_FALSE(enters_one(discs, pose.at, next.at)) << n;
       pose = next;

@@ -27,7 +27,7 @@ double ceiling_of(const Request& request) {
   return ceiling;
 }
 
-double least_above_ground(const Limits& limits) {
+double min_above_ground(const Limits& limits) {
   double above = limits.min_ground_clearance.value_or(0);
   for (const AltitudeBand& band : limits.altitude) {
     if (band.datum == AltitudeBand::Datum::ground) {
@@ -43,10 +43,10 @@ double distance_level(const Vec3& a, const Vec3& b) { return (a - b).head<2>().n
 
 TerrainFlight::TerrainFlight(const Params& params, const Request& request)
     : volume_(request.volume),
-      least_radius_(std::max(params.least_radius(), request.limits.min_turn_radius)),
-      least_fillet_(request.limits.min_turn_radius),
-      most_turn_level_(request.limits.max_turn_horizontal),
-      most_turn_space_(request.limits.max_turn_space),
+      min_radius_(std::max(params.min_radius(), request.limits.min_turn_radius)),
+      min_fillet_(request.limits.min_turn_radius),
+      max_turn_level_(request.limits.max_turn_horizontal),
+      max_turn_space_(request.limits.max_turn_space),
       // A hair less, so that rounding keeps the judge's limit.
       max_climb_(std::min(radians(params.max_climb_deg), request.limits.max_climb) * (1 - 1e-9)),
       slope_(request.level_m ? 0 : std::tan(max_climb_)),
@@ -57,10 +57,10 @@ TerrainFlight::TerrainFlight(const Params& params, const Request& request)
   const Vec3 size = volume_.max - volume_.min;
   rules_.box = volume_;
   rules_.cell = params.section_cell_m.value.value_or(std::max({size.x(), size.y(), 1.0}) / kCells);
-  rules_.above = least_above_ground(request.limits);
+  rules_.above = min_above_ground(request.limits);
   rules_.radius = std::max(request.limits.min_clearance, request.vehicle.radius_m);
-  rules_.reserve = climbs() ? lag(-max_climb_, least_radius_) : 0;
-  rules_.bay = kTurns * least_radius_;
+  rules_.reserve = climbs() ? lag(-max_climb_, min_radius_) : 0;
+  rules_.bay = kTurns * min_radius_;
   rules_.slope = slope_;
   rules_.ceiling = ceiling_of(request);
   look_at_ground(*request.world);
@@ -121,7 +121,7 @@ Vec2 TerrainFlight::push(const Field& field, const Vec2& here, const Vec2& to_ta
 }
 
 double TerrainFlight::radius_at(double length) const {
-  return std::max(least_radius_, length / std::min(most_turn_space_, kPi));
+  return std::max(min_radius_, length / std::min(max_turn_space_, kPi));
 }
 
 double TerrainFlight::lag(double climb, double radius) const {
@@ -131,7 +131,7 @@ double TerrainFlight::lag(double climb, double radius) const {
 
 void TerrainFlight::watch_progress(const Vec3& here, double length) {
   const double left = distance_level(goal_, here);
-  near_goal_ += left <= kNear * least_radius_ ? length : 0;
+  near_goal_ += left <= kNear * min_radius_ ? length : 0;
   if (goes_over_) {
     if (left < round_below_ && here.z() <= level_ + 1 &&
         sections_->safe_height(here.head<2>()) <= level_) {
@@ -169,7 +169,7 @@ TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& w
   const double flat = std::cos(now.climb) * std::cos(climb);
   const double room = std::cos(climb - now.climb) - std::cos(most);
   const double cosine =
-      std::clamp(std::max(1 - room / flat, std::cos(most_turn_level_)), -1.0, 1.0);
+      std::clamp(std::max(1 - room / flat, std::cos(max_turn_level_)), -1.0, 1.0);
   if (now.heading.dot(wish) >= cosine) {
     return {wish, climb};
   }
@@ -180,7 +180,7 @@ TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& w
 TerrainFlight::Attitude TerrainFlight::within_radius(const Vec3& here, const Attitude& now,
                                                      const Vec2& wish, double length) {
   const double most = std::min(
-      most_turn(length, least_circle(length, least_radius_, least_fillet_)), most_turn_space_);
+      max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
   if (!climbs()) {
     return turned(now, wish, 0, most);
   }
@@ -206,7 +206,7 @@ bool TerrainFlight::is_last_leg(const Vec3& here, const std::vector<Disc>& threa
   const Vec3 way = goal_ - here;
   const double left = way.head<2>().norm();
   const double climb = std::atan2(way.z(), left);
-  const double turn = std::min(most, most_turn_level_);
+  const double turn = std::min(most, max_turn_level_);
   return left > 0 && left <= reach() && std::abs(climb) <= max_climb_ &&
          now.climb >= climb - most && now.heading.dot(way.head<2>() / left) >= std::cos(turn) &&
          (!sections_ || sections_->is_above(here, goal_)) &&
@@ -226,7 +226,7 @@ Vec3 TerrainFlight::step(const State& state, const std::vector<Disc>& threats, c
                            ? Attitude{velocity.head<2>() / fast, std::atan2(velocity.z(), fast)}
                            : Attitude{wish, 0};
   const double most = std::min(
-      most_turn(length, least_circle(length, least_radius_, least_fillet_)), most_turn_space_);
+      max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
   last_leg_ = climbs() && is_last_leg(here, threats, now, most);
   Attitude next;
   if (last_leg_) {

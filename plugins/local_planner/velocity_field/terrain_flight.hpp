@@ -27,7 +27,7 @@ class TerrainFlight {
   Vec3 step(const State& state, const std::vector<Disc>& threats, const Vec2& wish, double length);
 
   /// Whether it circles above a goal that it does not dare to go down to.
-  bool is_kept_above() const { return near_goal_ > kMostCircling * least_radius_; }
+  bool is_kept_above() const { return near_goal_ > kMaxCircling * min_radius_; }
   /// Whether the goal's height can be flown to.
   bool climbs() const { return slope_ > 0; }
   /// How far the last leg to the goal may be.
@@ -38,7 +38,7 @@ class TerrainFlight {
   std::int64_t turn_limit_steps() const { return turn_limit_steps_; }
 
  private:
-  static constexpr double kMostCircling = 60;
+  static constexpr double kMaxCircling = 60;
   struct Attitude {
     Vec2 heading{1, 0};
     double climb = 0;
@@ -62,10 +62,10 @@ class TerrainFlight {
 
   // What is asked.
   Box volume_;
-  double least_radius_;
-  double least_fillet_;
-  double most_turn_level_;
-  double most_turn_space_;
+  double min_radius_;
+  double min_fillet_;
+  double max_turn_level_;
+  double max_turn_space_;
   double max_climb_;
   double slope_;  ///< of max_climb_
   double detour_;

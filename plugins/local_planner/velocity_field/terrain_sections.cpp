@@ -14,7 +14,7 @@ constexpr double kWalk = 1.0823922;
 /// What reading between centres may miss, in cells times slope: the top of the cell that p is in by
 /// 0.8, the straight line's rise by 0.7.
 constexpr double kBetween = 1.5;
-constexpr double kMostCells = 16e6;
+constexpr double kMaxCells = 16e6;
 /// Of closed ground, before its surroundings say more.
 constexpr float kLowest = -1e9F;
 /// So near to the middle of a disc, of its radius, the field takes a place that is in deep.
@@ -24,7 +24,7 @@ constexpr double kDeepest = 0.1;
 TerrainSections::TerrainSections(const World& world, const GroundRules& rules)
     : low_(rules.box.min.head<2>()), cell_(rules.cell), bay_(rules.bay) {
   const Vec3 size = rules.box.max - rules.box.min;
-  if (!((size.x() / cell_ + 1) * (size.y() / cell_ + 1) <= kMostCells)) {
+  if (!((size.x() / cell_ + 1) * (size.y() / cell_ + 1) <= kMaxCells)) {
     throw Error(
         "velocity_field: section_cell_m makes more than 16,000,000 cells of the volume; "
         "expected larger cells");

@@ -131,7 +131,7 @@ TEST(Terrain, ClimbsOverARidgeAndDescends) {
     EXPECT_NEAR(flown.route.back().z(), 1500, 50);
     EXPECT_EQ(flown.counter("low_steps"), 0);
     EXPECT_LE(uneven(flown.route, 30), 1e-6);
-    EXPECT_GE(least_radius(flown.route), radius - 1e-6);
+    EXPECT_GE(min_radius(flown.route), radius - 1e-6);
   }
 }
 

@@ -31,9 +31,9 @@ void Threats::choose_cells() {
   // unless that makes more than a few cells a disc.
   const double count = double(discs_.size());
   const Vec2 size = high - low_;
-  const double most_cells = 4 * count + 60;
-  side_ = std::max({std::sqrt(squares / count) / 2, std::sqrt(size.x() * size.y() / most_cells),
-                    size.maxCoeff() / most_cells});
+  const double max_cells = 4 * count + 60;
+  side_ = std::max({std::sqrt(squares / count) / 2, std::sqrt(size.x() * size.y() / max_cells),
+                    size.maxCoeff() / max_cells});
   columns_ = int(size.x() / side_) + 1;
   rows_ = int(size.y() / side_) + 1;
 }

@@ -38,7 +38,7 @@ class VelocityField final : public LocalPlanner {
   }
   Traits do_traits() const override {
     Traits traits;
-    traits.space = false;  // a threat is a disc at every height, over ground too
+    traits.spatial = false;  // a threat is a disc at every height, over ground too
     traits.avoids_obstacles = false;
     return traits;
   }

@@ -42,10 +42,10 @@ TEST(Field, GuidesTowardTheTarget) {
 }
 
 TEST(TurnLimit, TurnsByTheLimitExactlyOrNotAtAll) {
-  const double most = most_turn(30, 500);
+  const double most = max_turn(30, 500);
   EXPECT_NEAR(2 * 500 * std::sin(most / 2), 30, 1e-12);
-  EXPECT_EQ(most_turn(1000, 500), kPi);
-  EXPECT_EQ(most_turn(1001, 500), kPi);
+  EXPECT_EQ(max_turn(1000, 500), kPi);
+  EXPECT_EQ(max_turn(1001, 500), kPi);
   const TurnLimit limit(most);
   for (int degree = -179; degree < 180; ++degree) {
     const Vec2 heading(std::cos(0.7), std::sin(0.7));
@@ -91,8 +91,8 @@ TEST(PaperTable, Waypoints) {
 TEST(PaperTable, SegmentsAndRadius) {
   const Flown flown = flight(table1());
   EXPECT_LE(uneven(flown.route, 30), 1e-6);
-  EXPECT_GE(least_radius(flown.route), 500 - 1e-6);
-  EXPECT_LT(least_radius(flown.route), 501) << "the limit is met, not only kept";
+  EXPECT_GE(min_radius(flown.route), 500 - 1e-6);
+  EXPECT_LT(min_radius(flown.route), 501) << "the limit is met, not only kept";
   EXPECT_GT(flown.counter("turn_limit_steps"), 0);
 }
 

@@ -27,7 +27,7 @@
 namespace {
 
 using namespace altiplan;
-using kit::Found;
+using kit::SearchResult;
 using kit::MoveCheck;
 using kit::SearchSettings;
 
@@ -75,7 +75,7 @@ class AStar final : public Planner {
   }
 
   /// One search for a route that costs less than `best_cost`.
-  Found search(const SearchSettings& settings, const Request& request, double best_cost) const {
+  SearchResult search(const SearchSettings& settings, const Request& request, double best_cost) const {
     switch (quickest(settings, request)) {
       case By::cells:
         if (auto found = by_cells(request, settings)) {
@@ -83,7 +83,7 @@ class AStar final : public Planner {
         }
         [[fallthrough]];
       case By::one_parent: {
-        Found found = on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
+        SearchResult found = on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
         if (!kit::heading_may_help(settings, best_cost, sizeof(kit::HeadingCell) + 1, found)) {
           return found;
         }
@@ -96,13 +96,13 @@ class AStar final : public Planner {
     return by_heading(request, settings, best_cost);
   }
 
-  Found by_heading(const Request& request, const SearchSettings& settings, double best_cost) const {
+  SearchResult by_heading(const Request& request, const SearchSettings& settings, double best_cost) const {
     return on_lattice<kit::HeadingSearch, kit::HeadingCell>(request, settings, best_cost,
                                                             heading_memory_);
   }
 
   template <class Search, class Node, class Memory>
-  Found on_lattice(const Request& request, const SearchSettings& settings, double best_cost,
+  SearchResult on_lattice(const Request& request, const SearchSettings& settings, double best_cost,
                    kit::ScratchPool<Memory>& pool) const {
     constexpr std::size_t kBytes = sizeof(Node) + 1;
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
@@ -115,12 +115,12 @@ class AStar final : public Planner {
   }
 
   /// Nothing where the costs would become too coarse.
-  std::optional<Found> by_cells(const Request& request, const SearchSettings& settings) const {
+  std::optional<SearchResult> by_cells(const Request& request, const SearchSettings& settings) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), astar::CellMemory::kBytesPerCell});
     if (auto refused =
             kit::beyond_budget(lattice, astar::CellMemory::kBytesPerCell, request.budget)) {
-      return Found{*std::move(refused)};
+      return SearchResult{*std::move(refused)};
     }
     const auto memory = cell_memory_.take();
     const Box box = lattice.spec().box();
@@ -137,7 +137,7 @@ class AStar final : public Planner {
         const double cost = length(result->route);
         const bool at_goal =
             result->status == PlanStatus::solved && result->route.back() == request.goal.position;
-        return Found{*std::move(result), cost, at_goal};
+        return SearchResult{*std::move(result), cost, at_goal};
       }
       longest_m = 4 * costs.longest_m();
     }

@@ -54,7 +54,7 @@ double cost(const Request& request, const Route& route, const Weights& weights) 
 }
 
 /// Least cost of a way over the cells, by Dijkstra's algorithm; infinite where there is none.
-double least_cost(const Request& request, const Weights& weights) {
+double min_cost(const Request& request, const Weights& weights) {
   const auto at = [](int node) {
     return Vec3(5 + 10 * (node % 8), 5 + 10 * (node / 8 % 7), 5 + 10.0 * (node / 56));
   };
@@ -96,7 +96,7 @@ TEST(AStarCosts, SummedCostsEqualDijkstra) {
       continue;
     }
     const Weights& w = kinds[world % 4];
-    const double expected = least_cost(request, w);
+    const double expected = min_cost(request, w);
     const std::string yaml =
         "{cell_m: [10, 10, 10], length_unit_m: 10, weight_length: " + std::to_string(w.length) +
         ", weight_altitude: " + std::to_string(w.altitude) +

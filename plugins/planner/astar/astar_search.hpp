@@ -40,7 +40,7 @@ class Search : kit::GoalSearch {
         nodes_(memory.nodes),
         lengths_(memory.lengths) {}
 
-  kit::Found run() {
+  kit::SearchResult run() {
     begin();
     PlanStatus status = PlanStatus::no_route;
     while (!open_.empty()) {
@@ -131,7 +131,7 @@ class Search : kit::GoalSearch {
       const Vec3 there = lattice_.position(to);
       const double g = node.g + step_cost(d, here, there);
       const double length = length_here + lattice_.step_length(d);
-      if (!(g < successor.g) || too_long(length, there) || too_dear(g, there) ||
+      if (!(g < successor.g) || too_long(length, there) || exceeds_incumbent(g, there) ||
           !rules_.leg_free(from, c, d, here, there, node.clearance, successor.clearance) ||
           (judged_whole && !rules_.any_leg_ok(from, here, there))) {
         continue;

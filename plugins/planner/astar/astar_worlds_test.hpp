@@ -79,7 +79,7 @@ class Balls final : public Environment {
     }
     return false;
   }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
 };
 
 inline std::shared_ptr<Balls> random_balls(SplitMix64& random, int count) {

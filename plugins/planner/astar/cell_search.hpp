@@ -186,7 +186,7 @@ class CellSearch {
       closed_.at(closed_at / 64) |= closed_mask;
       ++progress_.expanded;
       const std::uint32_t g_here = g(entry.node);
-      if (g_here > kit::StepCosts::kMost) {
+      if (g_here > kit::StepCosts::kMax) {
         return std::nullopt;
       }
       if (tracing_) {
@@ -364,6 +364,6 @@ class CellSearch {
   const GoalLink* near_goal_ = nullptr;  ///< where the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;
-  kit::Progress progress_;
+  kit::SearchStats progress_;
 };
 }  // namespace altiplan::astar

@@ -23,7 +23,7 @@ namespace {
 
 using namespace altiplan;
 using bidirectional::Node;
-using kit::Found;
+using kit::SearchResult;
 using kit::SearchParams;
 using kit::SearchSettings;
 
@@ -44,11 +44,11 @@ class BidirectionalAStar final : public Planner {
   }
 
   /// One search for a route that costs less than `best_cost`.
-  Found search(const SearchSettings& settings, const Request& request, double best_cost) const {
+  SearchResult search(const SearchSettings& settings, const Request& request, double best_cost) const {
     if (kit::begins_by_heading(settings, request)) {
       return run(settings, request, best_cost, true);
     }
-    Found found = run(settings, request, best_cost, false);
+    SearchResult found = run(settings, request, best_cost, false);
     if (!kit::heading_may_help(settings, best_cost, sizeof(Node) + 1, found)) {
       return found;
     }
@@ -56,7 +56,7 @@ class BidirectionalAStar final : public Planner {
     return kit::after_one_parent(run(settings, rest, best_cost, true), found);
   }
 
-  Found run(const SearchSettings& settings, const Request& request, double best_cost,
+  SearchResult run(const SearchSettings& settings, const Request& request, double best_cost,
             bool by_heading) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), sizeof(Node) + 1});

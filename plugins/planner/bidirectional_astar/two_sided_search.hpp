@@ -25,14 +25,14 @@ class TwoSidedSearch : kit::LatticeSearch {
   TwoSidedSearch(const Request& request, const kit::SearchSettings& settings,
                  const kit::Lattice& lattice, double best_cost, bool by_heading, Memory& memory)
       : LatticeSearch(request, settings, lattice, best_cost),
-        to_start_(settings, lattice, request.start.position, 0, costs_.least_per_metre()),
+        to_start_(settings, lattice, request.start.position, 0, costs_.min_per_metre()),
         by_heading_(by_heading),
         quantum_(quantum()),
         nodes_(memory.nodes),
         open_(memory.open),
         arrivals_(memory.arrivals) {}
 
-  kit::Found run() {
+  kit::SearchResult run() {
     begin();
     PlanStatus status = PlanStatus::no_route;
     while (const std::optional<Side> side = next_side()) {
@@ -54,7 +54,7 @@ class TwoSidedSearch : kit::LatticeSearch {
       return with(route(fallback_, kNone), arrivals_[forward][fallback_].g, false, cut_short);
     }
     progress_.memory_full = memory_full();
-    kit::Found none =
+    kit::SearchResult none =
         without(status, (by_heading_ || !rules_.parent_mattered()) && lengths_prove());
     none.result.message += by_heading_ ? "; searched by cell and heading" : "";
     return none;

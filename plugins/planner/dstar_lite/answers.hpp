@@ -23,7 +23,7 @@ inline std::string first_broken(const Route& route, const Request& request) {
 }
 
 /// Says why there is no route: how far the search came, and what stopped it.
-inline std::string explanation(PlanStatus status, const kit::Progress& progress,
+inline std::string explanation(PlanStatus status, const kit::SearchStats& progress,
                                const Problem& problem, const kit::MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"

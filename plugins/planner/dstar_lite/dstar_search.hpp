@@ -45,7 +45,7 @@ class Search {
   /// procedure Initialize: what is one leg away from the goal; again where these legs may have
   /// changed.
   void initialize() {
-    fresh_ = most_entries_ == 0;
+    fresh_ = max_entries_ == 0;
     graph_.for_each_at_goal([&](std::uint32_t s) {
       const Cell c = graph_.cell(s);
       vertices_.know(c);
@@ -66,7 +66,7 @@ class Search {
     moved_ = true;
     to_start_.move(links, problem_);
     k_m_ += fall;
-    return k_m_ < kMostKm;
+    return k_m_ < kMaxKm;
   }
 
   /// A vertex that cannot be any more. What relied on it is found by the walk, where it matters.
@@ -95,8 +95,8 @@ class Search {
     if (ended_ || too_long_) {
       progress_.memory_full = memory_full();
     }
-    if (most_entries_ == 0) {
-      most_entries_ = std::max(kFewEntries, 2 * (open_.size() + raised_.size()));
+    if (max_entries_ == 0) {
+      max_entries_ = std::max(kFewEntries, 2 * (open_.size() + raised_.size()));
     }
     if (nearest_ != kNever) {
       progress_.nearest = problem_.lattice.position(graph_.cell(nearest_vertex_));
@@ -110,10 +110,10 @@ class Search {
   bool too_long() const { return too_long_; }
   /// The vertices of the route, from the start's neighbour to the goal's.
   const std::vector<std::uint32_t>& way() const { return way_; }
-  const kit::Progress& progress() const { return progress_; }
+  const kit::SearchStats& progress() const { return progress_; }
 
  private:
-  static constexpr std::uint32_t kMostKm = 1'500'000'000;
+  static constexpr std::uint32_t kMaxKm = 1'500'000'000;
   static constexpr std::size_t kFewEntries = 1 << 14;
 
   using Values = Vertices::Values;
@@ -180,7 +180,7 @@ class Search {
       const Entry now = entry(first.node, old.rhs, graph_.cell(first.node));
       if (first.key < now.key) {
         open_.push(now);
-      } else if (spent() || old.rhs > kit::StepCosts::kMost) {
+      } else if (spent() || old.rhs > kit::StepCosts::kMax) {
         too_long_ = !ended_;
         open_.push(now);
         return;
@@ -314,7 +314,7 @@ class Search {
 
   /// Drops entries of vertices that have been pushed again or are consistent, once there are many.
   void forget_stale_entries() {
-    if (most_entries_ == 0 || (open_.size() + raised_.size() <= most_entries_ && !memory_full())) {
+    if (max_entries_ == 0 || (open_.size() + raised_.size() <= max_entries_ && !memory_full())) {
       return;
     }
     std::vector<std::uint32_t> waiting;
@@ -328,7 +328,7 @@ class Search {
     for (const std::uint32_t s : waiting) {
       update_vertex(s, vertices_[s], graph_.cell(s), true);
     }
-    most_entries_ = std::max(kFewEntries, 2 * waiting.size());
+    max_entries_ = std::max(kFewEntries, 2 * waiting.size());
   }
 
   void remember_nearest(const Entry& entry) {
@@ -359,11 +359,11 @@ class Search {
   bool ended_ = false;
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;
-  kit::Progress progress_;
+  kit::SearchStats progress_;
   std::uint32_t nearest_ = kNever;  ///< estimate of the expanded vertex nearest to the start
   std::uint32_t nearest_vertex_ = 0;
   std::size_t max_list_bytes_ = 0;
-  std::size_t most_entries_ = 0;  ///< before stale ones are dropped; 0: not yet planned
+  std::size_t max_entries_ = 0;  ///< before stale ones are dropped; 0: not yet planned
   std::vector<std::uint32_t> way_;
 };
 }  // namespace altiplan::dstar_lite

@@ -54,7 +54,7 @@ class Plan {
                                               : std::make_shared<VoxelGrid>(lattice_.spec())),
         bits_(grid_),
         has_ground_(request.world->has_ground()),
-        last_slack_(request.world->slack()),
+        last_slack_(request.world->over_approximation()),
         within_(within) {
     begin(by_cell_);
   }
@@ -77,7 +77,7 @@ class Plan {
       return false;
     }
     const auto before = grid_;
-    slack_ = std::max(std::exchange(last_slack_, world.slack()), world.slack());
+    slack_ = std::max(std::exchange(last_slack_, world.over_approximation()), world.over_approximation());
     legs_.renew();
     if (legs_.rules().grid() != nullptr) {
       grid_ = kit::occupancy(problem_.request, lattice_);

@@ -29,9 +29,9 @@ void measure_over_cells(const kit::Lattice& lattice, const VoxelGrid& grid, std:
   const Vec3& edge = lattice.spec().cell;
   const double unit = 1.5 * (edge.x() + edge.y()) * double(lattice.size()) / 4e9;
   std::vector<Move> moves;
-  constexpr int kMost = 3;
-  for (int dy = -kMost; dy <= kMost; ++dy) {
-    for (int dx = -kMost; dx <= kMost; ++dx) {
+  constexpr int kMax = 3;
+  for (int dy = -kMax; dy <= kMax; ++dy) {
+    for (int dx = -kMax; dx <= kMax; ++dx) {
       if (std::gcd(dx, dy) == 1) {
         const double metres = std::hypot(dx * edge.x(), dy * edge.y());
         moves.push_back({dx, dy, std::uint32_t(std::lround(metres / unit))});

@@ -32,19 +32,19 @@ using improved_ant_colony::Settings;
 
 bool has_room(int reach, int spacing) {
   return improved_ant_colony::candidates(reach, spacing) <=
-         std::int64_t(RegionColony::kMostCandidates);
+         std::int64_t(RegionColony::kMaxCandidates);
 }
 
 struct Params : kit::ColonyParams {
   Settings settings;
-  std::optional<int> least_steps;
+  std::optional<int> min_steps;
 
   void describe(Fields& f) {
     ColonyParams::describe(f);
     f("reach_cells", settings.reach)
         .range(1, 1000)
         .doc("l_c: a step leads to the border of the square of this half side around the ant");
-    f("least_steps", least_steps)
+    f("min_steps", min_steps)
         .range(1, 1'000'000)
         .doc("N_c of eq. (6): steps from start to goal in the open, in place of reach_cells");
     f("spacing_cells", settings.spacing)
@@ -90,20 +90,20 @@ class ImprovedAntColony final : public kit::ColonyPlanner {
  private:
   PlanResult search(const Request& request, const kit::Lattice& lattice) const override {
     Settings settings = params_.settings;
-    if (params_.least_steps) {
-      settings.reach = reach_for(*params_.least_steps, request, lattice);
+    if (params_.min_steps) {
+      settings.reach = reach_for(*params_.min_steps, request, lattice);
     }
     const auto memory = memory_.take();
     return RegionColony(request, params_, settings, lattice, *memory).run();
   }
 
   /// Eq. (6).
-  int reach_for(int least_steps, const Request& request, const kit::Lattice& lattice) const {
+  int reach_for(int min_steps, const Request& request, const kit::Lattice& lattice) const {
     const double cells = (request.goal.position - request.start.position).norm() /
-                         (least_steps * lattice.spec().cell.x());
+                         (min_steps * lattice.spec().cell.x());
     const int reach = std::max(1, int(std::min(std::ceil(cells), 1e6)));
     if (!has_room(reach, params_.settings.spacing)) {
-      throw ParameterError("least_steps", "comes to a reach of " + std::to_string(reach) +
+      throw ParameterError("min_steps", "comes to a reach of " + std::to_string(reach) +
                                               " cells, and with spacing_cells to more than 56 "
                                               "candidates: choose more steps or wider spacing");
     }

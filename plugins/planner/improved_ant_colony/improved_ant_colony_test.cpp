@@ -76,7 +76,7 @@ TEST(ImprovedAntColony, LeastStepsSetTheReach) {
   const Request request = flat_world();
   // 350 m in cells of 5 m, eq. (6): ceil(70 / 14) = 5.
   EXPECT_TRUE(testing::equal(plan_of(kName, kCells, request),
-                             plan_of(kName, kCells + ", least_steps: 14", request)));
+                             plan_of(kName, kCells + ", min_steps: 14", request)));
   EXPECT_NE(testing::parameter_problems("planner", kName, "{reach_cells: 9, spacing_cells: 0}"),
             "");
 }

@@ -18,11 +18,11 @@ namespace altiplan::improved_ant_colony {
 /// A colony whose pheromone lies on cells and counts around them.
 class RegionColony final : public kit::Colony {
  public:
-  static constexpr std::size_t kMostCandidates = 56;
+  static constexpr std::size_t kMaxCandidates = 56;
   static constexpr int kSightBits = 12;
 
   static constexpr std::size_t kBytesPerCell =
-      sizeof(double) + 16 + 2 * sizeof(std::uint32_t) + kMostCandidates + 1;
+      sizeof(double) + 16 + 2 * sizeof(std::uint32_t) + kMaxCandidates + 1;
 
   /// What an ant sees of a cell.
   struct Place {
@@ -82,7 +82,7 @@ class RegionColony final : public kit::Colony {
   struct Candidates {
     const std::uint8_t* k = nullptr;
     std::size_t count = 0;
-    std::array<std::uint8_t, kMostCandidates> own;  ///< where they are if not remembered
+    std::array<std::uint8_t, kMaxCandidates> own;  ///< where they are if not remembered
   };
 
   /// Made once for a cell if legs are remembered. While one thread does so for a cell, others make
@@ -206,8 +206,8 @@ class RegionColony final : public kit::Colony {
       return memory_.places[at + strides_[all.k[n]]];
     };
     const float limit = distance_limit(place(nearest).distance, place(all.count - 1).distance);
-    std::array<std::uint8_t, kMostCandidates> entered;
-    std::array<double, kMostCandidates> up_to;
+    std::array<std::uint8_t, kMaxCandidates> entered;
+    std::array<double, kMaxCandidates> up_to;
     std::size_t count = 0;
     double sum = 0;
     for (std::size_t n = nearest; n < all.count && place(n).distance <= limit; ++n) {
@@ -379,8 +379,8 @@ class RegionColony final : public kit::Colony {
   Settings settings_;
   Memory& memory_;
   std::vector<std::array<int, 2>> offsets_;  ///< of the candidates
-  std::array<std::uint32_t, kMostCandidates> strides_;
-  std::array<double, kMostCandidates> metres_;
+  std::array<std::uint32_t, kMaxCandidates> strides_;
+  std::array<double, kMaxCandidates> metres_;
   std::vector<std::size_t> strides_of_rounds_;
   std::vector<double> shares_;  ///< by ring, of the pheromone of a region at first
   kit::Power tau_alpha_;

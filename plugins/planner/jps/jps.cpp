@@ -117,7 +117,7 @@ class Jps final : public Planner {
     const std::shared_ptr<const VoxelGrid> grid = kit::occupancy(request, lattice);
     const auto memory = memory_.take();
     const Vec3 size = lattice.spec().box().max - lattice.spec().box().min;
-    constexpr double kSpare = double(StepCosts::kMost) / jps::NodeWord::kMost;
+    constexpr double kSpare = double(StepCosts::kMax) / jps::NodeWord::kMax;
     const StepCosts::Scale scale =
         StepCosts::between(params_.costs, lattice, request.start.position, request.goal.position);
     for (double longest = 2 * (size.x() + size.y());; longest *= 4) {
@@ -137,7 +137,7 @@ class Jps final : public Planner {
     Traits traits;
     traits.complete = true;
     traits.optimal = params_.costs == StepCosts::Scale::fine;
-    traits.space = false;
+    traits.spatial = false;
     return traits;
   }
 

@@ -93,7 +93,7 @@ class Search {
   }
 
   void reach(int x, int y, std::uint32_t g, int in) {
-    too_long_ = too_long_ || g >= NodeWord::kMost;
+    too_long_ = too_long_ || g >= NodeWord::kMax;
     const std::uint32_t at = index(x, y);
     const std::uint32_t word = NodeWord::of(g, in);
     if (!too_long_ && NodeWord::nearer(word, nodes_[at])) {
@@ -106,7 +106,7 @@ class Search {
   /// Notes where a diagonal run turned, for the route alone: what can be reached from there in the
   /// run's directions is found by the run itself. Whether the run is worth going on.
   bool turn(int x, int y, std::uint32_t g, int in) {
-    too_long_ = too_long_ || g >= NodeWord::kMost;
+    too_long_ = too_long_ || g >= NodeWord::kMax;
     const std::uint32_t at = index(x, y);
     const std::uint32_t word = NodeWord::of(g, in);
     const std::uint32_t known = nodes_[at];

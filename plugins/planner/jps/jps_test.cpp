@@ -278,7 +278,7 @@ TEST(Jps, TracedParentsAreWhereRunsBegan) {
 TEST(Jps, TraitsFollowTheParameters) {
   EXPECT_TRUE(jps(true)->traits().optimal);
   EXPECT_TRUE(jps(true)->traits().complete);
-  EXPECT_FALSE(jps(true)->traits().space);
+  EXPECT_FALSE(jps(true)->traits().spatial);
   EXPECT_FALSE(testing::make_planner("jps", "{costs: integer}")->traits().optimal);
   EXPECT_NE(testing::parameter_problems("planner", "jps", "{corner: round}"), "");
 }

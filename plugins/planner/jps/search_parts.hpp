@@ -26,12 +26,12 @@ struct Memory {
 /// direction of the straight run of steps that led there. 0: not reached; greater: nearer.
 class NodeWord {
  public:
-  static constexpr std::uint32_t kMost = (std::uint32_t{1} << 28) - 1;  ///< g is below
+  static constexpr std::uint32_t kMax = (std::uint32_t{1} << 28) - 1;  ///< g is below
 
   static std::uint32_t of(std::uint32_t g, int in) {
-    return (kMost - g) << 4 | std::uint32_t(in - kFirst);
+    return (kMax - g) << 4 | std::uint32_t(in - kFirst);
   }
-  static std::uint32_t g(std::uint32_t word) { return kMost - (word >> 4); }
+  static std::uint32_t g(std::uint32_t word) { return kMax - (word >> 4); }
   static int in(std::uint32_t word) { return int(word & 15) + kFirst; }
   /// Whether a is a shorter way than b.
   static bool nearer(std::uint32_t a, std::uint32_t b) { return a >> 4 > b >> 4; }

@@ -33,7 +33,7 @@ struct Params {
   double weight_random = 1;
   double weight_goal = 1;
   double random_share = 0.5;
-  double goal_share = 0;
+  double goal_bias = 0;
   bool toward_goal_once = true;
   int max_failures = 50;
   int max_iterations = 100000;
@@ -53,7 +53,7 @@ struct Params {
     f("random_share", random_share)
         .range(0, 1)
         .doc("p: share of extensions toward q_rand, the others go toward the goal; 1: basic");
-    f("goal_share", goal_share).range(0, 1).doc("share of the samples q_rand that are the goal");
+    f("goal_bias", goal_bias).range(0, 1).doc("share of the samples q_rand that are the goal");
     f("toward_goal_once", toward_goal_once)
         .doc("whether a node is extended toward the goal only once");
     f("max_failures", max_failures)
@@ -75,7 +75,7 @@ struct Params {
         std::max(request.limits.min_leg, std::min(request.limits.max_leg, size.norm() / 100)));
     settings.w_random = weight_random;
     settings.w_goal = weight_goal;
-    settings.goal_share = goal_share;
+    settings.goal_bias = goal_bias;
     settings.random_share = random_share;
     settings.goal_once = toward_goal_once;
     settings.max_failures = max_failures;

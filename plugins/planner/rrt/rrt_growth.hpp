@@ -20,7 +20,7 @@ struct Settings {
   double step = 0;
   double w_random = 1;
   double w_goal = 1;
-  double goal_share = 0;
+  double goal_bias = 0;
   double random_share = 0.5;
   bool goal_once = true;
   int max_failures = 50;
@@ -161,7 +161,7 @@ class Growth {
 
   /// q_rand.
   Vec3 draw(const Damage& damage, RandomStream& random) const {
-    if (settings_.goal_share > 0 && random.uniform() < settings_.goal_share) {
+    if (settings_.goal_bias > 0 && random.uniform() < settings_.goal_bias) {
       return request_.goal.position;
     }
     const bool near_damage = !damage.box.is_empty() && random.uniform() < 0.5;

@@ -104,7 +104,7 @@ class TreeSession final : public Session {
   /// gather them. The branch of the old route's end stays.
   void forget_waiting() {
     const std::size_t waiting = tree_.count(Place::loose);
-    if (waiting > std::max(kMostWaiting, tree_.in_use() - waiting)) {
+    if (waiting > std::max(kMaxWaiting, tree_.in_use() - waiting)) {
       Node top = growth_.end();
       while (top != kNone && tree_.parent(top) != kNone) {
         top = tree_.parent(top);
@@ -176,7 +176,7 @@ class TreeSession final : public Session {
       random_ = stream();
       return;
     }
-    const std::size_t last = std::min(next + kMostSkipped, route_.size());
+    const std::size_t last = std::min(next + kMaxSkipped, route_.size());
     for (std::size_t i = next; i < last; ++i) {
       if (tree_.place(route_[i]) < Place::loose && growth_.hang(route_[i], root, cut_)) {
         return;
@@ -283,8 +283,8 @@ class TreeSession final : public Session {
     return {nodes.rbegin(), nodes.rend()};
   }
 
-  static constexpr std::size_t kMostWaiting = 1000;
-  static constexpr std::size_t kMostSkipped = 5;  ///< nodes of the old route, to reach the rest
+  static constexpr std::size_t kMaxWaiting = 1000;
+  static constexpr std::size_t kMaxSkipped = 5;  ///< nodes of the old route, to reach the rest
 
   CutOff cut_off_;
   Request request_;

@@ -74,7 +74,7 @@ class Tree {
   /// (paper 000, eqs. (2) to (4)).
   Node choose(const Vec3& random, double w_random, const Vec3& goal, double w_goal) const {
     return Node(w_goal == 0 ? growing_.nearest(random)
-                            : growing_.least_sum(random, w_random, goal, w_goal));
+                            : growing_.min_sum(random, w_random, goal, w_goal));
   }
   /// The growing node nearest to p.
   Node nearest(const Vec3& p) const { return Node(growing_.nearest(p)); }

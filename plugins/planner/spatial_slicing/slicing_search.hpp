@@ -52,7 +52,7 @@ class Search {
     for (int i = 0; i < planes_.count; ++i) {
       std::optional<Vec3> p_i = on_line(i);
       if (!look_at(*p_i, i)) {
-        p_i = least_way_round(i);
+        p_i = min_way_round(i);
         ++moved_;
       }
       if (!p_i) {
@@ -136,7 +136,7 @@ class Search {
   /// The point of the plane that can be reached and makes |p_(i-1) p_i| + |p_i p_(i+1)| least,
   /// where p_(i+1) is the line's on the next plane. Where no point of the last plane leads on to
   /// the goal, the least one within its tolerance.
-  std::optional<Vec3> least_way_round(int plane) {
+  std::optional<Vec3> min_way_round(int plane) {
     const Way way{route_.back(), on_line(plane + 1)};
     const double farthest = farthest_on(plane, way);
     free_cells_ = 0;

@@ -87,7 +87,7 @@ inline double certain_share(int level, const VoxelGrid& occupancy, BudgetWatch* 
 
 /// The least level of which more is certain than p_max; the finest where none is. Once `watch` is
 /// spent, any.
-inline int least_level(const VoxelGrid& occupancy, double p_max, BudgetWatch* watch = nullptr) {
+inline int min_level(const VoxelGrid& occupancy, double p_max, BudgetWatch* watch = nullptr) {
   const int finest = finest_level(occupancy.spec().counts);
   int level = 1;
   while (level < finest && certain_share(level, occupancy, watch) <= p_max) {

@@ -115,7 +115,7 @@ TEST(Levels, LeastLevelsOfThePapersCities) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       const Request request = testing::in_city(complex, seed);
       const kit::Lattice lattice(request, {10, 10, 10}, kit::Neighbourhood::all, {});
-      ++levels[least_level(*kit::occupancy(request, lattice), 0.25)];
+      ++levels[min_level(*kit::occupancy(request, lattice), 0.25)];
     }
     EXPECT_EQ(levels, complex ? (std::map<int, int>{{4, 6}, {5, 194}})
                               : (std::map<int, int>{{2, 40}, {3, 160}}));

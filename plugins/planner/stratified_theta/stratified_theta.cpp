@@ -27,7 +27,7 @@ using namespace altiplan;
 using kit::AnyAngleSearch;
 using stratified::Blocks;
 using stratified::Level;
-using Found = AnyAngleSearch::Result;
+using SearchResult = AnyAngleSearch::Result;
 
 enum class Refine { successors, corridor };
 
@@ -69,7 +69,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
   /// Of the sets' bits; what searches of them keep is counted as they go.
   static constexpr std::size_t kBytesPerCell = 1;
 
-  Found search(Task& task) const override {
+  SearchResult search(Task& task) const override {
     if (auto found = straight(task)) {
       return *std::move(found);
     }
@@ -78,18 +78,18 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     }
     const VoxelGrid& occupancy = *task.rules.grid();
     BudgetWatch watch(task.request.budget);
-    const int least = stratified::least_level(occupancy, params_.p_max, &watch);
+    const int least = stratified::min_level(occupancy, params_.p_max, &watch);
     if (watch.spent(task.settings.before.expanded)) {
-      Found none;
+      SearchResult none;
       none.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
       none.budget_hit = true;
       return none;
     }
     const int finest = stratified::finest_level(occupancy.spec().counts);
     task.memory.reset(*Level(finest, occupancy).nodes().grid);
-    Found best;
+    SearchResult best;
     for (int level = least; level <= std::min(finest, least + params_.start_levels - 1); ++level) {
-      Found found = from_level(task, level, finest);
+      SearchResult found = from_level(task, level, finest);
       task.settings.before = found.progress;
       const bool cut_short = found.budget_hit;
       if (best.status != PlanStatus::solved ||
@@ -106,7 +106,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     return best;
   }
 
-  std::optional<Found> straight(Task& task) const {
+  std::optional<SearchResult> straight(Task& task) const {
     const Vec3& start = task.request.start.position;
     const Vec3& goal = task.request.goal.position;
     const double d = (goal - start).norm();
@@ -114,7 +114,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
         !task.rules.any_leg_ok(task.request.before_start(), start, goal)) {
       return std::nullopt;
     }
-    Found found;
+    SearchResult found;
     found.status = PlanStatus::solved;
     found.route = {start, goal};
     found.at_goal = true;
@@ -123,9 +123,9 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
 
   /// The main loop: a route on the first level that has one, then on each finer level among the
   /// nodes around it.
-  static Found from_level(Task& task, int first, int finest) {
+  static SearchResult from_level(Task& task, int first, int finest) {
     const VoxelGrid& occupancy = *task.rules.grid();
-    Found found;
+    SearchResult found;
     found.progress = task.settings.before;
     for (int number = first; number <= finest; ++number) {
       Level level(number, occupancy);
@@ -139,7 +139,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       }
       task.settings.weight_h = std::pow(1.1, number - first);
       task.settings.before = found.progress;
-      Found finer = run(task, level.nodes());
+      SearchResult finer = run(task, level.nodes());
       found.progress = finer.progress;
       const bool cut_short = finer.budget_hit;
       if (finer.status == PlanStatus::solved || found.status != PlanStatus::solved) {
@@ -154,7 +154,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
   }
 
   /// The cells around a way over blocks; wider where they hold no route.
-  static Found in_corridor(Task& task) {
+  static SearchResult in_corridor(Task& task) {
     const VoxelGrid& occupancy = *task.rules.grid();
     const Blocks blocks(occupancy);
     const std::vector<Cell> way = blocks.way(task.lattice.nearest(task.request.start.position).cell,
@@ -164,7 +164,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     }
     for (int around = 1;; around *= 2) {
       const VoxelGrid cells = blocks.corridor(way, around);
-      Found found = run(task, kit::AnyAngleNodes::every_cell(cells));
+      SearchResult found = run(task, kit::AnyAngleNodes::every_cell(cells));
       if (found.status != PlanStatus::no_route || around >= blocks.longest_axis()) {
         return found;
       }
@@ -172,7 +172,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     }
   }
 
-  static Found run(Task& task, const kit::AnyAngleNodes& nodes) {
+  static SearchResult run(Task& task, const kit::AnyAngleNodes& nodes) {
     return AnyAngleSearch(task.request, task.lattice, task.rules, nodes, task.settings, task.memory)
         .run();
   }

@@ -72,10 +72,10 @@ constexpr int kTries = 3;
 int turns_of(double radius, double sag, double turn, const Limits& limits) {
   const double step = std::min({2 * std::acos(radius / (radius + sag)), kPi / 2,
                                 limits.max_turn_space, limits.max_turn_horizontal});
-  constexpr double kMost = 1000;
-  const double wanted = std::min(std::ceil(turn / std::max(step, turn / kMost)), kMost);
-  const double least_angle = 2 * std::atan(limits.min_leg / (2 * radius));
-  const double allowed = least_angle > 0 ? std::floor(turn / least_angle) : kMost;
+  constexpr double kMax = 1000;
+  const double wanted = std::min(std::ceil(turn / std::max(step, turn / kMax)), kMax);
+  const double min_angle = 2 * std::atan(limits.min_leg / (2 * radius));
+  const double allowed = min_angle > 0 ? std::floor(turn / min_angle) : kMax;
   return int(std::max(1.0, std::min(wanted, allowed)));
 }
 

@@ -158,7 +158,7 @@ TEST(Arc, LeavesShortLegsAndObstacles) {
   EXPECT_EQ(refused.route, route);
   EXPECT_EQ(refused.message,
             "0 of 2 corners are arcs of 40 m; the legs of 1 are too short for it; 1 would break a "
-            "rule");
+            "constraint");
 }
 
 TEST(Arc, TangentsKeepTheLimitsOnLegsAndTurns) {

@@ -34,7 +34,7 @@ struct Params {
   Tangents tangents = Tangents::parabola;
   int samples = 16;
   AutoNumber step_m;
-  AutoNumber least_leg_m;
+  AutoNumber min_leg_m;
 
   void describe(Fields& f) {
     f("tangents", tangents, {{"parabola", Tangents::parabola}, {"chord", Tangents::chord}})
@@ -46,7 +46,7 @@ struct Params {
         .unit("m")
         .greater_than(0)
         .doc("they are about so long, 2 to 10,000 of them a span; auto: samples decides");
-    f("least_leg_m", least_leg_m)
+    f("min_leg_m", min_leg_m)
         .unit("m")
         .greater_than(0)
         .doc("inserted nodes cut no leg to less than this; auto: a 32nd of the leg");
@@ -66,7 +66,7 @@ class Fitting {
         allowed_(check(route, request).violations) {
     std::optional<Approach> before = request.before_start();
     for (std::size_t i = 0; i < legs_.size(); ++i) {
-      if (curve_.length(i) < least_span()) {
+      if (curve_.length(i) < min_span()) {
         curve_.straighten(i);
         curve_.straighten(i + 1);
       }
@@ -113,9 +113,9 @@ class Fitting {
     const double h = span.to - span.from;
     const double wanted =
         params_.step_m.value ? std::ceil(h / *params_.step_m.value) : params_.samples;
-    const double room = 2 * h / least_span();
-    constexpr double kMost = 10'000;
-    return int(std::clamp(std::min(wanted, std::floor(room)), 2.0, kMost));
+    const double room = 2 * h / min_span();
+    constexpr double kMax = 10'000;
+    return int(std::clamp(std::min(wanted, std::floor(room)), 2.0, kMax));
   }
 
  private:
@@ -136,7 +136,7 @@ class Fitting {
 
   /// A span that is flown as two legs of the length that they must have. (Beside corners samples
   /// are closer together than on average.)
-  double least_span() const {
+  double min_span() const {
     constexpr double kUneven = 1.5;
     return 2 * kUneven * request_.limits.min_leg;
   }
@@ -192,8 +192,8 @@ class Fitting {
           return std::nullopt;
         }
         ++legs_checked_;
-        if (!stands(i, before, from, *to)) {
-          return Fault{i, span, stands(i, std::nullopt, from, *to), k == 0 && span.from == 0,
+        if (!is_accepted(i, before, from, *to)) {
+          return Fault{i, span, is_accepted(i, std::nullopt, from, *to), k == 0 && span.from == 0,
                        2 * k < n};
         }
         before = onward(before, from);
@@ -218,7 +218,7 @@ class Fitting {
     return approach(flown, flown.size() - 1, request_.before_start());
   }
 
-  bool stands(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
+  bool accepted(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
               const Vec3& to) const {
     const kit::Excess& allowed = legs_[i].allowed;
     return leg_ok(before, from, to, request_) ||
@@ -254,8 +254,8 @@ class Fitting {
   }
 
   bool halve(std::size_t leg, std::size_t corner) {
-    const double least = params_.least_leg_m.value.value_or(curve_.length(leg) / 32);
-    const bool any = curve_.halve(leg, corner, std::max(least, least_span()));
+    const double least = params_.min_leg_m.value.value_or(curve_.length(leg) / 32);
+    const bool any = curve_.halve(leg, corner, std::max(least, min_span()));
     sample_beside(leg);
     sample_beside(leg + 1);
     return any;
@@ -304,7 +304,7 @@ std::string summary(const HermiteCurve& curve, const CurveShape& shape) {
   std::string said = std::to_string(curve.rounded()) + " of " + std::to_string(curve.turns()) +
                      " corners are rounded";
   if (curve.rounded() > 0) {
-    said += " by a curve of at least " + number(shape.least_radius) +
+    said += " by a curve of at least " + number(shape.min_radius) +
             " m of radius, in legs of up to " + number(shape.step) + " m";
   }
   if (shape.inserted > 0) {
@@ -337,10 +337,10 @@ class Hermite final : public Smoother {
                                                    {"spans", shape.spans},
                                                    {"straight", shape.straight},
                                                    {"inserted", shape.inserted}});
-    if (std::isfinite(shape.least_radius)) {
-      constexpr double kMost = 1e15;
+    if (std::isfinite(shape.min_radius)) {
+      constexpr double kMax = 1e15;
       result.counters.push_back(
-          {"least_radius_cm", std::int64_t(std::min(100 * shape.least_radius, kMost))});
+          {"min_radius_cm", std::int64_t(std::min(100 * shape.min_radius, kMax))});
     }
     return result;
   }

@@ -152,7 +152,7 @@ struct CurveShape {
   std::int64_t straight = 0;        ///< of the spans
   std::int64_t inserted = 0;        ///< nodes that are no waypoints
   double step = 0;                  ///< the longest leg as which a bent span is flown, metres
-  double least_radius = kInfinity;  ///< of the curve itself
+  double min_radius = kInfinity;  ///< of the curve itself
 
   /// `pieces` tells as how many legs a span is flown.
   template <class Pieces>
@@ -178,7 +178,7 @@ struct CurveShape {
     }
     constexpr int kPlaces = 64;  // whatever the samples are
     for (int k = 0; k <= kPlaces; ++k) {
-      least_radius = std::min(least_radius, curve.radius_at(leg, span, double(k) / kPlaces));
+      min_radius = std::min(min_radius, curve.radius_at(leg, span, double(k) / kPlaces));
     }
   }
 };

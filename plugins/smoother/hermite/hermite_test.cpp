@@ -135,9 +135,9 @@ TEST(Hermite, TellsTheLeastRadiusOfTheCurveAndTheStep) {
   for (std::size_t i = 2; i < fine.route.size(); ++i) {
     radius = std::min(radius, radius_through(fine.route[i - 2], fine.route[i - 1], fine.route[i]));
   }
-  EXPECT_NEAR(double(counter(fine, "least_radius_cm")) / 100, radius, 0.01 * radius);
+  EXPECT_NEAR(double(counter(fine, "min_radius_cm")) / 100, radius, 0.01 * radius);
   const PlanResult coarse = smooth("{samples: 3}");
-  EXPECT_EQ(counter(coarse, "least_radius_cm"), counter(fine, "least_radius_cm"));
+  EXPECT_EQ(counter(coarse, "min_radius_cm"), counter(fine, "min_radius_cm"));
   EXPECT_EQ(counter(coarse, "spans"), 3);
   EXPECT_EQ(counter(coarse, "inserted"), 0);
   const PlanResult stepped = smooth("{step_m: 5}");
@@ -169,7 +169,7 @@ TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
   EXPECT_LE(counter(mended, "expanded"),
             counter(open, "expanded") + 5 * 16 * counter(mended, "inserted"));
   // No leg can be halved: the two corners beside the ball stay, and the leg between them.
-  const PlanResult stays = make_smoother("hermite", "{least_leg_m: 60}")->smooth(route, request);
+  const PlanResult stays = make_smoother("hermite", "{min_leg_m: 60}")->smooth(route, request);
   EXPECT_TRUE(check(stays.route, request).ok());
   EXPECT_EQ(counter(stays, "inserted"), 0);
   EXPECT_LT(counter(stays, "rounded"), counter(stays, "corners"));
@@ -188,7 +188,7 @@ void some_limits(Limits& limits, std::uint64_t seed) {
 
 TEST(Hermite, NoRuleOfRandomRoutesGetsWorse) {
   const auto parabola = make_smoother("hermite", "{samples: 6}");
-  const auto chord = make_smoother("hermite", "{tangents: chord, step_m: 4, least_leg_m: 8}");
+  const auto chord = make_smoother("hermite", "{tangents: chord, step_m: 4, min_leg_m: 8}");
   int changed = 0;
   int changed_unsound = 0;
   int with_nodes = 0;

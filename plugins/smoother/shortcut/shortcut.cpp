@@ -38,7 +38,7 @@ struct Params {
 };
 
 /// A shortcut that gains less, as a share of the route, is not worth its waypoints.
-constexpr double kLeastGain = 1e-5;
+constexpr double kMinGain = 1e-5;
 
 /// One route that gets shorter.
 class Shortening {
@@ -60,7 +60,7 @@ class Shortening {
     }
     const bool straight_already = a.after >= b.before;
     const double gain = b.from_start - a.from_start - (b.at - a.at).norm();
-    if (straight_already || gain <= kLeastGain * from_start_.back()) {
+    if (straight_already || gain <= kMinGain * from_start_.back()) {
       return false;
     }
     Route shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
@@ -159,11 +159,11 @@ class Shortcut final : public Smoother {
     result.counters = {
         {"expanded", drawn}, {"taken", taken}, {"legs_checked", shortening.legs_checked()}};
     // Rules of whole routes have the last word.
-    const bool stands = taken > 0 && kit::Excess(check(shortening.route(), request).violations)
+    const bool accepted = taken > 0 && kit::Excess(check(shortening.route(), request).violations)
                                          .within(kit::Excess(check(route, request).violations));
-    result.route = stands ? shortening.route() : route;
+    result.route = accepted ? shortening.route() : route;
     result.message =
-        taken > 0 && !stands
+        taken > 0 && !accepted
             ? "the shorter route would break a rule of whole routes: it stays as it was"
             : std::to_string(taken) + " shortcuts taken, of " + std::to_string(drawn) + " tried" +
                   (result.budget_hit ? "; the budget ended" : "");

@@ -82,13 +82,13 @@ class Trim final : public Smoother {
     result.status = PlanStatus::solved;
     result.budget_hit = trimming.budget_hit();
     // Rules of whole routes have the last word.
-    const bool stands = kit::Excess(check(trimming.nodes(), request).violations)
+    const bool accepted = kit::Excess(check(trimming.nodes(), request).violations)
                             .within(kit::Excess(check(route, request).violations));
-    result.route = stands ? trimming.nodes() : route;
+    result.route = accepted ? trimming.nodes() : route;
     result.counters = {{"expanded", trimming.tried()},
                        {"rounds", std::int64_t(strides_.size())},
                        {"removed", std::int64_t(route.size() - result.route.size())}};
-    result.message = stands ? summary(result, route.size())
+    result.message = accepted ? summary(result, route.size())
                             : "the trimmed route would break a rule of whole routes: it stays as "
                               "it was";
     return result;

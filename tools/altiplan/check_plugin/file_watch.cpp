@@ -161,9 +161,9 @@ void FileWatch::serve(int listener) {
 }
 
 void FileWatch::note(const std::string& what) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   const std::lock_guard lock(mutex_);
-  if (written_.size() < kMost && std::count(written_.begin(), written_.end(), what) == 0) {
+  if (written_.size() < kMax && std::count(written_.begin(), written_.end(), what) == 0) {
     written_.push_back(what);
   }
 }

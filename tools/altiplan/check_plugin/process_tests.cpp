@@ -125,7 +125,7 @@ std::size_t memory_in_use() {
 /// Caches may fill in the first rounds; what grows in each of the later ones has no end.
 Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup) {
   constexpr int kRounds = 12;
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMax = 4096;
   const conformance::Setup setup = make_setup();
   const PluginEntry& entry = load();
   std::size_t least = ~std::size_t(0);
@@ -138,7 +138,7 @@ Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup
     }
     before = now;
   }
-  if (least > kMost) {
+  if (least > kMax) {
     return {{{kMemory, "equal work takes " + std::to_string(least) +
                            " bytes more each time that it is done"}},
             "",

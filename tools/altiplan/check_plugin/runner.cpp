@@ -131,7 +131,7 @@ class Runner {
 std::string outcome_text(const Outcome& outcome) {
   Json findings = Json::array();
   for (const conformance::Finding& finding : outcome.findings) {
-    findings.push_back({finding.law, finding.message});
+    findings.push_back({finding.contract, finding.message});
   }
   return Json{{"findings", findings},
               {"skipped", outcome.skipped},

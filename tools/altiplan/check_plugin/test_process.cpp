@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kEnds = "Process: the test ends well, with a result";
-constexpr rlim_t kMostOutput = 64 << 20;
+constexpr rlim_t kMaxOutput = 64 << 20;
 
 /// The last bytes of a file, at most that many; "" of what is no regular file: a test may have put
 /// anything in its place.
@@ -160,7 +160,7 @@ void TestProcess::become(char* const* arguments) const {
   ::setsid();  // what it sends to its group stays there, and the terminal's signals away
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   study::set_mark(mark_);
-  const rlimit output{kMostOutput, kMostOutput};
+  const rlimit output{kMaxOutput, kMaxOutput};
   ::setrlimit(RLIMIT_FSIZE, &output);
   const int said = ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int nothing = ::open("/dev/null", O_RDONLY);
@@ -201,7 +201,7 @@ Verdict TestProcess::verdict_of(int status) {
     verdict.findings.push_back({kEnds, "the process " + what});
     verdict.seen_from_outside = true;
   };
-  const std::string answer = end_of(scratch_.path() / "answer", kMostOutput);
+  const std::string answer = end_of(scratch_.path() / "answer", kMaxOutput);
   if (!answer.empty()) {
     try {
       Outcome outcome = outcome_of(answer);

@@ -42,7 +42,7 @@ std::string text_of(const std::string& said) { return host::printable(said, true
 std::string findings_text(const CheckedLibrary& library, const Verdict& verdict) {
   std::string all;
   for (const conformance::Finding& finding : verdict.findings) {
-    all += "  " + text_of(finding.law) + "\n" + indented(text_of(finding.message), 4);
+    all += "  " + text_of(finding.contract) + "\n" + indented(text_of(finding.message), 4);
   }
   if (!verdict.said.empty()) {
     all += "  it said:\n" + indented(text_of(verdict.said), 4);
@@ -89,7 +89,7 @@ nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
   for (const Verdict& verdict : verdicts) {
     nlohmann::ordered_json findings = nlohmann::ordered_json::array();
     for (const conformance::Finding& finding : verdict.findings) {
-      findings.push_back({{"law", finding.law}, {"message", finding.message}});
+      findings.push_back({{"contract", finding.contract}, {"message", finding.message}});
     }
     tests.push_back({{"name", verdict.test},
                      {"status", verdict.failed()           ? "failed"

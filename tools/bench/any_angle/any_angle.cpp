@@ -23,7 +23,7 @@ struct Arguments {
   std::string map;
   std::string ways;
   std::size_t limit = 50;
-  double least_cells = 0;
+  double min_cells = 0;
   bool each = false;
 };
 
@@ -100,7 +100,7 @@ Json time_map(const Arguments& arguments, host::Registry& registry) {
     all.push_back(*way);
   }
   const std::size_t cell_count = cells.spec().cell_count();
-  plan_all(rows, cells, spread(std::move(all), arguments.least_cells, arguments.limit),
+  plan_all(rows, cells, spread(std::move(all), arguments.min_cells, arguments.limit),
            arguments.passes);
   Json figures{{"map", arguments.map},
                {"cells", cell_count},
@@ -144,7 +144,7 @@ void add_any_angle(Subcommands& all) {
       ->required();
   map->add_option("--limit", arguments->limit, "ways, from the shortest to the longest, evenly")
       ->check(CLI::PositiveNumber);
-  map->add_option("--least-cells", arguments->least_cells, "between the ends of a way");
+  map->add_option("--least-cells", arguments->min_cells, "between the ends of a way");
   map->add_flag("--each", arguments->each,
                 "answer all ways by the first planner, one by one as they are read, --passes times "
                 "each: solved (0 or 1), length in cells, cells expanded, microseconds");

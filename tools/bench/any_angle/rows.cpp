@@ -66,7 +66,7 @@ Json Row::figures(const Row& first, std::size_t cells) const {
           {"first_ms", median(first_ms_)},
           {"median_ms", median(ms_)},
           {"p90_ms", quantile(ms_, 0.9)},
-          {"most_ms", quantile(ms_, 1)},
+          {"max_ms", quantile(ms_, 1)},
           {"mean_ms", sum(ms_) / double(ms_.size())},
           {"length", total / double(std::max<std::size_t>(solved, 1))},
           {"over", median(over)},

@@ -74,7 +74,7 @@ struct Times {
 };
 
 /// Flies once, in blocks.
-void fly(const LocalPlanner& planner, const Row& row, const Request& request, int most_steps,
+void fly(const LocalPlanner& planner, const Row& row, const Request& request, int max_steps,
          Times& times) {
   constexpr int kBlock = 16;
   const auto pilot = planner.begin(request);
@@ -83,7 +83,7 @@ void fly(const LocalPlanner& planner, const Row& row, const Request& request, in
   seen.local_target = request.goal.position;
   seen.goal = request.goal;
   seen.world = request.world.get();
-  for (int done = 0; done < most_steps; done += kBlock) {
+  for (int done = 0; done < max_steps; done += kBlock) {
     const double began = wall_s();
     for (int i = 0; i < kBlock; ++i) {
       const PilotStep step = pilot->step(seen);

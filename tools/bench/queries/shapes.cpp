@@ -68,7 +68,7 @@ struct City {
   }
 };
 
-double least_clearance(const City& city, const Vec3& p) {
+double min_clearance(const City& city, const Vec3& p) {
   double least = kInfinity;
   for (const Shape& shape : city.shapes) {
     least = std::min(least, signed_distance(shape, p));
@@ -76,7 +76,7 @@ double least_clearance(const City& city, const Vec3& p) {
   return least;
 }
 
-double least_distance(const City& city, const Leg& leg) {
+double min_distance(const City& city, const Leg& leg) {
   double least = kInfinity;
   for (const Shape& shape : city.shapes) {
     least = std::min(least, leg_distance(shape, leg.a, leg.b));
@@ -107,7 +107,7 @@ void add_shape_rows(int count) {
   require("sweep" + of + "plain", [&](std::size_t n) { return sweep(n) == plain_sweep(n); });
   require("sweep" + of + "fcl", [&](std::size_t n) {
     return sweep(n) == fcl_sweep(n) ||
-           std::abs(least_distance(*city, city->legs[n]) - kRadius) < kTrusted;
+           std::abs(min_distance(*city, city->legs[n]) - kRadius) < kTrusted;
   });
   std::cerr << "sweep" << of << ": " << share(sweep) << " of the legs are blocked\n";
   add_row("sweep" + of + "altiplan", sweep);
@@ -116,7 +116,7 @@ void add_shape_rows(int count) {
 
   const auto clear = [=](std::size_t n) { return set->clearance(city->legs[n].a); };
   const auto fcl_clear = [=](std::size_t n) { return fcl->clearance(city->legs[n].a); };
-  const auto plain_clear = [=](std::size_t n) { return least_clearance(*city, city->legs[n].a); };
+  const auto plain_clear = [=](std::size_t n) { return min_clearance(*city, city->legs[n].a); };
   require("clearance" + of + "plain", [&](std::size_t n) { return clear(n) == plain_clear(n); });
   require("clearance" + of + "fcl", [&](std::size_t n) {
     return std::abs(clear(n) - fcl_clear(n)) < kTrusted ||

@@ -266,7 +266,7 @@ void time_all(Json& figures, host::Registry& registry, const std::string& name,
                                   {"afresh_ms", median(row.afresh_ms)},
                                   {"repair_ms", median(row.repair_ms)},
                                   {"ratio", median(row.ratio)},
-                                  {"least_tenth", quantile(row.ratio, 0.1)},
+                                  {"min_tenth", quantile(row.ratio, 0.1)},
                                   {"least", quantile(row.ratio, 0)},
                                   {"expanded", median(row.expanded)},
                                   {"of_first_plan", median(row.share)}});

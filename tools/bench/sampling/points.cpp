@@ -50,7 +50,7 @@ void grow_nearest(KdTree& tree, std::size_t count) {
 /// taken out.
 void grow_least_sum(KdTree& tree, std::size_t count) {
   constexpr double kWall = 2000;
-  constexpr int kMostFailures = 50;
+  constexpr int kMaxFailures = 50;
   struct Node {
     bool tried;
     int failures;
@@ -60,14 +60,14 @@ void grow_least_sum(KdTree& tree, std::size_t count) {
   tree.insert(kStart);
   while (tree.size() < count) {
     const Vec3 sample = random.in(kVolume);
-    const std::size_t near = tree.least_sum(sample, 1, kGoal, 1);
+    const std::size_t near = tree.min_sum(sample, 1, kGoal, 1);
     const bool toward_goal = !nodes[near].tried && random.uniform() >= 0.5;
     nodes[near].tried = nodes[near].tried || toward_goal;
     const Vec3 p = stepped(tree.point(near), toward_goal ? kGoal : sample);
     if ((p - kGoal).norm() > kWall) {
       tree.insert(p);
       nodes.push_back({false, 0});
-    } else if (++nodes[near].failures == kMostFailures) {
+    } else if (++nodes[near].failures == kMaxFailures) {
       tree.erase(near);
     }
   }
@@ -91,11 +91,11 @@ std::size_t nearest_linear(const KdTree& tree, const Vec3& sample) {
   return best;
 }
 
-std::size_t least_sum(const KdTree& tree, const Vec3& sample) {
-  return tree.least_sum(sample, 1, kGoal, 1);
+std::size_t min_sum(const KdTree& tree, const Vec3& sample) {
+  return tree.min_sum(sample, 1, kGoal, 1);
 }
 
-std::size_t least_sum_linear(const KdTree& tree, const Vec3& sample) {
+std::size_t min_sum_linear(const KdTree& tree, const Vec3& sample) {
   std::size_t best = KdTree::kNone;
   double least = kInfinity;
   for (std::size_t i = 0; i < tree.size(); ++i) {
@@ -201,15 +201,15 @@ void add_point_rows() {
     add_row("nearest/scattered" + of + "linear", scattered, nearest_linear, nearest);
     add_row("nearest/grown" + of + "tree", basic, nearest, nearest_linear);
     add_row("nearest/grown" + of + "linear", basic, nearest_linear, nearest);
-    add_row("least_sum/scattered" + of + "tree", scattered, least_sum, least_sum_linear);
-    add_row("least_sum/scattered" + of + "linear", scattered, least_sum_linear, least_sum);
-    add_row("least_sum/grown" + of + "tree", improved, least_sum, least_sum_linear);
-    add_row("least_sum/grown" + of + "linear", improved, least_sum_linear, least_sum);
+    add_row("min_sum/scattered" + of + "tree", scattered, min_sum, min_sum_linear);
+    add_row("min_sum/scattered" + of + "linear", scattered, min_sum_linear, min_sum);
+    add_row("min_sum/grown" + of + "tree", improved, min_sum, min_sum_linear);
+    add_row("min_sum/grown" + of + "linear", improved, min_sum_linear, min_sum);
     add_pruning_row("erase_and_restore" + of + "tree", basic);
   }
   for (const std::size_t count : {100, 10'000, 100'000, 1'000'000}) {
     add_growth_row("growth/nearest/", grow_nearest, count);
-    add_growth_row("growth/least_sum/", grow_least_sum, count);
+    add_growth_row("growth/min_sum/", grow_least_sum, count);
   }
 }
 }  // namespace altiplan::bench

@@ -21,7 +21,7 @@
 /// clock_cases_of, no clock: a finding comes again at every run.
 namespace altiplan::conformance {
 
-/// A law that was broken: which ("Planner law 1: …"), and the input that broke it.
+/// A law that was broken: which ("Planner contract 1: …"), and the input that broke it.
 struct Finding {
   std::string law;
   std::string message;

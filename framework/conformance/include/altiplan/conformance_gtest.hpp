@@ -16,7 +16,7 @@ class GTestCase : public ::testing::Test {
   explicit GTestCase(Case the_case) : case_(std::move(the_case)) {}
   void TestBody() override {
     for (const Finding& finding : case_.run()) {
-      ADD_FAILURE() << finding.law << "\n  " << finding.message;
+      ADD_FAILURE() << finding.contract << "\n  " << finding.message;
     }
   }
 

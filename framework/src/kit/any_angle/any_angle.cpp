@@ -71,7 +71,7 @@ std::optional<PlanStatus> AnyAngleSearch::search() {
     if (settings_.sight == Sight::lazy && !set_vertex(s)) {
       continue;
     }
-    if (g(s) > kMost) {
+    if (g(s) > kMax) {
       return std::nullopt;
     }
     close(s);
@@ -145,7 +145,7 @@ void AnyAngleSearch::expand(Node s) {
       update_vertex(s, v, through_parent, h);
     }
   }
-  if (s >= least_link_ && s <= most_link_ &&
+  if (s >= min_link_ && s <= max_link_ &&
       std::find(goal_.links.begin(), goal_.links.end(), s) != goal_.links.end()) {
     update_vertex(s, goal_.node, g_parent + distance(p, goal_.node), 0);
   }

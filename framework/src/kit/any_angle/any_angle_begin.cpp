@@ -87,7 +87,7 @@ AnyAngleSearch::End AnyAngleSearch::end_at(const Vec3& p, Node beyond) const {
 }
 
 void AnyAngleSearch::begin(double longest_m) {
-  per_metre_ = kMost / longest_m;
+  per_metre_ = kMax / longest_m;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     unit_[axis] = lattice_.spec().cell[int(axis)] * per_metre_;
   }
@@ -97,11 +97,11 @@ void AnyAngleSearch::begin(double longest_m) {
   memory_.reset(*nodes_.grid);
   goal_ = end_at(request_.goal.position, count);
   start_ = end_at(request_.start.position, count + 1);
-  least_link_ = kNone;
-  most_link_ = 0;
+  min_link_ = kNone;
+  max_link_ = 0;
   for (const Node link : goal_.links) {
-    least_link_ = std::min(least_link_, link);
-    most_link_ = std::max(most_link_, link);
+    min_link_ = std::min(min_link_, link);
+    max_link_ = std::max(max_link_, link);
   }
   open_.clear();
   fallback_ = kNone;

@@ -133,7 +133,7 @@ PlanResult Colony::run() {
 
 /// One iteration; false where a budget has ended it.
 bool Colony::send_out(Crew& crew, std::size_t iteration) {
-  most_steps_ = request_.budget.max_iterations - expanded_;
+  max_steps_ = request_.budget.max_iterations - expanded_;
   next_ant_ = 0;
   walked_ = 0;
   crew.all_do([&](std::size_t n) { send_out(walkers_[n], iteration); });
@@ -145,7 +145,7 @@ bool Colony::send_out(Crew& crew, std::size_t iteration) {
 void Colony::send_out(Walker& walker, std::size_t iteration) {
   for (;;) {
     // Asked first: all ants whose steps have been added then come before the next one.
-    const bool is_spent = walked_ >= most_steps_;
+    const bool is_spent = walked_ >= max_steps_;
     const std::size_t n = next_ant_++;
     if (n >= ants_.size()) {
       return;
@@ -164,7 +164,7 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
     }
     if (walker.ant->end == Ant::End::arrived) {
       bring_home(walker);
-    } else if (walker.ant->end == Ant::End::stopped && walker.ant->steps < most_steps_) {
+    } else if (walker.ant->end == Ant::End::stopped && walker.ant->steps < max_steps_) {
       cancelled_ = cancelled_ || walker.watch.cancelled();
       stopped_ = true;
     }
@@ -357,7 +357,7 @@ PlanResult ColonyPlanner::do_plan(const Request& request) const {
 Traits ColonyPlanner::do_traits() const {
   Traits traits;
   traits.anytime = true;
-  traits.space = false;
+  traits.spatial = false;
   return traits;
 }
 }  // namespace altiplan::kit

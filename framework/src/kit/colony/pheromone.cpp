@@ -15,8 +15,8 @@ void Pheromone::reset(std::size_t places, double evaporation, double alpha) {
 }
 
 void Pheromone::evaporate() {
-  constexpr double kMost = 1e100;
-  if (per_unit_ <= remains_ * kMost) {
+  constexpr double kMax = 1e100;
+  if (per_unit_ <= remains_ * kMax) {
     per_unit_ /= remains_;
     return;
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr int kEdgeBits = 3;
 constexpr int kEdge = 1 << kEdgeBits;
 constexpr int kShort = 96;           // steps, below which every cell is looked at
-constexpr int kMostSteps = 1 << 20;  // their products stay whole numbers
+constexpr int kMaxSteps = 1 << 20;  // their products stay whole numbers
 
 enum class Seen { end, blocked_cell, next_block };
 
@@ -190,7 +190,7 @@ void FreeBlocks::prepare(const std::shared_ptr<const VoxelGrid>& grid) {
 
 bool FreeBlocks::line_of_sight(const Cell& a, const Cell& b) const {
   const int steps = std::abs(b[0] - a[0]) + std::abs(b[1] - a[1]) + std::abs(b[2] - a[2]);
-  if (steps < kShort || steps > kMostSteps) {
+  if (steps < kShort || steps > kMaxSteps) {
     return kit::line_of_sight(*grid_, a, b);
   }
   Walk walk(*grid_, a, b);

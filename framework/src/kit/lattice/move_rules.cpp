@@ -58,7 +58,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       lattice_(lattice),
       corner_(corner),
       needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-      spare_(needed_ + request.world->slack() + kLengthTolerance),
+      spare_(needed_ + request.world->over_approximation() + kLengthTolerance),
       asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
   const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };

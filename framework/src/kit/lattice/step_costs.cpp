@@ -29,7 +29,7 @@ double edge_cost(std::span<const std::uint32_t> records, StepCosts::Scale scale,
 }  // namespace
 
 StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
-  const double most_per_metre = kMost / longest_m;
+  const double max_per_metre = kMax / longest_m;
   const Vec3& cell = lattice.spec().cell;
   const bool level = lattice.spec().counts[2] == 1;
   const bool square = cell.x() == cell.y();
@@ -38,9 +38,9 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
   if (cube || (level && square)) {
     const std::span<const std::uint32_t> records =
         level ? std::span<const std::uint32_t>(kSquares) : kCubes;
-    per_metre_ = edge_cost(records, scale, most_per_metre * edge) / edge;
+    per_metre_ = edge_cost(records, scale, max_per_metre * edge) / edge;
   } else {
-    per_metre_ = scale == Scale::ratio ? std::min(most_per_metre, 41 / edge) : most_per_metre;
+    per_metre_ = scale == Scale::ratio ? std::min(max_per_metre, 41 / edge) : max_per_metre;
   }
   for (int d = 0; d < kDirections; ++d) {
     const double length = lattice.step_length(d);
@@ -51,8 +51,8 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
     }
   }
   // Rounding takes at most half a unit of a step's cost and one of the bound's fall along it.
-  const double least_cost = edge * per_metre_;
-  bound_per_metre_ = per_metre_ * std::max(0.0, 1 - 2 / least_cost);
+  const double min_cost = edge * per_metre_;
+  bound_per_metre_ = per_metre_ * std::max(0.0, 1 - 2 / min_cost);
   const bool faces = (lattice.steps() >> direction(1, 1, 0) & 1) == 0;
   for (int set = 0; set < 8; ++set) {
     const auto cost = [&](int axes) {

@@ -13,8 +13,8 @@ struct FloatBox {
   float max[3];
 };
 
-constexpr float kMost = std::numeric_limits<float>::max();
-constexpr FloatBox kNothing{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+constexpr float kMax = std::numeric_limits<float>::max();
+constexpr FloatBox kNothing{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
 
 FloatBox grown(const Box& box) {
   double most = 0;
@@ -106,7 +106,7 @@ struct Builder {
   };
 
   Extent extent(const Range& range) const {
-    Extent result{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+    Extent result{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
     for (std::size_t n = range[0]; n < range[1]; ++n) {
       for (int axis = 0; axis < 3; ++axis) {
         const float middle = twice_middle(order[n], axis);

@@ -37,8 +37,8 @@ std::vector<BoxNode> box_tree(const std::vector<Box>& boxes);
 std::vector<BoxNode> box_tree(const CellBoxes& boxes);
 
 /// Levels of a tree of 2^31 boxes, and the nodes of it that can wait at once while it is walked.
-inline constexpr int kMostLevels = 10;
-inline constexpr int kMostOpen = 15 * kMostLevels + 1;
+inline constexpr int kMaxLevels = 10;
+inline constexpr int kMaxOpen = 15 * kMaxLevels + 1;
 
 /// Coordinates up to here may be asked for by the tests below; sides beyond it are endless.
 inline constexpr double kTreeReach = 1e15;
@@ -89,9 +89,9 @@ inline std::uint32_t bits_of(const LaneBits& low, const LaneBits& high) {
 /// keys of lanes have the lane in their last four bits.
 inline std::int32_t key_of(double distance) {
   constexpr double kRounding = 1 + 0x1p-17;  // more than the keys of lanes are too great
-  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr double kMax = std::numeric_limits<float>::max();
   const double outside = std::max(distance, 0.0);
-  return std::bit_cast<std::int32_t>(float(std::min(outside * outside * kRounding, kMost))) | 15;
+  return std::bit_cast<std::int32_t>(float(std::min(outside * outside * kRounding, kMax))) | 15;
 }
 
 /// Keys of the least distance from the point to each box.
@@ -124,7 +124,7 @@ inline std::uint32_t lanes_within(const Keys& keys, std::int32_t limit) {
 }
 
 /// The least key.
-inline std::int32_t least_of(const Keys& keys) {
+inline std::int32_t min_of(const Keys& keys) {
   const LaneBits eight = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
   const auto low = __builtin_shufflevector(eight, eight, 0, 1, 2, 3);
   const auto high = __builtin_shufflevector(eight, eight, 4, 5, 6, 7);

@@ -71,8 +71,8 @@ struct Open {
 };
 
 // Down to the nearest leaf first, so that on the way back little is still near enough.
-ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, Solids& shapes, const Vec3& p) {
-  std::array<Open, kMostLevels> way;
+ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const Vec3& p) {
+  std::array<Open, kMaxLevels> way;
   std::size_t depth = 0;
   const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
   double least = kInfinity;
@@ -80,7 +80,7 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, Solids& shapes, cons
   for (const BoxNode* node = nodes;;) {
     Open& here = way[depth];
     keys_of(*node, point, here.keys);
-    const std::int32_t nearest = least_of(here.keys);
+    const std::int32_t nearest = min_of(here.keys);
     if (nearest <= limit) {
       int lane = nearest & 15;
       here.lanes = ~(1U << lane);
@@ -118,7 +118,7 @@ ALTIPLAN_CLONES double least_distance(const BoxNode* nodes, Solids& shapes, cons
 
 ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a, const Vec3& b,
                                double r) {
-  std::array<std::int32_t, kMostOpen> open{0};
+  std::array<std::int32_t, kMaxOpen> open{0};
   std::size_t waiting = 1;
   const TreeLeg leg(a, b, r);
   while (waiting > 0) {
@@ -138,7 +138,7 @@ ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3&
 // The shapes that may be that near, in order.
 std::vector<int> shapes_within(const BoxNode* nodes, const Vec3& p, double reach) {
   std::vector<int> found;
-  std::array<std::int32_t, kMostOpen> open{0};
+  std::array<std::int32_t, kMaxOpen> open{0};
   std::size_t waiting = 1;
   const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
   const std::int32_t limit = key_of(reach);
@@ -247,7 +247,7 @@ ObstacleSet& ObstacleSet::operator=(ObstacleSet&&) noexcept = default;
 double ObstacleSet::clearance(const Vec3& p) const {
   Solids solids = impl_->solids(shapes_);
   if (impl_->count > 0 && is_in_reach(p)) {
-    return least_distance(impl_->nodes.data(), solids, p);
+    return min_distance(impl_->nodes.data(), solids, p);
   }
   double least = kInfinity;
   for (std::size_t n = 0; n < impl_->count; ++n) {

@@ -170,13 +170,13 @@ bool is_flat(const Polygon& polygon) {
 }
 
 std::string names_text(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   std::string text;
-  for (std::size_t n = 0; n < std::min(names.size(), kMost); ++n) {
+  for (std::size_t n = 0; n < std::min(names.size(), kMax); ++n) {
     text += (n == 0 ? "'" : ", '") + names[n] + "'";
   }
-  return names.size() <= kMost ? text
-                               : text + " and " + std::to_string(names.size() - kMost) + " more";
+  return names.size() <= kMax ? text
+                               : text + " and " + std::to_string(names.size() - kMax) + " more";
 }
 
 std::string polygon_problem(const Polygon& polygon) {

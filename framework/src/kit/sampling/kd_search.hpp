@@ -56,7 +56,7 @@ inline void make_keys(std::uint32_t count, Keys& keys) {
   }
 }
 
-inline double least_of(const Four& numbers) {
+inline double min_of(const Four& numbers) {
   using Two = double __attribute__((vector_size(16)));
   const Two low = __builtin_shufflevector(numbers, numbers, 0, 1);
   const Two high = __builtin_shufflevector(numbers, numbers, 2, 3);
@@ -64,9 +64,9 @@ inline double least_of(const Four& numbers) {
   return least[0] < least[1] ? least[0] : least[1];
 }
 
-inline double least_of(const Keys& keys) {
+inline double min_of(const Keys& keys) {
   const Four least = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
-  return least_of(least);
+  return min_of(least);
 }
 
 inline Box box_of(const Leaf& leaf) {
@@ -124,12 +124,12 @@ struct Best {
 
   /// Looks at the points of a leaf whose figures those are, by quarter.
   void see(const Leaf& leaf, const Four* figures) {
-    Four most_promising = kBeyond + Four{};
+    Four max_promising = kBeyond + Four{};
     for (int quarter = 0; quarter < 4; ++quarter) {
       const Four& figure = figures[quarter];
-      most_promising = figure < most_promising ? figure : most_promising;
+      max_promising = figure < max_promising ? figure : max_promising;
     }
-    const double here = least_of(most_promising);
+    const double here = min_of(max_promising);
     if (here > least) {
       return;
     }
@@ -137,7 +137,7 @@ struct Best {
       least = here;
       number = KdTree::kNone;
     }
-    for (std::uint32_t slot = 0; slot < Leaf::kMost; ++slot) {
+    for (std::uint32_t slot = 0; slot < Leaf::kMax; ++slot) {
       if (figures[slot / 4][slot % 4] == here && leaf.number[slot] < number) {
         number = leaf.number[slot];
       }
@@ -159,7 +159,7 @@ inline void prefetch(const Part& part) {
 template <class Query>
 [[gnu::always_inline]] inline void search(const Leaf* leaves, const Branch* branches,
                                           std::uint32_t root, std::uint32_t height, Query& query) {
-  constexpr int kMostLevels = 32;
+  constexpr int kMaxLevels = 32;
   struct Open {
     Keys keys;
     double next;  ///< the least of them
@@ -169,13 +169,13 @@ template <class Query>
     query.see(leaves[root]);
     return;
   }
-  Open way[kMostLevels];
+  Open way[kMaxLevels];
   Open* here = way;
   const Open* const lowest = way + height - 1;
   for (std::uint32_t part = root;; ++here) {
     here->branch = branches + part;
     query.keys_of(*here->branch, here->keys);
-    here->next = least_of(here->keys);
+    here->next = min_of(here->keys);
     for (bool is_branch = false; !is_branch;) {
       if (!(here->next <= query.limit())) {
         if (here == way) {
@@ -186,7 +186,7 @@ template <class Query>
       }
       const int lane = lane_in(here->next);
       here->keys[lane] = kBeyond;
-      here->next = least_of(here->keys);
+      here->next = min_of(here->keys);
       part = here->branch->part[lane];
       const std::uint32_t after = here->branch->part[lane_in(here->next)];
       const bool is_likely = here->next <= query.limit();

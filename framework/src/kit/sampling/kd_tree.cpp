@@ -41,8 +41,8 @@ void append(Leaf& leaf, const Vec3& p, std::uint32_t number) {
 // No slot in use: far away and without a number.
 void make_empty(Leaf& leaf) {
   leaf.count = 0;
-  std::fill_n(leaf.at[0], Leaf::kMost, kFar);
-  std::fill_n(leaf.number, Leaf::kMost, ~std::uint32_t{0});
+  std::fill_n(leaf.at[0], Leaf::kMax, kFar);
+  std::fill_n(leaf.number, Leaf::kMax, ~std::uint32_t{0});
 }
 
 std::uint32_t lane_with(const Branch& branch, std::uint32_t part) {
@@ -71,11 +71,11 @@ inline bool would_meet(const Branch& branch, int lane, const Vec3& p) {
 inline int lane_for(const Branch& branch, const Vec3& p) {
   Keys keys;
   distance_keys(branch, p, keys);
-  const double nearest = least_of(keys);
+  const double nearest = min_of(keys);
   if (nearest <= limit_of(0)) {
     return lane_in(nearest);
   }
-  for (double key = nearest; key < kNoLimit; key = least_of(keys)) {
+  for (double key = nearest; key < kNoLimit; key = min_of(keys)) {
     const int lane = lane_in(key);
     if (!would_meet(branch, lane, p)) {
       return lane;
@@ -145,7 +145,7 @@ void KdTree::put(std::uint32_t number) {
   const Vec3& p = points_[number];
   const std::uint32_t index = way_to_leaf(branches_.data(), root_, height_, p);
   Leaf& leaf = leaves_[index];
-  if (leaf.count == Leaf::kMost) {
+  if (leaf.count == Leaf::kMax) {
     halve(index, number);
   } else {
     append(leaf, p, number);
@@ -163,8 +163,8 @@ void KdTree::halve(std::uint32_t leaf, std::uint32_t number) {
   const std::uint32_t added = new_leaf();
   Leaf& low = leaves_[leaf];
   Leaf& high = leaves_[added];
-  std::array<Entry, Leaf::kMost + 1> all;
-  for (std::uint32_t slot = 0; slot < Leaf::kMost; ++slot) {
+  std::array<Entry, Leaf::kMax + 1> all;
+  for (std::uint32_t slot = 0; slot < Leaf::kMax; ++slot) {
     all[slot] = {{low.at[0][slot], low.at[1][slot], low.at[2][slot]}, low.number[slot]};
   }
   all.back() = {points_[number], number};
@@ -202,7 +202,7 @@ void KdTree::replace(std::uint32_t level, std::uint32_t above, const Part& part,
   }
   Branch& branch = branches_[above];
   set_part(branch, lane_with(branch, part.index), part.box, part.index);
-  if (branch.count == Branch::kMost) {
+  if (branch.count == Branch::kMax) {
     halve(level, above, added);
   } else {
     set_part(branch, branch.count++, added.box, added.index);
@@ -214,7 +214,7 @@ void KdTree::replace(std::uint32_t level, std::uint32_t above, const Part& part,
 /// boxes overlap least and have the least sides.
 void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added) {
   std::array<Part, kParts> all;
-  for (std::uint32_t lane = 0; lane < Branch::kMost; ++lane) {
+  for (std::uint32_t lane = 0; lane < Branch::kMax; ++lane) {
     all[lane] = {box_of_part(branches_[branch], lane), branches_[branch].part[lane]};
   }
   all.back() = added;

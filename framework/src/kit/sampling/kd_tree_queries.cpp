@@ -167,7 +167,7 @@ std::size_t KdTree::nearest(const Vec3& p) const {
   return query.best.number;
 }
 
-std::size_t KdTree::least_sum(const Vec3& p, double p_weight, const Vec3& q,
+std::size_t KdTree::min_sum(const Vec3& p, double p_weight, const Vec3& q,
                               double q_weight) const {
   if (root_ == kOut) {
     return kNone;

@@ -53,7 +53,7 @@ bool StarSearch::may_go_on() {
 
 /// SampleFree: the goal, or a point of the volume or of the informed set.
 Vec3 StarSearch::sample() {
-  if (!goal_is_in_ && random_.uniform() < settings_.goal_share) {
+  if (!goal_is_in_ && random_.uniform() < settings_.goal_bias) {
     return request_.goal.position;
   }
   return settings_.informed ? set_.draw(random_) : random_.in(box_);

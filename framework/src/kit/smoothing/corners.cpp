@@ -35,9 +35,9 @@ bool Excess::within(const Excess& other) const {
 double radius_margin(double leg, double turn) {
   // How far rounding may move a point: half of 1e-7 degree on two axes, half a centimetre up.
   constexpr double kMoved = 0.0095;
-  constexpr double kMost = 0.05;
+  constexpr double kMax = 0.05;
   // The radius is leg / 2 / tan(turn / 2): both ends of a leg move, and both legs of a turn.
-  return turn > 0 ? std::min(kMost, 2 * kMoved / leg * (1 + 2 / std::sin(std::min(turn, kPi / 2))))
+  return turn > 0 ? std::min(kMax, 2 * kMoved / leg * (1 + 2 / std::sin(std::min(turn, kPi / 2))))
                   : 0;
 }
 
@@ -82,14 +82,14 @@ class Rounding {
     }
     const auto kept = [&] { return Excess(check(done_, request_).violations).within(allowed); };
     round_all();
-    bool stands = kept();
-    if (!stands && !budget_ended()) {
+    bool accepted = kept();
+    if (!accepted && !budget_ended()) {
       // A rule of the whole route, which no leg shows: looked at for every curve.
       allowed_ = &allowed;
       round_all();
-      stands = kept();
+      accepted = kept();
     }
-    count(stands);
+    count(accepted);
     if (result_.replaced == 0) {
       done_ = original_;
     }
@@ -135,7 +135,7 @@ class Rounding {
       }
       state.chosen = choose();
       if (state.chosen == kStays && states_[next_ - 1].chosen != kStays &&
-          !stands(part_with({route_[next_]}))) {
+          !is_accepted(part_with({route_[next_]}))) {
         // The curve before took too much of the leg.
         --next_;
         done_.resize(states_[next_].done);
@@ -172,7 +172,7 @@ class Rounding {
       state.offered = true;
       const Route part = part_with(*curve);
       const bool keeps_all = sound(part);
-      if ((keeps_all || (chosen == kStays && stands(part))) && keeps_whole_rules(*curve)) {
+      if ((keeps_all || (chosen == kStays && is_accepted(part))) && keeps_whole_rules(*curve)) {
         chosen = attempt;
         best = *curve;
         if (keeps_all) {
@@ -243,7 +243,7 @@ class Rounding {
   /// Whether the part breaks no rule by more than the two legs of the corner: its first leg, in
   /// turning into it, by no more than the leg into the corner, or the one that began where it does;
   /// the others by no more than the corner.
-  bool stands(const Route& part) const {
+  bool is_accepted(const Route& part) const {
     const LegExcess& into = legs_[next_ - 1];
     const LegExcess& out_of = legs_[next_];
     Excess first = into.with_turn;
@@ -276,9 +276,9 @@ class Rounding {
   }
 
   /// Counts what became of the corners, if the route with its curves stands at all.
-  void count(bool stands) {
+  void count(bool accepted) {
     for (const State& state : states_) {
-      const bool replaced = stands && state.chosen != kStays;
+      const bool replaced = accepted && state.chosen != kStays;
       result_.corners += state.turns;
       result_.replaced += replaced;
       result_.refused += state.offered && !replaced;

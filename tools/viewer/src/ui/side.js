@@ -41,7 +41,7 @@ function result_card(result, index, world, store) {
   }
   for (const step of result.steps.filter(({route}) => !route?.length)) {
     attempts.append(element('p', {className: 'note'}, attempt_label(step), ' ',
-      step.stands ? '' : step.message));
+      step.accepted ? '' : step.message));
   }
   if (result.steps.length > 0) card.append(attempts);
   if (result.flight && result.flight.status !== 'solved') {
@@ -59,7 +59,7 @@ function result_card(result, index, world, store) {
 function attempt_label(step) {
   if (!step) return '';
   const stand_in = step.instead_of ? `, instead of ${step.instead_of}` : '';
-  const fate = step.stands ? '' : ` (${step.status.replaceAll('_', ' ')})`;
+  const fate = step.accepted ? '' : ` (${step.status.replaceAll('_', ' ')})`;
   return `${step.id}: ${step.verb} ${step.plugin}${stand_in}${fate}`;
 }
 

@@ -13,7 +13,7 @@ export function violations_of({scene}) {
     add(result.check, result.route, result.name, index, `${index}`);
     result.steps.forEach((step, at) => {
       // What stands is judged as the route above, except for a step that another one follows.
-      if (step.stands) return;
+      if (step.accepted) return;
       add(step.check, step.route, `${result.name}, ${step.id}`, index, `${index}.${at}`);
     });
     const track = result.flight?.track?.map((sample) => sample.slice(1, 4));

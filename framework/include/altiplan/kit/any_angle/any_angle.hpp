@@ -33,7 +33,7 @@ struct AnyAngleSettings {
   AngleRule angles = AngleRule::route_consistent;
   double weight_h = 1;  ///< of the straight line to the goal in f
   std::size_t max_bytes = ~std::size_t{0};
-  Progress before;  ///< what other searches of the same budget have done
+  SearchStats before;  ///< what other searches of the same budget have done
 };
 
 /// The nodes of a search: places in rows along the axes, each at a cell of a lattice.
@@ -136,7 +136,7 @@ class ALTIPLAN_API AnyAngleSearch {
     Route route;
     bool at_goal = false;  ///< not only within its tolerance
     bool budget_hit = false;
-    Progress progress;  ///< of the searches before too
+    SearchStats progress;  ///< of the searches before too
     Counters more;      ///< of who makes several searches
   };
   Result run();
@@ -146,7 +146,7 @@ class ALTIPLAN_API AnyAngleSearch {
   using Place = std::array<double, 3>;  ///< in units of costs
   static constexpr Node kNone = ~Node{0};
   /// Cost of the longest way, so that the sum of two and an estimate keeps a bit free.
-  static constexpr std::uint32_t kMost = 900'000'000;
+  static constexpr std::uint32_t kMax = 900'000'000;
   /// Start or goal.
   struct End {
     Node node;
@@ -236,10 +236,10 @@ class ALTIPLAN_API AnyAngleSearch {
   std::uint32_t longest_ = kNone;
   End start_;
   End goal_;
-  Node least_link_ = kNone;  ///< of the goal's
-  Node most_link_ = 0;
+  Node min_link_ = kNone;  ///< of the goal's
+  Node max_link_ = 0;
   Node fallback_ = kNone;  ///< ends within the tolerance
   std::uint32_t nearest_ = kNone;
-  Progress progress_;
+  SearchStats progress_;
 };
 }  // namespace altiplan::kit

@@ -180,7 +180,7 @@ class ALTIPLAN_API Colony {
   std::atomic<std::uint64_t> walked_{0};  ///< steps of the ants of this iteration that are back
   std::atomic<bool> stopped_{false};
   std::atomic<bool> cancelled_{false};
-  std::uint64_t most_steps_ = 0;  ///< of an ant of this iteration
+  std::uint64_t max_steps_ = 0;  ///< of an ant of this iteration
   std::uint64_t expanded_ = 0;
   /// Moves of the first ant that rules have refused: which ants a walker leads is left to chance.
   std::string first_refused_;
@@ -200,7 +200,7 @@ void Colony::follow(Walker& walker, const Choose& choose) const {
   ant.steps = 0;
   walker.visited.set(start_);
   for (std::uint32_t at = start_;;) {
-    if (ant.steps >= most_steps_ || walker.watch.spent(0)) {
+    if (ant.steps >= max_steps_ || walker.watch.spent(0)) {
       ant.end = Ant::End::stopped;
       break;
     }

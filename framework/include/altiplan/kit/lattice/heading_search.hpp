@@ -53,7 +53,7 @@ class HeadingSearch : GoalSearch {
         arrivals_(memory.arrivals),
         lengths_(memory.lengths) {}
 
-  Found run() {
+  SearchResult run() {
     begin();
     PlanStatus status = PlanStatus::no_route;
     while (!open_.empty()) {
@@ -75,7 +75,7 @@ class HeadingSearch : GoalSearch {
       return with(route_to(fallback_, false), fallback_g_, false, status != PlanStatus::no_route);
     }
     progress_.memory_full = memory_full();
-    Found none = without(status, lengths_prove());
+    SearchResult none = without(status, lengths_prove());
     none.result.message += "; searched by cell and heading";
     return none;
   }
@@ -158,7 +158,7 @@ class HeadingSearch : GoalSearch {
       const Vec3 there = lattice_.position(to);
       const double g = g_here + step_cost(d, here, there);
       const double length = length_here + lattice_.step_length(d);
-      if (too_long(length, there) || too_dear(g, there)) {
+      if (too_long(length, there) || exceeds_incumbent(g, there)) {
         continue;
       }
       const auto next = std::uint32_t(std::int64_t(arrival.cell) + lattice_.stride(d));

@@ -133,7 +133,7 @@ inline double lowest(const Request& request, const Lattice& lattice) {
 }
 
 /// What a search has done so far.
-struct Progress {
+struct SearchStats {
   std::uint64_t expanded = 0;
   std::int64_t generated = 0;
   Vec3 nearest{0, 0, 0};  ///< of the expanded cells to the goal
@@ -141,7 +141,7 @@ struct Progress {
   bool too_long = false;  ///< route_length refused something
 };
 
-inline Counters counters(const Progress& progress, const Lattice& lattice, const MoveRules& rules) {
+inline Counters counters(const SearchStats& progress, const Lattice& lattice, const MoveRules& rules) {
   return {{"expanded", std::int64_t(progress.expanded)},
           {"generated", progress.generated},
           {"moves_checked", rules.moves_checked()},
@@ -149,7 +149,7 @@ inline Counters counters(const Progress& progress, const Lattice& lattice, const
 }
 
 /// Says why there is no route: how far the search came, and what stopped it.
-inline std::string explanation(PlanStatus status, const Progress& progress, const Request& request,
+inline std::string explanation(PlanStatus status, const SearchStats& progress, const Request& request,
                                const Lattice& lattice, const MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"
@@ -196,7 +196,7 @@ Route route_to(std::uint32_t last, const Request& request, const Lattice& lattic
 }
 
 /// What one search gave.
-struct Found {
+struct SearchResult {
   PlanResult result;
   double cost = kInfinity;  ///< of the route
   bool at_goal = false;     ///< not only within its tolerance
@@ -243,14 +243,14 @@ inline PlanResult without_route(PlanResult result) {
 /// of Forgetting, ICAPS 2010.
 template <class Once>
 PlanResult improve(const SearchSettings& settings, const Request& request, const Once& once) {
-  std::optional<Found> best;
+  std::optional<SearchResult> best;
   Counters spent;
   int searches = 0;
   for (const double inflation : {16.0, 4.0, 2.0, 1.4, 1.0}) {
     SearchSettings inflated = settings;
     inflated.weight_h *= inflation;
     const bool can_improve = best && best->at_goal;
-    Found found = once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
+    SearchResult found = once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
     add(spent, found.result.counters);
     ++searches;
     const bool cut_short = found.result.budget_hit || found.result.status == PlanStatus::cancelled;
@@ -282,7 +282,7 @@ inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
   }
 }
 
-inline PlanResult solved(Route route, const Progress& progress, const Lattice& lattice,
+inline PlanResult solved(Route route, const SearchStats& progress, const Lattice& lattice,
                          const MoveRules& rules) {
   PlanResult result;
   result.status = PlanStatus::solved;
@@ -306,7 +306,7 @@ class LatticeSearch {
         rules_(request, lattice, settings.moves, settings.corner),
         costs_(settings.cost, request, lowest(request, lattice)),
         to_goal_(settings, lattice, request.goal.position, request.goal.tolerance_m,
-                 costs_.least_per_metre()),
+                 costs_.min_per_metre()),
         watch_(request.budget),
         start_(request.start.position),
         goal_(request.goal.position),
@@ -339,7 +339,7 @@ class LatticeSearch {
     return beyond;
   }
   /// Whether a way of that cost to the place betters no route known.
-  bool too_dear(double g, const Vec3& at) const {
+  bool exceeds_incumbent(double g, const Vec3& at) const {
     return best_cost_ < kInfinity && g + to_goal_.at_least(at) >= best_cost_;
   }
   /// Whether lengths are to be known beside costs.
@@ -361,16 +361,16 @@ class LatticeSearch {
   PlanStatus ended() const {
     return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
   }
-  Found with(Route route, double cost, bool at_goal, bool budget_hit) const {
-    Found found;
+  SearchResult with(Route route, double cost, bool at_goal, bool budget_hit) const {
+    SearchResult found;
     found.cost = cost;
     found.at_goal = at_goal;
     found.result = solved(std::move(route), progress_, lattice_, rules_);
     found.result.budget_hit = budget_hit;
     return found;
   }
-  Found without(PlanStatus status, bool proved) const {
-    Found found;
+  SearchResult without(PlanStatus status, bool proved) const {
+    SearchResult found;
     found.parent_mattered = rules_.parent_mattered();
     found.result.status = status;
     found.result.budget_hit = status != PlanStatus::no_route;
@@ -392,6 +392,6 @@ class LatticeSearch {
   double longest_;  ///< metres that a route may have
   double best_cost_;
   double nearest_ = kInfinity;
-  Progress progress_;
+  SearchStats progress_;
 };
 }  // namespace altiplan::kit

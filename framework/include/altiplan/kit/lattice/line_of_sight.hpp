@@ -76,7 +76,7 @@ bool walk_cells(const Cell& a, const Cell& b, const Visit& visit) {
 /// numbers of a unit that fits all three axes: the middle comes after steps x * steps y * steps z.
 inline bool line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  constexpr int kMostSteps = 1 << 20;  // their products stay whole numbers
+  constexpr int kMaxSteps = 1 << 20;  // their products stay whole numbers
   const std::uint64_t* words = grid.row_words(0, 0);
   const std::int64_t stride[3] = {1, 64 * std::int64_t(grid.words_per_row()),
                                   64 * (grid.row_words(0, 1) - words)};
@@ -91,7 +91,7 @@ inline bool line_of_sight(const VoxelGrid& grid, const Cell& a, const Cell& b) {
   std::int64_t move[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int way = b[axis] - a[axis];
-    if (std::abs(way) > kMostSteps) {
+    if (std::abs(way) > kMaxSteps) {
       return walk_cells(a, b, [&](const Cell& c) { return !grid.blocked(c); });
     }
     steps[axis] = std::max(1, std::abs(way));

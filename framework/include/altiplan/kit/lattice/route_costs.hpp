@@ -43,7 +43,7 @@ class RouteCosts {
         centres_.push_back(threat.centre);
       }
     }
-    least_per_metre_ =
+    min_per_metre_ =
         weights.length + (sums_ ? weights.altitude * (lowest - base_) / weights.unit_m : 0);
   }
 
@@ -65,7 +65,7 @@ class RouteCosts {
     return weights_.altitude * (p.z() - base_) + weights_.threat * threat * unit * unit;
   }
   /// No way is cheaper than this times its length.
-  double least_per_metre() const { return least_per_metre_; }
+  double min_per_metre() const { return min_per_metre_; }
   bool length_alone() const { return weights_.length_alone() && weights_.length == 1; }
 
  private:
@@ -98,7 +98,7 @@ class RouteCosts {
   double base_;
   bool sums_ = false;
   bool at_places_ = false;
-  double least_per_metre_ = 1;
+  double min_per_metre_ = 1;
   std::vector<Vec3> centres_;
 };
 }  // namespace altiplan::kit

@@ -156,7 +156,7 @@ inline bool begins_by_heading(const SearchSettings& settings, const Request& req
 /// Whether a search by (cell, heading), which keeps so many bytes a cell, may find what one with a
 /// single parent a cell has not found.
 inline bool heading_may_help(const SearchSettings& settings, double best_cost, std::size_t bytes,
-                             Found& found) {
+                             SearchResult& found) {
   if (settings.state == SearchState::parent || found.result.status != PlanStatus::no_route ||
       !found.parent_mattered || best_cost < kInfinity) {
     return false;
@@ -170,7 +170,7 @@ inline bool heading_may_help(const SearchSettings& settings, double best_cost, s
 }
 
 /// The second search's answer, with what the first one took.
-inline Found after_one_parent(Found second, const Found& first) {
+inline SearchResult after_one_parent(SearchResult second, const SearchResult& first) {
   add(second.result.counters, first.result.counters);
   second.result.message += ", after one parent a cell led nowhere";
   return second;

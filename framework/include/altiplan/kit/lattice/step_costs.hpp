@@ -25,9 +25,9 @@ class ALTIPLAN_API StepCosts {
     ratio,   ///< small ratios: 41 : 58 : 71 for cubes, 70 : 99 for squares, else about as coarse
   };
   /// Greatest cost of a way, so that the sum of two does not overflow.
-  static constexpr std::uint32_t kMost = 2'000'000'000;
+  static constexpr std::uint32_t kMax = 2'000'000'000;
 
-  /// Costs of ways up to longest_m; a longer way may come to more than kMost.
+  /// Costs of ways up to longest_m; a longer way may come to more than kMax.
   StepCosts(const Lattice& lattice, Scale scale, double longest_m);
 
   std::uint32_t operator[](int d) const { return costs_[std::size_t(d)]; }
@@ -40,8 +40,8 @@ class ALTIPLAN_API StepCosts {
   /// The scale wanted; finest instead of fine where the points are no centres of cells, so that
   /// ways between them begin or end with links of any length.
   static Scale between(Scale wanted, const Lattice& lattice, const Vec3& start, const Vec3& goal);
-  /// Length of a way that costs kMost.
-  double longest_m() const { return kMost / per_metre_; }
+  /// Length of a way that costs kMax.
+  double longest_m() const { return kMax / per_metre_; }
   /// Greatest relative error of a step's cost. A cheapest way is longer than a shortest by at most
   /// twice this share.
   double error() const { return error_; }

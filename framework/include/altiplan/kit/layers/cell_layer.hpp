@@ -27,7 +27,7 @@ class ALTIPLAN_API CellLayer : public Environment {
   }
   /// A grid of the same cells is taken over as it is.
   void do_rasterize(VoxelGrid& grid) const override;
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(boxes_of(cells_)); }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override;

@@ -67,7 +67,7 @@ class ALTIPLAN_API ShapeLayer : public Environment {
     set_.near(p, reach, sink);
   }
   void do_rasterize(VoxelGrid& grid) const override { set_.rasterize(grid); }
-  double do_slack() const override { return 0; }
+  double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(set_.shapes()); }
 

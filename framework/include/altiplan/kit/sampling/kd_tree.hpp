@@ -39,7 +39,7 @@ class ALTIPLAN_API KdTree {
   std::size_t nearest(const Vec3& p) const;
   /// The point x with the least p_weight |x − p| + q_weight |x − q|, weights >= 0; kNone in an
   /// empty tree.
-  std::size_t least_sum(const Vec3& p, double p_weight, const Vec3& q, double q_weight) const;
+  std::size_t min_sum(const Vec3& p, double p_weight, const Vec3& q, double q_weight) const;
   /// Numbers of the points at most `radius` away, ascending. `found` is emptied first.
   void within(const Vec3& p, double radius, std::vector<std::size_t>& found) const;
   /// Numbers of the points in the closed box, ascending. `found` is emptied first.
@@ -50,17 +50,17 @@ class ALTIPLAN_API KdTree {
 
   /// Points side by side, for vector operations. Slots not in use are far away, without a number.
   struct alignas(64) Leaf {
-    static constexpr std::uint32_t kMost = 16;
-    double at[3][kMost] = {};
-    std::uint32_t number[kMost] = {};
+    static constexpr std::uint32_t kMax = 16;
+    double at[3][kMax] = {};
+    std::uint32_t number[kMax] = {};
     std::uint32_t above = 0;  ///< its branch, of the root kOut
     std::uint32_t count = 0;
   };
   /// Parts side by side; what is in those not in use does not matter.
   struct alignas(64) Branch {
-    static constexpr std::uint32_t kMost = 8;
-    double side[3][2][kMost] = {};   ///< of the boxes: by axis, the lower and the upper one
-    std::uint32_t part[kMost] = {};  ///< indices of leaves in the lowest branches, else of branches
+    static constexpr std::uint32_t kMax = 8;
+    double side[3][2][kMax] = {};   ///< of the boxes: by axis, the lower and the upper one
+    std::uint32_t part[kMax] = {};  ///< indices of leaves in the lowest branches, else of branches
     std::uint32_t above = 0;
     std::uint32_t count = 0;
   };
@@ -73,7 +73,7 @@ class ALTIPLAN_API KdTree {
     std::uint32_t index;
   };
 
-  static constexpr std::size_t kParts = Branch::kMost + 1;
+  static constexpr std::size_t kParts = Branch::kMax + 1;
 
   void put(std::uint32_t number);
   void halve(std::uint32_t leaf, std::uint32_t number);

@@ -9,7 +9,7 @@ namespace altiplan::kit {
 /// The parameters of rrt_star and informed_rrt_star.
 struct StarParams {
   AutoNumber range_m;
-  double goal_share = 0.05;
+  double goal_bias = 0.05;
   double radius_scale = 1.1;
   int max_iterations = 20'000;
 
@@ -18,7 +18,7 @@ struct StarParams {
         .unit("m")
         .greater_than(0)
         .doc("longest leg that the tree grows by; auto: a tenth of the volume's diagonal");
-    f("goal_share", goal_share)
+    f("goal_bias", goal_bias)
         .range(0, 1)
         .doc("share of the samples that are the goal, until it is in the tree");
     f("radius_scale", radius_scale)
@@ -32,7 +32,7 @@ struct StarParams {
   StarSettings settings(const Request& request) const {
     StarSettings settings;
     settings.range = range_of(range_m.value, request);
-    settings.goal_share = goal_share;
+    settings.goal_bias = goal_bias;
     settings.radius_scale = radius_scale;
     settings.max_iterations = std::uint64_t(max_iterations);
     return settings;

@@ -16,7 +16,7 @@ namespace altiplan::kit {
 
 struct StarSettings {
   double range = 0;         ///< metres; longest leg that the tree grows by (eta)
-  double goal_share = 0;    ///< of the samples are the goal, until it is in the tree
+  double goal_bias = 0;    ///< of the samples are the goal, until it is in the tree
   double radius_scale = 1;  ///< times the least radius that converges
   std::uint64_t max_iterations = 0;
   bool bounded = false;   ///< once there is a route, keep to places where a shorter one may lead

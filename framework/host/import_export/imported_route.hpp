@@ -12,7 +12,7 @@
 namespace altiplan::host {
 
 /// A route that another program wrote, or that we wrote for one.
-struct ForeignRoute {
+struct ImportedRoute {
   Route route;
   std::vector<std::string> notes;  ///< what was left out, how heights were read
 };
@@ -27,13 +27,13 @@ Vec3 to_local(const kit::MissionPoint& point, const std::optional<kit::MissionPo
               const World& world);
 
 /// A mission's route in the world; messages begin with `file`.
-ForeignRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
+ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
                       const std::string& file);
 
 /// Reads a route in any of the forms that we write: JSON ([[x, y, z], …] or a result), CSV, or a
 /// mission file. The rounding of a start is undone for all but JSON.
-ForeignRoute read_foreign_route(const std::string& file, const Mission& mission);
+ImportedRoute read_imported_route(const std::string& file, const Mission& mission);
 /// The same from a text that is at hand, not JSON.
-ForeignRoute read_foreign_route(const std::string& file, const std::string& text,
+ImportedRoute read_imported_route(const std::string& file, const std::string& text,
                                 const World& world, const Vec3& start);
 }  // namespace altiplan::host

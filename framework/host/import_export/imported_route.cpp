@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/import_export/foreign_route.hpp"
+#include "host/import_export/imported_route.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,9 +70,9 @@ Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home
   return {x, y, home->altitude_m + point.altitude_m};
 }
 
-ForeignRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
+ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
                       const std::string& file) {
-  ForeignRoute result;
+  ImportedRoute result;
   result.notes = mission.notes;
   try {
     const std::vector<MissionItem> items = route_items(mission);
@@ -95,23 +95,23 @@ ForeignRoute route_in(const kit::MissionFile& mission, const World& world, const
   return result;
 }
 
-ForeignRoute read_foreign_route(const std::string& file, const std::string& text,
+ImportedRoute read_imported_route(const std::string& file, const std::string& text,
                                 const World& world, const Vec3& start) {
   if (!is_csv(file)) {
     return route_in(kit::read_mission(file, text), world, start, file);
   }
-  ForeignRoute result;
+  ImportedRoute result;
   result.route = read_route_csv(file, text);
   expect_reachable(result.route, file);
   undo_rounding(result.route, start);
   return result;
 }
 
-ForeignRoute read_foreign_route(const std::string& file, const Mission& mission) {
+ImportedRoute read_imported_route(const std::string& file, const Mission& mission) {
   const Vec3& start = mission.request.start.position;
   const World& world = mission.truth;
   if (is_csv(file)) {
-    return read_foreign_route(file, kit::read_file(file), world, start);
+    return read_imported_route(file, kit::read_file(file), world, start);
   }
   const std::filesystem::path ending = std::filesystem::path(file).extension();
   if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||

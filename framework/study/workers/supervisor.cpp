@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/workers/warden.hpp"
+#include "study/workers/supervisor.hpp"
 
 #include <signal.h>
 #include <sys/socket.h>
@@ -41,14 +41,14 @@ namespace {
 }
 }  // namespace
 
-Warden::Warden(const WorkFolder& folder) : folder_(folder) { start(); }
+Supervisor::Supervisor(const WorkFolder& folder) : folder_(folder) { start(); }
 
-void Warden::start() {
+void Supervisor::start() {
   int ends[2];
   leash_ = -1;
   process_ = -1;
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    throw Error(std::string("no socket to the warden of the workers: ") + std::strerror(errno));
+    throw Error(std::string("no socket to the supervisor of the workers: ") + std::strerror(errno));
   }
   process_ = ::fork();
   if (process_ == 0) {
@@ -58,17 +58,17 @@ void Warden::start() {
   ::close(ends[0]);
   if (process_ < 0) {
     ::close(ends[1]);
-    throw Error(std::string("no process for the warden of the workers: ") + std::strerror(error));
+    throw Error(std::string("no process for the supervisor of the workers: ") + std::strerror(error));
   }
   leash_ = ends[1];
 }
 
-void Warden::replace() {
+void Supervisor::replace() {
   ::close(leash_);
   start();
 }
 
-Warden::~Warden() {
+Supervisor::~Supervisor() {
   if (process_ < 0) {
     return;  // the machine had none to replace the one that has ended
   }

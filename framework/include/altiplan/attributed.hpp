@@ -8,7 +8,7 @@ namespace altiplan {
 /// Runs a plugin's code; what it throws becomes an error that says whose it is. `who` is asked only
 /// then ("the layer 'north' (terrain)").
 template <class Who, class Call>
-auto blamed(const Who& who, const Call& call) {
+auto attributed(const Who& who, const Call& call) {
   try {
     return call();
   } catch (const ParameterError&) {
@@ -16,7 +16,7 @@ auto blamed(const Who& who, const Call& call) {
   } catch (const BudgetSpent&) {
     throw;
   } catch (...) {
-    blame(who() + " ");
+    attribute_to(who() + " ");
   }
 }
 }  // namespace altiplan

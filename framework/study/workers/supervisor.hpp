@@ -8,15 +8,15 @@
 namespace altiplan::study {
 
 /// A process beside the pool's parent that outlives it by a moment: whatever kills the parent, the
-/// warden ends what the workers have started, and only then lets go of the folder's lock. (The
+/// supervisor ends what the workers have started, and only then lets go of the folder's lock. (The
 /// workers themselves the kernel kills with their parent.) It has a session of its own, so that no
 /// signal to the parent's group meets it.
-class Warden {
+class Supervisor {
  public:
-  explicit Warden(const WorkFolder& folder);
-  ~Warden();  ///< it ends, as there is nothing left to watch
-  Warden(const Warden&) = delete;
-  Warden& operator=(const Warden&) = delete;
+  explicit Supervisor(const WorkFolder& folder);
+  ~Supervisor();  ///< it ends, as there is nothing left to watch
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
 
   pid_t process() const { return process_; }
   /// In its place, after somebody has killed it and it has been reaped.

@@ -25,7 +25,7 @@ namespace altiplan::reference {
 ///
 /// A way that is found is one, on whatever lattice; that none is found proves nothing. So after the
 /// last way out finer lattices are tried too, and what they miss stays the pilot's fault.
-struct Blame {
+struct Cause {
   enum class Verdict { avoidable, given_up, all_knowing, unsolvable, undecided };
   Verdict verdict = Verdict::undecided;
   std::optional<std::size_t> last_step;  ///< of the track, with a way out; none: never
@@ -43,26 +43,26 @@ struct Look {
   std::shared_ptr<const std::set<std::string>> ids;
 };
 
-class BlameSearch {
+class CauseSearch {
  public:
-  BlameSearch(const host::FlightSetup& setup, const host::FlightResult& result,
+  CauseSearch(const host::FlightSetup& setup, const host::FlightResult& result,
               const Lattice& lattice = {})
       : setup_(setup), result_(result), lattice_(lattice) {}
 
-  Blame judge() const {
+  Cause judge() const {
     const std::vector<Look> looks = looks_of_flight();
-    Blame blame;
+    Cause cause;
     std::size_t seen = looks.size();  // looks before this one may have a way out
     Way way;
     for (; seen > 0 && !way.found(); --seen) {
       way = escape(looks[seen - 1], *looks[seen - 1].known, lattice_);
       if (way.outcome == Way::Outcome::undecided) {
-        return blame;
+        return cause;
       }
     }
     if (!way.found()) {
-      blame.verdict = without_blame();
-      return blame;
+      cause.verdict = unavoidable_cause();
+      return cause;
     }
     // What one lattice misses is no loss: the steps after are looked at more closely.
     for (; seen + 1 < looks.size(); ++seen) {
@@ -73,20 +73,20 @@ class BlameSearch {
       way = std::move(later);
     }
     const Look& last = looks[seen];
-    blame.last_step = last.step;
-    blame.last_s = last.time_s;
-    blame.way_out = std::move(way);
-    blame.was_known = last.ids->contains(hit());
+    cause.last_step = last.step;
+    cause.last_s = last.time_s;
+    cause.way_out = std::move(way);
+    cause.was_known = last.ids->contains(hit());
     if (seen + 1 == looks.size()) {
-      blame.verdict = !collided()       ? Blame::Verdict::given_up
-                      : blame.was_known ? Blame::Verdict::avoidable
-                                        : without_blame();
-      return blame;
+      cause.verdict = !collided()       ? Cause::Verdict::given_up
+                      : cause.was_known ? Cause::Verdict::avoidable
+                                        : unavoidable_cause();
+      return cause;
     }
     const Look& next = looks[seen + 1];
     const bool by_news = next.known != last.known && escape_finely(next, *last.known).found();
-    blame.verdict = by_news ? without_blame() : Blame::Verdict::avoidable;
-    return blame;
+    cause.verdict = by_news ? unavoidable_cause() : Cause::Verdict::avoidable;
+    return cause;
   }
 
   /// As the host senses: at the start of each control step, which on the route lasts `step_s` and
@@ -169,13 +169,13 @@ class BlameSearch {
     Way way = escape(from, known, lattice);
     for (int i = 0; i < 2 && !way.found(); ++i) {
       lattice = lattice.halved();
-      lattice.most_places = kMostFinePlaces;
+      lattice.max_places = kMaxFinePlaces;
       way = escape(from, known, lattice);
     }
     return way;
   }
 
-  Blame::Verdict without_blame() const {
+  Cause::Verdict unavoidable_cause() const {
     std::set<std::string> all;
     for (const Layer& layer : setup_.truth.layers()) {
       all.insert(layer.id);
@@ -185,7 +185,7 @@ class BlameSearch {
     }
     const Request& request = setup_.request;
     const Scene scene = scene_of(all);
-    const double direct = scene.least_time(request.start.position, request.goal.position);
+    const double direct = scene.min_time(request.start.position, request.goal.position);
     Lattice lattice = lattice_;
     Way way;
     for (int i = 0; i == 0 || (i < 3 && way.outcome == Way::Outcome::undecided); ++i) {
@@ -194,9 +194,9 @@ class BlameSearch {
                          request.start.time_s + 3 * direct);
       lattice.step_s *= 2;
     }
-    return way.found()                              ? Blame::Verdict::all_knowing
-           : way.outcome == Way::Outcome::undecided ? Blame::Verdict::undecided
-                                                    : Blame::Verdict::unsolvable;
+    return way.found()                              ? Cause::Verdict::all_knowing
+           : way.outcome == Way::Outcome::undecided ? Cause::Verdict::undecided
+                                                    : Cause::Verdict::unsolvable;
   }
 
   /// The id that the host names.
@@ -205,7 +205,7 @@ class BlameSearch {
     return result_.message.substr(from, result_.message.find('\'', from) - from);
   }
 
-  static constexpr std::size_t kMostFinePlaces = 20'000;
+  static constexpr std::size_t kMaxFinePlaces = 20'000;
 
   const host::FlightSetup& setup_;
   const host::FlightResult& result_;
