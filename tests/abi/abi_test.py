@@ -2,11 +2,11 @@
 """abi_test.py SOURCE BUILD [REV…]: plugins of earlier versions in today's altiplan, that of BUILD.
 
 For each version (the tags v* where none is named): its SDK is built and installed by itself; the
-projects that its `altiplan new` writes and the plugins of its docs/writing-a-plugin.md are built
+projects that its `altiplan new` writes and the plugins of its docs/how-to/write-a-plugin.md are built
 against that; then today's altiplan loads and runs them, and their tests run on today's library.
 Where the API version says that this is not supported, they must be refused, and say so. With the
 last version today's library and interfaces are compared by abidiff: what changed must show in the
-API version. docs/abi.md says what that means. What is built stays in BUILD/abi.
+API version. docs/reference/abi.md says what that means. What is built stays in BUILD/abi.
 """
 import os
 import pathlib
@@ -113,7 +113,8 @@ def projects(old, folder):
     for kind in KINDS:
         quietly([folder / "fill/bin/altiplan", "new", kind, f"my_{kind}"], cwd=folder)
     samples = folder / "my_plugins"
-    page = (old.tree / "docs/writing-a-plugin.md").read_text()
+    pages = [old.tree / "docs" / page for page in ("how-to/write-a-plugin.md", "writing-a-plugin.md")]
+    page = next(page for page in pages if page.exists()).read_text()  # by its name in that version
     for name, _, content in walk.FILE_BLOCK.findall(page):
         (samples / name).parent.mkdir(parents=True, exist_ok=True)
         (samples / name).write_text(content)
@@ -182,10 +183,10 @@ def changes(old, today):
     added = abidiff(old, today)
     if broken and today.api[0] == old.api[0]:
         sys.exit(f"{broken}\nabidiff: plugins built for {old.name} may fail with this altiplan: undo "
-                 f"it, or raise ALTIPLAN_API_MAJOR, which is {old.api[0]} in both (docs/abi.md)")
+                 f"it, or raise ALTIPLAN_API_MAJOR, which is {old.api[0]} in both (docs/reference/abi.md)")
     if added and today.api == old.api:
         sys.exit(f"{added}\nabidiff: plugins built for this altiplan may need what {old.name} has "
-                 f"not: raise ALTIPLAN_API_MINOR, which is {old.api[1]} in both (docs/abi.md)")
+                 f"not: raise ALTIPLAN_API_MINOR, which is {old.api[1]} in both (docs/reference/abi.md)")
     what = "incompatible changes" if broken else "additions" if added else "no change"
     print(f"abidiff from {old.name} (API {old.version()}) to API {today.version()}: {what}")
 

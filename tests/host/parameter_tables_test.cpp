@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of parameters in the plugins' READMEs and in docs/files.md are those of the code.
-// With ALTIPLAN_UPDATE=1 in the environment they are written.
+// The tables of parameters in the plugins' READMEs and in docs/reference/files.md are those of the
+// code. With ALTIPLAN_UPDATE=1 in the environment they are written.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -66,7 +66,7 @@ TEST(ParameterTables, OfPlugins) {
 
 TEST(ParameterTables, OfBuiltInShapes) {
   Registry none({});
-  const fs::path file = kSource / "docs/files.md";
+  const fs::path file = kSource / "docs/reference/files.md";
   std::string wanted = altiplan::testing::text_of(file);
   for (const char* shape : {"sphere", "cylinder", "box", "prism"}) {
     wanted = filled(wanted, "<!-- parameters of " + std::string(shape) + " -->",

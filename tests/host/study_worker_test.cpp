@@ -13,7 +13,7 @@ using namespace study;
 namespace {
 
 /// Runs of a study, each in the pool as the study command has it. What misbehaves, and how it is
-/// told, is in docs/study-runs.md and tests/study/misbehaving_study_test.py.
+/// told, is in tests/study/README.md and tests/study/misbehaving_study_test.py.
 class StudyWorker : public testing::Files {
  protected:
   RunOutcome run(const std::string& steps, bool trace = false) {

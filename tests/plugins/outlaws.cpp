@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A planner that does to its process, and to others, what only a process of its own can bear: the
-// faults of docs/study-runs.md. Those of rogues.cpp a single run survives as well.
+// faults of tests/study/README.md. Those of rogues.cpp a single run survives as well.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plugins that misbehave as they are told: the faults of docs/misbehaving-plugins.md.
+// Plugins that misbehave as they are told: the faults of tests/broken_plugins/README.md.
 #include <signal.h>
 #include <unistd.h>
 

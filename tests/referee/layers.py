@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layers of a scenario, from what docs/files.md and the READMEs of plugins say that they mean."""
+"""Layers of a scenario, from what docs/reference/files.md and the READMEs of plugins say that they mean."""
 import csv
 import dataclasses
 import datetime

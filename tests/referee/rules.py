@@ -240,7 +240,7 @@ def gaps_of(grounds, a, b):
 
 
 def measures(mission, route, world, grounds):
-    """The geometric metrics of docs/result.md."""
+    """The geometric metrics of docs/reference/result.md."""
     legs = np.linalg.norm(np.diff(route, axis=0), axis=1)
     corners = turns(route, mission.on_the_spot)
     planes = [p for _, p, _, _ in corners if p is not None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""kit_test.py SOURCE BUILD: walks through docs/planner-with-the-kit.md as a reader would.
+"""kit_test.py SOURCE BUILD: walks through docs/how-to/plan-with-the-kit.md as a reader would.
 
 Then holds the page's planner against astar on the same cells and against the straight line: on
 random maps made here, and on published ones where ALTIPLAN_TEST_DATA (default
@@ -16,7 +16,7 @@ import tempfile
 import walk
 
 SOURCE, BUILD = (pathlib.Path(argument) for argument in sys.argv[1:3])
-PAGE = walk.Page(SOURCE / "docs/planner-with-the-kit.md", SOURCE / "tests/sdk/basic_theta")
+PAGE = walk.Page(SOURCE / "docs/how-to/plan-with-the-kit.md", SOURCE / "tests/sdk/basic_theta")
 DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", SOURCE / "../shared/data")).resolve()
 PUBLISHED = {"grid2d/arena.map": 160, "grid2d/random512-20-0.map": 60, "voxel3d/Simple.3dmap": 40}
 

@@ -2,7 +2,7 @@
 """pages_test.py SOURCE BUILD: runs the commands that the pages show, in a folder with a copy of configs/.
 
 A line of a block that begins with the name of a program is a command. Each is run, once, or stands in
-NOT_RUN with the reason; two pages have tests of their own, which also look for the output shown.
+NOT_RUN with the reason; the pages of WALKED have tests of their own, which also look for the output shown.
 """
 import pathlib
 import re
@@ -13,7 +13,8 @@ import tempfile
 import walk
 
 SOURCE, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-WALKED = {"docs/writing-a-plugin.md", "docs/planner-with-the-kit.md"}
+WALKED = {"docs/how-to/write-a-plugin.md", "docs/how-to/plan-with-the-kit.md",
+          *(f"docs/tutorials/{page.name}" for page in (SOURCE / "docs/tutorials").glob("*.md"))}
 NOT_RUN = {
     r"tools/(run|setup|test|docs|package)\b": "fetches packages, and builds all",
     r"tools/bench/": "draws what a benchmark of minutes measured",

@@ -41,11 +41,14 @@ def typed(readme):
 
 
 def shows(output, expected):
-    """Whether the lines appear in that order; … stands for anything, spaces count as one."""
-    pattern = ".*".join(
-        ".*".join(re.escape(" ".join(part.split())) for part in line.split("…"))
-        for line in expected)
-    return re.search(pattern, " ".join(output.split()), re.S)
+    """True if the lines appear in that order; … stands for anything, spaces count as one."""
+    text, at = " ".join(output.split()), 0
+    for part in (" ".join(part.split()) for line in expected for part in line.split("…")):
+        at = text.find(part, at)
+        if at < 0:
+            return False
+        at += len(part)
+    return True
 
 
 def compiler_cache(folder):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""walk_test.py SOURCE BUILD: walks through docs/writing-a-plugin.md as a reader would.
+"""walk_test.py SOURCE BUILD: walks through docs/how-to/write-a-plugin.md as a reader would.
 
 Then holds the routes of the page's own environment and constraint against geometry of this file's
 own, with and without them.
@@ -15,7 +15,7 @@ import walk
 SOURCE, BUILD = (pathlib.Path(argument) for argument in sys.argv[1:3])
 # The page's planner is the one that `altiplan new` writes.
 DOGLEG = (SOURCE / "tools/altiplan/templates/planner/@name@.cpp").read_text()
-PAGE = walk.Page(SOURCE / "docs/writing-a-plugin.md", SOURCE / "tests/sdk/my_plugins",
+PAGE = walk.Page(SOURCE / "docs/how-to/write-a-plugin.md", SOURCE / "tests/sdk/my_plugins",
                  {"dogleg/dogleg.cpp": DOGLEG.replace("@name@", "dogleg")})
 
 

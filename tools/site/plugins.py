@@ -61,9 +61,9 @@ def of_readme(root, kind, name, sentence, description, problems):
 
 
 def built_in(root, kind, name, sentence, description):
-    """The table is that of docs/files.md."""
+    """The table is that of docs/reference/files.md."""
     table = re.search(f"<!-- parameters of {name} -->\n(.*?)<!-- /parameters -->",
-                      (root / "docs/files.md").read_text(), re.S)[1]
+                      (root / "docs/reference/files.md").read_text(), re.S)[1]
     return (f"plugins/{kind}/{name}/README.md", head(kind, name, sentence, description)
             + f"## Parameters\n\n{table}\n[Files](../../../docs/files.md) describes the format of layers.\n")
 

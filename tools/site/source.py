@@ -19,30 +19,30 @@ SOURCE = OUT / "source"
 # Groups of the navigation and their pages, in the order that a newcomer needs. Entries without a matching
 # page in the repository are skipped.
 GROUPS = [
-    ("Start", ["README.md", "docs/getting-started.md", "docs/packages.md", "docs/gallery.md",
-               "docs/architecture.md"]),
-    ("Plan and fly", ["docs/view.md", "docs/missions.md"]),
-    ("Write a plugin", ["docs/writing-a-plugin.md", "docs/planner-with-the-kit.md",
-                        "docs/check-plugin.md", "docs/conformance.md",
-                        "docs/debugging-a-plugin.md", "docs/misbehaving-plugins.md",
-                        "docs/abi.md"]),
-    ("Compare and tune", ["docs/studies.md", "docs/report.md", "docs/statistics.md",
-                          "docs/study-*.md", "docs/tuning.md"]),
-    ("Files", ["docs/files.md", "docs/result.md"]),
+    ("Start", ["README.md", "docs/README.md"]),
+    ("Tutorials", [f"docs/tutorials/{page}.md" for page in (
+        "first-route", "first-plugin", "first-study", "reproduce-a-paper")]),
+    ("How-to guides", [f"docs/how-to/{page}.md" for page in (
+        "install", "view-results", "gallery", "exchange-missions", "tune-parameters",
+        "run-large-studies", "write-a-plugin", "plan-with-the-kit", "debug-a-plugin")]),
+    ("Reference", [f"docs/reference/{page}.md" for page in (
+        "cli", "files", "result", "plugins", "studies", "report", "statistics", "run-outcomes",
+        "study-database", "check-plugin", "conformance", "abi", "api")]),
     ("Interfaces", ["docs/interfaces/README.md", "docs/interfaces/request-and-world.md",
                     *(f"docs/interfaces/{kind}.md" for kind in plugins.KINDS),
                     "docs/interfaces/*.md"]),
     ("Plugins", plugins.KINDS),
-    ("Papers", ["docs/papers/README.md", "docs/papers/*.md", "docs/benchmarks.md"]),
-    ("Reference", ["docs/cli.md", "docs/altiplan-bench.md", "docs/api.md"]),
+    ("Explanation", ["docs/explanation/*.md"]),
+    ("Papers", ["docs/papers/README.md", "docs/papers/*.md"]),
     ("Decisions", ["docs/decisions/README.md", "docs/decisions/*.md"]),
-    ("The project", ["CONTRIBUTING.md", "CHANGELOG.md", "tools/viewer/*.md"]),
+    ("Developers", ["CONTRIBUTING.md", "docs/developers/*.md", "framework/*.md",
+                    "tests/*/README.md", "tools/viewer/*.md", "CHANGELOG.md"]),
 ]
 API = """# The API
 
-[Classes, functions and headers](../api/index.html), by Doxygen from the comments of the public headers: the
+[Classes, functions and headers](../../api/index.html), by Doxygen from the comments of the public headers: the
 interfaces, what they are told, the kit, and the conformance suite. What a plugin needs of it at first stands
-in [Interfaces](interfaces/README.md).
+in [Interfaces](../interfaces/README.md).
 """
 LISTED = {"docs/papers": "Papers, run again", "docs/decisions": "Decisions"}
 FENCE = re.compile(r"^( *)```.*?^\1```$", re.M | re.S)
@@ -108,7 +108,8 @@ def nav(problems):
             for kind in patterns:
                 members = sorted(page for page in left if page.startswith(f"plugins/{kind}/"))
                 own = f"plugins/{kind}/README.md"
-                names = [{page.split("/")[2]: page} for page in members if page != own]
+                names = [{page.split("/")[2] + (" (design)" if page.endswith("design.md") else ""): page}
+                         for page in members if page != own]
                 kinds.append({plugins.plural(kind).capitalize(): [own, *names]})
                 left -= set(members)
             groups.append({heading: pages + kinds})
@@ -128,7 +129,9 @@ def nav(problems):
 def main():
     shutil.rmtree(SOURCE, ignore_errors=True)
     problems = []
-    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("tools/viewer/*.md")]:
+    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("tools/viewer/*.md"),
+                 *ROOT.glob("tests/*/README.md"), *ROOT.glob("framework/*.md"),
+                 *ROOT.glob("plugins/*/*/design.md")]:
         write(page.relative_to(ROOT), page.read_text(), problems)
     for page, text in plugins.pages(ROOT, PROGRAM, problems):
         write(page, text, problems)

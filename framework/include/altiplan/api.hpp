@@ -4,8 +4,8 @@
 /// Exports a symbol from libaltiplan.so; everything else is hidden.
 #define ALTIPLAN_API __attribute__((visibility("default")))
 
-/// Version of the plugin interface, see docs/abi.md. A library built for another major, or for a
-/// newer minor, is refused.
+/// Version of the plugin interface, see docs/reference/abi.md. A library built for another major,
+/// or for a newer minor, is refused.
 #define ALTIPLAN_API_MAJOR 1
 #define ALTIPLAN_API_MINOR 0
 

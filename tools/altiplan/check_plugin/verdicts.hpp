@@ -25,7 +25,7 @@ std::string reproduce(const CheckedLibrary& library, const Verdict& verdict);
 std::string verdict_text(const CheckedLibrary& library, const Verdict& verdict);
 /// Numbers of passed, failed and skipped tests, time (s) and peak memory (MB).
 std::string summary_text(const CheckedLibrary& library, const std::vector<Verdict>& verdicts);
-/// docs/check-plugin.md
+/// docs/reference/check-plugin.md
 nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
                                      const std::vector<Verdict>& verdicts);
 /// JUnit XML: one suite per plugin, one case per test.
