@@ -65,7 +65,7 @@ def built_in(root, kind, name, sentence, description):
     table = re.search(f"<!-- parameters of {name} -->\n(.*?)<!-- /parameters -->",
                       (root / "docs/reference/files.md").read_text(), re.S)[1]
     return (f"plugins/{kind}/{name}/README.md", head(kind, name, sentence, description)
-            + f"## Parameters\n\n{table}\n[Files](../../../docs/files.md) describes the format of layers.\n")
+            + f"## Parameters\n\n{table}\n[Files](../../../docs/reference/files.md) describes the format of layers.\n")
 
 
 def listed(entries, link):

@@ -8,7 +8,7 @@
 namespace altiplan::host {
 
 /// Throws Error naming the file and the key if the value of a key of result.json is not of the type
-/// that docs/result.md specifies. Missing keys are reported by their readers.
+/// that docs/reference/result.md specifies. Missing keys are reported by their readers.
 void expect_shape(const Json& result, const std::string& file);
 /// The found value, for messages: "a list of 2", "'null'".
 std::string found_text(const Json& value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/store/sqlite.hpp"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <limits>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/formats/descriptor.hpp"
 #include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 
@@ -39,8 +41,7 @@ int write_error(const std::filesystem::path& file) {
 /// When the system refuses write access, SQLite silently continues read-only and keeps no error.
 std::string why_read_only(const std::filesystem::path& file) {
   const int error = write_error(file);
-  return error != 0 ? std::strerror(error)
-                    : "the system refused write access, but allows it now: try again";
+  return std::strerror(error != 0 ? error : EACCES);
 }
 
 /// Explains SQLite's errors, whose own messages say little. `error` is the system's.
