@@ -54,9 +54,7 @@ Overrides stored_overrides(const Json& json, Overrides overrides) {
   }
   return overrides;
 }
-}  // namespace
 
-namespace {
 /// Parses, and throws Error where an object has a key twice: which one counts nobody can tell.
 Json parse_unique(std::istream& in, const std::string& file) {
   std::vector<std::set<std::string>> open;
