@@ -54,9 +54,7 @@ Overrides stored_overrides(const Json& json, Overrides overrides) {
   }
   return overrides;
 }
-}  // namespace
 
-namespace {
 /// Parses; throws Error if an object has a key twice, which is ambiguous.
 Json parse_unique(std::istream& in, const std::string& file) {
   std::vector<std::set<std::string>> open;
