@@ -7,11 +7,11 @@
 
 namespace altiplan::conformance {
 
-void Report::add(const std::string& law, std::string message) {
+void Report::add(const std::string& contract, std::string message) {
   constexpr std::ptrdiff_t kMax = 3;
-  const auto same = [&](const Finding& finding) { return finding.contract == law; };
+  const auto same = [&](const Finding& finding) { return finding.contract == contract; };
   if (std::count_if(findings_.begin(), findings_.end(), same) < kMax) {
-    findings_.push_back({law, std::move(message)});
+    findings_.push_back({contract, std::move(message)});
   }
 }
 

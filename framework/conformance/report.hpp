@@ -13,12 +13,12 @@ class Report {
  public:
   /// Only the first few findings of each contract are kept: one violation usually occurs
   /// everywhere.
-  void add(const std::string& law, std::string message);
+  void add(const std::string& contract, std::string message);
   /// Adds the finding unless the contract is kept; `message` is called only then.
   template <class Message>
-  bool expect(bool kept, const std::string& law, const Message& message) {
+  bool expect(bool kept, const std::string& contract, const Message& message) {
     if (!kept) {
-      add(law, message());
+      add(contract, message());
     }
     return kept;
   }

@@ -98,7 +98,7 @@ struct Scene {
 };
 
 /// Flight mode of a scene: `level` for planners that know level flight only, or to test it.
-enum class Flight { space, level };
+enum class Flight { spatial, level };
 
 /// An empty scene.
 Scene open_scene(double unit, Flight flight);

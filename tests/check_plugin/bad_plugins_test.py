@@ -71,15 +71,15 @@ class Bad:
 
     def __init__(self, library, key, does, only):
         self.library, self.key, self.does, self.only = library, key, does, only
-        self.failed, self.laws = [], {}
+        self.failed, self.contracts = [], {}
 
     def says(self):
-        """The last cells of its row: what failed, the first in bold, and which law that found broken."""
+        """The last cells of its row: what failed, the first in bold, and which contract they found violated."""
         names = ["`%s`" % name for name in self.failed]
         if not names:
             return SOUND + " | –"
-        law = self.laws[self.failed[0]]
-        return "%s | %s" % (", ".join(["**%s**" % names[0]] + names[1:]), law.split(":")[0])
+        contract = self.contracts[self.failed[0]]
+        return "%s | %s" % (", ".join(["**%s**" % names[0]] + names[1:]), contract.split(":")[0])
 
     def run(self, told):
         """What is wrong with the run itself; "" where nothing is. `told`: the cells of its row."""
@@ -97,7 +97,7 @@ class Bad:
             if verdict["status"] == "failed":
                 name = named(verdict["name"])[1]
                 self.failed.append(name)
-                self.laws[name] = verdict["findings"][0]["contract"]
+                self.contracts[name] = verdict["findings"][0]["contract"]
         if done.returncode != (4 if self.failed else 0):
             return "%s: exit code %d, failed %s" % (self.key, done.returncode, self.failed)
         return ""

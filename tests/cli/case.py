@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the command line call it with: a folder with a scenario and pipelines.
+"""Base of the command-line tests: a folder with a scenario and pipelines.
 
-The arguments of each of them are PROGRAM and BROKEN, the folder of the libraries that no one can use."""
+The arguments of each test are PROGRAM and BROKEN, the folder of the unusable libraries."""
 import json
 import os
 import shutil
@@ -12,7 +12,7 @@ import unittest
 
 PROGRAM, BROKEN = sys.argv[1:3]
 
-# A wall between start and goal, passed on either side; the vehicle then meets a post.
+# A wall between start and goal that can be passed on either side, and a post behind it.
 SCENARIO = """altiplan: 1
 environment:
   - box: {min_m: [300, 300, 0], max_m: [310, 700, 1000]}
@@ -32,7 +32,7 @@ steps:
   - plan: astar
     with: {cell_m: [50, 50, 50]}
 """
-# The goal in a closed shell: a search sees all of the lattice before it gives up.
+# The goal in a closed shell: a search expands the whole lattice before it fails.
 SEALED = """altiplan: 1
 environment:
   - box: {min_m: [800, 400, 50], max_m: [1000, 410, 150]}
@@ -68,7 +68,7 @@ class CliCase(unittest.TestCase):
             return stream.read()
 
     def call(self, *arguments, code=0, stdout=subprocess.PIPE):
-        """What the program printed on stdout and on stderr; it must end with this code."""
+        """The program's output on stdout and on stderr; fails unless it ends with this code."""
         done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=stdout,
                               stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=250)
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))

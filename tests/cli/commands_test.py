@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """commands_test.py PROGRAM BROKEN: the command line, as a user calls it.
 
-BROKEN is the folder of the libraries that no one can use."""
+BROKEN is the folder of the unusable libraries."""
 import glob
 import json
 import os
@@ -86,7 +86,7 @@ class Cli(CliCase):
         self.assertIn("missing_function_of_a_test", err)
         _, err = self.call("run", refused, code=3)
         self.assertIn("no library offers the constraint 'gamma'", err)
-        # alpha always says that it failed
+        # alpha always reports that it failed
         fails = self.write("fails.yaml", PIPELINE.split("  - plan")[0] + "  - plan: alpha\n")
         self.assertEqual(
             self.result(fails, "--plugin-path", BROKEN, code=4)["status"], "failed")
@@ -167,7 +167,7 @@ class Cli(CliCase):
              "steps.0.with.cell_m=[4, 4, 4]", "--trace", trace, "--out", self.path("result.json")],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=self.folder)
         try:
-            # Under a name of its own until the run ends.
+            # The trace has a temporary name until the run ends.
             while not any(os.path.getsize(file) >= 10000 for file in glob.glob(trace + ".*")):
                 self.assertIsNone(run.poll(), "ended by itself")
                 time.sleep(0.01)

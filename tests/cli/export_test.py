@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""export_test.py PROGRAM SOURCES: altiplan export, and missions taken in, as a user calls them.
+"""export_test.py PROGRAM SOURCES: altiplan export and imported missions, as a user calls them.
 
-What is written is read back by readers that are not ours: GDAL's ogr2ogr (skipped without it), the
-XML and JSON of Python, and the strict reader beside this file."""
+Written files are read by independent readers: GDAL's ogr2ogr (skipped without it), Python's XML and
+JSON modules, and ground_station.py."""
 import csv
 import json
 import os
@@ -37,7 +37,7 @@ def text_of(path):
 
 
 class Flight(unittest.TestCase):
-    """The flight of the README, planned once."""
+    """The example flight of the README, planned once."""
 
     @classmethod
     def setUpClass(cls):
@@ -65,7 +65,7 @@ class Flight(unittest.TestCase):
         return path
 
     def hold(self, points, places=7):
-        """The points are the route's: to 1e-7 degrees and 1 cm."""
+        """The points equal the route's to 1e-7 degrees and 1 cm."""
         self.assertEqual(len(points), len(self.route))
         for (lon, lat, height), (x, y, z) in zip(points, self.route):
             self.assertLessEqual(abs(lon - x), 1.01 * 10**-places)
@@ -270,7 +270,7 @@ class Zones(Flight):
 
 @unittest.skipUnless(os.path.isdir(MISSIONS), "no test data: set ALTIPLAN_TEST_DATA")
 class OfOthers(unittest.TestCase):
-    """The strict reader beside this file is right about the files of others."""
+    """ground_station.py accepts and rejects files of other programs correctly."""
 
     def test_valid(self):
         plans = 0

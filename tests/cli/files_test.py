@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""files_test.py PROGRAM PLUGINS FAULTS: what is read and written.
+"""files_test.py PROGRAM PLUGINS FAULTS: input and output files.
 
-A pipe, a socket or a device where a file is expected is refused and never waited for; a file is written
-as a whole or not at all."""
+A pipe, a socket or a device instead of a file is refused without waiting for it; a file is written
+completely or not at all."""
 import errno
 import json
 import os
@@ -184,7 +184,7 @@ class Output(Folder):
         self.write("victim", "victim")
         for what, arguments in self.calls("out").items():
             if what == "view --png":
-                continue  # draws with a browser
+                continue  # renders in a browser
             for kind in ("file", "link", "folder"):
                 with self.subTest(what + " " + kind):
                     beside = self.path("out.partial")
@@ -232,7 +232,7 @@ class Output(Folder):
             for what, arguments in calls.items():
                 with self.subTest((call, what)):
                     first = 1
-                    if call in ("open", "close"):  # those before it are of what is read
+                    if call in ("open", "close"):  # the earlier calls are for input files
                         if what == "run --trace":
                             continue
                         first = failing.call(arguments, self.folder,
@@ -245,7 +245,7 @@ class Output(Folder):
                                   ended.err)
                     self.assertEqual(self.read("out"), "before")
                     self.assertEqual(self.names(), before)
-                    if what == "run --out":  # the result is shown all the same
+                    if what == "run --out":  # the result is printed nevertheless
                         self.assertIn("the route of 'astar'", ended.out)
 
     def test_a_report_leaves_what_is_not_its_own(self):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The folder of files that the tests of reading, writing and interruptions begin with.
+"""Base of the tests of input, output and interruptions: a folder of files.
 
-The arguments of each of them are PROGRAM, PLUGINS and FAULTS: PLUGINS is the folder of the plugins that
-misbehave, FAULTS the library that makes calls of the system fail ("" for none). Each call has a time
-limit, as what is tested for here would hang."""
+The arguments of each test are PROGRAM, PLUGINS and FAULTS: PLUGINS is the folder of the plugins that
+misbehave, FAULTS the library that makes system calls fail ("" for none). Each call has a time limit,
+because the defects tested for would make it hang."""
 import os
 import shutil
 import socket
@@ -61,21 +61,21 @@ class Folder(unittest.TestCase):
         return sorted(os.listdir(self.folder))
 
     def make(self, kind, name):
-        """What is no file, under that name."""
+        """Creates something other than a regular file under that name."""
         if os.path.lexists(self.path(name)):
             os.remove(self.path(name))
         if kind == "pipe":
             os.mkfifo(self.path(name))
         elif kind == "socket":
             here = os.getcwd()
-            os.chdir(self.folder)  # the name of a socket is short
+            os.chdir(self.folder)  # the path of a socket has a length limit
             try:
                 with socket.socket(socket.AF_UNIX) as made:
                     made.bind(name)
             finally:
                 os.chdir(here)
         elif kind == "device":
-            os.symlink("/dev/zero", self.path(name))  # as a link: making one takes root
+            os.symlink("/dev/zero", self.path(name))  # a link, since creating a device needs root
         else:
             os.mkdir(self.path(name))
         return name
@@ -97,7 +97,7 @@ class Folder(unittest.TestCase):
         return name
 
     def refused(self, said, *arguments):
-        """Ends with 3 and one line on stderr."""
+        """Checks that the call ends with 3 and one line on stderr."""
         _, err = self.call(*arguments, code=3)
         self.assertIn(said, err, arguments)
         self.assertEqual(len(err.splitlines()), 1, (arguments, err))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A strict reader of ground-station files that shares nothing with the framework's own: what
-QGroundControl requires of a .plan, and the columns of QGC WPL 110. Raises Wrong."""
+"""A strict reader of ground-station files, independent of the framework's: QGroundControl's
+requirements on a .plan, and the columns of QGC WPL 110. Raises Wrong."""
 import json
 import math
 
@@ -19,7 +19,7 @@ def expect(condition, message):
 
 
 def keys(where, value, required):
-    """Every key, with a value of its type; True is no number here."""
+    """Checks that every key has a value of its type; True is not a number here."""
     expect(isinstance(value, dict), f"{where}: no object")
     for key, kind in required.items():
         expect(key in value, f"{where}: no {key}")
@@ -89,7 +89,7 @@ def fence(value):
 
 
 def plan(text):
-    """The plan, as JSON, where it is one of version 1 with a mission of version 2."""
+    """The plan as JSON; must be of version 1 with a mission of version 2."""
     try:
         value = json.loads(text)
     except ValueError as error:

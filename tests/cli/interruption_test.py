@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""interruption_test.py PROGRAM PLUGINS FAULTS: a signal ends every call, and what it leaves is whole."""
+"""interruption_test.py PROGRAM PLUGINS FAULTS: a signal ends every call and leaves no partial file."""
 import fcntl
 import json
 import os
@@ -15,7 +15,7 @@ from folder import Folder, HANGS_S, PIPELINE, PLUGINS, PROGRAM, SCENARIO, STUDY
 
 class Interruption(Folder):
     def begin(self, *arguments, ready=None, **more):
-        """The call, once it is in the middle of it: as `ready` says, or where a plugin sleeps."""
+        """Starts a call and returns it in progress: when `ready`, or while a plugin sleeps."""
         call = subprocess.Popen([PROGRAM, *arguments, "--plugin-path", PLUGINS], text=True,
                                 stdin=subprocess.DEVNULL, cwd=self.folder,
                                 **{"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **more})
@@ -26,7 +26,7 @@ class Interruption(Folder):
         return call
 
     def sleeps(self, call):
-        """Whether it is in a plugin that never returns, which sleeps and wakes all the time."""
+        """True if it runs a plugin that never returns, which sleeps and wakes all the time."""
         with open("/proc/%d/maps" % call.pid, encoding="utf-8") as file:
             if "rogues.so" not in file.read():
                 return False

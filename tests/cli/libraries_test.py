@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""libraries_test.py PROGRAM PLUGINS CHECKSUM [CASE…]: plugin libraries after all that may befall their
-files. PLUGINS is the folder of the plugins broken on purpose, CHECKSUM is altiplan-checksum."""
+"""libraries_test.py PROGRAM PLUGINS CHECKSUM [CASE…]: damaged, moved and unreadable plugin
+libraries. PLUGINS is the folder of the intentionally broken plugins, CHECKSUM is altiplan-checksum."""
 import json
 import os
 import pathlib
@@ -39,7 +39,7 @@ class Libraries(unittest.TestCase):
         return done
 
     def listed(self, name="two.so"):
-        """What `plugins` says of the library."""
+        """The entry of the library in the output of `plugins`."""
         out = self.call("plugins", "--json", "--plugin-path", "plugins", code=0)
         return next(library for library in json.loads(out.stdout)["libraries"]
                     if library["file"].endswith(name))
@@ -97,7 +97,7 @@ class Libraries(unittest.TestCase):
             self.assertEqual(said.count("\n"), 1, said)
         said = self.call("check-plugin", str(self.file), code=4)
         self.assertIn("damaged: its bytes have the checksum", said.stdout + said.stderr)
-        self.change([CHECKSUM, self.file])  # as whoever changes one on purpose does
+        self.change([CHECKSUM, self.file])  # as after an intentional change
         self.assertIsNone(self.listed()["refused"])
 
     def test_without_a_checksum(self):
@@ -115,7 +115,7 @@ class Libraries(unittest.TestCase):
         self.assertIn("has no checksum", done.stderr)
 
     def test_a_library_beside_it(self):
-        """Found by $ORIGIN, which is not where a private copy lies."""
+        """Found by $ORIGIN, which is not the folder of the private copy."""
         for name in ("uses_neighbour.so", "libneighbour.so"):
             shutil.copy(os.path.join(PLUGINS, "neighbours", name), self.file.parent)
         out = self.call("describe", "neighbourly", "--plugin-path", "plugins", code=0).stdout
@@ -125,7 +125,7 @@ class Libraries(unittest.TestCase):
                       self.listed("uses_neighbour.so")["refused"])
 
     def test_in_place(self):
-        """For programs that read libraries by their names in the map of the process."""
+        """For programs that find libraries by their names in /proc/PID/maps."""
         os.environ["ALTIPLAN_PLUGINS_IN_PLACE"] = "1"
         self.addCleanup(os.environ.pop, "ALTIPLAN_PLUGINS_IN_PLACE")
         self.assertIsNone(self.listed()["refused"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""citation_test.py SOURCE VERSION: CITATION.cff can be read, has what a citation needs, and names the
+"""citation_test.py SOURCE VERSION: CITATION.cff is valid, has the fields of a citation, and names the
 version and licence of the project."""
 import pathlib
 import sys

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""interfaces_test.py SOURCE: the pages of docs/interfaces say what the code does.
+"""interfaces_test.py SOURCE: the pages of docs/interfaces agree with the code.
 
 Between their marks are the contracts of the headers, the files of `altiplan new`, which tests/sdk/new_test.py
-builds, and pieces of snippets.cpp; with ALTIPLAN_UPDATE=1 they are written. What a page quotes as a message is in
-the source, and no building block of the kit is missing from its page.
+builds, and pieces of snippets.cpp; with ALTIPLAN_UPDATE=1 the test writes them. Quoted messages occur in the
+source, and the page of the kit lists every header of it.
 """
 import os
 import pathlib
@@ -14,7 +14,7 @@ import textwrap
 SOURCE = pathlib.Path(sys.argv[1])
 PAGES = SOURCE / "docs/interfaces"
 TEMPLATES = SOURCE / "tools/altiplan/templates"
-BESIDE = {"environment": ["ground"]}  # headers of what a kind may bring, with contract of its own
+BESIDE = {"environment": ["ground"]}  # further headers of a kind, with contracts of their own
 KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name != "shared")
 MARK = re.compile(r"^(<!-- (contract of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
 COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)
@@ -86,7 +86,7 @@ def parts_of(kind):
 
 
 def sources():
-    """What messages are made of: string literals, those side by side as one."""
+    """The string literals of the sources, adjacent ones joined."""
     folders = ["framework/src", "framework/host", "framework/study", "framework/tune",
                "framework/conformance"]
     text = "\n".join(file.read_text() for folder in folders
@@ -95,7 +95,7 @@ def sources():
 
 
 def unknown_messages(page, code):
-    """Of the table of mistakes, what stands in code marks in its second column."""
+    """Messages quoted in the table of mistakes, second column, that are not in the code."""
     _, _, table = page.read_text().partition("## Common mistakes")
     quoted = [message for row in re.findall(r"^\|.*\|(.*)\|$", table, re.M)
               for message in re.findall(r"`([^`]+)`", row)]

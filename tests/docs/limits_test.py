@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""limits_test.py SOURCE: the documentation stays short and within reach.
+"""limits_test.py SOURCE: the documentation stays short and easy to reach.
 
 README.md has at most 90 lines, a plugin's README 60, docs/ 40,000 words, and every page of docs/ is two clicks or
 fewer from README.md."""

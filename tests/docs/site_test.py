@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""site_test.py SOURCE BUILD: the documentation site builds without a warning, has a page for every
-plugin, and what would be wrong with it is told.
+"""site_test.py SOURCE BUILD: the documentation site builds without a warning and has a page for every
+plugin, and its checks report each kind of error.
 
 Skipped where mkdocs-material or doxygen is missing.
 """
@@ -41,7 +41,7 @@ def builds(home):
 
 
 def refused(home, page, text, message):
-    """The same pages with one more line, or page."""
+    """Expects `message` for the same pages with one more line or page."""
     root = home / "source"
     for folder in ("docs", "plugins", "tools/site", "tools/viewer"):
         shutil.copytree(SOURCE / folder, root / folder,
@@ -57,7 +57,7 @@ def refused(home, page, text, message):
 
 
 def found(home, text, message):
-    """What check.py says of a page."""
+    """Expects `message` from check.py for a page."""
     site = home / "page"
     site.mkdir(exist_ok=True)
     (site / "index.html").write_text(f'<h1 id="top">A page</h1>\n{text}\n')

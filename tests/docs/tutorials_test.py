@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tutorials_test.py SOURCE BUILD [NAME…]: walks through each page of docs/tutorials as a reader would.
+"""tutorials_test.py SOURCE BUILD [NAME…]: follows each page of docs/tutorials as a reader would.
 
 Writes the files that a page shows, runs its commands in a folder with a copy of configs/ and an installed
-altiplan, and looks for the output shown. NAMEs restrict what is walked."""
+altiplan, and looks for the output shown. NAMEs select pages."""
 import pathlib
 import shutil
 import sys
@@ -15,7 +15,7 @@ import walk  # noqa: E402
 
 
 def walked(page):
-    """Seconds that the commands of the page took."""
+    """Runs the page and returns the time of its commands (s)."""
     files = {name: content for name, _, content in walk.FILE_BLOCK.findall(page.read_text())}
     with tempfile.TemporaryDirectory() as name:
         home = pathlib.Path(name)

@@ -61,7 +61,7 @@ class Faults(StudyCase):
         """The fault passes within the call: what it says on stderr."""
         out, err = self.call("study", "study.yaml", "--out", "out.db", *options)
         self.assertEqual(self.left()[1], 0, "not all of them failed")
-        self.assertIn(f"{RUNS} runs stored, {RUNS} of them now", out)
+        self.assertIn(f"{RUNS} runs stored, {RUNS} of them new", out)
         self.finished()
         return err
 

@@ -80,13 +80,13 @@ class Overwritten(unittest.TestCase):
         self.assertIn(AGAIN, said)
         self.assertNotIn(CHANGED, said)
         self.assertFalse(before & {run[4] for run in runs(self.store)})
-        self.assertIn(", 0 of them now", self.study.run(self.store))
+        self.assertIn(", 0 of them new", self.study.run(self.store))
 
     def test_the_same_again(self):
         said = self.run_while(lambda: write_in_place(self.library, self.original), "--reuse", "4")
         self.assertLessEqual(said.count(CHANGED), 1, said)  # a look may fall into the writing
         said = self.study.run(self.store)
-        self.assertIn(", 0 of them now", said)
+        self.assertIn(", 0 of them new", said)
 
     def test_no_library_any_more(self):
         said = self.run_while(lambda: write_in_place(self.library, b"spoilt"))

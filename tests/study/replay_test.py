@@ -112,10 +112,10 @@ class Replay(StudyCase):
         self.assertEqual(json.loads(self.read("out.json"))["message"],
                          json.loads(self.stored(store, 1))["message"])
         self.change(store, "UPDATE results SET result = x''")
-        self.assertIn("left no result: crashed", self.refused("replay", store, 1, "--stored"))
+        self.assertIn("has no result: crashed", self.refused("replay", store, 1, "--stored"))
         self.change(store, "UPDATE runs SET outcome = 'timed_out'")
         _, err = self.call("replay", store, 1, "--plugin-path", PLUGINS, code=1)
-        self.assertIn("crashed, and the stored run did not: timed_out", err)
+        self.assertIn("crashed, unlike the stored run: timed_out", err)
 
     def test_files_that_are_no_stores(self):
         for name, words in self.spoilt().items():

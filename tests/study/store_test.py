@@ -28,7 +28,7 @@ class Stores(StudyCase):
         store = self.store("out.db", "--sample", "0.2")
         os.symlink("out.db", self.path("current.db"))
         out, _ = self.call("study", self.study, "--out", self.path("current.db"), "--fresh")
-        self.assertIn(f"{RUNS} runs stored, {RUNS} of them now", out)
+        self.assertIn(f"{RUNS} runs stored, {RUNS} of them new", out)
         self.assertTrue(os.path.islink(self.path("current.db")))
         self.assertEqual(len(self.runs(store)), RUNS)
         self.assertFalse([name for name in os.listdir(self.folder) if name.endswith(".work")])

@@ -62,7 +62,7 @@ repetitions: {repetitions}
 class Study(StudyCase):
     def test_every_run_has_its_outcome(self):
         said = self.call("--jobs", 2)
-        self.assertIn("20 runs stored, 20 of them now", said)
+        self.assertIn("20 runs stored, 20 of them new", said)
         rows = self.rows()
         self.assertEqual(len(rows), 20)
         self.assertEqual({(row[0], row[4]) for row in rows},
@@ -77,20 +77,20 @@ class Study(StudyCase):
     def test_what_is_stored_is_not_run_again(self):
         self.call("--filter", "straight")
         self.assertEqual(len(self.rows()), 10)
-        self.assertIn("20 runs stored, 10 of them now", self.call())
-        self.assertIn("20 runs stored, 0 of them now", self.call("--resume"))
+        self.assertIn("20 runs stored, 10 of them new", self.call())
+        self.assertIn("20 runs stored, 0 of them new", self.call("--resume"))
         self.study(repetitions=3)
-        self.assertIn("30 runs stored, 10 of them now", self.call())
-        self.assertIn("30 runs stored, 30 of them now", self.call("--fresh"))
+        self.assertIn("30 runs stored, 10 of them new", self.call())
+        self.assertIn("30 runs stored, 30 of them new", self.call("--fresh"))
 
     def test_what_has_changed_is_run_again(self):
         self.call()
         self.write("p.yaml", PIPELINE % "straight" + "# a comment\n")
-        self.assertIn("0 of them now", self.call())
+        self.assertIn("0 of them new", self.call())
         self.write("p.yaml", PIPELINE % "no_route")
         said = self.call()
         self.assertIn("10 stored runs out of date", said)
-        self.assertIn("20 runs stored, 10 of them now", said)
+        self.assertIn("20 runs stored, 10 of them new", said)
         self.assertEqual({row[4] for row in self.rows()}, {"no_route"})
 
     def test_another_study_is_refused(self):

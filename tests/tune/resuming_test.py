@@ -82,7 +82,7 @@ class Resuming(TuneCase):
     def test_finished_is_finished(self):
         self.tune(*X)
         before = self.results("out")
-        self.assertIn("0 runs done now", self.tune(*X))
+        self.assertIn("0 new runs in", self.tune(*X))
         self.assertEqual(self.results("out"), before)
 
     def test_a_torn_log_is_mended(self):

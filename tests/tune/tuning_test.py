@@ -110,8 +110,8 @@ class Tune(TuneCase):
         self.assertEqual(summary["tuned_on"]["scenarios"], 2)
         self.assertEqual(summary["held_back"]["better"], 8)
         self.assertLess(summary["held_back"]["mean_tuned"], summary["held_back"]["mean_as_it_is"])
-        self.assertIn("held back: better in 8, worse in 0 and equal in 0 of 8 scenarios; Wilcoxon's "
-                      "signed-rank test: p = 0.008, the tuned pipeline is better", said)
+        self.assertIn("held-out scenarios: better in 8, worse in 0 and equal in 0 of 8 scenarios; "
+                      "Wilcoxon's signed-rank test: p = 0.008, the tuned pipeline is better", said)
         self.assertEqual(set(os.listdir(self.path("out"))), FILES | {"held_back.csv"})
         with open(self.path("out", "held_back.csv"), encoding="utf-8") as stream:
             self.assertEqual(len(stream.readlines()), 9)

@@ -120,7 +120,7 @@ void add_check(CLI::App& app, Action& action) {
                     ->excludes(result);
   auto* scenario = command
                        ->add_option("--scenario", arguments->scenario,
-                                    "scenario file to judge the route in (YAML)")
+                                    "scenario file in which to judge the route (YAML)")
                        ->type_name("FILE")
                        ->excludes(result);
   route->needs(scenario);

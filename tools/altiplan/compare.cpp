@@ -202,7 +202,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->type_name("DB");
   command
       ->add_option("--metric", arguments->metrics,
-                   "value of the runs to compare; repeatable (default: the study's metrics)")
+                   "metric to compare; repeatable (default: the study's metrics)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
@@ -212,7 +212,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--gate", arguments->gate,
                     "exit with code 1 if a run newly fails, a metric is worse, or a run of the "
-                    "first cannot be compared");
+                    "first database cannot be compared");
   set_example(*command, "altiplan compare before.db after.db --gate");
   command->callback([&action, arguments] { action = [arguments] { return compare(*arguments); }; });
 }

@@ -37,7 +37,7 @@ int code_of(const char* program, const std::function<int()>& action) {
               << error.code().message() << '\n';
     return kBadFile;
   } catch (const std::bad_alloc&) {
-    std::cerr << program << ": out of memory: free some, or ask for less\n";
+    std::cerr << program << ": out of memory: free memory or reduce the task\n";
     return kInternal;
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;

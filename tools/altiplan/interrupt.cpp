@@ -33,7 +33,7 @@ struct State {
   int event = -1;
   pid_t owner = 0;
   std::mutex mutex;
-  std::stop_source* cooperative = nullptr;   ///< of the current Interrupt
+  std::stop_source* cooperative = nullptr;   ///< stop source of the current Interrupt
   std::optional<Clock::time_point> first;    ///< time of the first stop request
   std::optional<Clock::time_point> ends_at;  ///< deadline after finish()
 };

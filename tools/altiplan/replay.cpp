@@ -65,7 +65,7 @@ host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const h
   const bool as_then = stored.outcome == "crashed";
   words.for_user = "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
                    (as_then ? "crashed, as the stored run did: " + stored.message
-                            : "crashed, and the stored run did not: " + stored.outcome) +
+                            : "crashed, unlike the stored run: " + stored.outcome) +
                    "\n";
   if (arguments.out) {
     words.result = host::file_text(host::result_json(config, result));
@@ -116,7 +116,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
 
 int write_stored(const Arguments& arguments, const study::StoredRun& stored) {
   if (stored.result.empty()) {
-    throw Error("the run '" + study::run_name(stored) + "' left no result: " + stored.outcome +
+    throw Error("the run '" + study::run_name(stored) + "' has no result: " + stored.outcome +
                 (stored.message.empty() ? "" : " (" + stored.message + ")"));
   }
   if (arguments.out) {
@@ -146,7 +146,7 @@ int replay(const Arguments& arguments) {
 
 void add_replay(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("replay", "repeat one run of a study and compare the results bit by bit");
+      app.add_subcommand("replay", "repeat a run of a study and compare the results bit for bit");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("store", arguments->store, "study database")->required()->type_name("DB");
   command
@@ -156,7 +156,7 @@ void add_replay(CLI::App& app, Action& action) {
       ->required();
   command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
       ->type_name("FILE");
-  command->add_option("--trace", arguments->trace, "write a trace of the searches to this file")
+  command->add_option("--trace", arguments->trace, "write a search trace to this file")
       ->type_name("FILE");
   command->add_flag(
       "--stored", arguments->stored,

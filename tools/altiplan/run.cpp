@@ -186,9 +186,9 @@ void add_run(CLI::App& app, Action& action) {
   add_overrides(*command, arguments->overrides);
   command
       ->add_option("--threads", arguments->threads,
-                   "maximum number of threads of a plugin (default 1)")
+                   "maximum number of threads per plugin (default 1)")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--trace", arguments->trace, "write a trace of the searches to this file")
+  command->add_option("--trace", arguments->trace, "write a search trace to this file")
       ->type_name("FILE");
   command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
       ->type_name("FILE");

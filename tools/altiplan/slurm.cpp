@@ -229,7 +229,7 @@ void add_selection(CLI::App& command, Arguments& arguments) {
       .add_option("--reuse", arguments.reuse,
                   "runs per worker process, as for altiplan study (default 1)")
       ->check(CLI::Range(1, 1000000));
-  command.add_flag("--traces", arguments.traces, "store traces of the searches");
+  command.add_flag("--traces", arguments.traces, "store search traces");
   command
       .add_option("--sample", arguments.sample,
                   "fraction of the runs from 0 to 1, as for altiplan study")
@@ -237,7 +237,7 @@ void add_selection(CLI::App& command, Arguments& arguments) {
       ->check(number_from(0, 1));
   command
       .add_option("--filter", arguments.filter,
-                  "regular expression that run names match, as for altiplan study")
+                  "regular expression for run names, as for altiplan study")
       ->type_name("E");
   add_plugin_path(command, arguments.overrides);
 }
@@ -261,7 +261,7 @@ void add_slurm(CLI::App& app, Action& action) {
                                 "write the scripts and print the sbatch commands; submit nothing");
   command->add_flag("--submit", arguments->submit, "submit the jobs (default)")->excludes(dry);
   add_selection(*command, *arguments);
-  command->add_option("sbatch", arguments->sbatch, "after --: further options of sbatch");
+  command->add_option("sbatch", arguments->sbatch, "after --: additional sbatch options");
   set_example(*command,
               "altiplan slurm study.yaml --out study.db --chunk-minutes 20 -- "
               "--account=uav");

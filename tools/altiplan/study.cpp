@@ -100,10 +100,10 @@ int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
   std::printf("  selected %zu, stored %zu, to do %zu\n", plan.runs.size(), estimate.stored,
               estimate.left);
   if (estimate.left > 0) {
-    std::printf("  about %s with %d at a time (%s a run, from %s)\n",
+    std::printf("  about %s with --jobs %d (%s per run, from %s)\n",
                 duration(estimate.total_s).c_str(), arguments.options.jobs,
                 duration(estimate.run_s).c_str(),
-                estimate.is_probed ? "one run of each pipeline made now"
+                estimate.is_probed ? "a trial run of each pipeline"
                                    : (std::to_string(estimate.measured) + " stored runs").c_str());
   }
   return kDone;
@@ -137,7 +137,7 @@ int study(Arguments arguments) {
   const study::StudyEnd end = study::run_study(plan, arguments.options);
   line.clear();
   const study::StudyProgress& progress = end.progress;
-  std::printf("%s: %zu runs stored, %zu of them now, in %s\n", arguments.store.c_str(),
+  std::printf("%s: %zu runs stored, %zu of them new, in %s\n", arguments.store.c_str(),
               progress.before + progress.done, progress.done, duration(progress.elapsed_s).c_str());
   if (end.is_interrupted) {
     std::printf("  interrupted with %zu runs left: repeat the command to continue\n",
@@ -230,13 +230,13 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
       ->type_name("P");
   command
       ->add_option("--filter", arguments->selection.filter,
-                   "run only those whose name 'PIPELINE SCENARIO #REPETITION' matches this regular "
+                   "run only runs whose name 'PIPELINE SCENARIO #REPETITION' matches this regular "
                    "expression")
       ->type_name("E");
-  command->add_flag("--traces", arguments->options.traces, "store traces of the searches");
+  command->add_flag("--traces", arguments->options.traces, "store search traces");
   auto* fresh =
       command->add_flag("--fresh", arguments->options.fresh, "delete the stored runs first");
-  command->add_flag("--resume", arguments->resume, "run only what is not stored yet (default)")
+  command->add_flag("--resume", arguments->resume, "run only runs not stored yet (default)")
       ->excludes(fresh);
   command->add_flag("--dry-run", arguments->dry_run,
                     "only print the number of runs and the estimated time");

@@ -55,7 +55,7 @@ void print_comparison(const char* what, const tune::TunedComparison& made) {
   if (made.scenarios == 0) {
     return;
   }
-  print_row("mean in " + counted(made.scenarios, "scenario") + " " + what,
+  print_row("mean over " + counted(made.scenarios, std::string(what) + " scenario"),
             readable(made.mean_before, 6), readable(made.mean_now, 6),
             change(made.mean_before, made.mean_now));
 }
@@ -81,8 +81,8 @@ void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
                  const std::string& folder) {
   const tune::TuneSummary summary = tune::summary_of(plan, tuning);
   print_row(plan.request.metric, "original", "tuned", "change");
-  print_comparison("tuned on", summary.tuned_on);
-  print_comparison("held back", summary.held_back);
+  print_comparison("tuning", summary.tuned_on);
+  print_comparison("held-out", summary.held_back);
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
     const tune::TunedParameter& parameter = plan.parameters[p];
     const std::string before = parameter.shown();
@@ -97,9 +97,9 @@ void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
               counted(summary.evaluations, "evaluation").c_str(),
               share_of(summary.failed, std::max<std::size_t>(1, summary.evaluations)).c_str(),
               share_of(summary.on_plateau, std::max<std::size_t>(1, summary.evaluations)).c_str());
-  std::printf("  tuned on: %s\n", summary.tuned_on.words.c_str());
+  std::printf("  tuning scenarios: %s\n", summary.tuned_on.words.c_str());
   if (summary.held_back.scenarios > 0) {
-    std::printf("  held back: %s\n", summary.held_back.words.c_str());
+    std::printf("  held-out scenarios: %s\n", summary.held_back.words.c_str());
   }
   if (tuning.best == 0) {
     std::printf("  no improvement over the original pipeline: tuned.yaml contains its values\n");
@@ -128,7 +128,7 @@ int tune(Arguments arguments) {
     return kInterrupted;
   }
   tune::write_tuning(plan, tuning, arguments.options.out);
-  std::printf("%s: %s done now in %s\n", folder.c_str(), counted(tuning.runs_done, "run").c_str(),
+  std::printf("%s: %s in %s\n", folder.c_str(), counted(tuning.runs_done, "new run").c_str(),
               duration(tuning.elapsed_s).c_str());
   print_table(plan, tuning, folder);
   const auto& all = tuning.evaluations;

@@ -152,7 +152,7 @@ Json plan_scenarios(host::Registry& registry, const Arguments& arguments) {
   const std::size_t before = allocated();
   for (const GridScenario& scenario : scenarios.list) {
     run_scenario(*planner, request, scenario, arguments, tally);
-    // The planner's pool keeps its buffers: after a plan they are as large as they were within.
+    // The planner's pool keeps its buffers at the size that they reached during the plan.
     tally.bytes = std::max(tally.bytes, allocated() - std::min(before, allocated()));
   }
   const double total_us = std::accumulate(tally.times_us.begin(), tally.times_us.end(), 0.0);

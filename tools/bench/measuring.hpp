@@ -22,9 +22,9 @@ struct WrongAnswer : Error {
 
 double wall_s();
 double thread_s();   ///< CPU time of this thread, independent of other programs
-double process_s();  ///< and of all threads
+double process_s();  ///< CPU time of all threads
 
-/// Bytes that the program holds from the C library.
+/// Bytes that the program has allocated from the C library.
 std::size_t allocated();
 
 /// The quantile of the values at that share, one of the values; 0 if empty.
@@ -33,7 +33,7 @@ inline double median(std::vector<double> values) { return quantile(std::move(val
 
 // ---- Plugins
 
-/// A plugin and the parameters that it is to have.
+/// A plugin and its parameters.
 struct Chosen {
   const PluginEntry& entry;
   Value parameters;
@@ -41,7 +41,7 @@ struct Chosen {
 /// `text`: the plugin's name and, after a space, its parameters in YAML: "astar {corner: any}".
 Chosen chosen(host::Registry& registry, const std::string& kind, const std::string& text);
 std::shared_ptr<const Planner> planner(host::Registry& registry, const std::string& text);
-/// A layer above nothing.
+/// A layer with no layers below it.
 std::unique_ptr<Environment> environment(host::Registry& registry, const std::string& text,
                                          Site site = {});
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws how the time of an expansion grows with the map, from what `search` prints.
+"""Plots the time of an expansion against the size of the map, from the output of `search`.
 
 altiplan-bench search --json > growth.json
 plot_growth.py growth.json docs/images/growth.svg

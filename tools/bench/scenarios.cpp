@@ -114,7 +114,7 @@ GridScenarios read_scenarios(const std::filesystem::path& file, const std::array
       if (row.size() != 2 || row.text(0) != "version" || row.number(1, "the version") != 1) {
         row.refuse("expected 'version 1', found " + excerpt(line));
       }
-    } else if (row.size() > 0 && !(scenarios.is_3d && number == 2)) {  // there: the map's name
+    } else if (row.size() > 0 && !(scenarios.is_3d && number == 2)) {  // line 2: the map's name
       scenarios.list.push_back(scenarios.is_3d ? space_scenario(row, counts)
                                                : plane_scenario(row, counts));
       scenarios.list.back().line = number;

@@ -23,8 +23,8 @@ struct Given {
   std::vector<std::string> others;  ///< arguments for Google Benchmark
 };
 
-/// Measures, and returns an object of figures; a list in it is a table, its rows objects with the
-/// same keys. Null if everything has been printed. Infinite and NaN figures have no value.
+/// Measures and returns an object of figures; a list in it is a table whose rows are objects with
+/// the same keys. Null if everything has been printed. Infinite and NaN figures have no value.
 using Measure = std::function<Json(const Given&)>;
 
 /// The subcommands of altiplan-bench, each with --plugin-path and --json.
@@ -36,7 +36,7 @@ class Subcommands {
   CLI::App& add(const std::string& name, const std::string& sentence, Measure measure);
   /// Adds a subcommand that is not in this build; `needs` names what is missing.
   void leave_out(const std::string& name, const std::string& needs);
-  /// Runs the selected subcommand and prints its figures. Passes on its exceptions.
+  /// Runs the selected subcommand and prints its figures. Does not catch its exceptions.
   void run() const;
 
  private:

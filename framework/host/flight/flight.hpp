@@ -99,7 +99,7 @@ struct FlightResult {
 /// Flies the route in simulated time, deterministically (wall time appears only in
 /// replans[].time_s).
 ///
-/// The vehicle follows the route at its speed law. An obstacle unknown to the planner becomes known
+/// The vehicle follows the route at its speed profile. An obstacle unknown to the planner becomes known
 /// within `vehicle.sensing_m`. The pilot takes over if the route ahead, within the pilot's reach,
 /// comes closer than 1/20 of that reach to something the route was not planned around: a new or
 /// changed layer, or a moving obstacle at the time of passing. It hands back once a straight leg to

@@ -41,6 +41,6 @@ TrackRadius track_radius(const Route& track, const Vehicle& vehicle);
 std::vector<Violation> whole_track_violations(const Route& track, const Request& request,
                                               double min_turn_radius);
 
-/// The maximum of the vehicle's speed law.
+/// The maximum of the vehicle's speed profile.
 double top_speed(const Vehicle& vehicle);
 }  // namespace altiplan::host

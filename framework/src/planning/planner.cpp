@@ -74,13 +74,13 @@ Reason spent_part(const PlanResult& result, const Budget& budget) {
 }
 
 /// Checks a result against the contract on a route's ends; `start` and `goal` are those requested.
-PlanResult held_to_law(PlanResult result, const Vec3& start, const Goal& goal,
-                       const Budget& budget) {
+PlanResult held_to_contract(PlanResult result, const Vec3& start, const Goal& goal,
+                            const Budget& budget) {
   if (result.status == PlanStatus::timed_out && result.reason == Reason::none) {
     result.reason = spent_part(result, budget);
   }
-  const auto broken = [](Reason law, const std::string& how) {
-    return PluginError("the planner violated the contract of its interface: " + how, law);
+  const auto broken = [](Reason reason, const std::string& how) {
+    return PluginError("the planner violated the contract of its interface: " + how, reason);
   };
   if (result.status == PlanStatus::no_route && result.message.empty()) {
     throw broken(Reason::contract, "returns no route and does not say why");
@@ -174,7 +174,7 @@ std::optional<PlanResult> impossible_ends(const Request& request) {
 
 PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
                            std::span<const Change> changes, const Budget& budget) {
-  PlanResult said = held_to_law(
+  PlanResult said = held_to_contract(
       guarded([&] { return do_update(state, goal, std::move(world), changes, budget); }),
       state.position, goal, budget);
   const PlanResult shown = guarded([&] { return do_result(); });
@@ -190,8 +190,8 @@ PlanResult Planner::plan(const Request& request) const {
   if (auto result = settled(request)) {
     return *std::move(result);
   }
-  return held_to_law(guarded([&] { return do_plan(request); }), request.start.position,
-                     request.goal, request.budget);
+  return held_to_contract(guarded([&] { return do_plan(request); }), request.start.position,
+                          request.goal, request.budget);
 }
 
 std::unique_ptr<Session> Planner::begin(const Request& request) const {
@@ -204,7 +204,8 @@ std::unique_ptr<Session> Planner::begin(const Request& request) const {
     if (session == nullptr) {
       throw PluginError("begin returned no session", Reason::contract);
     }
-    return held_to_law(session->result(), request.start.position, request.goal, request.budget);
+    return held_to_contract(session->result(), request.start.position, request.goal,
+                            request.budget);
   });
   return session;
 }

@@ -15,7 +15,7 @@ struct Params {
         .unit("deg")
         .range(0, 90)
         .required()
-        .doc("steepest climb or descent of a leg, against the horizontal");
+        .doc("maximum climb or descent angle of a leg");
   }
 };
 

@@ -13,8 +13,8 @@ struct Params {
   std::optional<double> max_m;
 
   void describe(Fields& f) {
-    f("min_m", min_m).unit("m").at_least(0).doc("shortest leg");
-    f("max_m", max_m).unit("m").greater_than(0).doc("longest leg");
+    f("min_m", min_m).unit("m").at_least(0).doc("minimum leg length");
+    f("max_m", max_m).unit("m").greater_than(0).doc("maximum leg length");
     f.check(min_m || max_m, "leg_length needs min_m, max_m or both");
     f.check(!min_m || !max_m || *min_m <= *max_m, "min_m must not exceed max_m");
   }

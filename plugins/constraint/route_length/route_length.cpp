@@ -14,10 +14,10 @@ struct Params {
   std::optional<double> max_ratio;
 
   void describe(Fields& f) {
-    f("max_m", max_m).unit("m").greater_than(0).doc("longest route");
+    f("max_m", max_m).unit("m").greater_than(0).doc("maximum route length");
     f("max_ratio", max_ratio)
         .at_least(1)
-        .doc("longest route, as a multiple of the distance from start to goal");
+        .doc("maximum route length, as a multiple of the distance from start to goal");
     f.check(max_m.has_value() != max_ratio.has_value(),
             "route_length needs exactly one of max_m and max_ratio");
   }

@@ -18,9 +18,9 @@ struct Params {
         .unit("deg")
         .range(0, 180)
         .required()
-        .doc("largest change of direction between two legs");
+        .doc("maximum change of direction between two legs");
     f("plane", plane, {{"horizontal", Plane::horizontal}, {"spatial", Plane::spatial}})
-        .doc("measure the turn as seen from above, or in three dimensions");
+        .doc("measure the turn in the horizontal plane or in three dimensions");
   }
 };
 

@@ -15,7 +15,7 @@ struct Params {
         .unit("m")
         .range(0, 1000000)
         .required()
-        .doc("minimum radius of the turn at a waypoint, and along a track");
+        .doc("minimum turn radius at a waypoint and along a track");
   }
 };
 

@@ -54,7 +54,7 @@ struct Params {
     f("default_height_m", heights.default_height_m)
         .unit("m")
         .greater_than(0)
-        .doc("height of footprints that have neither; left out, such a file is rejected");
+        .doc("height of footprints that have neither; if omitted, such a file is rejected");
     f("base_m", base_m)
         .unit("m")
         .doc(

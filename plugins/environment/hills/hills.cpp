@@ -50,7 +50,7 @@ struct Params {
   void describe(Fields& f) {
     f("base_m", base_m).unit("m").doc("height of the ground far from all peaks");
     f("cap_m", cap_m).unit("m").doc("maximum height of the ground; higher parts become a plateau");
-    f("peaks", peaks).doc("the peaks; left out, they are generated");
+    f("peaks", peaks).doc("the peaks; if omitted, they are generated");
     f("count", count).range(1, 1000).doc("number of generated peaks (default: 16)");
     f("seed", seed).at_least(0).doc("random seed of the peaks; default: the run's seed");
     f("extent_m", extent_m)

@@ -16,13 +16,13 @@ struct Params {
   bool masking = false;
 
   void describe(Fields& f) {
-    f.point(at).required().doc("the antenna");
+    f.point(at).required().doc("position of the antenna");
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
         .doc("detection range; alternative to `equation`");
     f("equation", equation).doc("the quantities of the radar equation, paper 000, eq. (1)");
-    f("masking", masking).doc("ground between the antenna and a point hides the point");
+    f("masking", masking).doc("ground between the antenna and a point masks the point");
     f.check(range_m.has_value() != equation.has_value(), "give either range_m or equation");
   }
 };

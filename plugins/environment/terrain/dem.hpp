@@ -41,7 +41,7 @@ struct Params {
     f("max_posts", max_posts)
         .at_least(4)
         .doc(
-            "a file of which more posts are needed (all, or those around the volume) is rejected "
+            "a file from which more posts are needed (all, or those around the volume) is rejected "
             "before anything is allocated");
     f.check((voids == Voids::fill_m) == fill_m.has_value(),
             voids == Voids::fill_m ? "voids: fill_m needs fill_m, the height of filled voids"

@@ -44,11 +44,11 @@ struct Params {
     f("ground_influence_m", ground_influence_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("the same for ground, above the ground clearance; auto: a tenth of influence_m");
+        .doc("d_0 for ground, above the ground clearance; auto: a tenth of influence_m");
     f("target_m", target_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("a target farther away is pulled in to this distance; auto: 2/3 of influence_m");
+        .doc("a target farther away is moved in to this distance; auto: 2/3 of influence_m");
     f("attraction", attraction).range(0, 1e9).doc("k_a, for distances in length_unit_m");
     f("repulsion", repulsion).range(0, 1e9).doc("k_r, for distances in length_unit_m");
     f("length_unit_m", length_unit_m)
@@ -65,11 +65,11 @@ struct Params {
         .range(0, 90)
         .doc("rotate if the bearings of obstacle and target differ by less than this");
     f("stronger_goal", stronger_goal).doc("repair 2: stronger attraction near the goal");
-    f("goal_factor", goal_factor).range(1, 1e6).doc("factor by which the attraction grows there");
+    f("goal_factor", goal_factor).range(1, 1e6).doc("factor of the attraction near the goal");
     f("goal_zone_m", goal_zone_m)
         .unit("m")
         .range(0.001, 1e9)
-        .doc("within this distance of the goal; auto: influence_m");
+        .doc("distance that counts as near the goal; auto: influence_m");
     f("two_steps", two_steps)
         .doc("repair 3: use step_far_m while the nearest edge is more than reaction_s away");
     f("step_far_m", step_far_m)
@@ -88,7 +88,7 @@ struct Params {
     f("side", side, {{"field", Side::field}, {"predicted", Side::predicted}})
         .doc(
             "side on which to pass obstacles in front of the target: by the field's push alone, "
-            "or the one predicted to reach the target sooner as both fly, kept until passed");
+            "or the one predicted to reach the target sooner, kept until passed");
   }
 };
 }  // namespace apf

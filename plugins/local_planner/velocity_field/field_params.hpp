@@ -88,12 +88,12 @@ struct Params {
         .doc("distance at which a virtual target counts as reached");
     f("toward", toward, {{"goal", Toward::goal}, {"route", Toward::route}})
         .doc(
-            "source of the attraction: the goal, as published, or the point of the route to "
-            "which the flight is to return");
+            "source of the attraction: the goal, as published, or the point at which the flight "
+            "rejoins the route");
     f("terrain", terrain, {{"ignore", Terrain::ignore}, {"sections", Terrain::sections}})
         .doc(
             "ignore: ground is ignored, as published; sections: fly around ground higher than "
-            "the flight, and over it if that leads nowhere");
+            "the flight, or over it if there is no path around");
     f("max_climb_deg", max_climb_deg)
         .unit("deg")
         .range(0.1, 80)
@@ -102,15 +102,15 @@ struct Params {
         .unit("m")
         .range(1, 1e9)
         .doc(
-            "terrain: after flying around ground for this distance without coming nearer by a "
-            "tenth of it, climb");
+            "terrain: climb after flying around ground for this distance without getting closer "
+            "by a tenth of it");
     f("section_cell_m", section_cell_m)
         .unit("m")
         .range(0.1, 1e6)
         .doc(
             "terrain: edge of the cells that sample the ground; auto: the volume's longer side "
             "/ 512");
-    f("max_steps", max_steps).range(1, 1'000'000).doc("steps after which the pilot gives up");
+    f("max_steps", max_steps).range(1, 1'000'000).doc("number of steps after which the pilot gives up");
   }
 
   Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }

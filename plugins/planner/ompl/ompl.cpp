@@ -99,13 +99,13 @@ struct Params {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("longest extension of the planner's tree, its parameter range; auto: OMPL's default");
+        .doc("maximum extension of the planner's tree, its parameter range; auto: OMPL's default");
     f("parameters", parameters)
         .doc("the planner's other parameters: a map from their OMPL names to values");
     f("max_iterations", max_iterations)
         .at_least(1)
         .doc(
-            "queries that the planner may make; a planner that keeps improving its route stops "
+            "maximum number of queries by the planner; one that keeps improving its route stops "
             "there");
     const std::string wrong = f.reading() ? problem() : "";
     f.check(wrong.empty(), wrong);

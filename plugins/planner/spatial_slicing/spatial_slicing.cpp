@@ -35,7 +35,7 @@ struct Params {
         .doc(
             "axis perpendicular to the planes; auto: the axis on which start and goal lie "
             "farthest apart");
-    f("plane_cells", plane_cells).range(1, 1000000).doc("cells from one plane to the next");
+    f("plane_cells", plane_cells).range(1, 1000000).doc("spacing of the planes in cells");
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)

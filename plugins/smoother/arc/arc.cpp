@@ -39,7 +39,7 @@ struct Params {
     f("sag_m", sag_m)
         .unit("m")
         .greater_than(0)
-        .doc("largest distance of a waypoint outside its arc; auto: a hundredth of the radius");
+        .doc("maximum distance of a waypoint outside its arc; auto: a hundredth of the radius");
   }
 };
 

@@ -220,8 +220,8 @@ class Fitting {
     return approach(flown, flown.size() - 1, request_.before_start());
   }
 
-  bool accepted(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
-                const Vec3& to) const {
+  bool is_accepted(std::size_t i, const std::optional<Approach>& before, const Vec3& from,
+                   const Vec3& to) const {
     const kit::Excess& allowed = legs_[i].allowed;
     return leg_ok(before, from, to, request_) ||
            (!allowed.none() &&

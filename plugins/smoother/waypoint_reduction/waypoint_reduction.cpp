@@ -26,7 +26,7 @@ struct Params {
     f("max_turn_deg", max_turn_deg)
         .unit("deg")
         .range(0, 180)
-        .doc("largest turn of a new leg from the leg before it, or from the start's heading");
+        .doc("maximum turn of a new leg from the leg before it, or from the start's heading");
   }
 };
 

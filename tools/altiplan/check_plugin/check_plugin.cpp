@@ -241,7 +241,7 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--sets", arguments->sets,
-                   "file of parameter sets to check the plugin with, see docs/conformance.md "
+                   "parameter sets to check the plugin with, see docs/reference/conformance.md "
                    "(default: the plugin's defaults)")
       ->type_name("FILE");
   add_plugin_path(*command, arguments->overrides);
@@ -259,7 +259,7 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->check(number_from(1, 1e9))
       ->capture_default_str();
   command->add_flag("--untimed", arguments->untimed, "skip the tests that measure time");
-  command->add_flag("--list", arguments->list, "print the names of the tests and run none");
+  command->add_flag("--list", arguments->list, "print the test names without running any");
   CLI::Option* here =
       command->add_flag("--here", arguments->here,
                         "run the single test selected by --only in this process, for a debugger");

@@ -16,7 +16,7 @@ using conformance::Cases;
 using conformance::Finding;
 
 constexpr const char* kManifest = "Library: a manifest that fits this altiplan";
-constexpr const char* kLoads = "Library: loads, every symbol found, and holds what it announces";
+constexpr const char* kLoads = "Library: loads, resolves every symbol, and holds what it lists";
 constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
 
 Outcome manifest_fits(const host::Library& library) {
@@ -89,8 +89,8 @@ class PluginUnderTest {
     const std::string layer = set_.missing_layer(registry());
     return layer.empty() ? "" : "no library offers the layer '" + layer + "' of the parameter set";
   }
-  /// Why the set's parameters do not fit the plugin, or its layers cannot be created; "" if all is
-  /// well.
+  /// Why the set's parameters do not fit the plugin, or its layers cannot be created; "" if
+  /// they fit.
   std::string misfit() const {
     try {
       const conformance::Setup made = setup();

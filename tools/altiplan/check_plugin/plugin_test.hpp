@@ -26,7 +26,7 @@ struct Outcome {
   std::vector<conformance::Finding> findings;
   std::string skipped;  ///< why the test was skipped; "" if it ran
   bool misfit = false;  ///< skipped because the parameters do not fit the plugin
-  std::string answers;  ///< of a test in two processes: must be equal in both
+  std::string answers;  ///< of a test that runs in two processes, equal in both
 };
 
 /// One test of a library, to be run in its own process: it loads everything it needs.
@@ -42,7 +42,7 @@ struct PluginTest {
 std::vector<PluginTest> tests_of(const PluginToCheck& what);
 
 // Tests of a library's effects on its process. `load` returns its entry; the parameters are those
-// of the setup. Each test leaves the process changed: no other test may follow in it.
+// of the setup. Each test changes the process, so no other test may follow in it.
 using LoadPlugin = std::function<const PluginEntry&()>;
 using MakeSetup = std::function<conformance::Setup()>;
 std::vector<PluginTest> process_tests(const std::string& prefix, const LoadPlugin& load,

@@ -18,10 +18,10 @@ using conformance::answers_of;
 
 constexpr const char* kLeaves =
     "Process: locale, working folder, signal handlers, floating-point mode, environment, open "
-    "files and threads stay as they were";
+    "files and threads are unchanged";
 constexpr const char* kStdout = "Process: nothing is written to stdout";
 constexpr const char* kFiles = "Process: nothing is written outside the scratch folder (TMPDIR)";
-constexpr const char* kMemory = "Process: memory is given back";
+constexpr const char* kMemory = "Process: memory is released";
 
 std::size_t entries_in(const char* folder) {
   std::size_t count = 0;

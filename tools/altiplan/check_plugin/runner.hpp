@@ -25,7 +25,7 @@ struct Verdict {
 
 struct RunnerOptions {
   std::size_t jobs = 1;
-  double time_limit_s = 60;  ///< of a test, which is killed after it
+  double time_limit_s = 60;  ///< after which a test is killed
   double memory_limit_mb = 4096;
   /// Command of the child that runs one test: program, arguments. The name of the test and the file
   /// for its outcome are appended (--only ^NAME$ --here --answer FILE).

@@ -37,6 +37,6 @@ struct ParameterSet {
   conformance::Setup setup(host::Registry& registry) const;
 };
 
-/// Reads the sets of a file (docs/conformance.md). Throws ConfigError.
+/// Reads the sets of a file (docs/reference/conformance.md). Throws ConfigError.
 std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file);
 }  // namespace altiplan::cli

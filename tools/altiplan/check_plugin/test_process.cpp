@@ -25,7 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kEnds = "Process: the test ends well, with a result";
+constexpr const char* kEnds = "Process: the test ends normally, with a result";
 constexpr rlim_t kMaxOutput = 64 << 20;
 
 /// The last bytes of a file, at most that many; "" if it is not a regular file, since a test may

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times of an ant's step, an iteration and the set-up of the colonies, by the number of cells, and
-// on two threads.
+// Times of an ant's step, an iteration and the set-up of the colonies, against the number of cells,
+// and on two threads.
 #include <algorithm>
 #include <vector>
 

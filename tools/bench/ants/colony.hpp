@@ -27,19 +27,19 @@ struct Time {
 /// The settings of a colony's plan.
 struct Setting {
   std::string planner;  ///< the plugin's name and, after a space, its parameters in YAML
-  double cell_m = 0;    ///< 0: as the parameters say
+  double cell_m = 0;    ///< 0: that of the parameters
   int iterations = 50;
 };
 
 struct Run {
   Time time;
   double steps = 0;   ///< of all ants
-  double alive = 0;   ///< ants of the last iteration that arrived
+  double alive = 0;   ///< ants of the last iteration that reached the goal
   double length = 0;  ///< infinite without a route
 };
 
 /// A planner with all iterations of its setting, and with a single one: the difference in time is
-/// that of the other iterations, the rest is the set-up.
+/// due to the other iterations, the rest is the set-up.
 class Colony {
  public:
   Colony(host::Registry& registry, const Setting& setting);
@@ -61,18 +61,18 @@ class Colony {
 /// The times of one seed, on one thread.
 struct Pass {
   Run first;   ///< by a new planner in a new world
-  Run again;   ///< by the same once more
+  Run again;   ///< by the same planner once more
   Run single;  ///< a single iteration
 
   double iterations_ms(double Time::*clock) const { return again.time.*clock - single.time.*clock; }
   double step_ns() const {
     return 1e6 * iterations_ms(&Time::processor_ms) / (again.steps - single.steps);
   }
-  /// The time of a plan besides its steps.
+  /// The time of a plan without its steps.
   double set_up_ms(const Run& run) const {
     return run.time.processor_ms - 1e-6 * step_ns() * run.steps;
   }
 };
-/// The problem is to be a new one.
+/// The request must be a new one of problem_of().
 Pass plan_once(host::Registry& registry, const Setting& setting, Request request, int seed);
 }  // namespace altiplan::bench

@@ -9,7 +9,7 @@
 
 namespace altiplan::bench {
 
-/// "2 processors on 2 cores", as the system tells it; under a hypervisor that may not be so.
+/// "2 processors on 2 cores", as the system reports; under a hypervisor this may be wrong.
 inline std::string topology() {
   std::set<std::string> cores;
   std::error_code none;

@@ -17,7 +17,7 @@ double straight(const Way& way) {
 }  // namespace
 
 Cells::Cells(host::Registry& registry, const std::string& text, const Site& site) {
-  chosen(registry, "environment", text);  // its library is not loaded within the time
+  chosen(registry, "environment", text);  // loads its library outside of the measured time
   const double began = thread_s();
   world_ = std::make_shared<const World>(
       World().with({"cells", "cells", environment(registry, text, site)}));
@@ -36,7 +36,7 @@ Request Cells::request(const Way& way) const {
   const auto centre = [&](const std::array<double, 3>& cell) {
     const std::optional<Vec3> p = layer.cell_centre(cell);
     if (!p) {
-      throw Error("a way leads out of the map");
+      throw Error("a query leads out of the map");
     }
     return *p;
   };
@@ -56,7 +56,7 @@ Cells make_city(host::Registry& registry, const CityKind& kind, int seed) {
   yaml << "city {generate: " << (kind.complex ? "complex" : "simple") << ", seed: " << seed
        << ", cells: [" << kind.counts[0] << ", " << kind.counts[1] << ", " << kind.counts[2]
        << "], buildings: " << kind.buildings << "}";
-  constexpr double kCell = 10;  // metres: the plugin's default
+  constexpr double kCell = 10;  // metres, the plugin's default
   const auto centre = [&](const std::array<double, 3>& cell) {
     return Vec3(kCell * (cell[0] + 0.5), kCell * (cell[1] + 0.5), kCell * (cell[2] + 0.5));
   };

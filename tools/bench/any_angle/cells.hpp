@@ -18,15 +18,15 @@ struct Way {
   std::array<double, 3> goal;
 };
 
-/// A world of one layer that has cells.
+/// A world of one layer with its own cells.
 class Cells {
  public:
   /// `text`: the layer's plugin and parameters.
   Cells(host::Registry& registry, const std::string& text, const Site& site = {});
 
   const GridSpec& spec() const { return spec_; }
-  double build_ms() const { return build_ms_; }          ///< of the layer
-  double occupancy_ms() const { return occupancy_ms_; }  ///< of the grid that planners ask for
+  double build_ms() const { return build_ms_; }          ///< build time of the layer
+  double occupancy_ms() const { return occupancy_ms_; }  ///< time to fill the occupancy grid
   std::size_t blocked() const { return world_->voxels(spec_)->blocked_count(); }
   Request request(const Way& way) const;
 
@@ -51,8 +51,8 @@ Cells make_city(host::Registry& registry, const CityKind& kind, int seed);
 /// A Warframe .3dmap.
 Cells load_map(host::Registry& registry, const std::string& file);
 
-/// The next line's query: start x y z, goal x y z; the rest of the line is ignored, as are the
-/// first two lines of a .3dscen file. Nothing at the end; throws Error with `name` and the line.
+/// Reads a query per line: start x y z, goal x y z; ignores the rest of the line, and the first two
+/// lines of a .3dscen file. Empty at the end; throws Error with `name` and the line.
 class Ways {
  public:
   Ways(std::istream& in, std::string name) : in_(in), name_(std::move(name)) {}
@@ -65,7 +65,7 @@ class Ways {
   bool is_scenario_ = false;
 };
 
-/// `count` of the queries at least `least` cells long, evenly from the shortest to the longest; in
+/// `count` of the queries at least `least` cells long, evenly from the shortest to the longest, in
 /// the given order.
 std::vector<Way> spread(std::vector<Way> ways, double least, std::size_t count);
 }  // namespace altiplan::bench

@@ -23,25 +23,25 @@ class Row {
   };
   /// Throws WrongAnswer if the judge rejects the route.
   Plan plan(const Cells& cells, const Way& way);
-  /// As many plans of each way as passes.
+  /// Adds the plans of one query, one per pass.
   void add(const std::vector<Plan>& passes);
 
   const std::string& name() const { return name_; }
-  /// Its figures: lengths relative to the first row's, memory per cell for that many cells.
+  /// Lengths relative to those of `first`; memory per cell for that many cells.
   Json figures(const Row& first, std::size_t cells) const;
 
  private:
   std::string name_;
   std::shared_ptr<const Planner> planner_;
-  std::vector<double> first_ms_;  ///< of each way, as are the next
+  std::vector<double> first_ms_;  ///< one entry per query, as below
   std::vector<double> ms_;
   std::vector<double> lengths_;
   double expanded_ = 0;
-  double resident_ = 0;  ///< bytes that came while planning
+  double resident_ = 0;  ///< growth of resident memory while planning, bytes
 };
 
 /// Plans every query by every row, interleaved, so that machine load affects all of them alike.
 void plan_all(std::vector<Row>& rows, const Cells& cells, const std::vector<Way>& ways, int passes);
-/// A table of rows, and the program's peak of memory, added to the figures of a world.
+/// Adds a table of the rows, and the program's peak memory, to the figures of a world.
 void add(Json& figures, const std::vector<Row>& rows, std::size_t cells);
 }  // namespace altiplan::bench

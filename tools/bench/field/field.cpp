@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time of a step by the velocity field among 12, 80 and 10,000 threats. A step takes less than
-// a clock does, so blocks of steps are timed.
+// Time of a velocity field step among 12, 80 and 10,000 threats. A step takes less time than
+// reading a clock, so blocks of steps are timed.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -67,8 +67,8 @@ Request request_of(const Row& row) {
 }
 
 struct Times {
-  std::vector<double> us;  ///< a step's, one entry a block
-  double in_reach = 0;     ///< threats that act, summed over `looked`
+  std::vector<double> us;  ///< time of a step, one entry per block
+  double in_reach = 0;     ///< threats in effect, summed over `looked`
   std::size_t looked = 0;
   std::size_t steps = 0;
 };

@@ -16,7 +16,7 @@ constexpr int kPosts = 10;
 constexpr double kLength = 16e3;
 constexpr double kHeight = 1500;
 
-/// Their tops reach the height of the path, so that the ground affects every decision.
+/// The tops reach the height of the path, so that the ground affects every decision.
 Layer hills(const Box& volume, RandomStream& random, host::Registry& registry) {
   std::ostringstream text;
   text << std::fixed << "hills {base_m: 0, cap_m: " << kHeight - 60 << ", peaks: [";
@@ -42,7 +42,7 @@ Layer post(int i, RandomStream& random) {
           std::make_shared<kit::ShapeLayer>(std::vector<Shape>{shape}), false};
 }
 
-/// Aimed at a point of the path, to arrive with the vehicle.
+/// Aimed at a point of the path, which it reaches together with the vehicle.
 MovingObstacle mover(std::size_t i, double speed, RandomStream& random) {
   while (true) {
     const double at_s = random.uniform(30, kLength / speed);

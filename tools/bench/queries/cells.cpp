@@ -13,7 +13,7 @@
 namespace altiplan::bench {
 namespace {
 
-/// Towers on 80 x 80 x 100 cells of a metre, and legs between free cells.
+/// Towers on 80 x 80 x 100 cells of 1 m, and legs between free cells.
 struct Towers {
   VoxelGrid grid{spec()};
   RandomStream random{1};
@@ -73,7 +73,7 @@ void add_leg_rows(const std::shared_ptr<Towers>& towers, int cells) {
   const auto sampled = [=](std::size_t n) { return ompl->is_free(n); };
   const std::string of = "leg/" + std::to_string(cells) + "_cells/";
   require(of + "walk", [&](std::size_t n) { return free(n) == walked(n); });
-  // Samples miss corners, but see nothing where there is nothing.
+  // Samples miss corners, but never report a free leg as blocked.
   require(of + "ompl", [&](std::size_t n) { return !free(n) || sampled(n); });
   std::cerr << of << ": " << share(free) << " of the legs are free, to the samples "
             << share(sampled) << '\n';

@@ -13,8 +13,8 @@ struct CellLeg {
   Cell b;
 };
 
-/// OMPL's DiscreteMotionValidator on a grid, a sample a cell edge or nearer; the states of the legs
-/// are made beforehand.
+/// OMPL's DiscreteMotionValidator on a grid, with samples at most a cell edge apart; the states of
+/// the legs are created beforehand.
 class OmplPeer {
  public:
   OmplPeer(const VoxelGrid& grid, const std::vector<CellLeg>& legs);

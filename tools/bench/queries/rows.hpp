@@ -12,7 +12,7 @@ namespace altiplan::bench {
 /// Queries of a row, in cyclic order.
 inline constexpr std::size_t kQueries = 4096;
 
-/// A row of the table: the time of one ask(n), n below kQueries.
+/// A row of the table: the time of one call of ask(n), n below kQueries.
 template <class Ask>
 void add_row(const std::string& name, const Ask& ask) {
   benchmark::RegisterBenchmark(name.c_str(), [ask](benchmark::State& state) {
@@ -44,7 +44,7 @@ std::string share(const Ask& ask) {
   return std::to_string((100 * count + kQueries / 2) / kQueries) + " %";
 }
 
-// Each adds its rows, having compared the answers.
+// Each compares the answers, then adds its rows.
 void add_shape_rows(int count);
 void add_cell_rows();
 void add_terrain_rows();

@@ -12,8 +12,7 @@
 namespace altiplan::bench {
 namespace {
 
-// FCL's answers are trusted to this, metres: from convex prisms its distances are wrong by up to
-// 0.9 mm.
+// Assumed error of FCL's distances, metres: those from convex prisms are wrong by up to 0.9 mm.
 constexpr double kTrusted = 1e-3;
 constexpr double kRadius = 2;
 
@@ -22,7 +21,7 @@ struct Leg {
   Vec3 b;
 };
 
-/// As many solids a square kilometre as 200, whatever their number; legs of 50 m among them.
+/// Solids at a density of 200 per square kilometre, and legs of 50 m among them.
 struct City {
   double side;  // metres
   std::vector<Shape> shapes;

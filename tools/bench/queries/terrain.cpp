@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least height of legs above a terrain.
+// The minimum height of legs above a terrain.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -51,7 +51,7 @@ void add_terrain_rows() {
   const RandomStream random(7);
   const auto field = std::make_shared<const HeightField>(std::array<double, 2>{0, 0}, spacing,
                                                          kPosts, kPosts, hills(random, 1));
-  // The greatest height above a ground turned upside down skips nothing: the plain walk.
+  // The maximum height above the inverted ground skips no posts: the plain traversal.
   const auto turned = std::make_shared<const HeightField>(std::array<double, 2>{0, 0}, spacing,
                                                           kPosts, kPosts, hills(random, -1));
   for (const double length : {250.0, 2500.0, 15000.0}) {

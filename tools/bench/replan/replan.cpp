@@ -71,7 +71,7 @@ Cell random_cell(const GridSpec& spec, RandomStream& random) {
   return c;
 }
 
-/// Distant free cells without an easy connection; nothing if many tries fail.
+/// Distant free cells without an easy connection; empty if many tries fail.
 std::optional<Map> voxel_map(host::Registry& registry, const std::string& file,
                              RandomStream& random) {
   const auto layer = environment(registry, "voxel_map {file: '" + file + "'}");
@@ -117,7 +117,7 @@ Kind anywhere(const std::string& name, double share) {
           }};
 }
 
-/// As many cells of a box around a place that lies `share` of the way along the route.
+/// `count` cells of a box around the route point at the fraction `share` of the route.
 Kind around(const std::string& name, double share, int reach, int count) {
   return {name, [=](VoxelGrid& cells, const Map& map, const Route& route, RandomStream& random) {
             const Vec3& at = route[std::size_t(share * double(route.size() - 1))];
@@ -198,7 +198,7 @@ void time_one(const Planner& astar, const Planner& dstar, const Map& map, const 
   const auto changed = std::make_shared<const World>(world->with_replaced(
       {"cells", "voxel_map", std::make_shared<const kit::CellLayer>(std::move(cells)), true}));
   request.world = changed;
-  // The new occupancy is made once, for both. Neither has its memory in the processor's caches.
+  // The new occupancy is computed once for both planners. It is in the cache of neither.
   kit::occupancy(request, kit::Lattice(request, Vec3::Ones(), kit::Neighbourhood::all, {}));
   PlanResult afresh;
   PlanResult repaired;

@@ -7,8 +7,8 @@
 
 namespace altiplan::bench {
 
-/// Towers on three tenths of the ground of 80 x 80 x 100 cells of a metre, and queries across it:
-/// free cells' centres at least half the diagonal apart; `low`: both ends in the lowest fifth, most
+/// Towers on three tenths of the ground of 80 x 80 x 100 cells of 1 m, and queries across it: free
+/// cells' centres at least half the diagonal apart; `low`: both ends in the lowest fifth, most
 /// of them with towers in the straight line.
 class City {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of `rrt` over real ground, the main layout of paper 000's page: whole plans, what a
-// threat that appears costs, and growth to a million nodes.
+// The tree of `rrt` over real ground, the main layout of paper 000's page: whole plans, the cost of
+// a threat that appears, and growth to a million nodes.
 #include "host/mission/mission.hpp"
 #include "reference/pop_ups.hpp"
 #include "rows.hpp"
@@ -74,8 +74,8 @@ double time_update(const Planner& planner, std::uint64_t seed) {
   return time;
 }
 
-/// No route is short enough, so the tree of the basic choice grows for as many iterations: nodes a
-/// second as the mean from the first to the last.
+/// No route is short enough, so the tree of the basic choice grows in all iterations; nodes per
+/// second are the mean from the first to the last.
 void grow(host::Registry& registry, benchmark::State& state, bool over_ground) {
   const auto tree = planner(registry,
                             "rrt {step_m: 150, weight_goal: 0, random_share: 1, max_failures: 0, "

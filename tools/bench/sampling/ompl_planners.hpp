@@ -8,12 +8,12 @@
 
 namespace altiplan::bench {
 
-/// What OMPL's motions are checked with: its own samples, a cell edge apart or nearer, or our legs.
+/// OMPL's motion check: its own samples, at most a cell edge apart, or our exact legs.
 enum class OmplCheck { samples, legs };
 
 struct OmplResult {
   bool solved = false;
-  double seconds = 0;  ///< of solve alone
+  double seconds = 0;  ///< time of solve alone
   double length = 0;
   std::size_t nodes = 0;
 };
@@ -21,12 +21,12 @@ struct OmplResult {
 /// A planner of OMPL by name, among the cells of a request's only layer.
 class OmplPlanner {
  public:
-  /// The request must outlive it. A range of 0 leaves the planner's own.
+  /// The request must outlive it. A range of 0 keeps the planner's default.
   OmplPlanner(const std::string& planner, const Request& request, OmplCheck check, double range);
   ~OmplPlanner();
   OmplPlanner(OmplPlanner&&) noexcept;
-  /// Between the start and the goal of a request in the same world. Nodes and length are asked for
-  /// only if `measure`.
+  /// Plans from start to goal of a request in the same world. Reads nodes and length only if
+  /// `measure`.
   OmplResult solve(const Request& request, double seconds, bool measure);
 
  private:

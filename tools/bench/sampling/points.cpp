@@ -35,7 +35,7 @@ void scatter(KdTree& tree, std::size_t count) {
   }
 }
 
-/// From the nearest node toward the sample.
+/// Extends the nearest node toward the sample.
 void grow_nearest(KdTree& tree, std::size_t count) {
   RandomStream random(2);
   tree.insert(kStart);
@@ -45,9 +45,9 @@ void grow_nearest(KdTree& tree, std::size_t count) {
   }
 }
 
-/// From the node of the least sum of distances, once toward the goal, then toward the sample. The
-/// goal is walled in, or the nodes would be a star around it; a node that has failed 50 times is
-/// taken out.
+/// Extends the node with the minimum sum of distances, once toward the goal, then toward the
+/// sample. The goal is walled in, otherwise the nodes form a star around it; a node that has failed
+/// 50 times is erased.
 void grow_least_sum(KdTree& tree, std::size_t count) {
   constexpr double kWall = 2000;
   constexpr int kMaxFailures = 50;
@@ -121,7 +121,7 @@ struct Points {
   }
 };
 
-/// Made when first asked for; the tree and the linear row share it.
+/// Created on first use; the tree and the linear row share it.
 class LatePoints {
  public:
   LatePoints(Grow grow, std::size_t count) : grow_(grow), count_(count) {}
@@ -154,7 +154,7 @@ void add_row(const std::string& name, const std::shared_ptr<LatePoints>& late, A
   });
 }
 
-/// Mean time of a node: a tree grown from nothing.
+/// Mean time per node of a tree grown from empty.
 void add_growth_row(const std::string& name, Grow grow, std::size_t count) {
   benchmark::RegisterBenchmark(
       (name + std::to_string(count)).c_str(), [=](benchmark::State& state) {
@@ -168,8 +168,7 @@ void add_growth_row(const std::string& name, Grow grow, std::size_t count) {
             Counter(double(count), Counter::kIsIterationInvariantRate | Counter::kInvert);
       });
 }
-/// Mean time to take a point out and put it back in: half the tree at once, as where a branch of it
-/// is cut off.
+/// Mean time to erase and reinsert a point: half the tree at once, as when a branch is cut off.
 void add_pruning_row(const std::string& name, const std::shared_ptr<LatePoints>& late) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     KdTree tree = late->get().tree;

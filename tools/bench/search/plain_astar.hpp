@@ -10,8 +10,8 @@ struct PlainResult {
   std::size_t expanded = 0;
 };
 
-/// Textbook A*: a binary heap, real numbers, arrays cleared for each search, octile distance; a
-/// step needs its two cells free. Cells are cubes; with one level of cells steps stay in it. The
-/// reference for the planners' lengths and times.
+/// Textbook A*, the reference for the planners' lengths and times: a binary heap, floating-point
+/// costs, arrays cleared for each search, octile distance; a step needs its two cells free. Cells
+/// are cubes; steps stay within the level if there is only one.
 PlainResult plain_astar(const VoxelGrid& grid, const Cell& start, const Cell& goal);
 }  // namespace altiplan::bench

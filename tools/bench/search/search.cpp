@@ -19,11 +19,11 @@ constexpr std::size_t kQueries = 16;
 struct Query {
   Cell start;
   Cell goal;
-  double length;  ///< of the plain A*
+  double length;  ///< found by the plain A*
 };
 
-/// Towers on three tenths of the ground, and ways across it that are no straight lines. Scaled
-/// by a whole number: the same city in smaller cells.
+/// Towers on three tenths of the ground, and queries across it whose routes are not straight.
+/// Scaled by a whole number: the same city in smaller cells.
 struct City {
   std::string name;
   std::shared_ptr<const World> world;
@@ -44,7 +44,7 @@ struct City {
     VoxelGrid cells(spec);
     RandomStream random{1};
     const auto below = [&](int n) { return int(random.integer(0, n - 1)); };
-    const int towers = counts[0] * counts[1] / 80;  // of 5 x 5, some of them over each other
+    const int towers = counts[0] * counts[1] / 80;  // 5 x 5 cells each, some overlapping
     for (int n = 0; n < towers; ++n) {
       const int i = below(counts[0] - 4);
       const int j = below(counts[1] - 4);
@@ -66,7 +66,7 @@ struct City {
       Query query{};
       for (Cell* c : {&query.start, &query.goal}) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          // Low above the ground, among the towers.
+          // Close to the ground, among the towers.
           const int most = axis == 2 ? std::max(counts[2] / 4, 1) : counts[axis];
           (*c)[axis] = int(random.integer(0, most - 1)) *
                        (cells.spec().counts[2] == 1 && axis == 2 ? 1 : scale);
@@ -103,7 +103,7 @@ struct City {
 void report(benchmark::State& state, double expanded) {
   using benchmark::Counter;
   state.counters["expanded"] = expanded / kQueries;
-  // Inverted: the time over the number.
+  // Inverted: time divided by number.
   state.counters["per_expansion"] =
       Counter(expanded / kQueries, Counter::kIsIterationInvariantRate | Counter::kInvert);
 }

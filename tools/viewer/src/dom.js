@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** An element with attributes, listeners (`onclick`), properties and children. */
+/** A new element with attributes, listeners (`onclick`), properties and children. */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {

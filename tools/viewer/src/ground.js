@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {ramp} from './ramp.js';
 
-/** Heights on a grid: post (i, j) stands at x0 + i dx, y0 + j dy; NaN where there is none. */
+/** Heights on a grid: post (i, j) is at x0 + i dx, y0 + j dy; NaN marks a missing post. */
 export class Ground {
   constructor({nx, ny, x0, y0, dx, dy, heights}) {
     Object.assign(this, {nx, ny, x0, y0, dx, dy, z: heights});
@@ -15,7 +15,7 @@ export class Ground {
     }
   }
 
-  /** Between the four posts around (x, y); NaN outside and beside missing posts. */
+  /** Bilinear between the four posts around (x, y); NaN outside and next to missing posts. */
   height(x, y) {
     const i = (x - this.x0) / this.dx;
     const j = (y - this.y0) / this.dy;
@@ -28,8 +28,8 @@ export class Ground {
       (z[post + this.nx] * (1 - u) + z[post + this.nx + 1] * u) * v;
   }
 
-  /** First place of origin + t direction, 0 ≤ t ≤ reach, that is on or under the ground as it is
-   *  drawn, none of it above `cut`; with the ground's own height. */
+  /** First point of origin + t direction, 0 ≤ t ≤ reach, on or below the ground as drawn, which is
+   *  cut off at `cut`; returned with the uncut height of the ground. */
   hit(origin, direction, reach, cut) {
     const at = (t) => [0, 1, 2].map((axis) => origin[axis] + t * direction[axis]);
     const above = (t) => {
@@ -53,12 +53,12 @@ export class Ground {
   }
 }
 
-// Light from the north-west at 45°, the cartographers' habit: hollows do not look like hills.
+// Light from the north-west at 45°, as on maps, so that hollows do not look like hills.
 const kSun = [-0.5, 0.5, Math.SQRT1_2];
 const kShadow = 0.38;
 const kBrightest = 1.12;
 
-/** RGBA, four bytes a post from the south-west: the colour of its height in the light. */
+/** RGBA, four bytes per post from the south-west: the shaded colour of its height. */
 export function shaded(ground, exaggeration) {
   const {nx, ny, z, min, max} = ground;
   const colors = new Uint8Array(nx * ny * 4);
@@ -73,7 +73,7 @@ export function shaded(ground, exaggeration) {
       if (height !== height) continue;
       let slope_x = (z[i < nx - 1 ? post + 1 : post] - z[i > 0 ? post - 1 : post]) * per_x;
       let slope_y = (z[post + north] - z[post + south]) * per_y;
-      // Beside a missing post: flat.
+      // Next to a missing post: flat.
       if (slope_x !== slope_x) slope_x = 0;
       if (slope_y !== slope_y) slope_y = 0;
       const facing = (kSun[2] - kSun[0] * slope_x - kSun[1] * slope_y) /

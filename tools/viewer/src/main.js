@@ -20,7 +20,7 @@ function complain(sentence) {
 addEventListener('error', (event) => complain(event.message));
 addEventListener('unhandledrejection', (event) => complain(String(event.reason)));
 
-/** Nothing above this height is drawn but lines. */
+/** The altitude in the address; everything but lines is hidden above it. */
 function asked_cut(text) {
   const height = Number(text);
   if (text.trim() !== '' && Number.isFinite(height)) return height;
@@ -50,7 +50,7 @@ function make_view(stage, world, store) {
   }
 }
 
-/** Only the picture: no panels, all that happened, seen from the south-west at 35°. */
+/** The picture without panels, after all events, seen from the south-west at 35°. */
 function still(view, store) {
   document.body.classList.add('still');
   const last = Math.max(0, ...view.world.lines.map(({times}) => times?.at(-1) ?? 0));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The bytes of a text in base64. */
+/** Decodes base64. */
 export function bytes(text) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
 /**
- * A long list as framework/host/view/viewer_page.cpp packs it: thousandths, each as its
- * difference from what those before it foretell; of points (`per` numbers each) the first numbers
- * of all, then the second ones. 0 is null, 1 and a number repeat what came last so often.
+ * Unpacks a long list of framework/host/view/viewer_page.cpp: thousandths, each as its difference
+ * from the value predicted from those before it; points (`per` numbers each) are stored column by
+ * column. 0 is null, 1 and a number n repeat the last token n times.
  */
 function unpacked({packed, count, per, order}) {
   const raw = bytes(packed);
@@ -53,7 +53,7 @@ function unpacked({packed, count, per, order}) {
   return columns[0].map((_, n) => columns.map((values) => values[n]));
 }
 
-/** JSON with such lists in it. */
+/** Parses JSON that contains packed lists. */
 export function parse_packed(text) {
   return JSON.parse(text, (_, value) => (value?.packed === undefined ? value : unpacked(value)));
 }

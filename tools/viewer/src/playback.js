@@ -6,11 +6,11 @@ const kRemoved = 2;
 const kRewired = 3;
 const kIteration = 4;
 
-/** The kept events of a trace and when each stops to hold: event e is drawn while the number of
- *  events shown is above e and at most until[e]. A removal ends what was at its place, a rewiring
- *  replaces it; a removal itself and an iteration, which has no place, are never drawn. What an
- *  iteration of a population drew ends with it. Played back are `stops`, numbers of events shown:
- *  of a population whole iterations, else each event. */
+/** The kept events of a trace and their lifetimes: event e is drawn while the number of events
+ *  shown is above e and at most until[e]. A removal ends the event at its position, a rewiring
+ *  replaces it; removals and iterations, which have no position, are never drawn. Routes drawn in
+ *  an iteration of a population end with it. Playback steps through `stops`, numbers of events
+ *  shown: whole iterations of a population, otherwise each event. */
 export function playback_of(trace) {
   trace.playback ??= new_playback(trace);
   return trace.playback;
@@ -44,11 +44,11 @@ function new_playback(trace) {
   return {trace, count, at, parent, kind, step, until, iterations, stops};
 }
 
-/** Whether it is an iteration of a population, which tells how many of it found a route. */
+/** True for an iteration of a population, which counts the members that found a route. */
 export const is_population = (iteration) => iteration?.alive >= 0;
 
-/** The kept iterations; after `end` events its last is over. A search counts its own from the
- *  first: where the numbers do not rise, the next search has begun. */
+/** The kept iterations; each is over after `end` events. Every search numbers its iterations from
+ *  the first: where the numbers do not increase, the next search begins. */
 function iterations_of(trace, kind, step, value) {
   const {number: numbers, mean, alive} = read_iterations(trace);
   const found = [];
@@ -68,11 +68,11 @@ function iterations_of(trace, kind, step, value) {
   return found;
 }
 
-/** The iteration that is going on when so many events are shown. */
+/** The iteration in progress when that many events are shown. */
 export const iteration_at = ({iterations}, shown) =>
   iterations.findLast(({event}) => event < shown);
 
-/** All iterations of the search that is going on; before the first one, of the first search. */
+/** All iterations of the search in progress; before the first one, of the first search. */
 export function iterations_around(playback, shown) {
   const {search} = iteration_at(playback, shown) ?? {search: 0};
   return playback.iterations.filter((iteration) => iteration.search === search);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Height colours: lightness (OKLab L) rises evenly from low to high ground and the hue goes from
-// blue-grey over sage to sand, an axis that every kind of colour vision has. Little chroma, so
-// that routes and zones stand out.
+// Height colours: lightness (OKLab L) increases evenly from low to high ground and the hue runs
+// from blue-grey through sage to sand, an axis distinguishable with any kind of colour vision. The
+// chroma is low, so that routes and zones stand out.
 const kLightness = [0.54, 0.95];
 const kHue = [215, 75];
 const kChroma = [0.045, 0.055];
@@ -26,7 +26,7 @@ function rgb(lightness, chroma, hue_deg) {
 
 const between = ([from, to], share) => from + (to - from) * share;
 
-/** 256 colours, three bytes each, from lowest to highest. */
+/** 256 colours of three bytes, from the lowest to the highest ground. */
 export const ramp = new Uint8Array(kEntries * 3);
 for (let entry = 0; entry < kEntries; entry++) {
   const share = entry / (kEntries - 1);

@@ -12,7 +12,7 @@ function floats(text, count, what) {
   return new Float32Array(raw.buffer);
 }
 
-/** The scene of the page, its binary parts decoded; throws one sentence where it is not one. */
+/** The scene of the page with its binary parts decoded; throws a one-sentence error if invalid. */
 export function read_scene(text) {
   if (text.trim() === '' || text.trimStart().startsWith('/*')) {
     throw new Error('This page contains no scene: create one with `altiplan view RESULT -o page.html`.');
@@ -40,7 +40,7 @@ export function read_scene(text) {
   return scene;
 }
 
-/** A trace is large and seldom looked at: decoded when it is asked for, once. */
+/** Decodes a trace on first use: it is large and seldom viewed. */
 export function read_trace(trace) {
   trace.decoded ??= {
     step: bytes(trace.step), kind: bytes(trace.kind),
@@ -51,7 +51,7 @@ export function read_trace(trace) {
   return trace.decoded;
 }
 
-/** Of its iterations, in order; few beside all events. */
+/** The numbers, means and counts of the iterations, in order; few compared with all events. */
 export function read_iterations(trace) {
   const decode = (text) => new Float32Array(bytes(text).buffer);
   trace.decoded_iterations ??= Object.fromEntries(Object.entries(trace.iterations)

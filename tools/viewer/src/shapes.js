@@ -3,7 +3,7 @@ import {ShapeUtils, Vector2} from 'three';
 
 const kCircleSides = 48;
 const kSphereRings = 16;
-// An outline's upright edge is drawn where it turns by more than this: not on a circle's facets.
+// Vertical edges are drawn where an outline turns by more than this: not on facets of a circle.
 const kSharp = Math.cos(20 * Math.PI / 180);
 
 /** The solid's outline as seen from above: rings, the outer one first. */
@@ -25,21 +25,21 @@ function circle([x, y], radius) {
   });
 }
 
-/** Floor and ceiling; where there is none, those of what is drawn. */
+/** Floor and ceiling; those of the drawn box where the solid has none. */
 export function span(solid, box) {
   if (solid.shape === 'sphere') return [solid.at[2] - solid.radius, solid.at[2] + solid.radius];
   if (solid.shape === 'box') return [solid.min[2], solid.max[2]];
   return [solid.floor ?? box[0][2], solid.ceiling ?? box[1][2]];
 }
 
-/** Triangles and edges of what a solid has below `cut`: x, y, z in a row, in world coordinates. */
+/** Triangles and edges of a solid's part below `cut`: flat x, y, z in world coordinates. */
 export function surface(solid, box, cut = Infinity) {
   if (solid.shape === 'sphere') return sphere(solid, cut);
   const [floor, ceiling] = span(solid, box);
   return prism(outline(solid).map(open_ring), floor, Math.min(ceiling, cut));
 }
 
-/** What triangles have below `cut`; where it meets them they are left open. */
+/** The parts of triangles below `cut`, left open where it cuts them. */
 export function clipped(triangles, cut) {
   const kept = [];
   for (let at = 0; at < triangles.length; at += 9) {
@@ -69,7 +69,7 @@ const area = (ring) => ring.reduce((sum, [x, y], at) => {
 }, 0);
 
 function prism(rings, floor, ceiling) {
-  // The outer ring counter-clockwise, holes clockwise: then every wall faces out.
+  // The outer ring counter-clockwise and holes clockwise, so that every wall faces out.
   const turned = rings.map((ring, at) => (area(ring) > 0) === (at === 0) ? ring :
     [...ring].reverse());
   const [triangles, edges] = [[], []];
@@ -99,7 +99,7 @@ function is_sharp(before, here, next) {
 
 function sphere({at, radius}, cut) {
   const [triangles, edges] = [[], []];
-  // Rings above the cut become its flat top, none of them wider than the section.
+  // Rings above the cut become the flat top, none of them wider than the section.
   const section = Math.sqrt(Math.max(0, radius * radius - (cut - at[2]) ** 2));
   const point = (ring, side) => {
     const polar = Math.PI * ring / kSphereRings;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What the user has chosen; who draws it listens for the keys that matter to it. */
+/** The user's choices; each view listens for the keys that it depends on. */
 export class Store {
   #listeners = [];
   #changed = new Set();
@@ -12,7 +12,7 @@ export class Store {
     this.#listeners.push({keys, listener});
   }
 
-  /** Listeners run once for all that changes in one go. */
+  /** Listeners run once per call, for all its changes. */
   set(patch) {
     for (const [key, value] of Object.entries(patch)) {
       if (this.state[key] !== value) {
@@ -23,7 +23,7 @@ export class Store {
     }
   }
 
-  /** Puts `member` into the set under `key`, or takes it out. */
+  /** Adds `member` to the set under `key`, or removes it. */
   toggle(key, member, present = !this.state[key].has(member)) {
     const next = new Set(this.state[key]);
     if (present) next.add(member); else next.delete(member);

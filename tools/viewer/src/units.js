@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 const kPlain = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 
-/** A number with about four digits that matter; a dash where there is none. */
+/** A number with about four significant digits; a dash if there is none. */
 export function number(value, unit = '') {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const magnitude = Math.abs(value);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {round_step} from './units.js';
 
-/** Coordinates around the middle of the box: with 32 bits a point 50 km from it is right to 2 mm,
- *  one 5,000 km from the origin of the map would be right to half a metre. */
+/** Coordinates relative to the centre of the box: in 32 bits a point 50 km from it is accurate to
+ *  2 mm; one 5,000 km from the origin of the map would be accurate to half a metre. */
 export class Frame {
   constructor(box) {
     this.box = box;
@@ -19,14 +19,14 @@ export class Frame {
     return [0, 1, 2].map((axis) => point[axis] + this.centre[axis]);
   }
 
-  /** The height down to which the terrain is a block. */
+  /** The height of the bottom of the terrain block. */
   base(ground) {
     if (!ground || !(ground.max >= ground.min)) return this.box[0][2];
     const depth = Math.max((ground.max - ground.min) * 0.1, this.diagonal * 0.01);
     return Math.min(ground.min - depth, this.box[0][2]);
   }
 
-  /** x, y, z of all points in a row, local. */
+  /** Local x, y, z of all points, as a flat list. */
   flat(points) {
     const values = new Float32Array(points.length * 3);
     points.forEach((point, at) => values.set(this.local(point), 3 * at));
@@ -34,7 +34,7 @@ export class Frame {
   }
 }
 
-/** Every line that can be shown: of each result its route, the route of each step, the track. */
+/** Every line that can be shown: each result's route, its steps' routes and its track. */
 export function lines_of(results) {
   const lines = [];
   results.forEach((result, index) => {
@@ -59,7 +59,7 @@ export function lines_of(results) {
 
 export const layer_key = (thing) => `${thing.layer}|${thing.role}|${thing.known}`;
 
-/** The layers in the order of the scene, each once. */
+/** The layers, each once, in the order of the scene. */
 export function layers_of(scene) {
   const layers = new Map();
   for (const thing of [...scene.solids, ...scene.boxes, ...scene.meshes, ...scene.moving]) {
@@ -73,12 +73,12 @@ export function layers_of(scene) {
   return [...layers.values()];
 }
 
-/** Unknown space would hide all that is known: it is shown when asked for. */
+/** Unknown space would hide everything known: it is hidden at first. */
 export const hidden_at_first = (scene) =>
   new Set(layers_of(scene).filter(({role}) => role === 'unknown').map(({key}) => key));
 
-/** Whether something is in the world at `time` of the flight whose events happened at `times`;
- *  before and without a flight the world is as it was at the start. */
+/** True if `thing` is in the world at `time` of the flight whose events happened at `times`; before
+ *  and without a flight the world is as at the start. */
 export function present(thing, times, {time, everything}) {
   if (everything) return true;
   const happened = (event) =>
@@ -88,13 +88,13 @@ export function present(thing, times, {time, everything}) {
   return added && !happened(thing.removed_by);
 }
 
-/** Where a moving obstacle's shape is at `time`, relative to its place at since_s. */
+/** Displacement of a moving obstacle's shape at `time` from its position at since_s. */
 export function drift(moving, time) {
   const passed = Math.max(0, time - moving.since_s);
   return moving.velocity.map((speed) => speed * passed);
 }
 
-/** Goal and points on the way that are reached within some distance. */
+/** The goal and the via points that have a tolerance. */
 export const tolerances = (scene) => [scene.goal, ...(scene.via ?? [])]
   .filter((goal) => goal?.tolerance > 0);
 
@@ -114,7 +114,7 @@ export function last_before(values, value) {
 
 export const between = (a, b, share) => a.map((value, axis) => value + (b[axis] - value) * share);
 
-/** Where a flight is at `time`, and where it heads. */
+/** Position and heading of a flight at `time`. */
 export function place_at(line, time) {
   const from = Math.min(last_before(line.times, time), Math.max(0, line.points.length - 2));
   const to = Math.min(from + 1, line.points.length - 1);
@@ -135,7 +135,7 @@ export function lonlat(scene, [x, y]) {
     (nw[axis] * (1 - u) + ne[axis] * u) * v);
 }
 
-/** Where the grid's lines run: round coordinates within the box. */
+/** The grid's step and its lines: round coordinates within the box. */
 export function grid_lines(box, axis) {
   const length = Math.max(box[1][0] - box[0][0], box[1][1] - box[0][1], 1e-3);
   const step = round_step(length, 8);

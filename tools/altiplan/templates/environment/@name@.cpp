@@ -55,7 +55,7 @@ class RowOfPoles final : public Environment {
     return box;
   }
 
-  // Without this the layer's cells are drawn, which is slower.
+  // Without this override `altiplan view` draws the layer as cells, which is slower.
   std::optional<Drawing> do_drawing() const override {
     Drawing drawing;
     for (int i = 0; i < params_.poles; ++i) {

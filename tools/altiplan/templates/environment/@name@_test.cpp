@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   const altiplan::PluginEntry& plugin = *altiplan_plugins(&count)[0];
   register_cases("@name@", plugin_cases(plugin));
   Setup setup;
-  setup.options.volume = altiplan::Box{{-150, -150, 0}, {650, 350, 250}};  // where it is sampled
+  setup.options.volume = altiplan::Box{{-150, -150, 0}, {650, 350, 250}};  // the sampled box
   register_cases("@name@", cases_of(plugin, setup));
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

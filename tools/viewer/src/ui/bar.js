@@ -20,7 +20,7 @@ export function build_bar(world, actions) {
   if (unsolved.length > 0 && solved === 0) show_failure(unsolved[0]);
 }
 
-/** Shows the failure in place of the route if no result is solved. */
+/** Shows the failure instead of the route if no result is solved. */
 function show_failure({name, status, message}) {
   const alert = by_id('alert');
   alert.replaceChildren(element('strong', {}, `${name}: ${status.replaceAll('_', ' ')}. `), message,

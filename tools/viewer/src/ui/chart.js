@@ -3,13 +3,13 @@ import uPlot from 'uplot';
 import {style_of} from '../colors.js';
 import {element} from '../dom.js';
 
-/** The place of a chart, with `value` beside its title. */
+/** The cell of a chart, with `value` beside its title. */
 export const new_cell = ({key, title, unit}, value) => element('div', {className: `chart ${key}`},
   element('div', {className: 'caption'}, element('b', {}, unit ? `${title}, ${unit}` : title),
     value));
 
-/** A plot in its cell; series whose colours are among `dots` have a dot at the cursor. `incrs`: how
- *  far apart marks along x may be. */
+/** A plot in its cell; series whose colours are among `dots` have a dot at the cursor. `incrs`: the
+ *  allowed spacings of marks along x. */
 export function new_plot(cell, data, series, {dots, scales, hooks, incrs}) {
   return new uPlot({width: 200, height: 100, padding: [6, 10, 0, 0], legend: {show: false},
     cursor: {y: false, drag: {setScale: false, x: false}, points: {show: dot_on(dots)}},
@@ -26,7 +26,7 @@ function dot_on(colors) {
   };
 }
 
-/** From the least to the greatest of what is drawn, with room; from 0 where 0 means something. */
+/** The range of the plotted values with a margin, from 0 for quantities with a meaningful 0. */
 export function range_of(chart, [, ...columns]) {
   const values = columns.flat().filter((value) => value !== null && Number.isFinite(value));
   let [low, high] = [Infinity, -Infinity];
@@ -37,7 +37,7 @@ export function range_of(chart, [, ...columns]) {
   if (low > high) return [0, 1];
   if (chart.zero) low = Math.min(0, low);
   const missing = Math.max(0, chart.span - (high - low));
-  // Around the curve; from 0 only upwards.
+  // On both sides of the curve; from 0 only upwards.
   const [under, over] = chart.zero && low === 0 ? [0, missing] : [missing / 2, missing / 2];
   [low, high] = [low - under, high + over];
   const room = (high - low) * 0.08;
@@ -50,7 +50,7 @@ function axes(incrs) {
   return [{...look, size: 22, gap: 3, space: 60, ...incrs && {incrs}}, {...look, size: 46, gap: 4, space: 26}];
 }
 
-/** Charts as large as their cells. */
+/** Resizes charts to their cells. */
 export function fit(drawn) {
   for (const {plot, cell} of drawn) {
     const {clientWidth: width, clientHeight: height} = cell;
@@ -58,8 +58,8 @@ export function fit(drawn) {
   }
 }
 
-/** Puts the cursor at x, or nowhere. `link` is silent while it comes from elsewhere: it must not go
- *  back there as if it were new. */
+/** Puts the cursor at x, or removes it. `link` is silent meanwhile, so that a cursor set from
+ *  elsewhere is not sent back there as a new one. */
 export function put_cursor(plot, link, x) {
   link.silent = true;
   plot.setCursor(x === null ? {left: -10, top: -10} : {left: plot.valToPos(x, 'x'), top: 4}, false);

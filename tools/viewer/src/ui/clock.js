@@ -3,10 +3,10 @@ import {by_id, element} from '../dom.js';
 import {clock, number} from '../units.js';
 
 const kSpeeds = [1, 2, 5, 10, 20, 50, 100];
-// By default a flight takes at most this long to watch.
+// The default speed plays a flight in at most this time.
 const kWatchSeconds = 40;
 
-/** The flight's time: slider, play, speed, and marks where something happened. */
+/** The flight's time: slider, play, speed, and marks of handovers, replans and events. */
 export function build_clock(world, store) {
   const tracks = world.lines.filter(({kind}) => kind === 'track');
   if (tracks.length === 0) return;
@@ -41,7 +41,7 @@ export function build_clock(world, store) {
   reflect_marks();
 }
 
-/** What happened in the selected flight, when, and what is said of it. */
+/** The handovers, replans and events of the selected flight, each with its time and text. */
 function happenings({results, events}, selected) {
   const flight = results[selected]?.flight;
   if (!flight) return [];

@@ -6,9 +6,9 @@ import {is_population, iteration_at, iterations_around} from '../playback.js';
 import {metres, number} from '../units.js';
 import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
 
-// Fewer iterations than that are points too.
+// Up to this many iterations, each is also drawn as a point.
 const kFew = 40;
-// Between marks along x: there is no half an iteration.
+// Spacings of marks along x: whole numbers of iterations.
 const kApart = [1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7].flatMap((power) => [1, 2, 5].map((factor) =>
   factor * power));
 const kLength = {key: 'length', title: 'Length by iteration', unit: 'm', span: 1, curves: [
@@ -18,14 +18,14 @@ const kBest = {...kLength, title: 'Best length by iteration', curves: kLength.cu
 const kAlive = {key: 'alive', title: 'Alive', zero: true, span: 1, curves: [
   {key: 'alive', title: '', color: '--quiet', read: number}]};
 
-/** How the best length came down over the iterations, and of a population its mean and how many
- *  found a route. A click on an iteration calls `go_to` with it. */
+/** Charts of the best length over the iterations and, for a population, its mean length and the
+ *  number of members that found a route. A click on an iteration calls `go_to` with it. */
 export function build_convergence(store, go_to) {
   const charts = element('div', {className: 'charts convergence', hidden: true});
   const made = {pane: charts, show};
   let [playback, shown, looked, drawn, hovered] = [null, null, null, [], null];
 
-  /** The search that is going on, of a trace whose iterations are to be seen. */
+  /** Shows the search in progress of a playback. */
   function show(next) {
     playback = next;
     rebuild();
@@ -65,7 +65,7 @@ export function build_convergence(store, go_to) {
     plot.over.addEventListener('pointerleave', () => hover(null));
     return {chart, cell, value, plot, link};
   }
-  /** A best length holds until a better one is found. */
+  /** Stepped for a best length: it lasts until a better one is found. */
   function curve(stroke, dash) {
     const stepped = is_population(shown[0]) ? {} : {paths: uPlot.paths.stepped({align: 1})};
     return {stroke, dash, width: 2, spanGaps: false, ...stepped,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {last_before, place_at} from '../world.js';
 
-/** The profile looked at: of the route over distance, or of the flight over time. */
+/** The profile shown: that of the route over distance, or of the flight over time. */
 export function profile_of(world, {selected, source}) {
   const result = world.scene.results[selected];
   const flight = result?.flight?.profile;
@@ -13,14 +13,14 @@ export function profile_of(world, {selected, source}) {
   return route ? {...route, kind: 'route', x: route.s} : null;
 }
 
-/** The place in the world of sample `index` of a profile. */
+/** A cursor at sample `index` of a profile, with its position in the world. */
 export function profile_cursor(profile, index) {
   const x = profile.x[index];
   return {x, index,
     at: profile.kind === 'route' ? profile.at[index] : place_at(profile.line, x).at};
 }
 
-/** The place found on a line, as a cursor: with the profile's sample where that shows the line. */
+/** A cursor at a point of a line, with the sample of the profile if that is of the same line. */
 export function route_cursor({line, at, time}, world, state) {
   const profile = profile_of(world, state);
   if (!profile || profile.line === undefined && line.kind === 'track' ||

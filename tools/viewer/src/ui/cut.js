@@ -2,7 +2,7 @@
 import {element} from '../dom.js';
 import {metres, round_step} from '../units.js';
 
-/** The slider is at its top if the cut is off. */
+/** The slider is at its top while the cut is off. */
 export function cut_slider({box: [low, high]}, store) {
   const [floor, top] = [low[2], high[2]];
   const value = element('output', {});
@@ -22,10 +22,10 @@ export function cut_slider({box: [low, high]}, store) {
   return element('label', {className: 'slider'}, 'Cut above', input, value);
 }
 
-/** The next round height below (`way` -1) or above (1) the cut; above the box's top it is off. */
+/** The next round height below (`way` -1) or above (1) the cut, which is off above the box. */
 export function next_cut(cut, {box: [low, high], size}, way) {
   const step = round_step(size[2], 20);
-  // A cut may differ from a multiple of the step by rounding alone.
+  // A cut may differ from a multiple of the step by a rounding error.
   const steps = Math.min(cut, high[2]) / step;
   const next = step * (way > 0 ? Math.floor(steps + 1e-6) + 1 : Math.ceil(steps - 1e-6) - 1);
   return next < high[2] ? Math.max(low[2], next) : Infinity;

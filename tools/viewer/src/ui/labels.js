@@ -3,13 +3,13 @@ import {by_id, element} from '../dom.js';
 import {number} from '../units.js';
 import {grid_lines} from '../world.js';
 
-// Pixels. A number much farther from its line would seem to belong to another.
+// Pixels. A number farther from its line would seem to belong to another.
 const kReach = {number: 60, name: 200};
 const kGap = 3;
-// Not the readout: labels would jump when the pointer comes and goes.
+// Not the readout, which would make labels jump whenever the pointer enters or leaves.
 const kPanels = ['legend', 'attribution', 'north'];
 
-/** The grid's numbers and the axes' names, all of them within the picture. */
+/** The grid's numbers and the axes' names, all within the picture. */
 export function build_labels(view, world, store) {
   const labels = texts(world.frame, world.scene.ground).map((label) => {
     const span = element('span', {}, label.text);
@@ -35,11 +35,11 @@ export function build_labels(view, world, store) {
   store.on(['grid', 'legend'], place_all);
 }
 
-/** Numbers stand along the south and the west side, the axes' names beside them. */
+/** Numbers along the south and the west side, the axes' names beside them. */
 function texts(frame, ground) {
   const {box: [low, high], box} = frame;
   const base = frame.base(ground);
-  // Not a share of one side: a long and narrow box would have them far from it.
+  // From both sides: a share of one side would place them far from a long and narrow box.
   const side = Math.sqrt(frame.size[0] * frame.size[1]);
   const beside = (share, axis) => low[axis] - side * share;
   const middle = (axis) => (low[axis] + high[axis]) / 2;
@@ -61,15 +61,15 @@ function panels_on(stage) {
       right: panel.right - left, bottom: panel.bottom - top}));
 }
 
-/** What a label takes whose top has its middle at x, y. */
+/** The rectangle of a label with the middle of its top at x, y. */
 const around = ({x, y}, [width, height]) =>
   ({left: x - width / 2, top: y, right: x + width / 2, bottom: y + height});
 
 const apart = (a, b) => a.left >= b.right + kGap || b.left >= a.right + kGap ||
   a.top >= b.bottom + kGap || b.top >= a.bottom + kGap;
 
-/** The place nearest to `wish` that is in the picture and beside all that is taken; null where
- *  there is none within `reach`. */
+/** The position nearest to `wish` inside the picture and clear of `taken`; null if there is none
+ *  within `reach`. */
 function free_place(wish, [width, height], stage, taken, reach) {
   const inside = ({x, y}) => ({
     x: Math.min(Math.max(x, width / 2 + kGap), stage.clientWidth - width / 2 - kGap),

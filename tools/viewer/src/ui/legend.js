@@ -49,7 +49,7 @@ function violations(world, {shown}) {
   return [element('div', {}, element('span', {className: 'swatch violation'}), 'Violation')];
 }
 
-/** While a search is shown, states how much of it is left out, whichever pane is open. */
+/** While a search is shown, reports how much of it is left out, whichever pane is open. */
 function search({search: shown}) {
   return shown ? [element('div', {className: 'note'}, `Search. ${thinning(shown.trace)}`)] : [];
 }

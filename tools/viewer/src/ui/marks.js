@@ -6,7 +6,7 @@ import {violations_of} from './violations.js';
 
 const kMaxViolations = 200;
 
-/** Signs that keep their size on the screen: start, goal, vehicles, the cursor. */
+/** Marks of constant screen size: start, goal, vehicles, the cursor. */
 export function build_marks(view, world, store) {
   const {scene} = world;
   const marks = [];

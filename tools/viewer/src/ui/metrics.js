@@ -14,7 +14,7 @@ function label(key) {
   return words[0].toUpperCase() + words.slice(1) + (unit ? `, ${unit}` : '');
 }
 
-/** Results side by side: a column each. */
+/** A table with a column per result. */
 export function build_metrics({scene: {results}}, store) {
   const head = element('tr', {}, element('th', {}), results.map(({name}, index) => {
     const mark = swatch('#000', 'line');
@@ -56,7 +56,7 @@ function number_rows(columns) {
   return [...keys].map((key) => row(label(key), columns.map((column) => reading(key, column?.[key]))));
 }
 
-/** A radius beyond all that flies is noise of the arithmetic: nothing turns. */
+/** A radius beyond kStraight is rounding noise: the route does not turn. */
 function reading(key, value) {
   return key.endsWith('radius_m') && value >= kStraight ? 'straight' : number(value);
 }

@@ -10,7 +10,7 @@ import {build_marks} from './marks.js';
 import {build_pointer} from './pointer.js';
 import {build_side} from './side.js';
 
-/** All that stands around the picture and on it. */
+/** The panels around the picture and on it. */
 export function build_panels(view, world, store) {
   const {scene} = world;
   document.title = by_id('title').textContent = scene.title;

@@ -6,7 +6,7 @@ import {route_cursor} from './cursor.js';
 
 const kReachPixels = 10;
 
-/** What is under the pointer: a route (its place moves the profiles' cursor), a solid, ground. */
+/** Shows the route (moving the profiles' cursor), the solid and the ground under the pointer. */
 export function build_pointer(view, world, store) {
   const {canvas} = view;
   let waiting = null;
@@ -27,7 +27,7 @@ export function build_pointer(view, world, store) {
   canvas.addEventListener('pointerleave', () => { by_id('tip').hidden = true; });
   canvas.addEventListener('click', (event) => {
     const [x, y] = [event.offsetX, event.offsetY];
-    // The end of a turn of the picture is no click.
+    // The end of a drag is not a click.
     if (!pressed_at || Math.hypot(x - pressed_at[0], y - pressed_at[1]) > 4) return;
     const found = nearest(x, y, view, world, store.state);
     if (found) choose(found, world, store);
@@ -69,7 +69,7 @@ function describe(point, scene) {
   return parts.join(' · ');
 }
 
-/** The place on a visible line nearest to a pixel, if it is within reach. */
+/** The point of a visible line nearest to a pixel; null if none is within reach. */
 function nearest(x, y, view, world, {shown}) {
   let best = null;
   let reach = kReachPixels;
@@ -94,12 +94,12 @@ function nearest(x, y, view, world, {shown}) {
     time: line.times && line.times[leg] + share * (line.times[leg + 1] - line.times[leg])};
 }
 
-/** Share of the way in the world for a share of the way on the screen: what is far looks short. */
+/** Fraction of a leg in the world for a fraction on the screen, which perspective shortens. */
 function along(share, from_depth, to_depth) {
   return share * from_depth / ((1 - share) * to_depth + share * from_depth);
 }
 
-/** Share of the way from `a` to `b` that is nearest to (x, y). */
+/** Fraction along `a` to `b` at the point nearest to (x, y). */
 function foot(x, y, a, b) {
   const [dx, dy] = [b.x - a.x, b.y - a.y];
   const square = dx * dx + dy * dy;

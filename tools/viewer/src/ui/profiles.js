@@ -7,7 +7,7 @@ import {last_before} from '../world.js';
 import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
 import {profile_cursor, profile_of} from './cursor.js';
 
-// Where values differ by less than `span`, that much is shown: a level line should look level.
+// The shown range is at least `span`, so that a level line looks level.
 const kCharts = [
   {key: 'altitude', title: 'Altitude above sea', unit: 'm', span: 5},
   {key: 'clearance', title: 'Clearance', unit: 'm', limit: 'clearance_m', zero: true, span: 1},
@@ -15,7 +15,7 @@ const kCharts = [
   {key: 'turn', title: 'Turn at waypoints', unit: '°', limit: 'turn_deg', zero: true, span: 10},
 ];
 
-/** Charts over the distance of the route or the time of the flight; one cursor for all. */
+/** Charts over the distance of the route or the time of the flight, with one cursor. */
 export function build_profiles(world, store) {
   const pane = element('div', {});
   const choice = element('div', {className: 'choice'});
@@ -36,7 +36,7 @@ export function build_profiles(world, store) {
     const profile = profile_of(world, store.state);
     for (const chart of drawn) show_cursor(chart, profile, store.state);
   };
-  // A chart knows where a value is on the screen once it has been drawn.
+  // A chart has screen positions only once it has been drawn.
   const reflect_when_drawn = () => {
     for (const chart of drawn) chart.redrawn = reflect;
   };
@@ -73,7 +73,7 @@ function draw(chart, profile, charts, world, store) {
   const {data, series, names} = curves(chart, profile, limit, color, result.limits);
   const link = {silent: false};
   const made = {};
-  // The cursor's dot is for the curve itself, not for ground and limits beside it.
+  // The cursor's dot is on the curve itself, not on ground and limits beside it.
   const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range: range_of(chart,
     seen(chart, data, limit))}}, hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
     if (!link.silent && self.cursor.event) follow(self, profile, store);
@@ -110,7 +110,7 @@ function curves(chart, profile, limit, color, limits) {
   }
   const names = [];
   if (chart.key === 'clearance') {
-    // Below the least of them, which is seen to be one or the other.
+    // Behind the minimum, which coincides with one of them everywhere.
     for (const {name, color: stroke, values: its, dash} of compared(profile, color)) {
       names.push([name, stroke, its, dash ? 'line attempt' : 'line']);
       data.splice(-1, 0, its);
@@ -124,7 +124,7 @@ function curves(chart, profile, limit, color, limits) {
   return {data, series, names};
 }
 
-/** What the clearance is the least of, and the height above the ground beside it. */
+/** The clearances, whose minimum is the main curve, and the height above the ground. */
 function compared(profile, color) {
   const kinds = Object.keys(profile.to ?? {});
   const colors = kind_colors(color);
@@ -138,7 +138,7 @@ function compared(profile, color) {
   return made;
 }
 
-/** The columns that the chart is high enough for: what is far away may leave it. */
+/** The columns that set the chart's range; clearances from distant kinds may exceed it. */
 const seen = (chart, data, limit) => chart.key !== 'clearance' ? data :
   [data[0], data.at(limit === null ? -1 : -2), ...limit === null ? [] : [[limit]]];
 
@@ -152,7 +152,7 @@ function follow(plot, profile, store) {
   }
 }
 
-/** The cursor, or else the flight's time, as a line and a number on every chart. */
+/** Shows the cursor, or else the flight's time, as a line and a value on a chart. */
 function show_cursor({plot, value, chart, link, names}, profile, {cursor, time}) {
   const x = cursor?.x ?? (profile.kind === 'flight' ? time : null);
   put_cursor(plot, link, x);

@@ -7,7 +7,7 @@ import {build_convergence} from './convergence.js';
 
 const kSeconds = 12;
 
-/** The search played back: how far, of which result, and what is not shown. */
+/** Playback of a search: position, result, and what is left out. */
 export function build_search(world, store) {
   const traced = world.scene.results.map((result, index) => ({result, index}))
     .filter(({result}) => result.trace);
@@ -53,7 +53,7 @@ export function build_search(world, store) {
     convergence.show(search);
     store.set({search, searched: search.count});
   }
-  /** How many stops of the playback have been passed. */
+  /** Number of stops of the playback that have been passed. */
   function passed({search, searched}) {
     const next = search.stops.findIndex((stop) => stop > searched);
     return next < 0 ? search.stops.length : next;
@@ -91,7 +91,7 @@ export function build_search(world, store) {
       thinning(trace());
   };
   store.on(['search', 'searched'], reflect);
-  // A trace takes time to decode: its figure is made when the pane is looked at.
+  // A trace takes time to decode, so its chart is built when the pane is opened.
   store.on(['tab'], ({tab}) => {
     if (tab === 'search') convergence.show(playback_of(trace()));
   });

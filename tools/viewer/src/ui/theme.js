@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The reader's theme until they choose another. */
+/** The system's theme until the user chooses another. */
 export function follow_theme(store, wish) {
   const dark = matchMedia('(prefers-color-scheme: dark)');
   let chosen = wish === 'dark' || wish === 'light' ? wish : null;

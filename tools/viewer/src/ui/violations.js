@@ -12,7 +12,7 @@ export function violations_of({scene}) {
   scene.results.forEach((result, index) => {
     add(result.check, result.route, result.name, index, `${index}`);
     result.steps.forEach((step, at) => {
-      // The accepted step is judged as the route above, unless another step follows.
+      // The judge checks the accepted step as the route above, unless another step follows.
       if (step.accepted) return;
       add(step.check, step.route, `${result.name}, ${step.id}`, index, `${index}.${at}`);
     });

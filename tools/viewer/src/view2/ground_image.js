@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import {shaded} from '../ground.js';
 
-/** The shaded ground as a picture, a pixel a post. */
+/** The shaded ground as an image with one pixel per post. */
 export function ground_image(ground) {
   const {nx, ny} = ground;
   const colors = shaded(ground, 1);
   const image = new ImageData(nx, ny);
-  // Pictures begin in the north.
+  // Image rows start in the north.
   for (let row = 0; row < ny; row++) {
     image.data.set(colors.subarray(4 * nx * row, 4 * nx * (row + 1)), 4 * nx * (ny - 1 - row));
   }

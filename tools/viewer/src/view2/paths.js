@@ -4,7 +4,7 @@ import {drift} from '../world.js';
 
 const kMaxPaintedTriangles = 20000;
 
-/** How many shapes of `thing` begin below `cut`. From above more cannot be cut off. */
+/** Number of shapes of `thing` that begin below `cut`. From above, shapes cannot be cut. */
 export function count_below(thing, cut, box, time) {
   if (thing.triangles) return thing.triangles.some((z, at) => at % 3 === 2 && z < cut) ? 1 : 0;
   if (thing.data) {
@@ -30,7 +30,7 @@ export function path_of_many({data, triangles}, cut, pixel) {
     if ([2, 5, 8].every((corner) => triangles[at + corner] >= cut)) continue;
     const [a, b, c] = [0, 3, 6].map((corner) =>
       pixel(triangles.subarray(at + corner, at + corner + 2)));
-    // All turn the same way: top and bottom of a body must not cancel out.
+    // The same orientation for all: top and bottom of a body must not cancel out.
     const turns_left = (b.x - a.x) * (c.y - a.y) > (b.y - a.y) * (c.x - a.x);
     const [second, third] = turns_left ? [b, c] : [c, b];
     path.moveTo(a.x, a.y);

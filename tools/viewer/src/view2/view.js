@@ -11,7 +11,7 @@ const kOpacity = {obstacle: 0.6, keep_out: 0.25, keep_in: 0.06, threat: 0.25,
 const kLegendPixels = 330;
 const kLabelPixels = 70;
 
-/** The world from above, for a browser without WebGL. Same methods as View3. */
+/** The world from above, for browsers without WebGL. Same methods as View3. */
 export class View2 {
   constructor(stage, world, store) {
     Object.assign(this, {stage, world, store, listeners: []});
@@ -127,7 +127,7 @@ export class View2 {
     return {position: [...this.middle, this.scale], target: [...this.middle, 0], flying: false};
   }
 
-  /** What is drawn now: 2-D has no buffers, so these are the points that the paths were made of. */
+  /** The current drawing: the points that its paths were made of, since 2-D has no buffers. */
   drawn() {
     const lines = this.world.lines.filter(({key}) => this.store.state.shown.has(key))
       .map(({kind, result, step, points}) => ({kind, result, step, points}));
@@ -178,7 +178,7 @@ export class View2 {
   #paint_ground() {
     const {ground} = this.world.scene;
     if (!ground) return;
-    // A post's pixel reaches half a cell to each side of it.
+    // The pixel of a post extends half a cell to each side of it.
     const corner = this.project([ground.x0 - ground.dx / 2,
       ground.y0 + (ground.ny - 0.5) * ground.dy]);
     this.context.drawImage(this.image, corner.x, corner.y,

@@ -6,7 +6,7 @@ const kFieldDeg = 40;
 const kFlightMs = 700;
 const kRadians = Math.PI / 180;
 
-/** The eye: where it is, what it looks at, and how it gets elsewhere. */
+/** The eye: its position, its target and its moves. */
 export class Camera {
   constructor(canvas, frame, changed) {
     this.frame = frame;
@@ -27,8 +27,8 @@ export class Camera {
     this.eye.updateProjectionMatrix();
   }
 
-  /** Looks from `azimuth` (degrees from north, where the eye stands) down at `pitch` and steps
-   *  back until all of the box is in the picture. */
+  /** The eye at `azimuth` (degrees clockwise from north), looking down at `pitch`, so far back that
+   *  the whole box is in the picture. */
   fit(exaggeration, azimuth_deg = 225, pitch_deg = 35, margin = 1.04) {
     const [azimuth, pitch] = [azimuth_deg * kRadians, Math.min(pitch_deg, 89.9) * kRadians];
     const back = new Vector3(Math.sin(azimuth) * Math.cos(pitch),
@@ -42,7 +42,7 @@ export class Camera {
     const wide = high * this.eye.aspect;
     const target = new Vector3();
     let distance = 0;
-    // Perspective puts the box's middle off the picture's: aim at the middle of what is seen.
+    // Perspective moves the box's centre off the picture's: aim at the centre of the visible part.
     for (let round = 0; round < 8; round++) {
       const seen = corners.map((corner) => corner.clone().sub(target));
       distance = Math.max(...seen.map((corner) => corner.dot(back) +
@@ -63,7 +63,7 @@ export class Camera {
     this.changed();
   }
 
-  /** Moves there in a moment, or at once for those who want no motion. */
+  /** Moves smoothly, or at once if the user prefers reduced motion. */
   fly({target, position}) {
     if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
       this.put({target, position});
@@ -74,14 +74,14 @@ export class Camera {
     this.changed();
   }
 
-  /** Flies towards `target`, seen from the same side, near enough to see what is there. */
+  /** Flies to `target`, seen from the same side and close enough to see its surroundings. */
   fly_to(target) {
     const back = this.eye.position.clone().sub(this.controls.target);
     back.setLength(Math.min(back.length(), this.frame.diagonal * 0.22));
     this.fly({target, position: target.clone().add(back)});
   }
 
-  /** One step of the flight; whether it goes on. */
+  /** Makes one step of the flight; true while it continues. */
   advance(now) {
     if (!this.flight) return false;
     const share = Math.min(1, (now - this.flight.since) / kFlightMs);
@@ -93,7 +93,7 @@ export class Camera {
     return share < 1;
   }
 
-  /** Near and far planes around what there is to see: depth keeps its resolution. */
+  /** Sets near and far planes close around the scene, which keeps depth resolution. */
   before_frame(exaggeration) {
     const distance = this.eye.position.distanceTo(this.controls.target);
     this.eye.near = distance / 100;
@@ -101,7 +101,7 @@ export class Camera {
     this.eye.updateProjectionMatrix();
   }
 
-  /** Where the eye stands, in degrees clockwise from north. */
+  /** Azimuth of the eye, in degrees clockwise from north. */
   heading_deg() {
     return this.controls.getAzimuthalAngle() / kRadians;
   }

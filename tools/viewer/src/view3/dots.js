@@ -17,7 +17,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/** Round dots of `size` pixels with a rim, at local x, y, z in a row. */
+/** Round dots of `size` pixels with a rim, at a flat list of local x, y, z. */
 export function dots(values, size, order) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(values, 3));

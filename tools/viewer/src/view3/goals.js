@@ -3,7 +3,7 @@ import {BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments}
 import {surface} from '../shapes.js';
 import {tolerances} from '../world.js';
 
-/** The spheres that the goal and the points on the way are reached in. */
+/** The tolerance spheres of the goal and the via points. */
 export class Goals {
   constructor(scene, frame) {
     this.object = new Group();

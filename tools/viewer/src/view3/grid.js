@@ -5,7 +5,7 @@ import {pressed_down} from './shaders.js';
 
 const kSamples = 400;
 
-/** Grid lines over the ground, or on the floor of the box where there is none. */
+/** Grid lines on the ground, or on the floor of the box where there is none. */
 function draped(frame, ground) {
   const [low, high] = frame.box;
   const values = [];
@@ -51,7 +51,7 @@ function segments(values, opacity) {
 export class Grid {
   constructor(frame, ground, cut) {
     this.lines = segments(draped(frame, ground), 0.22);
-    // Lines on the ground go where it goes.
+    // Lines on the ground are cut with it.
     pressed_down(this.lines.material, cut);
     this.edges = segments(box_edges(frame), 0.35);
     this.object = new Group().add(this.lines, this.edges);

@@ -6,14 +6,14 @@ import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {casing, mix, route_color} from '../colors.js';
 import {dots} from './dots.js';
 
-// Pixels, and the order of drawing: a flown track is a band that lies under the route, so that both
-// are seen where they are the same.
+// Pixels, and the drawing order: a flown track is a band under the route, so that both are visible
+// where they coincide.
 const kWidth = {route: 3.2, attempt: 2, track: 4.8};
 const kOrder = {track: 1, route: 3, attempt: 3};
-// More than this would hide the line that they are on.
+// More dots than this would hide their line.
 const kMaxDots = 80;
 
-/** A casing writes no depth: it must not fight with the line on top of it. */
+/** A casing writes no depth, so that it does not flicker with the line on top of it. */
 function stroke(geometry, width, order, dash, depthWrite = true) {
   const material = new LineMaterial({linewidth: width, dashed: Boolean(dash), dashSize: dash,
     gapSize: dash, depthWrite});
@@ -22,7 +22,7 @@ function stroke(geometry, width, order, dash, depthWrite = true) {
   return made;
 }
 
-/** A veil between the line and the ground under it: how high it is, at a glance. */
+/** A translucent curtain from the line down to the ground, which shows its height. */
 function curtain(line, ground, frame) {
   const bottom = (point) => {
     const height = ground ? ground.height(point[0], point[1]) : frame.box[0][2];
@@ -86,7 +86,7 @@ class Line {
     }
   }
 
-  /** The points that the segments in the buffer join. */
+  /** The end points of the segments in the buffer. */
   drawn() {
     if (!this.geometry) return this.line.points.map((point) => [...point]);
     const {array} = this.geometry.attributes.instanceStart.data;

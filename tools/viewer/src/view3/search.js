@@ -34,7 +34,7 @@ function material(opacity) {
       colors: {value: kKinds.map((color) => new Color(color))}}});
 }
 
-/** The kept events of a search, each drawn from when it happened until another undoes it. */
+/** The kept events of a search, each drawn until another one ends it. */
 export class Search {
   constructor(playback, frame) {
     const {count, at, parent, kind, until} = playback;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Vector2} from 'three';
 
-// Three's materials are changed where these chunks of theirs are included. A vertex's own z is its
-// height: stretching comes later.
+// Code is inserted into three's materials at the includes of these chunks. The z of a vertex is its
+// height, not yet exaggerated.
 const kPlaced = '#include <begin_vertex>';
 const kColored = '#include <color_fragment>';
 
-/** Adds to what is done to the shaders of `material`, with the uniforms that it reads. */
+/** Adds a change to the shaders of `material`, with the uniforms that it reads. */
 function patch(material, uniforms, {vertex, fragment = ''}) {
   const before = material.onBeforeCompile;
   material.onBeforeCompile = (shader, renderer) => {
@@ -26,14 +26,14 @@ const kTypes = {cut: 'float', inside: 'vec3', heights: 'vec2'};
 const declared = (uniforms) => Object.keys(uniforms)
   .map((name) => `uniform ${kTypes[name]} ${name};\n`).join('');
 
-/** What is above `cut` is pressed down onto it: hills become flat tops, of the colour `inside`. */
+/** Presses everything above `cut` down onto it: hills become flat tops of the colour `inside`. */
 export function pressed_down(material, cut, inside = null) {
   patch(material, inside ? {cut, inside} : {cut}, {
     vertex: 'transformed.z = min(transformed.z, cut);',
     fragment: inside ? 'if (own_height > cut) diffuseColor.rgb = inside;' : ''});
 }
 
-/** Darker and cooler low, lighter and warmer high: a grey mass gets depth and stays grey. */
+/** Darker and cooler low, lighter and warmer high: adds depth to grey bodies. */
 export function tinted_by_height(material, [low, high]) {
   patch(material, {heights: {value: new Vector2(low, Math.max(high, low + 1e-3))}}, {vertex: '',
     fragment: `float share = clamp((own_height - heights.x) / (heights.y - heights.x), 0.0, 1.0);

@@ -2,11 +2,11 @@
 import {BufferAttribute, BufferGeometry} from 'three';
 import {clipped, span, surface} from '../shapes.js';
 
-// Beyond this many boxes their edges would only be a grey veil.
+// The edges of more boxes than this would merge into grey.
 export const kMaxEdgedBoxes = 20000;
 
-// Each of these gives what there is below the height `cut`: `faces`, a geometry; `edges`, points
-// of segments, or null; `shapes`, how many are in it; `names`, for a triangle's number the solid.
+// Each function below returns the part below the height `cut`: `faces`, a geometry; `edges`, end
+// points of segments, or null; `shapes`, their number; `names`, which solid a triangle belongs to.
 
 function geometry_of(values, index = null) {
   const geometry = new BufferGeometry();
@@ -42,7 +42,7 @@ export function merged(things, frame, cut) {
     shapes: names.length, names};
 }
 
-/** The boxes that begin below the cut, none higher than it. */
+/** The boxes that begin below the cut, truncated at it. */
 function below(data, cut) {
   const kept = new Float32Array(data.length);
   let end = 0;
@@ -73,12 +73,12 @@ function box_edges(data) {
   return values;
 }
 
-// Corner c of a box is at its greater x, y, z where c has bit 1, 2, 4; faces seen from outside.
+// Bits 1, 2, 4 of corner c select the box's maximum x, y, z; faces are oriented outwards.
 const kBoxFaces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
   2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
-/** All boxes in one buffer and one call. Instances would be smaller, but software renderers draw
- *  them one by one: 200,000 took twelve seconds. */
+/** All boxes in one buffer and one draw call. Instances would be smaller, but software renderers
+ *  draw them one by one: 200,000 take twelve seconds. */
 export function box_field(boxes, frame, cut) {
   const data = local(cut < Infinity ? below(boxes.data, cut) : boxes.data, frame);
   const count = data.length / 6;
@@ -103,7 +103,7 @@ export function triangle_mesh({triangles, name}, frame, cut) {
     names: [{end: Infinity, name}]};
 }
 
-/** Lowest and highest of all obstacles that stand, local. */
+/** Lowest and highest local z of all stationary obstacles. */
 export function obstacle_heights({solids, boxes, meshes}, frame) {
   let [low, high] = [Infinity, -Infinity];
   const include = (values, first, stride) => {

@@ -10,9 +10,9 @@ import {box_field, kMaxEdgedBoxes, merged, obstacle_heights, triangle_mesh} from
 const kOpacity = {obstacle: 0.72, keep_out: 0.3, keep_in: 0.1, threat: 0.3,
   unknown: 0.2};
 
-/** Obstacles hide what is inside and behind them in the same layer (a pass that writes depth
- *  alone comes first), so that a city is read as houses; zones and threats are glass, and of a
- *  keep-in zone only the far walls are drawn. */
+/** Obstacles hide everything inside and behind them in the same layer (a depth-only pass comes
+ *  first), so that a city looks like houses; zones and threats are translucent, and only the far
+ *  walls of a keep-in zone are drawn. */
 function bodies(thing, heights) {
   const solid = thing.role === 'obstacle';
   const look = {transparent: true, polygonOffset: true, polygonOffsetFactor: 1,
@@ -25,7 +25,7 @@ function bodies(thing, heights) {
   if (!solid) return [seen];
   tinted_by_height(seen.material, heights);
   if (thing.count > kMaxEdgedBoxes) {
-    // One pass for very many.
+    // A single pass for very many boxes.
     seen.material.depthWrite = true;
     return [seen];
   }
@@ -43,7 +43,7 @@ function edge_lines(thing, diagonal) {
   return lines;
 }
 
-/** Shapes of one look that come and go together. `make(cut)` gives their buffers. */
+/** Shapes of one look that appear and disappear together. `make(cut)` returns their buffers. */
 class Body {
   constructor(thing, make, frame, heights, moving = null) {
     Object.assign(this, {thing, make, moving});
@@ -52,7 +52,7 @@ class Body {
     this.object = new Group().add(...this.faces, this.edges);
   }
 
-  /** What is above `height` is taken off: the buffers are made anew. */
+  /** Rebuilds the buffers without everything above `height`. */
   cut(height) {
     if (this.height === height) return;
     this.height = height;
@@ -88,7 +88,7 @@ class Body {
 
 const same_fate = (thing) => `${layer_key(thing)}|${thing.added_by}|${thing.removed_by}`;
 
-/** All that stands in the way or moves; what comes and goes with events does so with the time. */
+/** All obstacles, zones and moving shapes; those added or removed by events follow the time. */
 export class Solids {
   constructor(scene, frame) {
     this.frame = frame;
@@ -120,20 +120,20 @@ export class Solids {
     return this.bodies.filter(({object}) => object.visible);
   }
 
-  /** Of what is visible: the number of shapes in the buffers and the height of the highest. */
+  /** The number of visible shapes in the buffers and the height of the highest. */
   drawn() {
     const tops = this.#visible().map((body) => body.bounds().max.z + this.frame.centre[2]);
     return {solids: this.#visible().reduce((sum, {shapes}) => sum + shapes, 0),
       highest: tops.length > 0 ? Math.max(...tops) : null};
   }
 
-  /** Where the shapes that move are: the middle of what is in their buffers. */
+  /** Positions of the moving shapes: the centres of their buffers. */
   moved() {
     return this.#visible().filter(({moving}) => moving).map((body) => ({id: body.moving.id,
       at: this.frame.world(body.bounds().getCenter(new Vector3()).toArray())}));
   }
 
-  /** The name of the solid that `caster` meets first. */
+  /** The name of the first solid hit by `caster`; null if none. */
   name_at(caster) {
     const named = this.#visible().filter(({names}) => names);
     const [hit] = caster.intersectObjects(named.map(({faces}) => faces[0]), false);

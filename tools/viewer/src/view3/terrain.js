@@ -4,9 +4,9 @@ import {BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LinearSRGBCol
 import {shaded} from '../ground.js';
 import {pressed_down} from './shaders.js';
 
-// What a moving picture is made of where a full frame takes too long.
+// Posts of the coarse terrain drawn in motion if a full frame takes too long.
 const kCoarsePosts = 40000;
-// What the ground is inside: seen at its sides and where it is cut.
+// Colour of the ground's interior, seen at its sides and where it is cut.
 const kInsideColor = {light: 0x8d949d, dark: 0x48505a};
 
 function every(count, stride) {
@@ -16,7 +16,7 @@ function every(count, stride) {
   return picked;
 }
 
-/** Two triangles for each cell between the picked columns and rows whose four posts are there. */
+/** Two triangles per cell between the picked columns and rows if all its four posts exist. */
 function cells({nx, z, whole}, columns, rows) {
   const index = new Uint32Array(6 * (columns.length - 1) * (rows.length - 1));
   let end = 0;
@@ -26,7 +26,7 @@ function cells({nx, z, whole}, columns, rows) {
       const west = columns[column];
       const east = columns[column + 1];
       const [sw, se, ne, nw] = [south + west, south + east, north + east, north + west];
-      // A sum with NaN in it is NaN.
+      // A sum that contains NaN is NaN.
       if (!whole && Number.isNaN(z[sw] + z[se] + z[ne] + z[nw])) continue;
       index[end] = index[end + 3] = sw;
       index[end + 1] = se;
@@ -53,7 +53,7 @@ function positions(ground, frame) {
   return values;
 }
 
-/** Walls down from the four sides, so that the terrain is a block and not a sheet. */
+/** Walls down from the four sides, which make the terrain a block instead of a sheet. */
 function skirt({nx, ny}, values, base) {
   const row = (j) => Array.from({length: nx}, (_, i) => j * nx + i);
   const column = (i) => Array.from({length: ny}, (_, j) => j * nx + i);
@@ -74,7 +74,7 @@ function skirt({nx, ny}, values, base) {
 
 /** One draw call; light and height colours are in the vertices. */
 export class Terrain {
-  /** `cut` is a uniform: the local height of the cut. */
+  /** `cut` is a uniform with the local height of the cut. */
   constructor(ground, frame, cut) {
     this.ground = ground;
     this.frame = frame;
@@ -82,10 +82,10 @@ export class Terrain {
     this.color = new BufferAttribute(shaded(ground, 1), 4, true);
     const {nx, ny} = ground;
     const stride = Math.max(1, Math.ceil(Math.sqrt(nx * ny / kCoarsePosts)));
-    // Pushed back a little, so that what lies on the ground is seen.
+    // Pushed back a little, so that lines on the ground are visible.
     const material = new MeshBasicMaterial({vertexColors: true, side: DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2});
-    // The colours are sRGB already.
+    // The colours are already sRGB.
     material.onBeforeCompile = (shader) => {
       shader.fragmentShader = shader.fragmentShader.replace('#include <colorspace_fragment>', '');
     };
@@ -115,7 +115,7 @@ export class Terrain {
 
   paint({theme}) {
     this.skirt.material.color.set(kInsideColor[theme]);
-    // As it is, like the vertices' colours.
+    // Already sRGB, like the vertices' colours.
     this.inside.value.setHex(kInsideColor[theme], LinearSRGBColorSpace);
   }
 
@@ -124,7 +124,7 @@ export class Terrain {
     this.color.needsUpdate = true;
   }
 
-  /** What the vertex buffer holds. */
+  /** The dimensions, heights and corners in the vertex buffer. */
   drawn() {
     const {array, count} = this.position;
     let [nx, min, max] = [0, Infinity, -Infinity];

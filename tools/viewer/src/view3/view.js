@@ -15,10 +15,10 @@ import {Terrain} from './terrain.js';
 const kSlowMs = 60;
 const kRestMs = 160;
 const kHair = 1e-4;
-// Above all that there is: shaders may not know infinity.
+// Above everything: shaders may not support infinity.
 const kNowhere = 1e9;
 
-/** The world in three dimensions. Its root is stretched upwards by the exaggeration. */
+/** The world in three dimensions. Its root is stretched vertically by the exaggeration. */
 export class View3 {
   constructor(stage, world, store, for_picture) {
     Object.assign(this, {stage, world, store, listeners: []});
@@ -27,7 +27,7 @@ export class View3 {
     this.renderer = new WebGLRenderer({antialias: for_picture || !software,
       powerPreference: 'high-performance'});
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    // Asking after each shader waits for its compiler: a third of the first frame.
+    // Checking each shader waits for its compiler: a third of the first frame.
     this.renderer.debug.checkShaderErrors = false;
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
@@ -49,7 +49,7 @@ export class View3 {
     this.resize();
     this.update(store.state, new Set(['theme', 'exaggeration']));
     this.look('fit');
-    // Shaders are compiled while the panels are built.
+    // Shaders compile while the panels are built.
     this.renderer.compile(this.picture, this.camera.eye);
     store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'theme', 'exaggeration',
       'cut', 'search', 'searched'], (state, changed) => this.update(state, changed));
@@ -66,14 +66,14 @@ export class View3 {
     this.renderer.setSize(width, height);
     this.camera.resize(width, height);
     if (this.overview) this.look('fit');
-    // At once: an emptied canvas would flicker.
+    // Paint now: an empty canvas would flicker.
     if (this.started) this.#paint();
   }
 
   update(state, changed) {
     this.root.scale.z = state.exaggeration;
     this.root.updateMatrixWorld();
-    // A hair lower than the tops of solids that are cut: in one plane the two would flicker.
+    // Slightly lower than the tops of cut solids: in the same plane the two would flicker.
     const {centre, diagonal} = this.world.frame;
     this.cut.value = Math.min(kNowhere, state.cut - centre[2] - kHair * diagonal);
     this.lines.update(state);
@@ -88,8 +88,8 @@ export class View3 {
     this.draw();
   }
 
-  /** An eye that nobody has moved keeps all in the picture. The hillshade follows once the slider
-   *  rests. */
+  /** Keeps everything in the picture until the user moves the eye. The hillshade is updated when
+   *  the slider rests. */
   #stretched(exaggeration) {
     if (this.overview) this.look('fit');
     clearTimeout(this.relighting);
@@ -117,11 +117,11 @@ export class View3 {
       this.moving = false;
       this.draw();
     });
-    // The wheel starts and ends at once; it is motion while it turns.
+    // A wheel event starts and ends at once but counts as motion.
     this.canvas.addEventListener('wheel', () => { this.moved = performance.now(); });
   }
 
-  /** Asks for a frame; many wishes make one. */
+  /** Requests a frame; several requests share one. */
   draw() {
     if (!this.started) return;
     this.wanted ??= requestAnimationFrame((now) => {
@@ -145,17 +145,17 @@ export class View3 {
     for (const listener of this.listeners) listener();
   }
 
-  /** Draws all there is and waits until it is in the picture's buffer. */
+  /** Draws everything and waits until it is in the picture's buffer. */
   first_frame() {
     const since = performance.now();
-    // The panels have taken their room by now.
+    // The panels have their final sizes by now.
     this.resize();
     this.look('fit');
     this.started = true;
     this.#paint();
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    // About half of the first frame is the upload of the buffers, which does not come again.
+    // About half of the first frame is the upload of the buffers, which is not repeated.
     this.full_frame_ms = (performance.now() - since) / 2;
   }
 
@@ -165,7 +165,7 @@ export class View3 {
     return new Vector3(...local);
   }
 
-  /** Pixels from the stage's top left, how far before the eye, and whether it is there. */
+  /** Pixels from the stage's top left, depth in front of the eye, and visibility. */
   project(point) {
     const {eye} = this.camera;
     const before_eye = this.#place(point).applyMatrix4(eye.matrixWorldInverse);
@@ -182,7 +182,7 @@ export class View3 {
     return caster;
   }
 
-  /** The ground under a pixel; where there is none, the floor of the box. */
+  /** The point of the ground, or of the box's floor where there is none, at a pixel. */
   ground_at(x, y) {
     const {origin, direction} = this.#ray(x, y).ray;
     const {frame, scene} = this.world;
@@ -195,7 +195,7 @@ export class View3 {
     return t > 0 ? from.map((value, axis) => value + t * along[axis]) : null;
   }
 
-  /** The name of the solid under a pixel. */
+  /** The name of the solid at a pixel. */
   solid_at(x, y) {
     return this.solids.name_at(this.#ray(x, y));
   }
@@ -216,7 +216,7 @@ export class View3 {
     this.camera.fly_to(this.#place(point));
   }
 
-  /** How far the north arrow is turned, clockwise. */
+  /** Clockwise rotation of the north arrow. */
   north_deg() {
     return this.camera.heading_deg();
   }
@@ -241,7 +241,7 @@ function lights() {
   return [sun, new AmbientLight(0xffffff, 1.7)];
 }
 
-/** Multisampling on a processor takes more time than all the rest. */
+/** True for a software renderer, where multisampling takes longer than everything else. */
 function is_software() {
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl) throw new Error('no WebGL');
