@@ -35,7 +35,7 @@ bool judge(Report& report, const PlanResult& result, const Scene& scene) {
     report.expect(result.route.empty(), kPlannerStatus,
                   told("returns a route, but not the status solved"));
     report.expect(result.status != PlanStatus::no_route || !result.message.empty(), kPlannerStatus,
-                  told("does not say why there is no route"));
+                  told("gives no reason for finding no route"));
     return false;
   }
   const std::string fault = unsound(result.route, scene);

@@ -264,7 +264,7 @@ ALTIPLAN_PLUGIN(Environment, "slightly_small_bounds", Spoilt<slightly_small_boun
 ALTIPLAN_PLUGIN(Environment, "lost_far_off", Spoilt<lost_far_off>, NoParams,
                 "throws at places far off")
 ALTIPLAN_PLUGIN(Environment, "negative_slack", Spoilt<negative_slack>, NoParams,
-                "its slack is negative")
+                "its over-approximation is negative")
 ALTIPLAN_PLUGIN(Environment, "endless_threat", Spoilt<endless_threat>, NoParams,
                 "the radius of a threat is no number")
 ALTIPLAN_PLUGIN(Environment, "flat_cells", Spoilt<flat_cells>, NoParams,

@@ -318,7 +318,7 @@ ALTIPLAN_PLUGIN(Planner, "solves_without_a_route", SpoiltPlanner<solves_without_
 ALTIPLAN_PLUGIN(Planner, "says_timed_out", SpoiltPlanner<says_timed_out>, NoParams,
                 "returns a route and says timed_out, where the goal has a tolerance")
 ALTIPLAN_PLUGIN(Planner, "gives_no_reason", SpoiltPlanner<gives_no_reason>, NoParams,
-                "does not say why there is no route")
+                "gives no reason for finding no route")
 ALTIPLAN_PLUGIN(Planner, "says_not_reached", SpoiltPlanner<says_not_reached>, NoParams,
                 "uses a status of flights in place of no_route")
 ALTIPLAN_PLUGIN(Planner, "proves_too_much", SpoiltPlanner<proves_too_much>, NoParams,

@@ -246,7 +246,7 @@ class Output(Folder):
                     self.assertEqual(self.read("out"), "before")
                     self.assertEqual(self.names(), before)
                     if what == "run --out":  # the result is printed nevertheless
-                        self.assertIn("the route of 'astar'", ended.out)
+                        self.assertIn("route accepted (from 'astar')", ended.out)
 
     def test_a_report_leaves_what_is_not_its_own(self):
         self.call("report", "out.db", "-o", "page")

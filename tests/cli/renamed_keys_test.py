@@ -23,7 +23,7 @@ steps:
 STUDY = """altiplan: 1
 scenarios: [{file: scenario.yaml}]
 pipelines: [{id: it, file: former.yaml}]
-claims: [{id: all, text: every route is accepted, that: share(it.steps.tree.stands) > 0.9}]
+claims: [{id: all, that: share(it.steps.tree.stands), is: '> 0.9'}]
 """
 
 

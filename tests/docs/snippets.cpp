@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pieces of code that pages of docs/interfaces show: what stands between `// name {` and
-// `// }` is written into the page by interfaces_test.py. Compiled, never run.
+// Code shown in pages of docs/interfaces: interfaces_test.py writes the text between `// name {`
+// and `// }` into the pages. Compiled, never run.
 #include <altiplan/check.hpp>
 #include <altiplan/constraint.hpp>
 #include <altiplan/environment.hpp>
@@ -27,17 +27,17 @@ struct Params {
   std::string order = "near";
 
   void describe(Fields& f) {
-    f("cell_m", cell_m).unit("m").greater_than(0).doc("edge of a cell");
-    f("range_m", range_m).unit("m").at_least(1).doc("longest leg; default: no limit");
-    f("step_m", step_m).unit("m").greater_than(0).doc("between samples; auto: half a cell");
-    f("order", order).one_of({"near", "far"}).doc("which is tried first");
+    f("cell_m", cell_m).unit("m").greater_than(0).doc("cell edge length");
+    f("range_m", range_m).unit("m").at_least(1).doc("maximum leg length; default: no limit");
+    f("step_m", step_m).unit("m").greater_than(0).doc("sample spacing; auto: half a cell");
+    f("order", order).one_of({"near", "far"}).doc("search order");
     f.check(!range_m || *range_m >= cell_m, "range_m must be at least cell_m");
   }
 };
 // }
 
 // ground {
-/// Rises by a tenth to the east, without end.
+/// Unbounded ground that rises by a tenth eastwards.
 class Slope final : public Environment, public Ground {
  public:
   Slope() { info_.notes = {"a slope of 10 %"}; }
@@ -52,7 +52,7 @@ class Slope final : public Environment, public Ground {
   const Ground* do_ground() const override { return this; }
   std::optional<double> do_height(double x, double) const override { return 0.1 * x; }
   double do_gap(const Vec3& a, const Vec3& b, double) const override {
-    return std::min(above(a), above(b));  // of a straight leg over a plane: at one of its ends
+    return std::min(above(a), above(b));  // over a plane the minimum is at an end of the leg
   }
   double do_gap_max(const Vec3& a, const Vec3& b) const override {
     return std::max(above(a), above(b));
@@ -69,7 +69,7 @@ class LittleClimbing final : public Constraint {
   AppliesTo do_applies_to() const override { return AppliesTo::route; }  // without it: both
 
   void do_tighten(Limits& limits, const Request&) const override {
-    limits.max_climb = std::min(limits.max_climb, radians(10));  // never looser than it was
+    limits.max_climb = std::min(limits.max_climb, radians(10));  // never looser than before
   }
 
   std::vector<Violation> do_violations(const Route& route, const Request&) const override {
@@ -85,7 +85,7 @@ class LittleClimbing final : public Constraint {
         return {broken};
       }
     }
-    return {};  // the rule is kept
+    return {};  // no violation
   }
 
   double max_m_ = 500;
@@ -93,7 +93,7 @@ class LittleClimbing final : public Constraint {
 // }
 
 // session {
-/// Goes on along the last route while the vehicle can fly to it; else plans anew.
+/// Continues along the last route while the vehicle can rejoin it; else replans.
 class JoiningSession final : public Session {
  public:
   JoiningSession(const Planner& planner, const Request& request)
@@ -105,7 +105,7 @@ class JoiningSession final : public Session {
   const PlanResult& do_update(const State& state, const Goal& goal,
                               std::shared_ptr<const World> world, std::span<const Change>,
                               const Budget& budget) override {
-    request_.start = state;  // what is new; all else is as it was
+    request_.start = state;  // the rest of the request is unchanged
     request_.goal = goal;
     request_.world = std::move(world);
     request_.budget = budget;
@@ -126,11 +126,11 @@ class JoiningSession final : public Session {
     }
     request_.budget.max_iterations -= std::min(budget.max_iterations, std::uint64_t(tried));
     result_ = planner_.plan(request_);
-    return result_;  // what do_result returns too
+    return result_;  // the same object as do_result
   }
 
   const Planner& planner_;  // outlives its sessions
-  Request request_;         // a copy: that of the caller does not last
+  Request request_;         // a copy: the caller's is temporary
   PlanResult result_;
 };
 // }
@@ -151,7 +151,7 @@ void budget(const Request& request) {
   // budget {
   BudgetWatch watch(request.budget);
   std::uint64_t expanded = 0;
-  while (!watch.spent(expanded)) {  // once an iteration, with what was done so far
+  while (!watch.spent(expanded)) {  // once per iteration, with the count so far
     expand();
     ++expanded;
   }
@@ -198,18 +198,18 @@ bool cells(const Request& request, const Vec3& p) {
 
 std::size_t roadmap(const Request& request, const std::vector<Vec3>& samples) {
   // roadmap {
-  kit::LegRules rules(request);  // of one search
+  kit::LegRules rules(request);  // for one search
   kit::PointGrid points;
   for (const Vec3& p : samples) {
     if (rules.point_ok(p)) {
-      points.insert(p);  // returns its number: 0, 1, 2 …
+      points.insert(p);  // returns its index: 0, 1, 2 …
     }
   }
   std::vector<std::uint32_t> near;
-  points.within(request.start.position, 300, near);  // numbers of all within 300 m
+  points.within(request.start.position, 300, near);  // indices of all within 300 m
   for (const std::uint32_t n : near) {
     if (rules.ok(request.before_start(), request.start.position, points.point(n))) {
-      // a leg that keeps every rule
+      // a leg that satisfies every constraint
     }
   }
   // }
@@ -219,9 +219,9 @@ std::size_t roadmap(const Request& request, const std::vector<Vec3>& samples) {
 std::uint32_t open_list(double g, double h, std::uint32_t node) {
   // open_list {
   kit::OpenList open;
-  open.clear(1e-6);                               // metres; f that differ by less are equal
-  open.push(g + h, g, node);                      // again, where a better way to the node is found
-  const kit::OpenList::Entry first = open.pop();  // the least f; skip a node that was taken before
+  open.clear(1e-6);                               // metres; f that differ by less are ties
+  open.push(g + h, g, node);                      // again, if a better path to the node is found
+  const kit::OpenList::Entry first = open.pop();  // minimum f; skip a node that was popped before
   // }
   return first.node;
 }
@@ -230,7 +230,7 @@ class Planning {
  public:
   void plan() const {
     // pool {
-    const auto tree = trees_.take();  // a unique_ptr, which gives it back at the end of the call
+    const auto tree = trees_.take();  // a unique_ptr that returns it at the end of the call
     tree->clear();
     // }
   }
@@ -242,7 +242,7 @@ class Planning {
 };
 }  // namespace
 
-// What is not shown of them.
+// Not shown in the pages.
 void use_the_snippets(const Request& request) {
   Params params;
   bind(params, nullptr);

@@ -43,8 +43,7 @@ struct Valid {
 };
 
 constexpr Valid kValid[] = {
-    {"qgroundcontrol_sample.plan", 4, 0,
-     "2 commands that are not waypoints skipped (20, 2000)"},
+    {"qgroundcontrol_sample.plan", 4, 0, "2 commands that are not waypoints skipped (20, 2000)"},
     {"qgroundcontrol_sample_with_survey.plan", 8, 0, "12 commands taken out of survey items"},
     {"qgroundcontrol_sample_with_structured_scan.plan", 0, 0, "1 complex items skipped"},
     {"qgc_SectionTest.plan", 4, 0, "(205)"},
@@ -56,7 +55,7 @@ constexpr Valid kValid[] = {
     {"dronekit_mpmission.waypoints", 6, 0, ""},
     {"mavproxy_springvalley-foamy-mission-cw.txt", 9, 0, "(177, 189)"},
     {"mavproxy_springvalleybottom-foamy-fence.txt", 0, 1, "1 return points of the fence skipped"},
-    {"qgc_PolygonGood.kml", 0, 1, "1 polygons without limits in height"},
+    {"qgc_PolygonGood.kml", 0, 1, "1 polygons without altitude limits"},
 };
 
 TEST(MissionFile, ReadsEveryValidFileOfOthers) {

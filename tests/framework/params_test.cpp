@@ -117,10 +117,11 @@ TEST(Params, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(problems("parts: [{}]"), "file.yaml:1:9: with.parts.0: the key 'width_m' is missing\n");
   EXPECT_EQ(problems("part: 0.5"), "file.yaml:1:1: with.part: is now 'share'\n");
   EXPECT_EQ(problems("shar: 1"), "file.yaml:1:1: with.shar: unknown key; did you mean 'share'?\n");
-  EXPECT_EQ(problems("at_m: [1, 2]\nat_lonlat: [3, 4]"),
-            "file.yaml:2:12: with.at_lonlat: a point needs only one of at_m, at_lonlat and at_cell\n");
+  EXPECT_EQ(
+      problems("at_m: [1, 2]\nat_lonlat: [3, 4]"),
+      "file.yaml:2:12: with.at_lonlat: a point needs only one of at_m, at_lonlat and at_cell\n");
   EXPECT_EQ(problems("at_m: [1, 2, 3]\nabove_ground_m: 4"),
-            "file.yaml:2:17: with.above_ground_m: the point has a height already: give its third "
+            "file.yaml:2:17: with.above_ground_m: the point already has a height: give its third "
             "coordinate or above_ground_m\n");
   EXPECT_EQ(problems("on: true\nshare: 0.95"),
             "file.yaml:1:1: with: expected share at most 0.9 when on\n");

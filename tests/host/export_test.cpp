@@ -323,7 +323,7 @@ TEST(Export, TheWaysUpAndDownAreJudgedToo) {
     (start ? options.takeoff : options.land) = true;
     const Exported refused = exported(scene, options);
     EXPECT_FALSE(refused.text.has_value());
-    EXPECT_TRUE(says(refused, "comes too near to 'zones'"));
+    EXPECT_TRUE(says(refused, "passes too close to 'zones'"));
   }
 }
 

@@ -28,7 +28,7 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
       {"throws_int", RunStatus::failed, 4, "threw something that is not a std::exception"},
       {"nan", RunStatus::failed, 4, "a coordinate that is not finite"},
       {"wrong_end", RunStatus::failed, 4, "ends 7.000000 m from the goal, outside its tolerance"},
-      {"no_points", RunStatus::failed, 4, "says solved but returns no route"},
+      {"no_points", RunStatus::failed, 4, "reports solved but returns no route"},
       {"huge", RunStatus::rejected, 1, "m outside the volume"},
   };
   for (const auto& [does, status, exit_code, message] : cases) {

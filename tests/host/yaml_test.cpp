@@ -126,12 +126,12 @@ TEST(Yaml, SyntaxErrorsSayWhatToChange) {
   EXPECT_EQ(problems_of("a: 1\n \t \nb:\t2\n"), "");
   EXPECT_PROBLEM("a: b: c\n", "1:5 : a ':' without a key");
   EXPECT_PROBLEM("a: 1\n b: 2\n", "2:3 : a ':' without a key");
-  EXPECT_PROBLEM("a: [1, 2\nb: 3\n", "2:2 : the list that starts with '[' is not well closed");
+  EXPECT_PROBLEM("a: [1, 2\nb: 3\n", "2:2 : the list that starts with '[' is not closed properly");
   EXPECT_PROBLEM("a: {b: 1]\n", "1:9 : a closing bracket that does not match");
   EXPECT_PROBLEM("a: \"abc\nb: 1\n", "1:4 a: the text that starts with a quote is not closed");
   EXPECT_PROBLEM("a: &x 'it''s\nb: 1\n", "1:4 a: the text that starts with a quote is not closed");
   EXPECT_PROBLEM("a: @x\n", "1:4 : a character that cannot start a value");
-  EXPECT_PROBLEM("a: *x\n", "1:4 : an alias ('*name') whose anchor");
+  EXPECT_PROBLEM("a: *x\n", "1:4 : an alias ('*name') without an anchor");
   EXPECT_NE(problems_of("a: [1, [2\n"), "");
   EXPECT_NE(problems_of("a: {b: 1\n"), "");
 }

@@ -67,7 +67,7 @@ class Case:
             made.append({"turn_angle": {"max_deg": float(self.rng.choice([30, 50, 95]))}})
         if self.chance(0.15):
             made.append({"turn_angle": {"max_deg": float(self.rng.choice([50, 100])),
-                                        "plane": "space"}})
+                                        "plane": "spatial"}})
         if not level and self.chance(0.35):
             made.append({"climb_angle": {"max_deg": float(self.rng.choice([20, 46, 90]))}})
         if self.chance(0.4):
@@ -220,7 +220,7 @@ class Case:
         clearance = own["min_clearance_m"]
         at = [("climb_angle", "max_deg", own["max_climb_deg"], {}),
               ("turn_angle", "max_deg", own["max_turn_deg"], {}),
-              ("turn_angle", "max_deg", max(corners, default=None), {"plane": "space"}),
+              ("turn_angle", "max_deg", max(corners, default=None), {"plane": "spatial"}),
               ("clearance", "min_m", clearance if not mission.known()[1] else None, {}),
               ("turn_radius", "min_m", own["min_radius_m"], {}),
               ("ground_clearance", "min_m", own["min_ground_clearance_m"], {}),

@@ -76,7 +76,7 @@ def bend(degrees, climb=0.0, legs=(400, 400)):
 def rules(margin, _radius):
     """(name, constraint, route) of rules about the route itself."""
     yield "a turn", {"turn_angle": {"max_deg": 40}}, bend(40 - margin, 7)
-    yield "a turn in space", {"turn_angle": {"max_deg": 40, "plane": "space"}}, bend(40 - margin)
+    yield "a turn in space", {"turn_angle": {"max_deg": 40, "plane": "spatial"}}, bend(40 - margin)
     for tiny in (1e-9, 5e-7, 10.0):
         straight = bend(40 - margin)
         up = np.array([0, 0, tiny])

@@ -142,7 +142,7 @@ class RealWorlds(unittest.TestCase):
             done = altiplan("export", self.path("result.json"), "--to", to, "-o", file)
             if not has_position and to != "csv":
                 self.expect(done, 3)
-                self.assertIn("position", done.stderr)
+                self.assertIn("not georeferenced", done.stderr)
                 self.assertFalse(os.path.exists(file))
                 continue
             self.expect(done)

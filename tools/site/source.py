@@ -137,7 +137,7 @@ def main():
         write(page, text, problems)
     for folder, heading in LISTED.items():
         write_list(folder, heading, problems)
-    (SOURCE / "docs/api.md").write_text(API)  # its link is created by Doxygen
+    (SOURCE / "docs/reference/api.md").write_text(API)  # its link is created by Doxygen
     groups = nav(problems)
     if problems:
         sys.exit("\n".join(problems))

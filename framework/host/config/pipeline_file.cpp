@@ -17,7 +17,7 @@ void FlyKeys::describe(Fields& f) {
   f("smooth", smooth).doc("smoothers for replanned routes");
   f("command", command)
       .one_of({"near", "always"})
-      .doc("near: the pilot flies near obstacles unknown to the route; always: the whole way");
+      .doc("near: the pilot flies near obstacles unknown to the route; always: on the whole route");
   f("step_s", step_s).unit("s").greater_than(0).at_most(3600).doc("simulation time step");
   f("replan_latency_s", replan_latency_s)
       .unit("s")

@@ -59,7 +59,7 @@ void VehicleEntry::describe(Fields& f) {
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");
   for (std::size_t i = 1; i < speed_near.size(); ++i) {
     f.check(speed_near[i - 1].within_m < speed_near[i].within_m,
-            "expected speed_near by ascending within_m");
+            "expected speed_near in ascending order of within_m");
   }
 }
 

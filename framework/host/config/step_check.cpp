@@ -15,7 +15,7 @@ StepEntry bind_step(Checker& checker, const Value& tree, const std::string& path
   step.path = path;
   if (alternative && !step.alternatives.empty()) {
     checker.problem(place_of(tree, "else"), path + ".else",
-                    "an alternative has no alternatives of its own: list them all under the step");
+                    "an alternative cannot have alternatives: list them all under the step");
     step.alternatives.clear();
   }
   for (std::size_t i = 0; i < step.alternatives.size(); ++i) {
@@ -104,7 +104,7 @@ class StepCheck {
     if (step.verb != Verb::plan && plans_.empty() && !unknown_) {
       checker_.problem(tree.where, step.path,
                        std::string("there is no route to ") + name(step.verb) +
-                           " yet: expected a plan step before");
+                           " yet: expected an earlier plan step");
     }
     flown_ = flown_ || step.verb == Verb::fly;
     check_one(step, tree);

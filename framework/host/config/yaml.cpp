@@ -23,11 +23,12 @@ std::string plain_words(const std::string& message) {
       {END_OF_MAP,
        "this does not fit the map around it: check the indentation, that each key is followed by "
        "': ', and that each item of a list starts with '- '"},
-      {END_OF_MAP_FLOW, "the map that starts with '{' is not well closed: expected ',' or '}'"},
+      {END_OF_MAP_FLOW, "the map that starts with '{' is not closed properly: expected ',' or '}'"},
       {END_OF_SEQ,
        "this does not fit the list around it: check the indentation, and that each item starts "
        "with '- '"},
-      {END_OF_SEQ_FLOW, "the list that starts with '[' is not well closed: expected ',' or ']'"},
+      {END_OF_SEQ_FLOW,
+       "the list that starts with '[' is not closed properly: expected ',' or ']'"},
       {EOF_IN_SCALAR, "the text that starts with a quote is not closed"},
       {DOC_IN_SCALAR, "the text that starts with a quote is not closed before '---' or '...'"},
       {MAP_VALUE,

@@ -38,9 +38,7 @@ void YamlReader::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
   const std::string word = source_.null_word(mark);
   if (!word.empty()) {
     problem(source_.at(mark), path(),
-            "'" + word +
-                "' is not a value: leave the key out if nothing is meant, quote it "
-                "if the text is meant");
+            "'" + word + "' is not a value: omit the key, or quote it if the text is meant");
   } else if (!root) {
     const Open& in = open_.back();
     problem(in.is_map ? in.key_at : empty_item(mark), path(),

@@ -99,11 +99,11 @@ struct FlightResult {
 /// Flies the route in simulated time, deterministically (wall time appears only in
 /// replans[].time_s).
 ///
-/// The vehicle follows the route at its speed profile. An obstacle unknown to the planner becomes known
-/// within `vehicle.sensing_m`. The pilot takes over if the route ahead, within the pilot's reach,
-/// comes closer than 1/20 of that reach to something the route was not planned around: a new or
-/// changed layer, or a moving obstacle at the time of passing. It hands back once a straight leg to
-/// the route ahead, and the route after it, keep 1.5 times that distance, without a sharp turn.
+/// The vehicle follows the route at its speed profile. An obstacle unknown to the planner becomes
+/// known within `vehicle.sensing_m`. The pilot takes over if the route ahead, within the pilot's
+/// reach, comes closer than 1/20 of that reach to something the route was not planned around: a new
+/// or changed layer, or a moving obstacle at the time of passing. It hands back once a straight leg
+/// to the route ahead, and the route after it, keep 1.5 times that distance, without a sharp turn.
 /// Contacts are judged against the true world, exactly along every leg flown.
 FlightResult fly(const FlightSetup& setup);
 }  // namespace altiplan::host

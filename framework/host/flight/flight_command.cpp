@@ -26,7 +26,7 @@ void Flight::fly_route() {
   if (pilot_ != nullptr) {
     const double room = required_ + kMargin * reach_;
     if (const std::string* danger = danger_ahead(progress_, state_.time_s, speed(), room)) {
-      hand_over(true, "the route ahead comes too near to '" + *danger + "'");
+      hand_over(true, "the route ahead passes too close to '" + *danger + "'");
       fly_pilot();
       return;
     }

@@ -117,10 +117,10 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
              layer.environment->blocked(foot, top, mission.request.vehicle.radius_m);
     };
     if (options.takeoff && blocked(home, route.front())) {
-      return "the climb from home to the start comes too near to '" + layer.id + "'";
+      return "the climb from home to the start passes too close to '" + layer.id + "'";
     }
     if (options.land && blocked(down, route.back())) {
-      return "the descent from the last point comes too near to '" + layer.id + "'";
+      return "the descent from the last point passes too close to '" + layer.id + "'";
     }
   }
   return "";

@@ -175,7 +175,7 @@ void expect_sound(const Layer& layer) {
                    return std::pair(asked.over_approximation(), asked.bounds());
                  });
   if (!(slack >= 0 && std::isfinite(slack))) {
-    throw PluginError("violated the contract of its interface: its slack is " +
+    throw PluginError("violated the contract of its interface: its over-approximation is " +
                       std::to_string(slack) + ", expected a length of at least 0");
   }
   for (int axis = 0; axis < 3; ++axis) {

@@ -320,7 +320,7 @@ CheckResult check(const Route& route, const Request& request) {
              named, [&](const Constraint& asked) { return asked.violations(route, request); })) {
       if (violation.at >= route.size()) {
         throw PluginError("the constraint '" + named.name +
-                          "' violated the contract of its interface: it blames waypoint " +
+                          "' violated the contract of its interface: it names waypoint " +
                           std::to_string(violation.at) + " of " + std::to_string(route.size()));
       }
       violation.constraint = named.name;

@@ -334,7 +334,7 @@ FieldRef Fields::point(Point& target) {
     target.above_ground_m = read_number(*value, key_of("above_ground_m"));
     if (target.has_height) {
       problem(*value, key_of("above_ground_m"),
-              "the point has a height already: give its third coordinate or above_ground_m");
+              "the point already has a height: give its third coordinate or above_ground_m");
     }
   }
   if (target.form == Point::Form::none) {

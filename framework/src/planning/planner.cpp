@@ -83,13 +83,13 @@ PlanResult held_to_contract(PlanResult result, const Vec3& start, const Goal& go
     return PluginError("the planner violated the contract of its interface: " + how, reason);
   };
   if (result.status == PlanStatus::no_route && result.message.empty()) {
-    throw broken(Reason::contract, "returns no route and does not say why");
+    throw broken(Reason::contract, "returns no route and gives no reason");
   }
   if (result.status != PlanStatus::solved) {
     return result;
   }
   if (result.route.empty()) {
-    throw broken(Reason::contract, "says solved but returns no route");
+    throw broken(Reason::contract, "reports solved but returns no route");
   }
   if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
     throw broken(Reason::contract, "returns a route with a coordinate that is not finite");

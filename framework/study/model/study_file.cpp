@@ -40,7 +40,7 @@ void MetricChoice::describe(Fields& f) {
   f("name", name).required().doc("value of the runs: length_m, flight.length_m …");
   f("better", better)
       .one_of({"lower", "higher"})
-      .doc("which values are better (default: by the name, mostly lower)");
+      .doc("which values are better (default: by the metric's name, usually lower)");
 }
 
 void ClaimEntry::describe(Fields& f) {

@@ -120,10 +120,11 @@ void read_pipelines(StudyPlan& plan, const Value& tree, StudyProblems& problems,
     const Value& at = tree.find("pipelines")->items[i];
     const std::string path = host::item("pipelines", i);
     if (!host::is_snake_case(entry.id)) {
-      problems.add(host::place_of(at, "id"), path + ".id",
-                   "expected lower-case letters, digits and '_', the first a letter (claims name "
-                   "it), found " +
-                       excerpt(entry.id));
+      problems.add(
+          host::place_of(at, "id"), path + ".id",
+          "expected lower-case letters, digits and '_', starting with a letter (claims name "
+          "it), found " +
+              excerpt(entry.id));
     }
     for (const Value::Entry& set : entry.set.entries) {
       if (set.key == "seed" || set.key == "scenario") {

@@ -140,7 +140,7 @@ TEST(RandomZones, RefusesWhatDoesNotFit) {
   EXPECT_EQ(problems("{seed: 1}"), "");
   EXPECT_NE(problems("{bars: 1}").find("bars_across"), std::string::npos);
   EXPECT_NE(problems("{clear_of_m: []}").find("clear_of_m"), std::string::npos);
-  EXPECT_NE(problems("{radius_m: [9, 8]}").find("least"), std::string::npos);
+  EXPECT_NE(problems("{radius_m: [9, 8]}").find("minimum"), std::string::npos);
   EXPECT_NE(problems("{bar_length_m: [50, 60], bend_deg: 90}").find("too short"),
             std::string::npos);
   EXPECT_NE(problems("{seed: -1}"), "");

@@ -188,7 +188,7 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
   EXPECT_TRUE(says(
       refusal("{file: " + written("limits", feature(triangle, R"({"ceiling_m": 90})")) + "}"),
       "has the property 'ceiling_m', which is not read: expected ceiling_property: ceiling_m"));
-  EXPECT_TRUE(says(refused("cut", R"({"type": "Feat)"), "not JSON"));
+  EXPECT_TRUE(says(refused("cut", R"({"type": "Feat)"), "not valid JSON"));
   EXPECT_TRUE(says(refused("kind", R"({"type": "Topology"})"), "Topology"));
   EXPECT_TRUE(
       says(refused("open", feature("[[[0, 0], [1, 0], [1, 1], [0, 1]]]")), "end where it starts"));

@@ -120,7 +120,7 @@ class WaypointReduction final : public Smoother {
   static std::string of_points_without_end(std::int64_t count) {
     return count == 0 ? ""
                       : "; from " + std::to_string(count) + (count == 1 ? " point" : " points") +
-                            "no leg to a later one is admissible, so the next one is kept";
+                            " no leg to a later one is admissible, so the next one is kept";
   }
 
   double max_turn_;

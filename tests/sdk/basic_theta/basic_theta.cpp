@@ -15,14 +15,14 @@ struct Params {
   Vec3 cell_m{50, 50, 10};
 
   void describe(Fields& f) {
-    f("cell_m", cell_m).unit("m").at_least(0.001).doc("edge of a cell, where no layer sets it");
+    f("cell_m", cell_m).unit("m").at_least(0.001).doc("cell edge length, unless a layer sets it");
   }
 };
 
 struct Node {
   double g;              // metres from the start
-  std::uint32_t parent;  // the route comes straight from there
-  std::uint16_t stamp;   // the store's own
+  std::uint32_t parent;  // the previous waypoint of the route
+  std::uint16_t stamp;   // used by NodeStore
   bool closed;
 };
 
@@ -35,13 +35,13 @@ struct Search {
   kit::Lattice::Link first = lattice.nearest(request.start.position);
   kit::Lattice::Link last = lattice.nearest(request.goal.position);
   std::uint32_t start = lattice.index(first.cell);
-  std::uint32_t goal = std::uint32_t(lattice.size());  // beyond the cells: it is no centre of one
+  std::uint32_t goal = std::uint32_t(lattice.size());  // beyond the cells: not a cell centre
   std::int64_t expanded = 0;
   Route route{};
 
   PlanStatus run() {
     nodes.reset(lattice.size() + 1);
-    open.clear(1e-6);  // values of f that differ by less than a micrometre are a tie
+    open.clear(1e-6);  // values of f that differ by less than a micrometre are ties
     nodes.at(start, {0, start, 0, false});
     open.push(c(start, goal), 0, start);
     BudgetWatch watch(request.budget);
@@ -73,7 +73,7 @@ struct Search {
     }
   }
 
-  // Path 2 of the paper, straight from the parent of s; where that is blocked path 1, over s.
+  // Path 2 of the paper, straight from the parent of s; if that is blocked, path 1 via s.
   void update_vertex(std::uint32_t s, std::uint32_t next) {
     Node& node = nodes.at(next, {kInfinity, 0, 0, false});
     if (node.closed) {
@@ -93,7 +93,7 @@ struct Search {
   bool line_of_sight(std::uint32_t a, std::uint32_t b) {
     const Route flown = route_to(a);
     const auto before = approach(flown, flown.size() - 1, request.before_start());
-    return b == goal || (a == start && first.length > 0)  // no centre of a cell
+    return b == goal || (a == start && first.length > 0)  // not a cell centre
                ? rules.any_leg_ok(before, place(a), place(b))
                : rules.sees(before, lattice.cell(a), lattice.cell(b));
   }
@@ -141,4 +141,4 @@ class BasicTheta final : public Planner {
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Planner, "basic_theta", BasicTheta, Params, "Theta* over cells, written on the kit")
+ALTIPLAN_PLUGIN(Planner, "basic_theta", BasicTheta, Params, "Theta* on cells, built with the kit")

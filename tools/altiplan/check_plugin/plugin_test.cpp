@@ -16,7 +16,7 @@ using conformance::Cases;
 using conformance::Finding;
 
 constexpr const char* kManifest = "Library: a manifest that fits this altiplan";
-constexpr const char* kLoads = "Library: loads, resolves every symbol, and holds what it lists";
+constexpr const char* kLoads = "Library: loads, with all symbols and all listed plugins";
 constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
 
 Outcome manifest_fits(const host::Library& library) {

@@ -29,9 +29,9 @@ void ColonyParams::describe(Fields& f) {
   f("deposit_q", deposit_q)
       .range(1e-9, 1e9)
       .doc("Q of eq. (2): an ant deposits Q divided by the metres of its route");
-  f("initial_pheromone", initial_pheromone).range(1e-9, 1e9).doc("initial tau at every place");
-  f("alpha", alpha).range(0, 20).doc("power of the pheromone in eq. (1)");
-  f("beta", beta).range(0, 20).doc("power of the heuristic in eq. (1)");
+  f("initial_pheromone", initial_pheromone).range(1e-9, 1e9).doc("initial tau everywhere");
+  f("alpha", alpha).range(0, 20).doc("exponent of the pheromone in eq. (1)");
+  f("beta", beta).range(0, 20).doc("exponent of the heuristic in eq. (1)");
   f("evaporation", evaporation)
       .range(0, 1)
       .doc("rho of eq. (4): fraction of the pheromone that evaporates in each iteration");

@@ -17,7 +17,7 @@ struct Params {
         .required()
         .doc("towers in order, east and north");
     f("top_m", top_m).unit("m").doc("height of the highest wire above sea level");
-    f("half_width_m", half_width_m).unit("m").at_least(0).doc("from the middle to the outer wire");
+    f("half_width_m", half_width_m).unit("m").at_least(0).doc("half the width of the line");
   }
 };
 
@@ -27,8 +27,8 @@ class PowerLine final : public Environment {
   PowerLine(const Params& params, const Site&) : params_(params) {}
 
  private:
-  // Metres to the fence, negative inside. All else (whether a leg is blocked, grids, what is near)
-  // has a default that works from this.
+  // Distance to the fence (m), negative inside. All other queries (blocked legs, grids, nearby
+  // obstacles) have defaults based on this.
   double do_clearance(const Vec3& p) const override {
     double beside = kInfinity;
     for (std::size_t i = 0; i + 1 < params_.towers_m.size(); ++i) {

@@ -11,9 +11,9 @@ struct Params {
   double min_m = 300;
 
   void describe(Fields& f) {
-    f("at_m", at_m).unit("m").required().doc("middle of the village, east and north");
-    f("radius_m", radius_m).unit("m").greater_than(0).doc("how far noise matters");
-    f("min_m", min_m).unit("m").doc("least height above sea level over the village");
+    f("at_m", at_m).unit("m").required().doc("centre of the village, east and north");
+    f("radius_m", radius_m).unit("m").greater_than(0).doc("radius of the quiet area");
+    f("min_m", min_m).unit("m").doc("minimum height above sea level over the village");
   }
 };
 
@@ -22,8 +22,8 @@ class QuietVillage final : public Constraint {
   explicit QuietVillage(const Params& params) : params_(params) {}
 
  private:
-  /// Lowest point of the leg over the village: at one of the ends of the part that lies in the
-  /// circle, as the leg is straight. Infinite where no part does.
+  /// Minimum height of the leg over the village: at an end of the part inside the circle, since the
+  /// leg is straight. Infinite if no part is inside.
   double lowest_over(const Vec3& from, const Vec3& to) const {
     const Vec3 flat(to.x() - from.x(), to.y() - from.y(), 0);
     const Vec3 away(from.x() - params_.at_m[0], from.y() - params_.at_m[1], 0);
@@ -46,7 +46,7 @@ class QuietVillage final : public Constraint {
     return from.z() + climb * (climb > 0 ? t0 : t1);
   }
 
-  // Asked leg by leg by planners, pilots, smoothers and the judge.
+  // Called leg by leg by planners, pilots, smoothers and the judge.
   bool do_admits(const Leg& leg) const override {
     return lowest_over(leg.from, leg.to) >= params_.min_m - kLengthTolerance;
   }
@@ -56,4 +56,4 @@ class QuietVillage final : public Constraint {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Constraint, "quiet_village", QuietVillage, Params,
-                "Keeps the height over a village")
+                "Keeps a minimum height over a village")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../dogleg/dogleg.cpp"  // a plugin has no header: only its name leaves the file
+#include "../dogleg/dogleg.cpp"  // a plugin has no header: only its name is exported
 
 #include <altiplan/conformance_gtest.hpp>
 

@@ -11,7 +11,7 @@ struct Params {
 
   void describe(Fields& f) {  // the only place that lists them
     f("at_m", at_m).unit("m").doc("centre of the quiet area, east and north");
-    f("min_m", min_m).unit("m").greater_than(0).doc("minimum horizontal distance from it");
+    f("min_m", min_m).unit("m").greater_than(0).doc("minimum horizontal distance from the centre");
   }
 };
 

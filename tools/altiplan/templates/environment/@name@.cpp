@@ -13,8 +13,8 @@ struct Params {
   double top_m = 150;
 
   void describe(Fields& f) {  // the only place that lists them
-    f("from_m", from_m).unit("m").doc("the first pole, east and north");
-    f("to_m", to_m).unit("m").doc("the last pole");
+    f("from_m", from_m).unit("m").doc("position of the first pole, east and north");
+    f("to_m", to_m).unit("m").doc("position of the last pole");
     f("poles", poles).range(2, 10000).doc("number of poles, at equal distances");
     f("radius_m", radius_m).unit("m").greater_than(0).doc("radius of a pole");
     f("top_m", top_m).unit("m").doc("height of the poles above sea level");
