@@ -340,7 +340,7 @@ TEST_F(RegistryTest, AParameterWithoutAProperNameIsAPluginError) {
   write_checksum(file);
   Registry registry({folder_});
   EXPECT_EQ(text_of<PluginError>([&] { registry.get("planner", "alpha"); }),
-            file.string() + ": describing the constraint 'beta': a parameter is named '??ast_m', " +
+            file.string() + ": describing the constraint 'beta': a parameter is named '??n_m', " +
                 "expected lower-case letters, digits and '_'");
 }
 

@@ -97,7 +97,7 @@ class Study(StudyCase):
         self.call()
         self.study(radii="3..7")
         said = self.call(expect=3)
-        self.assertIn("holds 8 runs that this study does not have", said)
+        self.assertIn("contains 8 runs that this study does not have", said)
         self.assertEqual(len(self.rows()), 20)
 
     def test_shards_are_the_whole(self):

@@ -36,7 +36,7 @@ mkdir "$scratch/folder.csv"
 expect 3 'is a folder, expected a file' check --route "$scratch/folder.csv" --scenario "$scenario"
 echo '[[1, 2, 3], [1e308, 0, 0]]' > "$scratch/far.json"
 expect 3 'point 1 lies beyond 1e8 m' check --route "$scratch/far.json" --scenario "$scenario"
-expect 3 'is read, or written, by this call already' run "$pipeline" --out "$scenario"
+expect 3 'is already read or written by this command' run "$pipeline" --out "$scenario"
 expect 3 'expected a result of format 1' check "$scratch/three.yaml"
 expect 2 "unknown command 'flyy'" flyy
 expect 2 "expected a whole number" run "$pipeline" --seed -1

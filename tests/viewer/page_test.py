@@ -167,7 +167,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
                 (scenes.page(TEMPLATE, {"altiplan_scene": 2}),
                  "This page reads scenes of version 1, found 2."),
                 (scenes.page(TEMPLATE, short),
-                 "The scene's heights hold 1600 bytes, expected 1680.")):
+                 "The scene's heights have 1600 bytes, expected 1680.")):
             self.browser.open(page)
             self.assertEqual(self.text("#alert"), sentence)
             self.assertFalse(self.run_js("return altiplan.ready"))

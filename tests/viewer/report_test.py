@@ -134,7 +134,7 @@ class Page(Reports):
         self.js("delete window.DecompressionStream")
         self.click("#table-scenarios [data-open]")
         self.wait("return document.querySelector('#panel p')")
-        self.assertIn("runs.csv has them", self.text("#panel"))
+        self.assertIn("see runs.csv", self.text("#panel"))
         self.wait("return altiplan_report.errors.length")
         self.assertIn("no DecompressionStream", self.js("return altiplan_report.errors.pop()"))
         self.assertIn("Uncaught", " ".join(self.browser.console()))

@@ -118,6 +118,26 @@ std::string command_line(int argc, char** argv) {
 
 const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
 
+/// Exit code of a command line that cannot be parsed; prints the reason.
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  // CLI11 would only report a missing command.
+  const std::vector<std::string> rest = app.remaining();
+  if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
+    std::cerr << "altiplan: unknown command '" << rest.front()
+              << "' (altiplan --help lists the commands)\n";
+    return kUsage;
+  }
+  for (const std::string& argument : app.remaining(true)) {
+    const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
+    if (renamed != kRenamedOptions.end()) {
+      std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
+      return kUsage;
+    }
+  }
+  const int code = app.exit(error);
+  return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
+}
+
 int main_checked(int argc, char** argv) {
   const auto begin = [] {  // first: on a busy machine a signal may arrive early
     catch_interrupts();
@@ -167,22 +187,7 @@ int main_checked(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 would only report a missing command.
-    const std::vector<std::string> rest = app.remaining();
-    if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
-      std::cerr << "altiplan: unknown command '" << rest.front()
-                << "' (altiplan --help lists the commands)\n";
-      return kUsage;
-    }
-    for (const std::string& argument : app.remaining(true)) {
-      const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
-      if (renamed != kRenamedOptions.end()) {
-        std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
-        return kUsage;
-      }
-    }
-    const int code = app.exit(error);
-    return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
+    return refuse(app, error);
   }
   return guarded("altiplan", action);
 }

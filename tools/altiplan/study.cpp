@@ -188,24 +188,10 @@ std::string read_shard(const std::string& text, study::StudySelection& selection
   selection.shards = shards;
   return "";
 }
-}  // namespace
 
-void add_study(CLI::App& app, Action& action, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
-      "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
-  auto arguments = std::make_shared<Arguments>();
-  arguments->options.command = command_line;
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
-  command
-      ->add_option("-o,--out", arguments->store,
-                   "results database (SQLite); optional only with --dry-run")
-      ->type_name("DB");
-  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
-      ->check(CLI::Range(1, 1024));
-  command
-      ->add_option("--reuse", arguments->options.reuse,
-                   "runs per worker process, recorded in the results (default 1)")
-      ->check(CLI::Range(1, 1000000));
+/// Options that select runs of the study.
+void add_selection(CLI::App& app, const std::shared_ptr<Arguments>& arguments) {
+  CLI::App* command = &app;
   command
       ->add_option_function<std::string>(
           "--shard",
@@ -233,6 +219,26 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
                    "run only runs whose name 'PIPELINE SCENARIO #REPETITION' matches this regular "
                    "expression")
       ->type_name("E");
+}
+}  // namespace
+
+void add_study(CLI::App& app, Action& action, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand(
+      "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->options.command = command_line;
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("-o,--out", arguments->store,
+                   "results database (SQLite); optional only with --dry-run")
+      ->type_name("DB");
+  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
+      ->check(CLI::Range(1, 1024));
+  command
+      ->add_option("--reuse", arguments->options.reuse,
+                   "runs per worker process, recorded in the results (default 1)")
+      ->check(CLI::Range(1, 1000000));
+  add_selection(*command, arguments);
   command->add_flag("--traces", arguments->options.traces, "store search traces");
   auto* fresh =
       command->add_flag("--fresh", arguments->options.fresh, "delete the stored runs first");
