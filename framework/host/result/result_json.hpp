@@ -11,7 +11,8 @@ namespace altiplan::host {
 
 using Json = nlohmann::ordered_json;
 
-/// result.json, format 1 (docs/reference/result.md). Wall times appear only in keys that end in time_s.
+/// result.json, format 1 (docs/reference/result.md). Wall times appear only in keys that end in
+/// time_s.
 Json result_json(const Config& config, const RunResult& result);
 
 /// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
