@@ -85,7 +85,7 @@ class Cli(CliCase):
         self.assertEqual(out, "")
         self.assertIn("missing_function_of_a_test", err)
         _, err = self.call("run", refused, code=3)
-        self.assertIn("no library offers the constraint 'gamma'", err)
+        self.assertIn("no library provides the constraint 'gamma'", err)
         # alpha always reports that it failed
         fails = self.write("fails.yaml", PIPELINE.split("  - plan")[0] + "  - plan: alpha\n")
         self.assertEqual(

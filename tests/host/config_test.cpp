@@ -39,9 +39,9 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
       {"steps: [{plan: told, fly: route}]\n",
        "p.yaml:3:9: steps.0: expected one verb: plan, smooth or fly"},
       {"steps: [{plan: tolled}]\n",
-       "p.yaml:3:10: steps.0.plan: no library offers the planner 'tolled'; did you mean 'told'?"},
+       "p.yaml:3:10: steps.0.plan: no library provides the planner 'tolled'; did you mean 'told'?"},
       {"steps: [{plan: told}, {smooth: told}]\n",
-       "p.yaml:3:24: steps.1.smooth: no library offers the smoother 'told'"},
+       "p.yaml:3:24: steps.1.smooth: no library provides the smoother 'told'"},
       {"steps: [{plan: told, with: {dose: straight}}]\n",
        "p.yaml:3:29: steps.0.with.dose: unknown key; did you mean 'does'?"},
       {"steps: [{plan: told, replan: a}]\n",
@@ -63,7 +63,7 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
       {"steps: [{plan: told, id: a, else: [{plan: told, id: a}]}]\n",
        "p.yaml:3:49: steps.0.else.0.id: the id 'a' is already used by another step"},
       {"steps: [{plan: told, else: [{fly: route}]}]\n",
-       "p.yaml:3:29: steps.0.else.0: expected the verb 'plan' of its step"},
+       "p.yaml:3:29: steps.0.else.0: expected the verb 'plan', as in its step"},
       {"steps: [{plan: told, else: [{plan: told, else: [{plan: told}]}]}]\n",
        "p.yaml:3:42: steps.0.else.0.else: an alternative cannot have alternatives"},
       {"steps: [{plan: told}, {fly: route, replan: tolt}]\n",
@@ -81,9 +81,9 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
       {"steps: [{plan: told}, {fly: route}, {plan: told}]\n",
        "p.yaml:3:37: steps.2: a fly step must be the last"},
       {"steps: [{plan: told}, {fly: route, smooth: [{told_smother: {}}]}]\n",
-       "steps.1.smooth.0: no library offers the smoother 'told_smother'; did you mean"},
+       "steps.1.smooth.0: no library provides the smoother 'told_smother'; did you mean"},
       {"steps: [{plan: told}]\nconstraints: [{not_nort: {}}]\n",
-       "p.yaml:4:16: constraints.0: no library offers the constraint 'not_nort'; did you mean "
+       "p.yaml:4:16: constraints.0: no library provides the constraint 'not_nort'; did you mean "
        "'not_north'?"},
       {"steps: [{plan: told}]\nseed: -3\n", "p.yaml:4:7: seed: expected at least 0, found -3"},
       {"steps: [{plan: told}]\nsteps: [{plan: told}]\n", "p.yaml:4:1: steps: "},
@@ -96,7 +96,7 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
 TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
   const Case cases[] = {
       {"wind: 3\n", "s.yaml:5:1: wind: unknown key"},
-      {"environment: [{boks: {}}]\n", "s.yaml:5:16: environment.0: no library offers the"},
+      {"environment: [{boks: {}}]\n", "s.yaml:5:16: environment.0: no library provides the"},
       {"environment: [{box: {min_m: [0, 0, 0]}}]\n",
        "s.yaml:5:21: environment.0.box: the key 'max_m' is missing: upper corner"},
       {"environment:\n  - box: {min_m: [0, 0, 0], max_m: [1, 1, 1]}\n    id: a\n"
@@ -128,7 +128,7 @@ TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
       {"events: [{when_near: {at_m: [1, 2], within_m: 3}, move_goal: {at_m: [1, 2, 3]}}]\n",
        "s.yaml:5:11: events.0.when_near: the point has no height"},
       {"events: [{at_s: 3, id: x, move_goal: {at_m: [1, 2, 3]}}]\n",
-       "id names an added layer: it is allowed only beside add"},
+       "id names an added layer: it is allowed only with add"},
       {"environment: [{cells: {}}]\n"
        "events: [{at_s: 3, set_cells: {layer: cell, cells: [[0, 0, 0]]}}]\n",
        "events.0.set_cells: there is no layer 'cell'; did you mean 'cells'?"},
@@ -174,12 +174,12 @@ TEST_F(ConfigTest, BothFilesAtOnceFromTheTop) {
 TEST_F(ConfigTest, AScenarioThatCannotBeReadDoesNotHideThePipelinesProblems) {
   write("s.yaml", "altiplan: 1\nstart: [1\n");
   const std::string broken = problems("steps: [{plan: tolled}]\n");
-  EXPECT_HAS(broken, "p.yaml:3:10: steps.0.plan: no library offers");
+  EXPECT_HAS(broken, "p.yaml:3:10: steps.0.plan: no library provides");
   EXPECT_HAS(broken, "s.yaml:");
   std::filesystem::remove(folder_ / "s.yaml");
   const std::string absent = problems("steps: [{plan: tolled}]\n");
   EXPECT_HAS(absent, "p.yaml:2:1: scenario: there is no file 's.yaml'");
-  EXPECT_HAS(absent, "steps.0.plan: no library offers");
+  EXPECT_HAS(absent, "steps.0.plan: no library provides");
   write("none.yaml", "altiplan: 1\nsteps: [{plan: told}]\n");
   try {
     load_config(folder_ / "none.yaml", overrides_);
@@ -225,7 +225,7 @@ TEST_F(ConfigTest, BadOverridesAreToldByTheirText) {
       {"scenario.=b", "--set scenario.=b: expected keys separated by single dots"},
       {"steps.0.within_s=-1",
        "steps.0.within_s: expected more than 0 and at most 1e+08 s, found -1"},
-      {"steps.0.plan=tolled", "--set steps.0.plan=tolled: steps.0.plan: no library offers"},
+      {"steps.0.plan=tolled", "--set steps.0.plan=tolled: steps.0.plan: no library provides"},
       {"scenario.goal.tolerance_m=far",
        "--set scenario.goal.tolerance_m=far: goal.tolerance_m: expected a number"},
       {"scenario.moving.0.sphere=1", "moving: expected a list, found a map"},

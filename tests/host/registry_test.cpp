@@ -128,7 +128,7 @@ TEST_F(RegistryTest, RefusesARecordThatDoesNotFitItsChecksum) {
   EXPECT_HAS(text_of<PluginError>([&] { registry.get("planner", "alpha"); }),
              "the library of the planner 'alpha' is refused: " + file.string());
   EXPECT_HAS(text_of<Error>([&] { registry.get("smoother", "alpha"); }),
-             "no library offers the smoother 'alpha'");
+             "no library provides the smoother 'alpha'");
 }
 
 TEST_F(RegistryTest, RefusesADamagedManifest) {
@@ -199,7 +199,7 @@ TEST_F(RegistryTest, SaysWhatIsPresentWhereNoLibraryOffersAName) {
   Registry registry({folder_, folder_ / "nowhere"});
   EXPECT_EQ(registry.offering("planner", "alpa"), nullptr);
   const std::string text = text_of<Error>([&] { registry.get("planner", "alpa"); });
-  EXPECT_HAS(text, "no library offers the planner 'alpa'");
+  EXPECT_HAS(text, "no library provides the planner 'alpa'");
   EXPECT_HAS(text, "did you mean 'alpha'");
   EXPECT_HAS(text, folder_.string());
   EXPECT_HAS(text, "nowhere (no such folder)");

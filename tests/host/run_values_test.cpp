@@ -42,9 +42,10 @@ TEST(RunValues, NamesOfReplansAreKnown) {
   EXPECT_EQ(why_no_value("flight.replan_counters.nodes_added"), "");
   EXPECT_EQ(why_no_value("flight.replan_times"),
             "no run has a value 'flight.replan_times'; did you mean 'flight.replan_time_s'?");
-  EXPECT_EQ(why_no_value("replan_counters.expanded"),
-            "no run has a value 'replan_counters.expanded': expected one of the run, or flight.…, "
-            "flight.counters.…, flight.replan_counters.…, steps.ID.…, steps.ID.counters.…");
+  EXPECT_EQ(
+      why_no_value("replan_counters.expanded"),
+      "no run has a value 'replan_counters.expanded': expected a value of the run, or flight.…, "
+      "flight.counters.…, flight.replan_counters.…, steps.ID.…, steps.ID.counters.…");
 }
 }  // namespace
 }  // namespace altiplan::host

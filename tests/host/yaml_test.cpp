@@ -77,7 +77,7 @@ TEST(Yaml, AliasesAreCopies) {
 TEST(Yaml, AcceptsByteOrderMarkWindowsLinesAndDocumentMarks) {
   EXPECT_EQ(parse_yaml("\xEF\xBB\xBF---\r\na: 1\r\nb: 2\r\n...\r\n", "f").find("b")->text, "2");
   EXPECT_PROBLEM("\xEF\xBB\xBFü: 1\nü: 2\n",
-                 "2:1 ü: this key occurs twice in one map, first in line 1");
+                 "2:1 ü: this key occurs twice in one map, first on line 1");
 }
 
 TEST(Yaml, RefusesWhatCarriesNoValue) {
@@ -97,8 +97,8 @@ TEST(Yaml, RefusesWhatCarriesNoValue) {
 
 TEST(Yaml, RefusesEveryDuplicateKeyAtOnce) {
   EXPECT_EQ(problems_of("a: 1\n'a': 2\nb:\n  - {c: 1, c: 2}\n"),
-            "2:1 a: this key occurs twice in one map, first in line 1\n"
-            "4:12 b.0.c: this key occurs twice in one map, first in line 4");
+            "2:1 a: this key occurs twice in one map, first on line 1\n"
+            "4:12 b.0.c: this key occurs twice in one map, first on line 4");
 }
 
 TEST(Yaml, RefusesWhatIsNotPlainData) {
@@ -128,8 +128,8 @@ TEST(Yaml, SyntaxErrorsSayWhatToChange) {
   EXPECT_PROBLEM("a: 1\n b: 2\n", "2:3 : a ':' without a key");
   EXPECT_PROBLEM("a: [1, 2\nb: 3\n", "2:2 : the list that starts with '[' is not closed properly");
   EXPECT_PROBLEM("a: {b: 1]\n", "1:9 : a closing bracket that does not match");
-  EXPECT_PROBLEM("a: \"abc\nb: 1\n", "1:4 a: the text that starts with a quote is not closed");
-  EXPECT_PROBLEM("a: &x 'it''s\nb: 1\n", "1:4 a: the text that starts with a quote is not closed");
+  EXPECT_PROBLEM("a: \"abc\nb: 1\n", "1:4 a: the closing quote is missing");
+  EXPECT_PROBLEM("a: &x 'it''s\nb: 1\n", "1:4 a: the closing quote is missing");
   EXPECT_PROBLEM("a: @x\n", "1:4 : a character that cannot start a value");
   EXPECT_PROBLEM("a: *x\n", "1:4 : an alias ('*name') without an anchor");
   EXPECT_NE(problems_of("a: [1, [2\n"), "");
@@ -235,7 +235,7 @@ TEST(Yaml, TheLocaleChangesNothing) {
   std::locale::global(before);
   EXPECT_EQ(value.find("a")->text, "1234.5");
   EXPECT_EQ(value.find("b")->text, "é");
-  EXPECT_EQ(problems, "1235:1 a: this key occurs twice in one map, first in line 1234");
+  EXPECT_EQ(problems, "1235:1 a: this key occurs twice in one map, first on line 1234");
 }
 }  // namespace
 }  // namespace altiplan::host

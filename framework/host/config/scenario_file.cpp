@@ -91,7 +91,7 @@ void AddEntry::describe(Fields& f) {
 }
 
 void SetCellsEntry::describe(Fields& f) {
-  f("layer", layer).required().doc("a layer with cells of its own");
+  f("layer", layer).required().doc("id of a layer that has cells");
   f("cells", cells).min_items(1).required().doc("cells as the layer's file counts them");
   f("blocked", blocked).doc("true: the cells become blocked; false: free");
 }
@@ -115,7 +115,7 @@ void EventEntry::describe(Fields& f) {
   const int actions = int(add.has_value()) + int(remove.has_value()) + int(move.has_value()) +
                       int(set_cells.has_value()) + int(move_goal.has_value());
   f.check(actions == 1, "expected one of add, remove, move, set_cells, move_goal");
-  f.check(add || id.empty(), "id names an added layer: it is allowed only beside add");
+  f.check(add || id.empty(), "id names an added layer: it is allowed only with add");
 }
 
 void ScenarioFile::describe(Fields& f) {

@@ -39,7 +39,7 @@ struct CylinderParams {
   double radius_m = 0;
   Heights heights;
   void describe(Fields& f) {
-    f.point(axis).required().doc("a point of the vertical axis");
+    f.point(axis).required().doc("a point on the vertical axis");
     f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius");
     heights.describe(f);
   }
@@ -160,7 +160,7 @@ MovingShape make_moving(std::string_view name, const Value& parameters, const Si
 void RandomMoving::describe(Fields& f) {
   f("count", count).range(1, 100000).doc("number of spheres");
   f("seed", seed).at_least(0).doc("default: the run's seed");
-  f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius of each");
-  f("speed_mps", speed_mps).unit("m/s").range(0, kMaxSpeed).required().doc("speed of each");
+  f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius of each sphere");
+  f("speed_mps", speed_mps).unit("m/s").range(0, kMaxSpeed).required().doc("speed of each sphere");
 }
 }  // namespace altiplan::host

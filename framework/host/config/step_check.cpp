@@ -24,7 +24,7 @@ StepEntry bind_step(Checker& checker, const Value& tree, const std::string& path
         step.otherwise.emplace_back(bind_step(checker, step.alternatives[i], key, true));
     if (!step.plugin.empty() && !other.plugin.empty() && other.verb != step.verb) {
       checker.problem(step.alternatives[i].where, key,
-                      std::string("expected the verb '") + name(step.verb) + "' of its step");
+                      std::string("expected the verb '") + name(step.verb) + "', as in its step");
     }
   }
   return step;

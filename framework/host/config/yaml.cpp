@@ -21,28 +21,27 @@ std::string plain_words(const std::string& message) {
   using namespace YAML::ErrorMsg;
   static const std::map<std::string, std::string> kWords = {
       {END_OF_MAP,
-       "this does not fit the map around it: check the indentation, that each key is followed by "
-       "': ', and that each item of a list starts with '- '"},
+       "this does not belong in the map around it: check the indentation, that each key is "
+       "followed by ': ', and that each item of a list starts with '- '"},
       {END_OF_MAP_FLOW, "the map that starts with '{' is not closed properly: expected ',' or '}'"},
       {END_OF_SEQ,
-       "this does not fit the list around it: check the indentation, and that each item starts "
-       "with '- '"},
+       "this does not belong in the list around it: check the indentation, and that each item "
+       "starts with '- '"},
       {END_OF_SEQ_FLOW,
        "the list that starts with '[' is not closed properly: expected ',' or ']'"},
-      {EOF_IN_SCALAR, "the text that starts with a quote is not closed"},
-      {DOC_IN_SCALAR, "the text that starts with a quote is not closed before '---' or '...'"},
+      {EOF_IN_SCALAR, "the closing quote is missing"},
+      {DOC_IN_SCALAR, "the closing quote is missing before '---' or '...'"},
       {MAP_VALUE,
-       "a ':' without a key: quote the text if the ':' is part "
-       "of it, else check the indentation, and that each ':' and each item's '-' before it has a "
-       "space after it"},
+       "a ':' without a key: quote the text if the ':' is part of it; otherwise check the "
+       "indentation, and that a space follows each ':' and each item's '-'"},
       {MAP_KEY, "a key is not allowed here: check the indentation"},
       {BLOCK_ENTRY, "a list item ('- ') is not allowed here: check the indentation"},
       {FLOW_END, "a closing bracket that does not match the opening one"},
       {UNKNOWN_TOKEN, "a character that cannot start a value: quote the text"},
       {UNKNOWN_ANCHOR, "an alias ('*name') without an anchor ('&name') before it"},
-      {ALIAS_NOT_FOUND, "a '*' starts an alias: quote the text if it is part of it"},
-      {ANCHOR_NOT_FOUND, "a '&' starts an anchor: quote the text if it is part of it"},
-      {TAG_WITH_NO_SUFFIX, "tags ('!…') are not supported: leave the tag out"},
+      {ALIAS_NOT_FOUND, "a '*' starts an alias: quote the text if the '*' is part of it"},
+      {ANCHOR_NOT_FOUND, "a '&' starts an anchor: quote the text if the '&' is part of it"},
+      {TAG_WITH_NO_SUFFIX, "tags ('!…') are not supported: remove the tag"},
       {TAB_IN_INDENTATION, "a tab indents this line: indent with spaces"},
   };
   if (message.starts_with(INVALID_ESCAPE)) {

@@ -38,7 +38,7 @@ void YamlReader::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
   const std::string word = source_.null_word(mark);
   if (!word.empty()) {
     problem(source_.at(mark), path(),
-            "'" + word + "' is not a value: omit the key, or quote it if the text is meant");
+            "'" + word + "' is not a value: omit the key, or quote it if it is text");
   } else if (!root) {
     const Open& in = open_.back();
     problem(in.is_map ? in.key_at : empty_item(mark), path(),
@@ -75,7 +75,7 @@ void YamlReader::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::
     problem(source_.at(mark), path(), "a control character in a text");
   }
   if (tag == "!" && !is_closed(source_.value_from(mark))) {
-    refuse(mark, "the text that starts with a quote is not closed");
+    refuse(mark, "the closing quote is missing");
   }
   count(mark, 1);
   Node& node = push(mark, Node::Kind::scalar, text);
@@ -132,14 +132,14 @@ void YamlReader::count(const YAML::Mark& mark, std::size_t nodes) {
   counted_ += nodes;
   if (counted_ > kMaxNodes) {
     refuse(mark, "more than " + std::to_string(kMaxNodes) +
-                     " values in one file (aliases count as often as they are used)");
+                     " values in one file (every use of an alias counts)");
   }
 }
 
 void YamlReader::check_tag(const YAML::Mark& mark, const std::string& tag) {
   const std::string_view text = source_.value_from(mark);
   if ((tag != "?" && tag != "!") || (!text.empty() && text.front() == '!')) {
-    problem(source_.at(mark), path(), "tags ('!…') are not supported: leave the tag out");
+    problem(source_.at(mark), path(), "tags ('!…') are not supported: remove the tag");
   }
 }
 
@@ -174,7 +174,7 @@ void YamlReader::take_key(const Node& node) {
   if (!is_new) {
     problem(map.key_at, path(),
             "this key occurs twice in one map" +
-                (known->second > 0 ? ", first in line " + std::to_string(known->second) : ""));
+                (known->second > 0 ? ", first on line " + std::to_string(known->second) : ""));
   }
   if (node.text == "<<" && !node.quoted) {
     problem(map.key_at, path(), "merge keys ('<<') are not supported: write the keys out");

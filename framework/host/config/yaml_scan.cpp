@@ -40,8 +40,7 @@ void scan_characters(const YamlSource& source) {
                     " is not allowed in a text file");
     }
     if (i == line_start && c == '%') {
-      refuse(i,
-             "lines that start with '%' (YAML directives) are not supported: leave the line out");
+      refuse(i, "lines that start with '%' (YAML directives) are not supported: remove the line");
     }
     if (i == line_start && (c == ' ' || c == '\t')) {
       const std::string_view rest = text.substr(i);

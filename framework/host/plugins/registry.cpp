@@ -233,7 +233,8 @@ std::vector<fs::path> Registry::changed() {
 
 std::string Registry::not_offered(std::string_view kind, std::string_view name) const {
   const std::vector<std::string> present = names(kind);
-  std::string text = "no library offers the " + std::string(kind) + " '" + std::string(name) + "'";
+  std::string text =
+      "no library provides the " + std::string(kind) + " '" + std::string(name) + "'";
   const std::string near = nearest_name(name, present);
   std::vector<std::string> refused;
   for (const Library& library : libraries_) {

@@ -73,8 +73,8 @@ class Registry {
   const Library* offering(std::string_view kind, std::string_view name) const;
 
   /// Loads the library at the first call, in a child process before this one. Throws PluginError if
-  /// the library cannot be used, Error if no library offers the name (with the folders searched and
-  /// the nearest name).
+  /// the library cannot be used, Error if no library provides the name (with the folders searched
+  /// and the nearest name).
   const PluginEntry& get(std::string_view kind, std::string_view name);
 
   /// Files of libraries in use that have changed since they were loaded; reports each change once.

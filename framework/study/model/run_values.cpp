@@ -97,7 +97,7 @@ std::string why_no_value(const std::string& name) {
   }
   if (!before.empty() && !is_of_flight && !is_of_step) {
     return "no run has a value '" + name +
-           "': expected one of the run, or flight.…, flight.counters.…, "
+           "': expected a value of the run, or flight.…, flight.counters.…, "
            "flight.replan_counters.…, steps.ID.…, steps.ID.counters.…";
   }
   const std::vector<std::string>& known = is_of_flight ? kOfFlight : is_of_step ? kOfStep : kOfRun;

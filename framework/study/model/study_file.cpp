@@ -37,7 +37,7 @@ void StudyBudget::describe(Fields& f) {
 }
 
 void MetricChoice::describe(Fields& f) {
-  f("name", name).required().doc("value of the runs: length_m, flight.length_m …");
+  f("name", name).required().doc("value of a run: length_m, flight.length_m …");
   f("better", better)
       .one_of({"lower", "higher"})
       .doc("which values are better (default: by the metric's name, usually lower)");

@@ -129,7 +129,7 @@ void read_pipelines(StudyPlan& plan, const Value& tree, StudyProblems& problems,
     for (const Value::Entry& set : entry.set.entries) {
       if (set.key == "seed" || set.key == "scenario") {
         problems.add(set.where, path + ".set." + set.key,
-                     "is given by the study: see its 'repetitions', 'seed' and 'scenarios'");
+                     "is set by the study: see its 'repetitions', 'seed' and 'scenarios'");
       }
     }
     if (is_file(problems, entry.file, host::place_of(at, "file"), path + ".file")) {

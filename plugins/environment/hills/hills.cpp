@@ -29,7 +29,7 @@ struct PeakParams {
     f("height_m", height_m)
         .unit("m")
         .at_least(0)
-        .doc("height of the peak alone, above base_m")
+        .doc("height of the peak itself, above base_m")
         .required();
     f("sigma_m", sigma_m)
         .unit("m")

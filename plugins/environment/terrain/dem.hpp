@@ -44,8 +44,8 @@ struct Params {
             "a file from which more posts are needed (all, or those around the volume) is rejected "
             "before anything is allocated");
     f.check((voids == Voids::fill_m) == fill_m.has_value(),
-            voids == Voids::fill_m ? "voids: fill_m needs fill_m, the height of filled voids"
-                                   : "fill_m is the height of voids: it needs voids: fill_m");
+            voids == Voids::fill_m ? "voids: fill_m requires fill_m, the height of filled voids"
+                                   : "fill_m, the height of voids, requires voids: fill_m");
   }
 };
 

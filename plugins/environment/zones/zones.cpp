@@ -47,7 +47,7 @@ struct PolygonParams {
     f("holes_m", holes_m).unit("m").doc("rings inside the outline that the zone excludes");
     f("holes_lonlat", holes_lonlat).unit("deg").doc("the same as [longitude, latitude]");
     f.check(outline_m.empty() != outline_lonlat.empty(),
-            "a polygon has either outline_m or outline_lonlat");
+            "a polygon needs either outline_m or outline_lonlat");
     f.check(holes_lonlat.empty() || !outline_lonlat.empty(),
             "holes_lonlat goes with outline_lonlat, holes_m with outline_m");
     f.check(holes_m.empty() || !outline_m.empty(),
@@ -107,7 +107,7 @@ struct Params {
         .doc(
             "only zones that are active at some time from the scenario's start_time to this much "
             "later are used");
-    f.check(!list.empty() || file.has_value(), "give zones as list, file or both");
+    f.check(!list.empty() || file.has_value(), "give zones in list, in file or in both");
   }
 };
 

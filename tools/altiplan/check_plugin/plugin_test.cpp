@@ -87,7 +87,8 @@ class PluginUnderTest {
   /// Why the plugin cannot be set up here; "" if it can.
   std::string obstacle() const {
     const std::string layer = set_.missing_layer(registry());
-    return layer.empty() ? "" : "no library offers the layer '" + layer + "' of the parameter set";
+    return layer.empty() ? ""
+                         : "no library provides the layer '" + layer + "' of the parameter set";
   }
   /// Why the set's parameters do not fit the plugin, or its layers cannot be created; "" if
   /// they fit.

@@ -30,7 +30,7 @@ struct ParameterSet {
   ParameterSet() { with.kind = Value::Kind::map; }
   void describe(Fields& f);
 
-  /// The first layer of `before` that no library offers; "" if all are found.
+  /// The first layer of `before` that no library provides; "" if all are found.
   std::string missing_layer(const host::Registry& registry) const;
   /// The setup refers to this set's values. The layers before it come from the registry's
   /// libraries; throws Error if one cannot be created.
