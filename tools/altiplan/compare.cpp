@@ -145,7 +145,7 @@ void print_origins(const study::Comparison& comparison, const study::StudyData& 
       comparison, first, second, results_of(arguments.first), results_of(arguments.second));
   if (changed.empty()) {
     changed.emplace_back(
-        "no file, setting or plugin named in the results: another build of the program");
+        "no file, setting or plugin in the results differs: a different build of the program");
   }
   std::printf("inputs differ: %zu pairs\n", comparison.other_origins.size());
   for (std::size_t n = 0; n < std::min(changed.size(), kShown); ++n) {
@@ -206,7 +206,8 @@ void add_compare(CLI::App& app, Action& action) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      ->add_option("--tolerance", arguments->tolerance_percent, "allowed worsening of a metric (%)")
+      ->add_option("--tolerance", arguments->tolerance_percent,
+                   "allowed degradation of a metric (%)")
       ->type_name("P")
       ->check(number_from(0, 1000))
       ->capture_default_str();

@@ -146,7 +146,7 @@ int main_checked(int argc, char** argv) {
   if (const int code = guarded("altiplan", begin); code != kDone) {
     return code;
   }
-  CLI::App app("Plans and judges routes of unmanned aircraft with plugins configured in YAML.",
+  CLI::App app("Plans and judges routes for unmanned aircraft with plugins configured in YAML.",
                "altiplan");
   app.set_version_flag("--version", ALTIPLAN_VERSION);
   app.require_subcommand(1);

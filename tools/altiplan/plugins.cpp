@@ -73,7 +73,7 @@ CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sente
 void add_plugins(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
-      add(app, action, "plugins", "list the loaded plugins, and the refused libraries with reasons",
+      add(app, action, "plugins", "list the loaded plugins, and why other libraries are refused",
           arguments, &plugins);
   command->add_flag("--strict", arguments->strict, "exit with code 4 if a library is refused");
   set_example(*command, "altiplan plugins --plugin-path build/my_plugins");

@@ -91,7 +91,7 @@ void add_report(CLI::App& app, Action& action) {
       ->type_name("DB");
   command
       ->add_option("-o,--out", arguments->folder,
-                   "folder of the report: new, or that of an earlier report")
+                   "report folder: a new folder, or that of an earlier report")
       ->type_name("DIR");
   command->add_option("--arena", arguments->arena, "write a database for Planner Arena")
       ->type_name("FILE");

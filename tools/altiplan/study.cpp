@@ -200,7 +200,7 @@ void add_selection(CLI::App& app, const std::shared_ptr<Arguments>& arguments) {
               throw CLI::ValidationError("--shard", why);
             }
           },
-          "run only part I of N, to divide a study among machines")
+          "run only part I of N, to split a study across machines")
       ->type_name("I/N");
   command
       ->add_option_function<std::string>(

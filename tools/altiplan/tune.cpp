@@ -186,7 +186,7 @@ void add_what(CLI::App& command, tune::TuneRequest& request) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--hold-out", request.hold_out,
-                  "held-out scenarios, in which the tuned pipeline is compared with the original")
+                  "held-out scenarios, on which the tuned pipeline is compared with the original")
       ->expected(1, -1)
       ->type_name("FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -224,14 +224,14 @@ void add_tune(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   add_what(*command, arguments->request);
   add_how(*command, arguments->request);
-  command->add_option("-o,--out", arguments->options.out, "folder of the results")
+  command->add_option("-o,--out", arguments->options.out, "results folder")
       ->required()
       ->type_name("DIR");
   command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
       ->check(CLI::Range(1, 1024));
   auto* fresh = command->add_flag("--fresh", arguments->options.fresh,
-                                  "delete an earlier tuning in the folder first");
-  command->add_flag("--resume", arguments->resume, "continue an interrupted tuning (default)")
+                                  "delete earlier tuning results in the folder first");
+  command->add_flag("--resume", arguments->resume, "continue an interrupted tuning run (default)")
       ->excludes(fresh);
   add_plugin_path(*command, arguments->overrides);
   set_example(*command,

@@ -107,7 +107,7 @@ int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLi
   try {
     outcome = test.run();
   } catch (const std::exception& error) {
-    outcome.findings.push_back({"Process: the test can be made", error.what()});
+    outcome.findings.push_back({"Process: the test can be run", error.what()});
   }
   if (!arguments.answer.empty()) {
     host::write_file(arguments.answer, outcome_text(outcome));

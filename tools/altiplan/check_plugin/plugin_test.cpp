@@ -15,7 +15,7 @@ using conformance::Case;
 using conformance::Cases;
 using conformance::Finding;
 
-constexpr const char* kManifest = "Library: a manifest that fits this altiplan";
+constexpr const char* kManifest = "Library: a manifest that matches this altiplan";
 constexpr const char* kLoads = "Library: loads, with all symbols and all listed plugins";
 constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
 

@@ -139,8 +139,8 @@ Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup
     before = now;
   }
   if (least > kMax) {
-    return {{{kMemory, "equal work takes " + std::to_string(least) +
-                           " bytes more each time it is repeated"}},
+    return {{{kMemory,
+              "each repetition of the same work takes " + std::to_string(least) + " more bytes"}},
             "",
             false,
             ""};

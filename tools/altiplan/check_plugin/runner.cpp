@@ -152,7 +152,7 @@ Outcome outcome_of(const std::string& text) {
     outcome.answers = json.at("answers");
     return outcome;
   } catch (const Json::exception&) {
-    throw Error("wrote over its result");
+    throw Error("overwrote its result");
   }
 }
 

@@ -45,9 +45,9 @@ std::string findings_text(const CheckedLibrary& library, const Verdict& verdict)
     all += "  " + text_of(finding.contract) + "\n" + indented(text_of(finding.message), 4);
   }
   if (!verdict.said.empty()) {
-    all += "  it said:\n" + indented(text_of(verdict.said), 4);
+    all += "  output:\n" + indented(text_of(verdict.said), 4);
   }
-  return all + "  again: " + reproduce(library, verdict) + "\n";
+  return all + "  to reproduce: " + reproduce(library, verdict) + "\n";
 }
 
 /// "planner/astar/2" of "planner/astar/2/limits_are_honoured".
@@ -79,7 +79,7 @@ std::string summary_text(const CheckedLibrary& library, const std::vector<Verdic
   return text_of(library.file) + ": " + std::to_string(all.passed) + " passed, " +
          std::to_string(all.failed) + " failed" +
          (all.skipped > 0 ? ", " + std::to_string(all.skipped) + " skipped" : "") + " in " +
-         fixed(library.time_s, 1) + " s; at most " + fixed(peak, 0) + " MB\n";
+         fixed(library.time_s, 1) + " s; peak memory " + fixed(peak, 0) + " MB\n";
 }
 
 nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
