@@ -8,7 +8,7 @@ const char* name(Verb verb) {
 }
 
 void SmootherEntry::describe(Fields& f) {
-  f.plugin("smoother", plugin, parameters).doc("a smoother over its parameters").required();
+  f.plugin("smoother", plugin, parameters).doc("a smoother with its parameters").required();
 }
 
 void FlyKeys::describe(Fields& f) {
