@@ -103,7 +103,7 @@ TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
        "  - box: {min_m: [0, 0, 0], max_m: [1, 1, 1]}\n    id: a\n",
        "s.yaml:9:5: environment.1.id: the id 'a' is already used by another layer"},
       {"environment: [{terrain: {file: no.tif}}]\n",
-       "s.yaml:5:32: environment.0.terrain.file: there is no file 'no.tif'"},
+       "s.yaml:5:32: environment.0.terrain.file: file not found: 'no.tif'"},
       {"environment: [{sphere: {at_m: [1, 2], radius_m: 3}}]\n",
        "a sphere's centre needs a height: a third coordinate, or above_ground_m"},
       {"start_time: yesterday\n",
@@ -178,7 +178,7 @@ TEST_F(ConfigTest, AScenarioThatCannotBeReadDoesNotHideThePipelinesProblems) {
   EXPECT_HAS(broken, "s.yaml:");
   std::filesystem::remove(folder_ / "s.yaml");
   const std::string absent = problems("steps: [{plan: tolled}]\n");
-  EXPECT_HAS(absent, "p.yaml:2:1: scenario: there is no file 's.yaml'");
+  EXPECT_HAS(absent, "p.yaml:2:1: scenario: file not found: 's.yaml'");
   EXPECT_HAS(absent, "steps.0.plan: no library provides");
   write("none.yaml", "altiplan: 1\nsteps: [{plan: told}]\n");
   try {
@@ -230,7 +230,7 @@ TEST_F(ConfigTest, BadOverridesAreToldByTheirText) {
        "--set scenario.goal.tolerance_m=far: goal.tolerance_m: expected a number"},
       {"scenario.moving.0.sphere=1", "moving: expected a list, found a map"},
       {"seed=[1", "--set seed=[1"},
-      {"scenario=gone.yaml", "--set scenario=gone.yaml: scenario: there is no file 'gone.yaml'"},
+      {"scenario=gone.yaml", "--set scenario=gone.yaml: scenario: file not found: 'gone.yaml'"},
   };
   for (const Case& one : cases) {
     overrides_.set = {one.text};

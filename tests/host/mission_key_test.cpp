@@ -94,7 +94,7 @@ TEST_F(MissionKey, WrongFilesAreErrorsAtTheKey) {
   write("flat.kml",
         "<kml><Placemark><LineString><coordinates>25,60 26,61</coordinates></LineString>"
         "</Placemark></kml>");
-  EXPECT_HAS(problem("mission: none.plan\n"), "s.yaml:3:10: mission: there is no file 'none.plan'");
+  EXPECT_HAS(problem("mission: none.plan\n"), "s.yaml:3:10: mission: file not found: 'none.plan'");
   EXPECT_HAS(problem("mission: zones.plan\n"), "s.yaml:3:10: mission: zones.plan: expected a plan");
   EXPECT_HAS(problem("mission: one.waypoints\n"), "expected at least two points, found 1");
   EXPECT_HAS(problem("mission: homeless.waypoints\n"),

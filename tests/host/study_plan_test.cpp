@@ -183,7 +183,7 @@ TEST_F(StudyPlanTest, TheBudgetIsThatOfEveryPlanStep) {
 TEST_F(StudyPlanTest, SaysWhatIsWrongAndWhere) {
   EXPECT_HAS(problems("steps: []"), "expected a study");
   EXPECT_HAS(problems("scenarios: [{file: none.yaml}]\npipelines: [{id: a, file: p.yaml}]"),
-             "study.yaml:2:14: scenarios.0.file: there is no file 'none.yaml'");
+             "study.yaml:2:14: scenarios.0.file: file not found: 'none.yaml'");
   EXPECT_HAS(problems("scenarios: [{file: s.yaml}]\npipelines: [{id: A b, file: p.yaml}]"),
              "study.yaml:3:14: pipelines.0.id: expected lower-case letters");
   EXPECT_HAS(problems("scenarios: [{file: s.yaml}, {file: s.yaml}]\n"

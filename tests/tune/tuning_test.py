@@ -238,7 +238,7 @@ class Refusals(TuneCase):
                 ((*X, "--set-tuner", "particle=3"), "did you mean 'particles'?"),
                 ((*X, "--set-tuner", "particles=0"), "--set-tuner particles=0"),
                 ((*X, "--set-tuner", "inertia=1", "--set-tuner", "inertia=1"), "given twice"),
-                ((*X, "--scenarios", "no.yaml"), "--scenarios no.yaml: there is no file 'no.yaml'"),
+                ((*X, "--scenarios", "no.yaml"), "--scenarios no.yaml: file not found: 'no.yaml'"),
                 ((*X, "--scenarios", "scenarios/s.yaml[start]"), "expected FILE[KEY=VALUES"),
                 ((*X, "--scenarios", "scenarios/s.yaml[volume.mn=1]"), "--scenarios s: "),
                 ((*X, "--scenarios", "scenarios/s.yaml", "--hold-out", "scenarios/s.yaml"),

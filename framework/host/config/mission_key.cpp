@@ -162,7 +162,7 @@ std::vector<std::string> add_mission(Value& scenario, std::vector<fs::path>& fil
   const std::string& file = named.file.text;
   const Location where = written->where;
   if (!is_there(file)) {
-    throw ConfigError(where, "mission", "there is no file '" + file + "'");
+    throw ConfigError(where, "mission", "file not found: '" + file + "'");
   }
   try {
     const kit::MissionFile mission = kit::read_mission(file);
