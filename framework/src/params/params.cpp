@@ -139,7 +139,7 @@ std::string unknown_key(const std::string& key, const std::vector<std::string>& 
   if (!near.empty()) {
     return "unknown key; did you mean '" + near + "'?";
   }
-  return known.empty() ? "unknown key; there are no keys here"
+  return known.empty() ? "unknown key; no keys are allowed here"
                        : "unknown key; expected one of " + joined(known);
 }
 }  // namespace

@@ -362,19 +362,18 @@ FieldRef Fields::plugin(std::string_view kind, std::string& name, Value& paramet
     }
     if (found != nullptr) {
       const std::string near = nearest_name(entry.key, known_);
-      problems_.push_back({entry.where, key_of(entry.key),
-                           "unknown key beside '" + found->key +
-                               (near.empty() ? "': expected one name of a plugin (" +
-                                                   std::string(kind) + ") over its parameters"
-                                             : "'; did you mean '" + near + "'?")});
+      problems_.push_back(
+          {entry.where, key_of(entry.key),
+           "unknown key beside '" + found->key +
+               (near.empty() ? "': expected one " + std::string(kind) + " plugin, as NAME: {…}"
+                             : "'; did you mean '" + near + "'?")});
     } else {
       found = &entry;
     }
     known_.push_back(entry.key);
   }
   if (found == nullptr) {
-    problem(*source_, path_,
-            "expected the name of a plugin (" + std::string(kind) + ") over its parameters");
+    problem(*source_, path_, "expected one " + std::string(kind) + " plugin, as NAME: {…}");
     return {*this, index};
   }
   name = found->key;

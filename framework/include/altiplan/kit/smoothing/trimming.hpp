@@ -27,7 +27,7 @@ struct TrimParams {
         .range(0.01, 0.99)
         .doc("factor of the stride from round to round, sigma of eq. (11)");
     f.check(shortest_stride <= longest_stride,
-            "shortest_stride must not be more than longest_stride");
+            "shortest_stride must not exceed longest_stride");
   }
 
   /// Strides of the rounds: floor(longest * decay^v) while that is at least the shortest, each
