@@ -110,10 +110,10 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
   EXPECT_NEAR(*mean->ground()->height(100, 200), (10 * 5 + 20 * 2) / 7.0, 1e-5);
   EXPECT_SAYS(mean->info().notes[0], "2 voids filled from their neighbours");
   EXPECT_SAYS(testing::parameter_problems("environment", "terrain", file_yaml(file, "fill_m: 1")),
-              "it needs voids: fill_m");
+              "requires voids: fill_m");
   EXPECT_SAYS(
       testing::parameter_problems("environment", "terrain", file_yaml(file, "voids: fill_m")),
-      "needs fill_m, the height");
+      "requires fill_m, the height");
   const auto undeclared = grid("10 10 10 10 10\n10 -9999 5 10 10\n1 1 1 1 1\n1 1 1 1 1\n");
   EXPECT_SAYS(refusal(undeclared), "-9999 at column 1, row 1");
   EXPECT_EQ(refusal(undeclared, "nodata: -9999, voids: neighbours"), "");
