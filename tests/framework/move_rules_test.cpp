@@ -207,6 +207,22 @@ TEST(Sees, CountsByRuleWhatItRefuses) {
   EXPECT_EQ(rules.moves_checked(), 7);
 }
 
+TEST(MaxTurnRadius, IsThatOfTheFilletBetweenAStraightAndADiagonalStep) {
+  Request request = open_request();
+  request.level_m = 5;
+  const Lattice squares(request, {10, 10, 10}, Neighbourhood::all, {});
+  EXPECT_NEAR(max_turn_radius(squares, squares.steps()), 5 / std::tan(kPi / 8), 1e-9);
+  const Lattice faces(request, {10, 10, 10}, Neighbourhood::faces, {});
+  EXPECT_NEAR(max_turn_radius(faces, faces.steps()), 5, 1e-9);
+  EXPECT_EQ(max_turn_radius(faces, 0), 0);
+  request.level_m.reset();
+  // Steeper steps are longer, and turn by less: (1, 0, 1) into (1, 1, 1).
+  const Lattice cubes(request, {10, 10, 10}, Neighbourhood::all, {});
+  const double turn = std::acos(2 / std::sqrt(6.0));
+  EXPECT_NEAR(max_turn_radius(cubes, cubes.steps()), std::sqrt(50.0) / std::tan(turn / 2), 1e-9);
+  EXPECT_NEAR(max_turn_radius(cubes, kLevelDirections), 5 / std::tan(kPi / 8), 1e-9);
+}
+
 TEST(Sees, SaysWhetherAConstraintLookedAtTheLegBefore) {
   Request request = open_request();
   request.constraints.push_back({"eastward", std::make_shared<Eastward>()});

@@ -116,6 +116,25 @@ TEST(AStar, RefusalsNameTheRule) {
       << result.message;
 }
 
+TEST(AStar, TurnsThatTheCellsAreTooSmallForAreNamed) {
+  Request request = among(std::make_shared<Balls>());
+  request.level_m = 20;
+  request.start.position = {5, 5, 20};
+  request.goal.position = {95, 45, 20};
+  const std::string clause =
+      "; turns of cells of 10 m have a radius of at most 12.071 m, below the required 12.5 m: use "
+      "larger cells, or theta_star";
+  for (const char* name : {"astar", "bidirectional_astar", "dstar_lite"}) {
+    const auto planner = make_planner(name, "{cell_m: [10, 10, 5]}");
+    request.limits.min_turn_radius = 12.5;
+    const PlanResult none = planner->plan(request);
+    EXPECT_EQ(none.status, PlanStatus::no_route) << name;
+    EXPECT_NE(none.message.find(clause), std::string::npos) << name << ": " << none.message;
+    request.limits.min_turn_radius = 12;
+    EXPECT_EQ(planner->plan(request).status, PlanStatus::solved) << name;
+  }
+}
+
 TEST(AStar, RouteLengthCutsTheSearch) {
   Request request = among(std::make_shared<Balls>());
   const double direct = (request.goal.position - request.start.position).norm();

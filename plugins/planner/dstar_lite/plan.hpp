@@ -344,7 +344,8 @@ class Plan {
     result.status = status;
     result.budget_hit = status != PlanStatus::no_route;
     result.proved = status == PlanStatus::no_route;
-    result.message = explanation(status, search.progress(), problem_, legs_.rules());
+    result.message = explanation(status, search.progress(), problem_, legs_.rules()) +
+                     legs_.rules().sharp_turns();
     result.counters = kit::counters(search.progress(), lattice_, legs_.rules());
     return result;
   }

@@ -1,10 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 // Text of the refusals of MoveRules.
 #include <algorithm>
+#include <cstdio>
 
 #include "altiplan/kit/lattice/move_rules.hpp"
 
 namespace altiplan::kit {
+
+double max_turn_radius(const Lattice& lattice, DirectionMask steps) {
+  steps &= ~(DirectionMask{1} << kHere);
+  double radius = 0;
+  for (int in = 0; in < kDirections; ++in) {
+    for (int out = 0; out < kDirections; ++out) {
+      const bool taken = (steps >> in & steps >> out & 1) != 0;
+      const Cell a = offset(in);
+      const Cell b = offset(out);
+      if (taken && (a[0] != b[0] || a[1] != b[1])) {
+        radius = std::max(radius, fillet_radius(lattice.step(in), lattice.step(out)));
+      }
+    }
+  }
+  return radius;
+}
+
+std::string MoveRules::sharp_turns() const {
+  const double required = request_.limits.min_turn_radius;
+  const double widest = required > 0 ? max_turn_radius(lattice_, steps_) : kInfinity;
+  if (widest >= required - kLengthTolerance) {
+    return "";
+  }
+  const Vec3& cell = lattice_.spec().cell;
+  const auto metres = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.5g", value);
+    return std::string(text);
+  };
+  return "; turns of cells of " + metres(cell.x()) +
+         (cell.x() == cell.y() ? "" : " x " + metres(cell.y())) + " m have a radius of at most " +
+         metres(widest) + " m, below the required " + metres(required) +
+         " m: use larger cells, or theta_star";
+}
 
 std::string MoveRules::refusals() const {
   const std::string names[rule_count] = {

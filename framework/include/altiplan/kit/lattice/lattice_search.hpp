@@ -168,9 +168,7 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
     text += ", the start cannot join the lattice";
   }
   const std::string refusals = rules.refusals();
-  if (!refusals.empty()) {
-    text += "; refused moves: " + refusals;
-  }
+  text += refusals.empty() ? "" : "; refused moves: " + refusals;
   if (progress.too_long) {
     text += "; parts of the search pruned by route_length";
   }
@@ -378,7 +376,8 @@ class LatticeSearch {
     found.result.status = status;
     found.result.budget_hit = status != PlanStatus::no_route;
     found.result.proved = proved && status == PlanStatus::no_route;
-    found.result.message = explanation(status, progress_, request_, lattice_, rules_);
+    found.result.message =
+        explanation(status, progress_, request_, lattice_, rules_) + rules_.sharp_turns();
     found.result.counters = counters(progress_, lattice_, rules_);
     return found;
   }

@@ -26,6 +26,11 @@ enum class MoveCheck {
 ALTIPLAN_API std::shared_ptr<const VoxelGrid> occupancy(const Request& request,
                                                         const Lattice& lattice);
 
+/// Largest radius of a turn from one of the steps into another: their fillet radius
+/// min(a, b) / (2 tan(turn / 2)) for steps of lengths a and b whose headings differ; on level
+/// squares 1.207 times the edge. (Longer legs allow wider turns.)
+ALTIPLAN_API double max_turn_radius(const Lattice& lattice, DirectionMask steps);
+
 /// The judge's constraints for the steps of a lattice, sorted by what they depend on: those on the
 /// direction alone (climb, leg length) or on two directions (turns) are answered from masks, those
 /// on the position by few queries of the world. A step is accepted if and only if leg_ok accepts it
@@ -146,6 +151,9 @@ class ALTIPLAN_API MoveRules {
   /// The constraints that refused moves, the most frequent first: "ground_clearance (120),
   /// turn_angle (7)", and the directions ruled out; "" if nothing was refused.
   std::string refusals() const;
+  /// Explains that no turn between two steps has the required radius: "; turns of cells of 200 m
+  /// have …"; "" if some turn has.
+  std::string sharp_turns() const;
 
  private:
   enum Rule {
