@@ -27,6 +27,20 @@ class Check(CliCase):
         self.call("check", "--route", around, code=2)
         self.call("check", code=2)
 
+    def test_a_scenario_without_constraints_brings_a_warning(self):
+        around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
+                            "[900,500,100]]")
+        note = ("altiplan: warning: the scenario has no constraints: only obstacles, ground and "
+                "volume are checked\n")
+        route = ("check", "--route", around, "--scenario", "scenario.yaml")
+        self.assertEqual(self.call(*route)[1], note)
+        self.assertEqual(self.call("--log-level", "quiet", *route)[1], "")
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "true") +
+                   "constraints: [{turn_angle: {max_deg: 5}}]\n")
+        out, err = self.call(*route, code=1)
+        self.assertIn("turn_angle", out)
+        self.assertEqual(err, "")
+
     def test_check_a_result_without_a_flight(self):
         self.call("run", self.pipeline, "-o", "result.json")
         out, _ = self.call("check", "result.json")

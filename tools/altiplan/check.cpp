@@ -102,6 +102,9 @@ int check_route(const Arguments& arguments) {
   for (const std::string& note : imported.notes) {
     info(note);
   }
+  if (config.scenario.constraints.empty()) {
+    warn("the scenario has no constraints: only obstacles, ground and volume are checked");
+  }
   return report(mission, imported.route, std::nullopt, {}, arguments.json);
 }
 }  // namespace
