@@ -249,6 +249,28 @@ class Cli(CliCase):
         out, _ = self.call("explain", self.pipeline)
         self.assertRegex(out, r"steps\.0\.with\.weight_g +0\.5 +default\n")
 
+    def test_explain_prints_the_notes_before_a_volume_that_is_refused(self):
+        self.write("hill.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 100\n"
+                               "1 2 3\n4 5 6\n")
+        self.write("scenario.yaml", """altiplan: 1
+environment:
+  - terrain: {file: hill.asc, crs: "EPSG:32632"}
+start: {at_m: [10, 10, 100]}
+goal: {at_m: [190, 90, 100]}
+""")
+        out, err = self.call("explain", self.pipeline, code=3)
+        self.assertIn("no layer bounds the volume from below on z", err)
+        self.assertIn("\nterrain: 3 x 2 posts of 100.0 x 100.0 m", out)
+        self.assertIn("\nterrain: x 0 to 200 m, y 0 to 100 m; longitude 4.", out)
+        self.call("explain", self.pipeline, "--json", code=3)
+
+    def test_a_layer_beside_the_volume_is_named_with_both_ranges(self):
+        self.write("scenario.yaml", SCENARIO.replace("KNOWN", "true").replace(
+            "at_m: [700, 500], radius", "at_m: [7000, 500], radius"))
+        _, err = self.call("run", self.pipeline)
+        self.assertIn("'post' (cylinder) at x 6970 to 7030, y 470 to 530, ", err)
+        self.assertIn(" does not touch the volume at x 0 to 1000, y 0 to 1000, z 0 to 200 m: ", err)
+
     def test_explain_shows_via_points_moving_obstacles_and_events(self):
         self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false") + """via:
   - {at_m: [150, 500, 100], tolerance_m: 20}

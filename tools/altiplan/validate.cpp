@@ -51,23 +51,28 @@ int validate(const Arguments& arguments) {
   return code;
 }
 
-/// Builds the world too: the notes and warnings of the layers come from it.
+int explain_as_json(const host::Config& config, const std::vector<host::Explained>& all) {
+  const host::Mission mission = host::build_mission(config, 1);
+  host::Json parameters = host::Json::array();
+  for (const host::Explained& entry : all) {
+    parameters.push_back({{"key", entry.key},
+                          {"value", host::Json::parse(entry.value_json)},
+                          {"unit", entry.unit},
+                          {"from", entry.from}});
+  }
+  const host::Json json{
+      {"parameters", parameters}, {"notes", mission.notes}, {"warnings", mission.warnings}};
+  std::cout << host::file_text(json);
+  return kDone;
+}
+
+/// Builds the world too, since the notes and warnings of the layers come from it. The notes are
+/// printed as they arise: the extent of a layer helps to correct a volume that is refused.
 int explain(const Arguments& arguments) {
   const host::Config config = host::load_config(arguments.files[0], arguments.overrides);
   const std::vector<host::Explained> all = host::explain(config);
-  const host::Mission mission = host::build_mission(config, 1);
   if (arguments.json) {
-    host::Json parameters = host::Json::array();
-    for (const host::Explained& entry : all) {
-      parameters.push_back({{"key", entry.key},
-                            {"value", host::Json::parse(entry.value_json)},
-                            {"unit", entry.unit},
-                            {"from", entry.from}});
-    }
-    const host::Json json{
-        {"parameters", parameters}, {"notes", mission.notes}, {"warnings", mission.warnings}};
-    std::cout << host::file_text(json);
-    return kDone;
+    return explain_as_json(config, all);
   }
   std::size_t width = 0;
   for (const host::Explained& entry : all) {
@@ -80,9 +85,8 @@ int explain(const Arguments& arguments) {
     std::printf("%-*s  %-24s  %s\n", int(width), entry.key.c_str(), value.c_str(),
                 entry.from.c_str());
   }
-  for (const std::string& note : mission.notes) {
-    std::printf("%s\n", note.c_str());
-  }
+  const host::Mission mission = host::build_mission(
+      config, 1, {}, [](const std::string& note) { std::printf("%s\n", note.c_str()); });
   for (const std::string& warning : mission.warnings) {
     warn(warning);
   }

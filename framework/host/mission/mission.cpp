@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/mission/mission.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <tuple>
@@ -211,7 +212,8 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
 
 namespace {
 /// Builds the layers in order, each with access to those before it.
-void build_layers(const Config& config, Mission& mission, const Calling& calling) {
+void build_layers(const Config& config, Mission& mission, const Calling& calling,
+                  const NoteSink& on_note) {
   const ScenarioFile& file = config.scenario;
   Site& site = mission.site;
   World& truth = mission.truth;
@@ -229,6 +231,7 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     const LayerInfo& info = layer.environment->info();
     for (const std::string& note : info.notes) {
       mission.notes.push_back(entry.id + ": " + note);
+      on_note(mission.notes.back());
     }
     truth = std::move(truth).with(std::move(layer));
     if (info.frame && !truth.frame().has_position()) {
@@ -238,11 +241,12 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
 }
 
 /// Notes the frame's scale error, and warns if it is large.
-void note_scale(Mission& mission) {
+void note_scale(Mission& mission, const NoteSink& on_note) {
   const Frame& frame = mission.truth.frame();
   const double error = frame.scale_error(mission.site.volume);
   if (error > 0) {
     mission.notes.push_back("frame: " + frame.crs() + ", maximum scale error " + percent(error));
+    on_note(mission.notes.back());
   }
   if (error > 0.005) {
     mission.warnings.push_back(
@@ -253,14 +257,23 @@ void note_scale(Mission& mission) {
   }
 }
 
+/// "x 0 to 29600, y 0 to 31600, z 0 to 1800 m".
+std::string extent(const Box& box) {
+  char text[200];
+  std::snprintf(text, sizeof text, "x %.0f to %.0f, y %.0f to %.0f, z %.0f to %.0f m", box.min.x(),
+                box.max.x(), box.min.y(), box.max.y(), box.min.z(), box.max.z());
+  return text;
+}
+
 /// Warns of a layer that does not touch the volume, and so has no effect: usually a mistake, such
 /// as latitude and longitude swapped in its file.
 void warn_of_distant_layers(Mission& mission) {
   for (const Layer& layer : mission.truth.layers()) {
     const Box box = layer.environment->bounds();
     if (!box.is_empty() && box.intersected(mission.site.volume).is_empty()) {
-      mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin +
-                                 ") does not touch the volume: check its position");
+      mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin + ") at " + extent(box) +
+                                 " does not touch the volume at " + extent(mission.site.volume) +
+                                 ": check its position");
     }
   }
 }
@@ -323,19 +336,23 @@ void place_points(const Config& config, Mission& mission) {
 }
 }  // namespace
 
-Mission build_mission(const Config& config, int threads, const Calling& told) {
-  const Calling calling = told ? told : [](const std::string&) {};
+Mission build_mission(const Config& config, int threads, const Calling& told,
+                      const NoteSink& noted) {
+  const auto ignore = [](const std::string&) {};
+  const Calling calling = told ? told : ignore;
+  const NoteSink on_note = noted ? noted : ignore;
   const auto began = std::chrono::steady_clock::now();
   const ScenarioFile& file = config.scenario;
   Mission mission;
   mission.notes = config.notes;
+  std::for_each(mission.notes.begin(), mission.notes.end(), on_note);
   mission.site = site_of(config);
   Site& site = mission.site;
   if (file.frame.origin_lonlat) {
     const auto [lon, lat] = *file.frame.origin_lonlat;
     mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
   }
-  build_layers(config, mission, calling);
+  build_layers(config, mission, calling, on_note);
   World& truth = mission.truth;
   if (!file.frame.crs.empty() && !truth.has_ground()) {
     throw ConfigError(place_of(config.scenario_tree, "frame"), "frame.crs",
@@ -346,7 +363,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told) {
   site.frame = truth.frame();
   site.before = &truth;
   site.volume = volume_of(config, truth, level);
-  note_scale(mission);
+  note_scale(mission, on_note);
   warn_of_distant_layers(mission);
   truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
 

@@ -25,11 +25,15 @@ struct Mission {
   double setup_time_s = 0;            ///< wall time of building the layers
 };
 
+using NoteSink = std::function<void(const std::string&)>;
+
 /// Builds layers, volume, points and limits. Throws ConfigError naming the location in the scenario
 /// for errors in the files, PluginError for a plugin that misbehaves. `calling` receives the name
-/// of the plugin about to be called, "" when all are done.
+/// of the plugin about to be called, "" when all are done; `on_note` each note as it arises, so
+/// that those before an error are not lost.
 Mission build_mission(const Config& config, int threads,
-                      const std::function<void(const std::string&)>& calling = {});
+                      const std::function<void(const std::string&)>& calling = {},
+                      const NoteSink& on_note = {});
 
 /// Builds a layer in the same way as the scenario's own.
 Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,

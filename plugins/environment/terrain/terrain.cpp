@@ -265,7 +265,28 @@ class Terrain final : public Environment, public Ground {
     notes.push_back(
         text("scale error at most %.2g %% in ", 100 * layout.frame.scale_error(bounds_)) +
         layout.frame.crs());
+    notes.push_back(extent(layout.frame));
     return notes;
+  }
+
+  /// Of the posts, in local metres and in degrees.
+  std::string extent(const Frame& frame) const {
+    const Vec3& low = bounds_.min;
+    const Vec3& high = bounds_.max;
+    const std::string metres =
+        text("x %.0f to %.0f m, y %.0f to %.0f m", low.x(), high.x(), low.y(), high.y());
+    if (!frame.has_position()) {
+      return metres;
+    }
+    Box degrees = Box::empty();
+    for (const double x : {low.x(), high.x()}) {
+      for (const double y : {low.y(), high.y()}) {
+        const auto [lon, lat] = frame.to_lonlat(x, y);
+        degrees = degrees.with({lon, lat, 0});
+      }
+    }
+    return metres + text("; longitude %.4f to %.4f, latitude %.4f to %.4f", degrees.min.x(),
+                         degrees.max.x(), degrees.min.y(), degrees.max.y());
   }
 
   static constexpr double kInDoubt =

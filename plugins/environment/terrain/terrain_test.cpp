@@ -126,6 +126,9 @@ TEST(Terrain, PlacesPostsByLonLat) {
   const auto corner = frame.to_lonlat(0, 0);
   EXPECT_NEAR(corner[0], -72, 1e-9);
   EXPECT_NEAR(corner[1], 44, 1e-9);
+  const std::string extent = geographic->info().notes.back();
+  EXPECT_SAYS(extent, "x 0 to " + std::to_string(std::lround(geographic->bounds().max.x())) + " m");
+  EXPECT_SAYS(extent, "longitude -72.0000 to -71.0000, latitude 44.0000 to 45.0000");
 
   ALTIPLAN_DATA_OR_SKIP(utm, "dem/elev_vinschgau.tif");
   const Made projected = make_environment("terrain", file_yaml(utm, "voids: neighbours"));
