@@ -110,6 +110,27 @@ class Cli(CliCase):
         self.assertGreater(result["metrics"]["length_m"], 800)
         self.assertEqual(self.call("run", self.pipeline, "--json")[1], "")
 
+    def test_table(self):
+        out, _ = self.call("run", self.pipeline)
+        head, row = out.splitlines()[1:3]
+        self.assertLessEqual(max(len(head), len(row)), 110)
+        self.assertEqual(head.split()[:7], ["step", "plugin", "status", "length_km", "points",
+                                            "turn_d", "radius_m"])
+        metrics = self.result(self.pipeline)["metrics"]
+        self.assertEqual(row.split()[6], f"{metrics['min_radius_m']:.1f}")
+
+    def test_a_budget_that_ended_a_step_is_named(self):
+        steps = (PIPELINE.split("  - plan")[0] + "  - plan: rrt_star\n"
+                 "    with: {max_iterations: 1000000000}\n")
+        ended = self.write("ended.yaml", steps + "    within_iterations: 3000\n")
+        out, _ = self.call("run", ended)
+        self.assertIn("\n  the budget ended 'rrt_star': a larger one may give a better route\n", out)
+        ended = self.write("ended.yaml", steps + "    within_s: 0.5\n")
+        out, _ = self.call("run", ended)
+        self.assertIn("\n  the budget of 0.5 s ended 'rrt_star': more time may give a better route\n",
+                      out)
+        self.assertNotIn("the budget", self.call("run", self.pipeline)[0])
+
     def test_out_that_cannot_be_written_is_said_before_planning(self):
         trace = self.path("trace.jsonl")
         for option, place in (("--out", "missing/result.json"), ("--out", self.folder),

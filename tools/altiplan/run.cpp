@@ -24,6 +24,9 @@ struct RunArguments {
   double timeout_s = host::kDefaultStepSeconds;
 };
 
+/// Columns of a row of the table, 110 characters in all.
+constexpr const char* kRow = "  %-14s %-12s %-12s %9s %6s %6s %8s %7s %8s %8s %8s\n";
+
 void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
                const std::string& status, const std::optional<Measures>& m, double seconds) {
   const auto cell = [&](std::optional<double> value, int digits) { return fixed(value, digits); };
@@ -33,9 +36,9 @@ void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
     length = m->length_m / 1000;
     points = double(m->waypoints);
   }
-  std::fprintf(to, "  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", id.c_str(), plugin.c_str(),
-               status.c_str(), cell(length, 3).c_str(), cell(points, 0).c_str(),
-               cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
+  std::fprintf(to, kRow, id.c_str(), plugin.c_str(), status.c_str(), cell(length, 3).c_str(),
+               cell(points, 0).c_str(), cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
+               cell(m ? m->min_radius_m : std::nullopt, 1).c_str(),
                cell(m ? m->max_climb_deg : std::nullopt, 1).c_str(),
                cell(m ? m->min_clearance_m : std::nullopt, 1).c_str(),
                cell(m ? m->min_ground_clearance_m : std::nullopt, 1).c_str(),
@@ -66,9 +69,43 @@ void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_s
   }
 }
 
+/// The time budget of the step with this id, if it has no other budget that could end it.
+std::optional<double> only_time_budget(const host::Config& config, const std::string& id) {
+  const auto of_one = [&](const host::StepEntry& step) {
+    return step.id == id && !step.within_iterations && !step.within_mb ? step.within_s
+                                                                       : std::nullopt;
+  };
+  for (const host::StepEntry& step : config.steps) {
+    std::optional<double> seconds = of_one(step);
+    for (const host::StepEntry& other : step.otherwise) {
+      seconds = seconds ? seconds : of_one(other);
+    }
+    if (seconds) {
+      return seconds;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Names the accepted routes that a budget ended: more of it may improve them.
+void print_budgets(std::FILE* to, const host::Config& config, const host::RunResult& result) {
+  for (const host::StepResult& step : result.steps) {
+    if (!step.budget_hit || !step.accepted || step.verb == host::Verb::fly) {
+      continue;
+    }
+    if (const auto seconds = only_time_budget(config, step.id)) {
+      std::fprintf(to, "  the budget of %g s ended '%s': more time may give a better route\n",
+                   *seconds, step.id.c_str());
+    } else {
+      std::fprintf(to, "  the budget ended '%s': a larger one may give a better route\n",
+                   step.id.c_str());
+    }
+  }
+}
+
 void print_table(std::FILE* to, const host::RunResult& result) {
-  std::fprintf(to, "  %-16s %-12s %-15s %9s %6s %7s %7s %10s %9s %9s\n", "step", "plugin", "status",
-               "length_km", "points", "turn_d", "climb_d", "clear_m", "ground_m", "time_ms");
+  std::fprintf(to, kRow, "step", "plugin", "status", "length_km", "points", "turn_d", "radius_m",
+               "climb_d", "clear_m", "ground_m", "time_ms");
   for (const host::StepResult& step : result.steps) {
     const bool flown =
         result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
@@ -104,6 +141,7 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
   } else {
     std::fprintf(to, "%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
     print_table(to, result);
+    print_budgets(to, config, result);
     std::fprintf(to, "  %s\n", result.message.c_str());
   }
   if (!problem.empty()) {
