@@ -63,7 +63,7 @@ std::string of_smoother(const Factory<Smoother>& make, const Options& options) {
     scene.request.budget.max_iterations = options.iterations;
     RandomStream random = RandomStream(options.seed).sub("answers", n);
     scene.request.random = random;
-    Route route{scene.request.start.position};
+    Polyline route{scene.request.start.position};
     for (int i = 0; i < 8; ++i) {
       route.push_back(random.in(scene.request.volume));
     }
@@ -83,7 +83,7 @@ std::string of_constraint(const Factory<Constraint>& make, const Options& option
   for (const double figure :
        {limits.min_clearance, limits.min_ground_clearance.value_or(-1), limits.min_leg,
         limits.max_leg, limits.max_turn_horizontal, limits.max_turn_space, limits.min_turn_radius,
-        limits.max_climb, limits.max_route_length}) {
+        limits.max_climb, limits.max_descent(), limits.max_route_length}) {
     all << text(figure) << ' ';
   }
   for (const AltitudeBand& band : limits.altitude) {
@@ -91,7 +91,7 @@ std::string of_constraint(const Factory<Constraint>& make, const Options& option
   }
   RandomStream random = RandomStream(options.seed).sub("answers");
   for (int n = 0; n < 50; ++n) {
-    Route route(5);
+    Polyline route(5);
     for (Vec3& p : route) {
       p = random.in(scene.request.volume);
     }

@@ -119,7 +119,7 @@ void smoother_deadlines(const Factory<Smoother>& make, const Options& options, R
   const auto smoother = make();
   Scene scene = crowded_scene(options.unit_m, Flight::spatial);
   // A walk back and forth between the obstacles.
-  Route route;
+  Polyline route;
   for (int i = 0; i <= 1000; ++i) {
     const double t = i / 1000.0;
     const Vec3 along = scene.request.start.position +

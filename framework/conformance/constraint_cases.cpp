@@ -31,6 +31,7 @@ constexpr std::array kLimitNames{"min_clearance",
                                  "max_turn_horizontal",
                                  "max_turn_space",
                                  "max_climb",
+                                 "max_sink",
                                  "max_route_length",
                                  "lowest above sea",
                                  "highest above sea",
@@ -47,13 +48,14 @@ Figures figures(const Limits& limits) {
               limits.max_turn_horizontal,
               limits.max_turn_space,
               limits.max_climb,
+              limits.max_descent(),
               limits.max_route_length,
               kInfinity,
               kInfinity,
               kInfinity,
               kInfinity};
   for (const AltitudeBand& band : limits.altitude) {
-    const std::size_t at = band.datum == AltitudeBand::Datum::sea ? 9 : 11;
+    const std::size_t at = band.datum == AltitudeBand::Datum::sea ? 10 : 12;
     all[at] = std::min(all[at], -band.min);
     all[at + 1] = std::min(all[at + 1], band.max);
   }
@@ -110,8 +112,8 @@ Vec3 direction(RandomStream& random) {
   return Vec3(random.normal(), random.normal(), 0.3 * random.normal());
 }
 
-Leg random_leg(RandomStream& random) {
-  Leg leg;
+Motion random_leg(RandomStream& random) {
+  Motion leg;
   const double scale = std::pow(10, random.uniform(-1, 4));
   leg.from = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)) * 3000;
   leg.to = leg.from + scale * direction(random);
@@ -124,8 +126,8 @@ Leg random_leg(RandomStream& random) {
   return leg;
 }
 
-Route random_route(RandomStream& random, const Scene& scene) {
-  Route route{scene.request.start.position};
+Polyline random_route(RandomStream& random, const Scene& scene) {
+  Polyline route{scene.request.start.position};
   const auto count = random.integer(0, 8);
   for (std::int64_t i = 0; i < count; ++i) {
     route.push_back(random.uniform() < 0.1 ? route.back() : random.in(scene.request.volume));
@@ -134,7 +136,7 @@ Route random_route(RandomStream& random, const Scene& scene) {
   return route;
 }
 
-std::string text(const Leg& leg) {
+std::string text(const Motion& leg) {
   return "the leg " + conformance::text(leg.from) + " to " + conformance::text(leg.to) +
          (leg.before ? " after " + conformance::text(*leg.before) : "");
 }
@@ -163,7 +165,7 @@ Answers ask(const Constraint& constraint, const Bench& bench, bool backward = fa
     Limits limits = random_limits(random);
     constraint.tighten(limits, scene.request);
     answers.limits.push_back(figures(limits));
-    std::vector<Leg> legs(50);
+    std::vector<Motion> legs(50);
     std::generate(legs.begin(), legs.end(), [&] { return random_leg(random); });
     std::vector<bool> admitted(legs.size());
     for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -239,7 +241,7 @@ void legs_and_routes(const Bench& bench, Report& report) {
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("legs", std::uint64_t(n));
     for (int k = 0; k < 20; ++k) {
-      const Leg leg = random_leg(random);
+      const Motion leg = random_leg(random);
       const bool admitted = constraint->admits(leg);
       says_anything |= !admitted;
       if (stricter != nullptr) {
@@ -249,7 +251,7 @@ void legs_and_routes(const Bench& bench, Report& report) {
       }
     }
     const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
-    const Route route = random_route(random, scene);
+    const Polyline route = random_route(random, scene);
     const auto found = constraint->violations(route, scene.request);
     says_anything |= !found.empty();
     for (const Violation& violation : found) {
@@ -289,7 +291,7 @@ void agrees_with_the_judge(const Bench& bench, Report& report) {
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
     RandomStream random = RandomStream(bench.options.seed).sub("judge", std::uint64_t(n));
-    const Route route = random_route(random, scene);
+    const Polyline route = random_route(random, scene);
     Request& request = scene.request;
     request.world = std::make_shared<const World>();  // only the constraint reports
     request.vehicle.radius_m = 0;
@@ -318,8 +320,9 @@ void odd_questions(const Bench& bench, Report&) {
   const auto constraint = bench.make();
   const Scene scene = scene_of(bench.options.seed);
   const Vec3 p = scene.request.start.position;
-  for (const Route& route : {Route{}, Route{p}, Route{p, p}, Route{p, p, p},
-                             Route{p, p + Vec3(0, 0, 1e6)}, Route{p, p + Vec3(1e-9, 0, 0)}}) {
+  for (const Polyline& route :
+       {Polyline{}, Polyline{p}, Polyline{p, p}, Polyline{p, p, p},
+        Polyline{p, p + Vec3(0, 0, 1e6)}, Polyline{p, p + Vec3(1e-9, 0, 0)}}) {
     (void)constraint->violations(route, scene.request);
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       (void)constraint->admits({std::nullopt, route[i], route[i + 1]});

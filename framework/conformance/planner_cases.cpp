@@ -96,7 +96,7 @@ void million_obstacles(const PlannerBench& bench, Report& report) {
 /// A third-party constraint that depends on two legs at a time.
 class NoSharpTurns final : public Constraint {
  private:
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return !leg.before ||
            turn_angle_in_space(leg.from - *leg.before, leg.to - leg.from) <= radians(40);
   }

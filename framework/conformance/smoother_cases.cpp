@@ -31,7 +31,7 @@ struct Bench {
 };
 
 /// Worst excess over each constraint; constraints without figures count as 1.
-std::map<std::string, double> excesses(const Route& route, const Scene& scene) {
+std::map<std::string, double> excesses(const Polyline& route, const Scene& scene) {
   std::map<std::string, double> worst;
   for (const Violation& violation : check(route, scene.request).violations) {
     const bool too_small = violation.value < violation.limit;
@@ -45,7 +45,7 @@ std::map<std::string, double> excesses(const Route& route, const Scene& scene) {
 }
 
 /// The scene with the ends of the route.
-Scene ending_as(Scene scene, const Route& route) {
+Scene ending_as(Scene scene, const Polyline& route) {
   scene.request.start.position = route.front();
   scene.request.goal.position = route.back();
   return scene;
@@ -53,12 +53,16 @@ Scene ending_as(Scene scene, const Route& route) {
 
 /// Smooths and checks the result against contracts 1 and 2; returns the route, or the input if
 /// there is none.
-Route judged(Report& report, const Smoother& smoother, const Route& route, const Scene& scene) {
-  const Route before = route;
+Polyline judged(Report& report, const Smoother& smoother, const Polyline& route,
+                const Scene& scene) {
+  const Polyline before = route;
+  const Route given = route;
   const auto input = [&] { return scene.name + ", smoothing " + text(before); };
   PlanResult result;
   try {
-    result = smoother.smooth(route, scene.request);
+    result = smoother.smooth(given, scene.request);
+    report.expect(given == Route(before), kStatus,
+                  [&] { return input() + ": the smoother changed its input"; });
   } catch (const PluginError& error) {  // Smoother::smooth has already checked the ends
     report.add(error.reason() == Reason::contract_of_ends ? kEnds : kStatus,
                input() + ": the smoother failed: " + error.what());
@@ -76,7 +80,7 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
   // The tolerance of a clearance, which the judge finds by bisection, is the widest of all.
   constexpr double kWidest = 1e-5;
   const std::map<std::string, double> was = excesses(before, scene);
-  for (const auto& [rule, excess] : excesses(result.route, scene)) {
+  for (const auto& [rule, excess] : excesses(result.route.waypoints(), scene)) {
     const auto old = was.find(rule);
     const double allowed = old == was.end() ? 0 : old->second;
     report.expect(excess <= allowed + kWidest, kExcess, [&, rule = rule, excess = excess] {
@@ -90,12 +94,12 @@ Route judged(Report& report, const Smoother& smoother, const Route& route, const
              ": " + text(result.route);
     });
   }
-  return result.route;
+  return result.route.waypoints();
 }
 
 /// A walk through the world whose legs all satisfy the request's constraints.
-Route sound_walk(const Scene& scene, RandomStream random) {
-  Route route{scene.request.start.position};
+Polyline sound_walk(const Scene& scene, RandomStream random) {
+  Polyline route{scene.request.start.position};
   std::optional<Approach> before = scene.request.before_start();
   for (int tries = 0; tries < 4000 && route.size() < 12; ++tries) {
     const Vec3 reach = scene.unit * random.uniform(0.5, 6) *
@@ -109,8 +113,8 @@ Route sound_walk(const Scene& scene, RandomStream random) {
   return route;
 }
 
-Route any_walk(const Scene& scene, RandomStream random) {
-  Route route{scene.request.start.position};
+Polyline any_walk(const Scene& scene, RandomStream random) {
+  Polyline route{scene.request.start.position};
   for (int i = 0; i < 8; ++i) {
     route.push_back(random.in(scene.request.volume));
   }
@@ -149,12 +153,12 @@ void laws_under_every_limit(const Bench& bench, Report& report) {
       scene.name += std::string(", limits: ") + name;
       set(scene.request.limits);
       const RandomStream random = RandomStream(bench.options.seed).sub(name, std::uint64_t(n));
-      for (const Route& route : {sound_walk(scene, random), any_walk(scene, random)}) {
+      for (const Polyline& route : {sound_walk(scene, random), any_walk(scene, random)}) {
         if (route.size() < 3) {
           continue;
         }
         const Scene ends = ending_as(scene, route);
-        const Route once = judged(report, *smoother, route, ends);
+        const Polyline once = judged(report, *smoother, route, ends);
         judged(report, *smoother, once, ends);
       }
     }
@@ -170,7 +174,7 @@ void over_ground_and_with_a_heading(const Bench& bench, Report& report) {
       ridge.request.start.velocity = {1, 1, 0};
       ridge.request.limits.max_turn_horizontal = radians(75);
     }
-    const Route walk = sound_walk(ridge, random);
+    const Polyline walk = sound_walk(ridge, random);
     if (walk.size() > 2) {
       judged(report, *smoother, walk, ending_as(ridge, walk));
     }
@@ -182,8 +186,8 @@ void short_routes(const Bench& bench, Report& report) {
   const auto smoother = bench.make();
   const Scene scene = bench.world(0);
   const Vec3 start = scene.request.start.position;
-  for (const Route& route :
-       {Route{start}, Route{start, scene.request.goal.position}, Route{start, start}}) {
+  for (const Polyline& route :
+       {Polyline{start}, Polyline{start, scene.request.goal.position}, Polyline{start, start}}) {
     const PlanResult result = smoother->smooth(route, ending_as(scene, route).request);
     report.expect(result.status == PlanStatus::solved && result.route == route, kShort, [&] {
       return text(route) + " came back as " + text(result.route) + ", " + text(result);
@@ -196,26 +200,26 @@ void odd_routes(const Bench& bench, Report& report) {
   for (int n = 0; n < bench.options.rounds; ++n) {
     const Scene scene = bench.world(n);
     const RandomStream random = RandomStream(bench.options.seed).sub("odd", std::uint64_t(n));
-    const Route walk = sound_walk(scene, random);
-    Route repeated;
+    const Polyline walk = sound_walk(scene, random);
+    Polyline repeated;
     for (const Vec3& p : walk) {
       repeated.insert(repeated.end(), repeated.size() % 3 + 1, p);
     }
-    Route collinear{walk.front()};
+    Polyline collinear{walk.front()};
     for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
       for (int k = 1; k <= 4; ++k) {
         collinear.push_back(k == 4 ? walk[i + 1] : Vec3(walk[i] + (walk[i + 1] - walk[i]) * k / 4));
       }
     }
-    Route there_and_back = walk;
+    Polyline there_and_back = walk;
     there_and_back.insert(there_and_back.end(), walk.rbegin() + 1, walk.rend());
-    const Route still(5, walk.front());
-    for (const Route& route : {repeated, collinear, there_and_back, still}) {
+    const Polyline still(5, walk.front());
+    for (const Polyline& route : {repeated, collinear, there_and_back, still}) {
       judged(report, *smoother, route, ending_as(scene, route));
     }
     Scene far = moved_scene(scene, {500'000, 4'649'776, 3000});
     judged(report, *smoother, any_walk(far, random), far);
-    const Route far_walk = sound_walk(far, random);
+    const Polyline far_walk = sound_walk(far, random);
     judged(report, *smoother, far_walk, ending_as(far, far_walk));
   }
 }
@@ -223,7 +227,7 @@ void odd_routes(const Bench& bench, Report& report) {
 void budgets(const Bench& bench, Report& report) {
   const auto smoother = bench.make();
   Scene scene = bench.world(1);
-  const Route walk = sound_walk(scene, RandomStream(bench.options.seed).sub("budget"));
+  const Polyline walk = sound_walk(scene, RandomStream(bench.options.seed).sub("budget"));
   scene = ending_as(scene, walk);
   for (const std::uint64_t most : {0, 1, 10}) {
     scene.request.budget.max_iterations = most;
@@ -242,7 +246,7 @@ void answers_again(const Bench& bench, Report& report) {
   const Scene scene = bench.world(2);
   const Route a = sound_walk(scene, RandomStream(bench.options.seed).sub("again"));
   const Route b = any_walk(scene, RandomStream(bench.options.seed).sub("again"));
-  const Request to_a = ending_as(scene, a).request;
+  const Request to_a = ending_as(scene, a.waypoints()).request;
   const PlanResult first_a = smoother->smooth(a, to_a);
   const PlanResult first_b = smoother->smooth(b, scene.request);
   const auto same = [&](const PlanResult& first, const PlanResult& again, const char* which) {

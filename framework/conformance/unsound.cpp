@@ -45,6 +45,16 @@ std::string bend_problem(const Vec3& before, const Vec3& heading, const Vec3& he
   return "";
 }
 
+/// A turn joins the legs before and after it without a corner, as seen from above.
+std::string kink_problem(const Vec3& heading, const Leg& leg, const Request& request) {
+  const Vec3 out = leg.rate(0);
+  const double corner = angle_between({heading.x(), heading.y(), 0}, {out.x(), out.y(), 0});
+  return request.limits.min_turn_radius > 0 && corner > kRadians
+             ? "has a corner of " + text(degrees(corner)) + " degrees beside a turn at " +
+                   text(leg.from)
+             : "";
+}
+
 std::string point_fault(const Vec3& p, const Scene& scene) {
   const Request& request = scene.request;
   const double needed = std::max(request.limits.min_clearance, request.vehicle.radius_m);
@@ -71,19 +81,24 @@ std::string point_fault(const Vec3& p, const Scene& scene) {
   return "";
 }
 
-std::string leg_fault(const Vec3& a, const Vec3& b, const Scene& scene) {
+std::string leg_fault(const Leg& leg, const Scene& scene) {
   const Limits& limits = scene.request.limits;
-  const double run = (b - a).norm();
+  const Vec3& a = leg.from;
+  const Vec3& b = leg.to;
+  const double run = leg.length();
+  if (leg.turns() && leg.radius < limits.min_turn_radius * (1 - 1e-6)) {
+    return "turns with a radius of " + text(leg.radius) + " m from " + text(a);
+  }
   if (run < limits.min_leg - kMetres || run > limits.max_leg + kMetres) {
     return "has a leg of " + text(run) + " m from " + text(a);
   }
   const double climb = run > 0 ? std::asin(std::min(1.0, std::abs(b.z() - a.z()) / run)) : 0;
-  if (climb > limits.max_climb + kRadians) {
+  if (climb > (b.z() < a.z() ? limits.max_descent() : limits.max_climb) + kRadians) {
     return "climbs at " + text(degrees(climb)) + " degrees from " + text(a);
   }
   const int samples = int(std::clamp(run / scene.unit * 40, 2.0, 4000.0));
   for (int i = 0; i <= samples; ++i) {
-    const Vec3 p = i == samples ? b : Vec3(a + (b - a) * i / samples);
+    const Vec3 p = leg.at(double(i) / samples);
     if (std::string fault = point_fault(p, scene); !fault.empty()) {
       return fault;
     }
@@ -107,6 +122,7 @@ std::string unsound(const Route& route, const Scene& scene) {
     return "ends at " + text(route.back()) + ", outside the goal's tolerance";
   }
   std::optional<Vec3> before;
+  bool turning = false;
   Vec3 heading(0, 0, 0);
   const auto came = [&](const Vec3& from, const Vec3& to) {
     before = from;
@@ -116,16 +132,21 @@ std::string unsound(const Route& route, const Scene& scene) {
     came(request.start.position - request.start.velocity, request.start.position);
   }
   double total = 0;
-  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-    total += (route[i + 1] - route[i]).norm();
-    std::string fault = leg_fault(route[i], route[i + 1], scene);
-    if (fault.empty() && before) {
-      fault = bend_problem(*before, heading, route[i], route[i + 1], request);
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    total += leg.length();
+    std::string fault = leg_fault(leg, scene);
+    if (fault.empty() && before && !turning && !leg.turns()) {
+      fault = bend_problem(*before, heading, leg.from, leg.to, request);
     }
+    if (fault.empty() && before && (turning || leg.turns()) && !is_upright(leg.rate(0))) {
+      fault = kink_problem(heading, leg, request);
+    }
+    turning = leg.turns();
     if (!fault.empty()) {
       return fault;
     }
-    came(route[i], route[i + 1]);
+    came(leg.to - leg.rate(1), leg.to);
   }
   if (total > request.limits.max_route_length + kMetres) {
     return "is " + text(total) + " m long";

@@ -8,9 +8,7 @@ namespace {
 
 struct Params {
   double min_m = 5;
-  void describe(altiplan::Fields& f) {
-    f("min_m", min_m).unit("m").at_least(1).doc("a distance");
-  }
+  void describe(altiplan::Fields& f) { f("min_m", min_m).unit("m").at_least(1).doc("a distance"); }
 };
 
 class Nowhere final : public altiplan::Planner {

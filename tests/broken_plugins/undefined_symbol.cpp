@@ -12,7 +12,9 @@ class Gamma final : public altiplan::Constraint {
   explicit Gamma(const altiplan::NoParams&) {}
 
  private:
-  bool do_admits(const altiplan::Leg&) const override { return missing_function_of_a_test() > 0; }
+  bool do_admits(const altiplan::Motion&) const override {
+    return missing_function_of_a_test() > 0;
+  }
 };
 }  // namespace
 

@@ -20,8 +20,8 @@ struct Params {
 /// What a constraint says; what is not set says nothing.
 struct Rule {
   void (*tighten)(Limits&, double limit) = nullptr;
-  bool (*admits)(const Leg&, double limit) = nullptr;
-  std::vector<Violation> (*violations)(const Route&, double limit) = nullptr;
+  bool (*admits)(const Motion&, double limit) = nullptr;
+  std::vector<Violation> (*violations)(const Polyline&, double limit) = nullptr;
 };
 
 template <Rule (*kRule)(), Does kDoes = does_nothing>
@@ -35,10 +35,10 @@ class Told final : public Constraint {
       kRule().tighten(limits, limit_);
     }
   }
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return kRule().admits == nullptr || kRule().admits(leg, limit_);
   }
-  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+  std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
     return kRule().violations != nullptr ? kRule().violations(route, limit_)
                                          : std::vector<Violation>{};
   }
@@ -49,17 +49,17 @@ template <void (*kTighten)(Limits&, double)>
 Rule tightening() {
   return {kTighten, nullptr, nullptr};
 }
-template <bool (*kAdmits)(const Leg&, double)>
+template <bool (*kAdmits)(const Motion&, double)>
 Rule admitting() {
   return {nullptr, kAdmits, nullptr};
 }
-template <std::vector<Violation> (*kViolations)(const Route&, double)>
+template <std::vector<Violation> (*kViolations)(const Polyline&, double)>
 Rule violating() {
   return {nullptr, nullptr, kViolations};
 }
 Rule silent() { return {}; }
 
-bool short_leg(const Leg& leg, double limit) { return (leg.to - leg.from).norm() <= 10 * limit; }
+bool short_leg(const Motion& leg, double limit) { return (leg.to - leg.from).norm() <= 10 * limit; }
 using Sound = Told<admitting<short_leg>>;
 
 void loosens(Limits& limits, double limit) { limits.max_leg = limit; }
@@ -76,14 +76,14 @@ void looser_when_stricter(Limits& limits, double limit) {
 
 std::atomic<int> calls = 0;
 
-bool tires(const Leg& leg, double limit) { return short_leg(leg, limit) && ++calls % 7 != 0; }
-bool remembers(const Leg& leg, double) {
+bool tires(const Motion& leg, double limit) { return short_leg(leg, limit) && ++calls % 7 != 0; }
+bool remembers(const Motion& leg, double) {
   static thread_local double last = 0;
   const double before = std::exchange(last, leg.from.x());
   return before < leg.from.x();
 }
-bool long_leg(const Leg& leg, double limit) { return (leg.to - leg.from).norm() >= 10 * limit; }
-bool divides(const Leg& leg, double limit) {
+bool long_leg(const Motion& leg, double limit) { return (leg.to - leg.from).norm() >= 10 * limit; }
+bool divides(const Motion& leg, double limit) {
   if (leg.from == leg.to && leg.before && *leg.before == leg.from) {
     throw std::domain_error("a leg without direction");
   }
@@ -92,23 +92,23 @@ bool divides(const Leg& leg, double limit) {
 
 using Violations = std::vector<Violation>;
 
-Violations impure(const Route&, double limit) { return {{"", 0, limit + ++calls, limit, "so"}}; }
-Violations needs_a_point(const Route& route, double limit) {
+Violations impure(const Polyline&, double limit) { return {{"", 0, limit + ++calls, limit, "so"}}; }
+Violations needs_a_point(const Polyline& route, double limit) {
   const double x = route.at(0).x();
   return x > limit ? Violations{{"", 0, x, limit, "too far east"}} : Violations{};
 }
-Violations of_nothing(const Route&, double limit) { return {{"", 0, limit, limit, "just so"}}; }
-Violations beyond(const Route& route, double limit) {
+Violations of_nothing(const Polyline&, double limit) { return {{"", 0, limit, limit, "just so"}}; }
+Violations beyond(const Polyline& route, double limit) {
   return {{"", route.size(), 2 * limit, limit, "there"}};
 }
-Violations without_words(const Route&, double limit) { return {{"", 0, 2 * limit, limit, ""}}; }
-Violations kept_when_stricter(const Route& route, double limit) {
+Violations without_words(const Polyline&, double limit) { return {{"", 0, 2 * limit, limit, ""}}; }
+Violations kept_when_stricter(const Polyline& route, double limit) {
   const double total = length(route);
   return total < 30 * limit ? Violations{{"", 0, total, limit, "short"}} : Violations{};
 }
 template <Does kDoes>
 using DoesWhat = Told<admitting<short_leg>, kDoes>;
-Violations by_an_address(const Route& route, double limit) {
+Violations by_an_address(const Polyline& route, double limit) {
   const double total = length(route) + by_address();
   return total > 10 * limit ? Violations{{"", 0, total, limit, "too long"}} : Violations{};
 }

@@ -13,19 +13,21 @@ using namespace altiplan::bad;
 PlanResult begins_beside(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (request.goal.tolerance_m > 0 && result.status == PlanStatus::solved) {
-    result.route.front().x() += 1e-3;
+    result.route.edit().front().x() += 1e-3;
   }
   return result;
 }
 PlanResult ends_beside(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (request.start.position.y() > 1e6 && result.status == PlanStatus::solved) {
-    result.route.back().x() += 1e-3;
+    result.route.edit().back().x() += 1e-3;
   }
   return result;
 }
 
-Route straight(const Request& request) { return {request.start.position, request.goal.position}; }
+Polyline straight(const Request& request) {
+  return {request.start.position, request.goal.position};
+}
 
 PlanResult cuts_through(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
@@ -44,7 +46,7 @@ PlanResult cuts_through_far_off(const Sound& sound, const Request& request) {
 PlanResult makes_nan(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (request.level_m && result.route.size() > 4) {
-    result.route[2].y() = 0 / (result.route[2].z() - *request.level_m);
+    result.route.edit()[2].y() = 0 / (result.route[2].z() - *request.level_m);
   }
   return result;
 }
@@ -65,7 +67,7 @@ PlanResult throws_under_a_limit(const Sound& sound, const Request& request) {
 PlanResult solves_without_a_route(const Sound& sound, const Request& request) {
   PlanResult result = sound.plan(request);
   if (request.goal.tolerance_m > 0) {
-    result.route.clear();
+    result.route.edit().clear();
   }
   return result;
 }
@@ -260,7 +262,7 @@ PlanResult longer_with_more(const Sound& sound, const Request& request) {
       most >= 2 * std::uint64_t(result.counters[0].value)) {
     const auto middle = result.route.begin() + 1;
     const Vec3 again = *middle;
-    result.route.insert(middle, {again, result.route.front()});
+    result.route.edit().insert(middle, {again, result.route.front()});
   }
   return result;
 }

@@ -7,22 +7,22 @@ namespace {
 using namespace altiplan;
 using namespace altiplan::bad;
 
-PlanResult solved(Route route) {
+PlanResult solved(Polyline route) {
   PlanResult result;
   result.status = PlanStatus::solved;
   result.route = std::move(route);
   return result;
 }
-PlanResult plain(const Route& route, const Request&) { return solved(route); }
+PlanResult plain(const Polyline& route, const Request&) { return solved(route); }
 
-template <PlanResult (*kSmooth)(const Route&, const Request&)>
+template <PlanResult (*kSmooth)(const Polyline&, const Request&)>
 class SpoiltSmoother final : public Smoother {
  public:
   template <class Params>
   explicit SpoiltSmoother(const Params&) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     return kSmooth(route, request);
   }
 };
@@ -39,91 +39,91 @@ class Unused final : public Smoother {
   }
 
  private:
-  PlanResult do_smooth(const Route& route, const Request&) const override {
+  PlanResult do_smooth(const Polyline& route, const Request&) const override {
     used_ = true;
     return solved(route);
   }
   mutable std::atomic<bool> used_ = false;
 };
 
-PlanResult moves_the_end(const Route& route, const Request& request) {
-  Route moved = route;
+PlanResult moves_the_end(const Polyline& route, const Request& request) {
+  Polyline moved = route;
   if (request.limits.max_climb < 0.4) {
     moved.back().x() += 1e-9;
   }
   return solved(moved);
 }
-PlanResult cuts_through(const Route& route, const Request& request) {
+PlanResult cuts_through(const Polyline& route, const Request& request) {
   return request.limits.max_leg < kInfinity ? solved({route.front(), route.back()}) : solved(route);
 }
-PlanResult sharpens(const Route& route, const Request& request) {
-  Route sharper = route;
+PlanResult sharpens(const Polyline& route, const Request& request) {
+  Polyline sharper = route;
   if (request.limits.max_turn_horizontal < 2 && !request.limits.min_ground_clearance &&
       route.size() > 8) {
     sharper[1] = route[2] + (route[0] - route[2]) * 1e-3;
   }
   return solved(sharper);
 }
-PlanResult digs(const Route& route, const Request& request) {
-  Route lower = route;
+PlanResult digs(const Polyline& route, const Request& request) {
+  Polyline lower = route;
   if (request.limits.min_ground_clearance && route.size() > 2) {
     lower[1].z() -= 1;
   }
   return solved(lower);
 }
-PlanResult forgets_heading(const Route& route, const Request& request) {
-  Route turned = route;
+PlanResult forgets_heading(const Polyline& route, const Request& request) {
+  Polyline turned = route;
   if (request.before_start() && route.size() > 3) {
     turned[1] = route[0] - 1e-3 * request.start.velocity;
   }
   return solved(turned);
 }
-PlanResult throws_at_repeats(const Route& route, const Request&) {
+PlanResult throws_at_repeats(const Polyline& route, const Request&) {
   if (route.size() > 3 && without_repeats(route).size() < route.size()) {
     throw std::runtime_error("division by zero");
   }
   return solved(route);
 }
-PlanResult gives_up(const Route& route, const Request& request) {
+PlanResult gives_up(const Polyline& route, const Request& request) {
   if (request.budget.max_iterations < 100) {
     throw std::runtime_error("no time");
   }
   return solved(route);
 }
-PlanResult returns_what_it_had(const Route& route, const Request& request) {
+PlanResult returns_what_it_had(const Polyline& route, const Request& request) {
   return request.budget.stop.stop_requested() ? solved({route.front()}) : solved(route);
 }
-PlanResult counts_calls(const Route& route, const Request&) {
+PlanResult counts_calls(const Polyline& route, const Request&) {
   static std::atomic<std::int64_t> calls = 0;
   PlanResult result = solved(route);
   result.counters = {{"calls", ++calls}};
   return result;
 }
-PlanResult counts_threads(const Route& route, const Request& request) {
+PlanResult counts_threads(const Polyline& route, const Request& request) {
   PlanResult result = solved(route);
   result.counters = {{"threads", request.threads}};
   return result;
 }
-PlanResult works_in_its_input(const Route& route, const Request&) {
+PlanResult works_in_its_input(const Polyline& route, const Request&) {
   PlanResult result = solved(route);
   if (route.size() > 2) {
-    const_cast<Route&>(route)[1].z() += 1;
+    const_cast<Polyline&>(route)[1].z() += 1;
   }
   return result;
 }
-PlanResult late(const Route& route, const Request& request) {
+PlanResult late(const Polyline& route, const Request& request) {
   if (request.budget.deadline) {
     std::this_thread::sleep_until(*request.budget.deadline + std::chrono::milliseconds(70));
   }
   return solved(route);
 }
 template <Does kDoes>
-PlanResult after(const Route& route, const Request&) {
+PlanResult after(const Polyline& route, const Request&) {
   kDoes();
   return solved(route);
 }
 template <double (*kOther)()>
-PlanResult noting(const Route& route, const Request&) {
+PlanResult noting(const Polyline& route, const Request&) {
   PlanResult result = solved(route);
   result.counters = {{"noted", std::int64_t(1e18 * kOther())}};
   return result;

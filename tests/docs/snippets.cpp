@@ -72,7 +72,7 @@ class LittleClimbing final : public Constraint {
     limits.max_climb = std::min(limits.max_climb, radians(10));  // never looser than before
   }
 
-  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+  std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
     double climbed = 0;
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       climbed += std::max(0.0, route[i + 1].z() - route[i].z());
@@ -114,7 +114,7 @@ class JoiningSession final : public Session {
     const Route last = result_.route;
     for (std::size_t at = last.size(); at-- > 1 && !watch.spent(std::uint64_t(tried));) {
       ++tried;
-      Route joined = {state.position};
+      Polyline joined = {state.position};
       joined.insert(joined.end(), last.begin() + std::ptrdiff_t(at), last.end());
       if (check(joined, request_).ok()) {
         result_ = PlanResult{};

@@ -14,18 +14,18 @@ using testing::open_request;
 CurveOf chamfer(std::vector<double> reaches) {
   return [reaches = std::move(reaches)](const Corner& corner, int attempt) {
     return corner.turn > 0 && std::size_t(attempt) < reaches.size()
-               ? std::optional(Route{corner.at - reaches[std::size_t(attempt)] * corner.into,
-                                     corner.at + reaches[std::size_t(attempt)] * corner.out_of})
+               ? std::optional(Polyline{corner.at - reaches[std::size_t(attempt)] * corner.into,
+                                        corner.at + reaches[std::size_t(attempt)] * corner.out_of})
                : std::nullopt;
   };
 }
 
 TEST(Corners, TheFirstChoiceThatKeepsEveryRuleIsTaken) {
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   Request request = open_request(route);
   request.limits.min_leg = 52;
   const RoundedRoute rounded = round_corners(route, request, chamfer({50, 45, 30, 20}));
-  EXPECT_EQ(rounded.route, (Route{{0, 0, 0}, {55, 0, 0}, {100, 45, 0}, {100, 100, 0}}))
+  EXPECT_EQ(rounded.route, (Polyline{{0, 0, 0}, {55, 0, 0}, {100, 45, 0}, {100, 100, 0}}))
       << "50 leaves 50 m of a leg";
   EXPECT_EQ(rounded.attempts, 2);
   EXPECT_EQ(rounded.corners, 1);
@@ -34,7 +34,7 @@ TEST(Corners, TheFirstChoiceThatKeepsEveryRuleIsTaken) {
 }
 
 TEST(Corners, TellsACurveWhatItMayUse) {
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 60, 0}, {100, 60, 40}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 60, 0}, {100, 60, 40}};
   std::vector<Corner> seen;
   round_corners(route, open_request(route), [&](const Corner& corner, int attempt) {
     seen.push_back(corner);
@@ -56,7 +56,7 @@ TEST(Corners, TellsACurveWhatItMayUse) {
 TEST(Corners, ACornerThatStaysKeepsItsRadius) {
   // The fillet of the second corner shrinks with the leg that the first one's cut leaves it, which
   // its own cut would mend. Where it has none, the first corner takes less, or stays as well.
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {200, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {200, 100, 0}};
   Request request = open_request(route);
   request.limits.min_turn_radius = 28;
   const auto first_only = [](std::vector<double> reaches) {
@@ -74,7 +74,7 @@ TEST(Corners, ACornerThatStaysKeepsItsRadius) {
 }
 
 TEST(Corners, WhatIsBrokenIsMendedOrGetsNoWorse) {
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {0, 10, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {0, 10, 0}};
   Request request = open_request(route);
   request.limits.max_turn_space = radians(100);
   EXPECT_TRUE(check(round_corners(route, request, chamfer({30})).route, request).ok());
@@ -87,13 +87,13 @@ TEST(Corners, WhatIsBrokenIsMendedOrGetsNoWorse) {
 TEST(Corners, ATurnAtTheStartExcusesNoOther) {
   // The vehicle has to turn back at once, which no curve mends; the corner turns by 80 degrees, and
   // a hook in its place would turn by more.
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {117, 98, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {117, 98, 0}};
   Request request = open_request(route);
   request.start.velocity = {-1, 0.1, 0};
   request.limits.max_turn_space = radians(100);
   EXPECT_EQ(check(route, request).violations.size(), 1u);
   const auto hook = [](const Corner&, int attempt) {
-    return attempt == 0 ? std::optional(Route{{80, 0, 0}, {70, -20, 0}}) : std::nullopt;
+    return attempt == 0 ? std::optional(Polyline{{80, 0, 0}, {70, -20, 0}}) : std::nullopt;
   };
   EXPECT_EQ(round_corners(route, request, hook).route, route);
   EXPECT_EQ(round_corners(route, request, chamfer({30})).replaced, 1);
@@ -105,7 +105,7 @@ class AtMost final : public Constraint {
   explicit AtMost(std::size_t points) : points_(points) {}
 
  private:
-  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+  std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
     if (route.size() <= points_) {
       return {};
     }
@@ -115,7 +115,7 @@ class AtMost final : public Constraint {
 };
 
 TEST(Corners, RulesOfWholeRoutesAreKeptCornerByCorner) {
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {200, 100, 0}, {200, 200, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {200, 100, 0}, {200, 200, 0}};
   Request request = open_request(route);
   for (const std::size_t most : {5u, 6u, 7u, 8u, 4u}) {
     request.constraints = {{"at_most", std::make_shared<AtMost>(most)}};
@@ -127,13 +127,14 @@ TEST(Corners, RulesOfWholeRoutesAreKeptCornerByCorner) {
 
 TEST(Corners, OddRoutesComeBackAndBudgetsHold) {
   const Vec3 p(1, 2, 3);
-  for (const Route& route : {Route{p, p, p}, Route{{0, 0, 0}, {9, 0, 0}, {3, 0, 0}},
-                             Route{{0, 0, 0}, {3, 0, 0}, {9, 0, 0}}, Route{p, {4, 4, 4}}}) {
+  for (const Polyline& route :
+       {Polyline{p, p, p}, Polyline{{0, 0, 0}, {9, 0, 0}, {3, 0, 0}},
+        Polyline{{0, 0, 0}, {3, 0, 0}, {9, 0, 0}}, Polyline{p, {4, 4, 4}}}) {
     const RoundedRoute rounded = round_corners(route, open_request(route), chamfer({1}));
     EXPECT_EQ(rounded.route, route);
     EXPECT_EQ(rounded.replaced, 0);
   }
-  const Route bent = {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}};
+  const Polyline bent = {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}};
   Request request = open_request(bent);
   request.budget.max_iterations = 1;
   const RoundedRoute rounded = round_corners(bent, request, chamfer({1}));
@@ -158,8 +159,8 @@ TEST(Corners, NoRuleGetsWorseWhateverTheCurves) {
     }
     // Curves of any shape, choices of any length.
     const RoundedRoute rounded =
-        round_corners(walk.route, walk.request, [&](const Corner& corner, int attempt) {
-          Route curve;
+        round_corners(walk.route.waypoints(), walk.request, [&](const Corner& corner, int attempt) {
+          Polyline curve;
           for (std::int64_t n = random.integer(0, 4); n > 0; --n) {
             const double reach = random.uniform() * corner.leg_into;
             curve.push_back(corner.at - reach * corner.into +

@@ -86,7 +86,8 @@ TEST(DamagedMissions, Plans) {
   const std::string deep(1'000'000, '[');
   expect_refused(
       "m.plan", kPlan,
-      {{"*", kPlan.substr(0, kPlan.size() / 2), "is not valid JSON: it ends early or has an error in line"},
+      {{"*", kPlan.substr(0, kPlan.size() / 2),
+        "is not valid JSON: it ends early or has an error in line"},
        {"*", kPlan.substr(0, 1), "in line 1"},
        {"*", kPlan + "}", "is not valid JSON"},
        {"*", "[1, 2]", "expected a plan (\"fileType\": \"Plan\"), found [1,2]"},

@@ -9,13 +9,13 @@
 namespace altiplan {
 namespace {
 
-Request empty_request(const Route& route) {
+Request empty_request(const Polyline& route) {
   const double big = 1e4;
   return testing::request_in(World(), route.front(), route.back(),
                              {{-big, -big, -big}, {big, big, big}});
 }
 
-std::vector<std::string> broken(const Route& route, const Request& request) {
+std::vector<std::string> broken(const Polyline& route, const Request& request) {
   std::vector<std::string> rules;
   for (const Violation& violation : check(route, request).violations) {
     rules.push_back(violation.constraint + "@" + std::to_string(violation.at));
@@ -25,13 +25,13 @@ std::vector<std::string> broken(const Route& route, const Request& request) {
 using Rules = std::vector<std::string>;
 
 /// East, up by `climb`, and north.
-Route climbing_corner(double climb) {
+Polyline climbing_corner(double climb) {
   return {{0, 0, 100}, {500, 0, 100}, {500, 0, 100 + climb}, {500, 500, 100 + climb}};
 }
 
 TEST(Headings, NoClimbHidesATurn) {
   for (const double climb : {1e-9, 1e-3, 30.0, 3000.0}) {
-    const Route route = climbing_corner(climb);
+    const Polyline route = climbing_corner(climb);
     Request request = empty_request(route);
     request.limits.max_turn_horizontal = radians(30);
     EXPECT_EQ(broken(route, request), Rules{"turn_angle@2"}) << climb;
@@ -44,7 +44,7 @@ TEST(Headings, NoClimbHidesATurn) {
 
 TEST(Headings, LastThroughAnyNumberOfLegsWithoutOne) {
   // Each creeps on by less than a leg with a heading does, and turns to the north as it does so.
-  Route route{{0, 0, 100}, {500, 0, 100}};
+  Polyline route{{0, 0, 100}, {500, 0, 100}};
   for (int i = 0; i < 40; ++i) {
     const double angle = kPi / 2 * i / 39;
     route.push_back(route.back() + Vec3(0.9e-6 * std::cos(angle), 0.9e-6 * std::sin(angle), 1));
@@ -56,7 +56,7 @@ TEST(Headings, LastThroughAnyNumberOfLegsWithoutOne) {
 }
 
 TEST(Headings, ThatOfTheStartLastsToo) {
-  const Route route{{0, 0, 100}, {0, 0, 200}, {0, 500, 200}};
+  const Polyline route{{0, 0, 100}, {0, 0, 200}, {0, 500, 200}};
   Request request = empty_request(route);
   request.limits.max_turn_horizontal = radians(30);
   EXPECT_EQ(broken(route, request), Rules{});
@@ -67,7 +67,7 @@ TEST(Headings, ThatOfTheStartLastsToo) {
 }
 
 TEST(Headings, ATurnOverAClimbHasNoRadius) {
-  const Route route = climbing_corner(2000);
+  const Polyline route = climbing_corner(2000);
   Request request = empty_request(route);
   request.limits.min_turn_radius = 200;
   EXPECT_EQ(broken(route, request), Rules{"turn_radius@2"});
@@ -79,7 +79,7 @@ TEST(Headings, ATurnOverAClimbHasNoRadius) {
 }
 
 TEST(Headings, ARepeatedPointIsNoLeg) {
-  Route route = climbing_corner(1);
+  Polyline route = climbing_corner(1);
   route.insert(route.begin() + 2, route[1]);
   route.insert(route.begin() + 4, route[3]);
   Request request = empty_request(route);
@@ -98,7 +98,7 @@ TEST(Fillets, TakeAtMostHalfOfEachLeg) {
 }
 
 TEST(Fillets, MessagesTellTheRadiusFromItsLimit) {
-  const Route route{{0, 0, 100}, {400, 0, 100}, {400, 400, 100}};
+  const Polyline route{{0, 0, 100}, {400, 0, 100}, {400, 400, 100}};
   Request request = empty_request(route);
   request.limits.min_turn_radius = 200.0004;
   const CheckResult result = check(route, request);

@@ -76,7 +76,7 @@ TEST(LegRules, SayOfCellsWhatTheJudgeSays) {
 }
 
 class OnlyNorth final : public Constraint {
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return !leg.before || leg.to.y() >= leg.before->y();
   }
 };

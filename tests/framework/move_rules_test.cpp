@@ -45,7 +45,7 @@ void compare(const Request& request, const Lattice& lattice, MoveCheck check, in
 
 /// Admits legs to the east, and as a first leg also one that leads neither east nor west.
 class Eastward final : public Constraint {
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     const double east = leg.to.x() - leg.from.x();
     return east > 0 || (east == 0 && !leg.before);
   }

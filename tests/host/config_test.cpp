@@ -95,7 +95,7 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
 
 TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
   const Case cases[] = {
-      {"wind: 3\n", "s.yaml:5:1: wind: unknown key"},
+      {"winds: 3\n", "s.yaml:5:1: winds: unknown key"},
       {"environment: [{boks: {}}]\n", "s.yaml:5:16: environment.0: no library provides the"},
       {"environment: [{box: {min_m: [0, 0, 0]}}]\n",
        "s.yaml:5:21: environment.0.box: the key 'max_m' is missing: upper corner"},

@@ -44,12 +44,13 @@ constexpr const char* kZones =
     " {id: county, kind: keep_in, polygon: {outline_m: [[-9, -9], [1009, -9], [1009, 1009],"
     "   [-9, 1009]]}}]}";
 
-const Route kAround{
+const Polyline kAround{
     {50, 50, 300}, {350, 600, 310.12345}, {500, 650, 320}, {700, 700, 320.5}, {950, 950, 300}};
 
 struct Scene {
   Mission mission;
-  explicit Scene(const Route& route = kAround, bool positioned = true, const char* zones = kZones) {
+  explicit Scene(const Polyline& route = kAround, bool positioned = true,
+                 const char* zones = kZones) {
     World world;
     if (positioned) {
       world = world.with_frame(Frame::geographic(-84.3, 36.5, 36.6));
@@ -78,7 +79,8 @@ ExportOptions options_of(std::optional<Format> format,
   return options;
 }
 
-Exported exported(const Scene& scene, const ExportOptions& options, const Route& route = kAround) {
+Exported exported(const Scene& scene, const ExportOptions& options,
+                  const Polyline& route = kAround) {
   return export_route(scene.mission, {"a <name> & more", route, {}, {}}, options);
 }
 
@@ -88,7 +90,7 @@ bool says(const Exported& exported, const std::string& words) {
 }
 
 /// Metres between what was written and what it stands for.
-double farthest(const Route& a, const Route& b) {
+double farthest(const Polyline& a, const Polyline& b) {
   EXPECT_EQ(a.size(), b.size());
   double most = 0;
   for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
@@ -122,8 +124,8 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
       const ImportedRoute back =
           read_imported_route(file, *result.text, scene.mission.truth, kAround.front());
       EXPECT_EQ(back.route.front(), kAround.front());
-      EXPECT_LT(farthest(back.route, kAround), 0.01);
-      EXPECT_GT(farthest(back.route, kAround), 0);
+      EXPECT_LT(farthest(back.route.waypoints(), kAround), 0.01);
+      EXPECT_GT(farthest(back.route.waypoints(), kAround), 0);
       EXPECT_TRUE(judge(back.route, scene.mission.request, {}).ok());
       ++written;
     }
@@ -156,7 +158,7 @@ TEST(Export, MoreDecimalsWhereFewerBreakTheRoute) {
 
 TEST(Export, WritesNothingThatIsNotSound) {
   const Scene scene;
-  const Route through{{50, 50, 300}, {500, 500, 300}, {950, 950, 300}};
+  const Polyline through{{50, 50, 300}, {500, 500, 300}, {950, 950, 300}};
   const Exported result = exported(scene, options_of(Format::qgc_plan), through);
   EXPECT_FALSE(result.text.has_value());
   EXPECT_TRUE(says(result, "not written: the route is not valid: point 0, clearance"));
@@ -182,7 +184,7 @@ TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
 
 // A fence without heights would stop a vehicle that flies over the zone, as it was planned to.
 TEST(Export, AZoneThatTheRouteFliesOverStaysOutOfTheFence) {
-  const Route over{{50, 50, 500}, {950, 950, 500}};
+  const Polyline over{{50, 50, 500}, {950, 950, 500}};
   const Scene scene(over);
   const Exported result = exported(scene, options_of(Format::qgc_plan), over);
   ASSERT_TRUE(result.text.has_value());
@@ -234,7 +236,7 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
 }
 
 TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
-  Route dense;
+  Polyline dense;
   for (std::size_t n = 0; n + 1 < kAround.size(); ++n) {
     for (int k = 0; k < 10; ++k) {
       dense.push_back(kAround[n] + (kAround[n + 1] - kAround[n]) * (k / 10.0));

@@ -181,9 +181,9 @@ TEST(FlightContact, APopUpIsMetAtTheNextPointOfTheTrack) {
   // The route has a point every 0.2 s; the step is 1 s.
   Scene scene;
   scene.follow_alone();
-  scene.setup.route.clear();
+  scene.setup.route.edit().clear();
   for (int k = 0; k <= 26000 / 6; ++k) {
-    scene.setup.route.emplace_back(2000 + 6 * k, 15000, 500);
+    scene.setup.route.edit().emplace_back(2000 + 6 * k, 15000, 500);
   }
   scene.setup.route.push_back(scene.setup.request.goal.position);
   const double due_s = kAt + 0.3;

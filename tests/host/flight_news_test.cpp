@@ -13,7 +13,7 @@ using testing::make_smoother;
 /// Answers every update with a detour over points, and notes what it was told.
 class Detour final : public Session {
  public:
-  explicit Detour(Route over) : over_(std::move(over)) {}
+  explicit Detour(Polyline over) : over_(std::move(over)) {}
   std::vector<Change> changes;
   Vec3 asked_at{0, 0, 0};
 
@@ -25,11 +25,11 @@ class Detour final : public Session {
     changes.assign(news.begin(), news.end());
     result_.status = PlanStatus::solved;
     result_.route = {state.position};
-    result_.route.insert(result_.route.end(), over_.begin(), over_.end());
+    result_.route.edit().insert(result_.route.end(), over_.begin(), over_.end());
     result_.route.push_back(goal.position);
     return result_;
   }
-  Route over_;
+  Polyline over_;
   PlanResult result_;
 };
 

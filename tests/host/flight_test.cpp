@@ -285,7 +285,7 @@ TEST(Flight, TwoFlightsAreEqual) {
 
 TEST(Flight, RefusesARouteFromElsewhere) {
   Scene scene;
-  scene.setup.route.front().y() += 1;
+  scene.setup.route.edit().front().y() += 1;
   EXPECT_THROW(fly(scene.setup), Error);
 }
 }  // namespace

@@ -203,7 +203,7 @@ TEST_F(PipelineTest, ViaPointsArePassedAndStayWhenSmoothed) {
   scenario("via: [{at_m: [300, 700, 500]}, {at_m: [500, 200, 500], tolerance_m: 5}]\n");
   const RunResult result = run(
       "steps: [{plan: told}, {smooth: told_smoother, with: {does: cuts}}, {plan: told_pilot}]\n");
-  const Route expected{{100, 500, 500}, {300, 700, 500}, {500, 200, 500}, {900, 500, 500}};
+  const Polyline expected{{100, 500, 500}, {300, 700, 500}, {500, 200, 500}, {900, 500, 500}};
   EXPECT_EQ(result.status, RunStatus::solved) << result.message;
   EXPECT_EQ(result.steps[0].route, expected);
   EXPECT_EQ(result.steps[1].route, expected);

@@ -10,11 +10,11 @@
 namespace altiplan::host {
 namespace {
 
-double radius_of(const Route& track) { return track_radius(track, {}).radius_m.value(); }
+double radius_of(const Polyline& track) { return track_radius(track, {}).radius_m.value(); }
 
 /// The route with points in between, as a flight writes them: one a step, and each waypoint.
-Route flown(const Route& route, double step) {
-  Route track = {route.front()};
+Polyline flown(const Polyline& route, double step) {
+  Polyline track = {route.front()};
   double left = step;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     const Vec3 leg = route[i + 1] - route[i];
@@ -31,7 +31,7 @@ Route flown(const Route& route, double step) {
 TEST(TrackRadius, IsThatOfACircleHoweverItIsSampled) {
   RandomStream random(3);
   for (const double radius : {20.0, 250.0, 4000.0}) {
-    Route track;
+    Polyline track;
     for (double angle = 0; angle < 3; angle += random.uniform(0.01, 0.3)) {
       track.push_back(
           {radius * std::cos(angle), radius * std::sin(angle), 100 + 0.1 * radius * angle});
@@ -43,18 +43,18 @@ TEST(TrackRadius, IsThatOfACircleHoweverItIsSampled) {
 }
 
 TEST(TrackRadius, OfARouteWithArcsIsTheRoutes) {
-  const Route route = {{0, 0, 100}, {1000, 0, 100}, {1000, 1000, 100}, {0, 1000, 300}};
+  const Polyline route = {{0, 0, 100}, {1000, 0, 100}, {1000, 1000, 100}, {0, 1000, 300}};
   Request request = testing::open_request(route);
   request.limits.min_turn_radius = 250;
   const Route arcs = testing::make_smoother("arc")->smooth(route, request).route;
   ASSERT_GT(arcs.size(), 10u);
   for (const double step : {1.0, 7.3, 25.0, 84.7, 300.0}) {
-    EXPECT_GE(radius_of(flown(arcs, step)), 250 - 1e-6) << step;
+    EXPECT_GE(radius_of(flown(arcs.waypoints(), step)), 250 - 1e-6) << step;
   }
 }
 
 TEST(TrackRadius, OfASharpCornerIsItsFillet) {
-  const Route route = {{0, 0, 100}, {400, 0, 100}, {400, 400, 100}};
+  const Polyline route = {{0, 0, 100}, {400, 0, 100}, {400, 400, 100}};
   for (const double step : {0.5, 10.0, 33.3}) {
     EXPECT_NEAR(radius_of(flown(route, step)), 200, 1e-3) << step;
   }
@@ -64,7 +64,7 @@ TEST(TrackRadius, OfASharpCornerIsItsFillet) {
 }
 
 TEST(TrackRadius, ATurnOnTheSpotHasNone) {
-  const Route track = flown({{0, 0, 100}, {500, 0, 100}, {500, 0, 600}, {500, 500, 600}}, 20);
+  const Polyline track = flown({{0, 0, 100}, {500, 0, 100}, {500, 0, 600}, {500, 500, 600}}, 20);
   EXPECT_EQ(radius_of(track), 0);
   Vehicle vehicle;
   vehicle.turns_on_the_spot = true;

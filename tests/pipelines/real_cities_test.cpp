@@ -104,7 +104,7 @@ TEST_P(RealCities, ARouteIsPlannedAndSound) {
   ASSERT_EQ(result["status"], "solved") << result["message"];
   EXPECT_TRUE(result["check"]["ok"]);
 
-  Route route;
+  Polyline route;
   for (const host::Json& p : result["route"]) {
     route.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
   }

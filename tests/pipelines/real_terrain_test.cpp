@@ -72,7 +72,7 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
 
   // Looked at again: heights of the ground below the route, every 5 m.
   const auto layer = testing::make_environment("terrain", terrain);
-  Route route;
+  Polyline route;
   for (const host::Json& p : result["route"]) {
     route.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
   }

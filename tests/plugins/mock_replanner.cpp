@@ -10,7 +10,7 @@
 namespace {
 using namespace altiplan;
 
-bool sound(const Route& route, const Request& request) { return check(route, request).ok(); }
+bool sound(const Polyline& route, const Request& request) { return check(route, request).ok(); }
 
 class Kept final : public Session {
  public:
@@ -23,7 +23,7 @@ class Kept final : public Session {
     const Vec3 b = request_.goal.position;
     BudgetWatch watch(request_.budget);
     std::int64_t expanded = 0;
-    Route route;
+    Polyline route;
     for (const double aside : {0.0, 0.2, -0.2, 0.5, -0.5, 1.0, -1.0}) {
       if (watch.spent(std::uint64_t(expanded))) {
         finish(watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out, {}, expanded);
@@ -33,7 +33,7 @@ class Kept final : public Session {
       ++expanded;
       const Vec3 across(a.y() - b.y(), b.x() - a.x(), 0);
       const Vec3 past = (a + b) / 2 + aside * across;
-      route = aside == 0 ? Route{a, b} : Route{a, past, b};
+      route = aside == 0 ? Polyline{a, b} : Polyline{a, past, b};
       if (sound(route, request_)) {
         finish(PlanStatus::solved, std::move(route), expanded);
         return;
@@ -42,7 +42,7 @@ class Kept final : public Session {
     finish(PlanStatus::no_route, {}, expanded);
   }
 
-  void finish(PlanStatus status, Route route, std::int64_t expanded) {
+  void finish(PlanStatus status, Polyline route, std::int64_t expanded) {
     result_ = {};
     result_.status = status;
     result_.message =
@@ -52,11 +52,11 @@ class Kept final : public Session {
   }
 
   /// What is left of the route, from the state on; empty where that is not near it.
-  Route rest(const Vec3& from) const {
+  Polyline rest(const Vec3& from) const {
     const Route& route = result_.route;
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       if (point_leg_distance(from, route[i], route[i + 1]) <= request_.vehicle.radius_m) {
-        Route left{from};
+        Polyline left{from};
         left.insert(left.end(), route.begin() + std::ptrdiff_t(i) + 1, route.end());
         return without_repeats(left);
       }
@@ -73,7 +73,7 @@ class Kept final : public Session {
     request_.goal = goal;
     request_.world = std::move(world);
     request_.budget = budget;
-    Route kept = rest(state.position);
+    Polyline kept = rest(state.position);
     if (!kept.empty() && point_problem(goal.position, request_).empty() && sound(kept, request_)) {
       finish(PlanStatus::solved, std::move(kept), 0);
     } else {

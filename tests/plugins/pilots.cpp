@@ -87,7 +87,7 @@ class ToldSmoother final : public Smoother {
   explicit ToldSmoother(const SmootherParams& params) : params_(params) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request&) const override {
+  PlanResult do_smooth(const Polyline& route, const Request&) const override {
     while (params_.does == "never_stops") {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -99,7 +99,7 @@ class ToldSmoother final : public Smoother {
     } else if (params_.does == "cuts") {
       result.route = {route.front(), route.back()};
     } else if (params_.does == "moves_end") {
-      result.route.back().x() += 5;
+      result.route.edit().back().x() += 5;
     }
     return result;
   }

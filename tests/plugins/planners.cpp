@@ -35,7 +35,7 @@ class Told final : public Planner {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.route = std::move(between);
-    result.route.insert(result.route.begin(), request.start.position);
+    result.route.edit().insert(result.route.begin(), request.start.position);
     result.route.push_back(request.goal.position);
     result.counters = {{"expanded", 3}};
     if (request.trace != nullptr) {
@@ -77,12 +77,12 @@ class Told final : public Planner {
     }
     if (does == "wrong_end") {
       PlanResult result = route(request, {});
-      result.route.back().x() += 7;
+      result.route.edit().back().x() += 7;
       return result;
     }
     if (does == "no_points") {
       PlanResult result = route(request, {});
-      result.route.clear();
+      result.route.edit().clear();
       return result;
     }
     if (does == "never_stops") {

@@ -115,9 +115,9 @@ class RogueSession final : public Session {
   RogueSession(std::string does, const Request& request)
       : does_(std::move(does)), result_(straight(request.start, request.goal)) {
     if (does_ == "session_begins_elsewhere") {
-      result_.route.front().x() += 1;
+      result_.route.edit().front().x() += 1;
     } else if (does_ == "session_lies") {
-      result_.route.clear();
+      result_.route.edit().clear();
     }
   }
 
@@ -134,7 +134,7 @@ class RogueSession final : public Session {
     }
     result_ = straight(state, goal);
     if (does_ == "update_begins_elsewhere") {
-      result_.route.front().x() += 1;
+      result_.route.edit().front().x() += 1;
     }
     return result_;
   }
@@ -155,7 +155,7 @@ class RoguePlanner final : public Planner {
   PlanResult do_plan(const Request& request) const override {
     misbehave(does_);
     PlanResult result = straight(request.start, request.goal);
-    Route& route = result.route;
+    Polyline& route = result.route.edit();
     if (does_ == "wrong_start") {
       route.front().x() += 5;
     } else if (does_ == "wrong_end") {
@@ -199,21 +199,21 @@ class RogueSmoother final : public Smoother {
   explicit RogueSmoother(const Params& params) : does_(params.does) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request&) const override {
+  PlanResult do_smooth(const Polyline& route, const Request&) const override {
     misbehave(does_);
     PlanResult result;
     result.status = PlanStatus::solved;
     result.route = route;
     if (does_ == "moves_start") {
-      result.route.front().x() += 1;
+      result.route.edit().front().x() += 1;
     } else if (does_ == "moves_end") {
-      result.route.back().x() += 1;
+      result.route.edit().back().x() += 1;
     } else if (does_ == "no_points") {
-      result.route.clear();
+      result.route.edit().clear();
     } else if (does_ == "nan") {
-      result.route[1].y() = kNan;
+      result.route.edit()[1].y() = kNan;
     } else if (does_ == "into_the_wall") {
-      result.route[1] = Vec3(450, 500, 500);
+      result.route.edit()[1] = Vec3(450, 500, 500);
     }
     return result;
   }
@@ -334,13 +334,13 @@ class RogueRule final : public Constraint {
       throw 42;
     }
   }
-  bool do_admits(const Leg&) const override {
+  bool do_admits(const Motion&) const override {
     if (does_ == "admits_throws") {
       throw std::runtime_error("the rule book is lost");
     }
     return does_ != "flickers" || ++asked_ % 2 == 0;
   }
-  std::vector<Violation> do_violations(const Route&, const Request&) const override {
+  std::vector<Violation> do_violations(const Polyline&, const Request&) const override {
     misbehave(does_);
     if (does_ == "absurd_index") {
       return {{"", 1'000'000'000, 0, 0, "somewhere"}};

@@ -91,11 +91,11 @@ class NotNorth final : public Constraint {
            : params_.holds_for == "track" ? AppliesTo::track
                                           : AppliesTo::both;
   }
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return params_.does != "admits" ||
            (leg.from.y() <= params_.max_y_m && leg.to.y() <= params_.max_y_m);
   }
-  std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+  std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
     if (params_.does == "throws") {
       throw std::runtime_error("the rule book is lost");
     }

@@ -98,7 +98,7 @@ inline void expect_no_work_beyond_the_budget(const std::string& planner,
     explicit Counting(std::atomic<int>& count) : asked(count) {}
 
    private:
-    bool do_admits(const Leg&) const override {
+    bool do_admits(const Motion&) const override {
       ++asked;
       return true;
     }

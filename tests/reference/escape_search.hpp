@@ -166,9 +166,8 @@ class EscapeSearch {
       if (then < frontier.until_s && !frontier.seen.contains(key(next)) &&
           scene_.is_free(here.at, here.time, next.at, then)) {
         // Out of danger late is out of danger; to the goal soon.
-        frontier.add(next, frontier.to_goal
-                               ? -then - 1.5 * scene_.min_time(next.at, goal_.position)
-                               : then);
+        frontier.add(
+            next, frontier.to_goal ? -then - 1.5 * scene_.min_time(next.at, goal_.position) : then);
       }
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for ways out, and the cause of collisions: cases whose answer is known, and invariants.
+// The search for ways out, and the cause of collisions: cases whose answer is known, and
+// invariants.
 #include <gtest/gtest.h>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"

@@ -102,7 +102,7 @@ inline Limits mapped(Limits limits, const Isometry& by) {
   return limits;
 }
 
-inline Route mapped(Route route, const Isometry& by) {
+inline Polyline mapped(Polyline route, const Isometry& by) {
   for (Vec3& p : route) {
     p = by.point(p);
   }

@@ -12,9 +12,9 @@ namespace altiplan::reference {
 namespace {
 
 /// From the start (mostly) to the goal (mostly) by way of random places, some outside the volume.
-Route random_route(oracle::Draw& draw, const Request& request) {
+Polyline random_route(oracle::Draw& draw, const Request& request) {
   const Box box = request.volume.grown(0.3);
-  Route route = {request.start.position};
+  Polyline route = {request.start.position};
   for (int n = draw.below(5); n > 0; --n) {
     route.push_back(draw.within(box.min, box.max));
     if (request.level_m && draw.below(6) != 0) {
@@ -51,7 +51,7 @@ std::unique_ptr<Problem> judged_problem(std::uint64_t seed, oracle::Draw& draw) 
 }
 
 using Found = std::multiset<std::pair<std::string, std::size_t>>;
-Found found(const Route& route, const Request& request) {
+Found found(const Polyline& route, const Request& request) {
   Found rules;
   for (const Violation& violation : check(route, request).violations) {
     rules.insert({violation.constraint, violation.at});
@@ -65,7 +65,7 @@ void hold_to_samples(std::uint64_t from, std::uint64_t to) {
   for (std::uint64_t seed = from; seed < to && !::testing::Test::HasFailure(); ++seed) {
     oracle::Draw draw(seed + 11);
     const auto problem = judged_problem(seed, draw);
-    const Route route = random_route(draw, problem->request);
+    const Polyline route = random_route(draw, problem->request);
     const Found judged = found(route, problem->request);
     const Excesses sampled = sampled_judge(route, problem->scene, problem->request);
     for (const auto& rule : judged) {
@@ -98,7 +98,7 @@ TEST(JudgeOracle, MeasuresAreThoseOfSamples) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     oracle::Draw draw(seed + 5);
     const auto problem = judged_problem(seed, draw);
-    const Route route = random_route(draw, problem->request);
+    const Polyline route = random_route(draw, problem->request);
     const Measures m = measure(route, problem->request);
     SCOPED_TRACE(seed);
     double total = 0;
@@ -156,7 +156,7 @@ TEST(JudgeOracle, MeasuresAreThoseOfSamples) {
 }
 
 /// Whether a verdict on this route hangs on rounding.
-bool in_doubt(const Route& route, const Problem& problem) {
+bool in_doubt(const Polyline& route, const Problem& problem) {
   const Excesses sampled = sampled_judge(route, problem.scene, problem.request);
   return std::any_of(sampled.begin(), sampled.end(), [](const auto& entry) {
     return std::abs(entry.second.most) < 1e-4 && entry.second.most != 0;
@@ -169,7 +169,7 @@ void hold_isometries(std::uint64_t from, std::uint64_t to) {
   for (std::uint64_t seed = from; seed < to && !::testing::Test::HasFailure(); ++seed) {
     oracle::Draw draw(seed + 3);
     const auto problem = judged_problem(seed, draw);
-    const Route route = random_route(draw, problem->request);
+    const Polyline route = random_route(draw, problem->request);
     if (in_doubt(route, *problem)) {
       continue;
     }
@@ -178,7 +178,7 @@ void hold_isometries(std::uint64_t from, std::uint64_t to) {
     for (const auto& [name, by] : isometries(problem->scene.ground.has_value())) {
       SCOPED_TRACE("seed " + std::to_string(seed) + " " + name);
       Problem other = mapped(*problem, by);
-      Route there = mapped(route, by);
+      Polyline there = mapped(route, by);
       if (problem->request.level_m) {  // on the level to the last bit, where it was
         for (std::size_t i = 0; i < route.size(); ++i) {
           if (route[i].z() == *problem->request.level_m) {
@@ -203,7 +203,7 @@ void hold_isometries(std::uint64_t from, std::uint64_t to) {
     };
     const auto forth = names(found(route, back.request));
     std::swap(back.request.start.position, back.request.goal.position);
-    EXPECT_EQ(names(found(Route(route.rbegin(), route.rend()), back.request)), forth) << seed;
+    EXPECT_EQ(names(found(Polyline(route.rbegin(), route.rend()), back.request)), forth) << seed;
   }
   EXPECT_GT(sound, 5);
   EXPECT_GT(broken, 50);
@@ -252,7 +252,7 @@ TEST(JudgeMetamorphic, AStricterRuleFindsNoLess) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     oracle::Draw draw(seed + 3);
     const auto problem = judged_problem(seed, draw);
-    const Route route = random_route(draw, problem->request);
+    const Polyline route = random_route(draw, problem->request);
     const Found plain = found(route, problem->request);
     for (const auto& [name, tighten] : kStricter) {
       Request stricter = problem->request;

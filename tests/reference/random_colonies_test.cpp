@@ -22,7 +22,7 @@ using testing::equal;
 
 /// No leg is more than twice and a half as long as the one before.
 class SlowGrowth final : public Constraint {
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return !leg.before || (leg.to - leg.from).norm() <= 2.5 * (leg.from - *leg.before).norm();
   }
 };

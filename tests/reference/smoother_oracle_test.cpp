@@ -9,7 +9,7 @@ namespace {
 
 struct Planned {
   std::unique_ptr<Problem> problem;
-  Route route;
+  Polyline route;
 };
 
 /// A route of astar, perhaps under limits on turns; empty where there is none.
@@ -28,7 +28,7 @@ Planned planned_route(std::uint64_t seed) {
                 c.z(), seed % 3 == 0 ? 6 : 26);
   const PlanResult result = testing::make_planner("astar", yaml)->plan(request);
   if (result.status == PlanStatus::solved) {
-    planned.route = result.route;
+    planned.route = result.route.waypoints();
   }
   return planned;
 }
@@ -39,11 +39,11 @@ struct Best {
 };
 
 /// The fewest waypoints, and of those choices the shortest, by trying all.
-Best best_subset(const Route& route, const Request& request) {
+Best best_subset(const Polyline& route, const Request& request) {
   Best best;
   const std::size_t inner = route.size() - 2;
   for (std::size_t kept = 0; kept < std::size_t{1} << inner; ++kept) {
-    Route subset = {route.front()};
+    Polyline subset = {route.front()};
     for (std::size_t i = 0; i < inner; ++i) {
       if ((kept >> i & 1) != 0) {
         subset.push_back(route[i + 1]);
@@ -113,7 +113,7 @@ void hold_laws(const std::string& name, bool never_longer, std::uint64_t from, s
     for (const auto& [how, by] : isometries(problem->scene.ground.has_value())) {
       SCOPED_TRACE(how);
       const Problem other = mapped(*problem, by);
-      Route there = mapped(route, by);
+      Polyline there = mapped(route, by);
       there.front() = other.request.start.position;
       if (!check(there, other.request).ok()) {
         continue;  // a limit met to the last bit, and lost by rounding

@@ -14,6 +14,8 @@ CALLS = {
     "ants": ([ANTS, "--iterations", "2", "--cells", "20", "--passes", "1"],
              {"steps": "ns_per_step", "threads": "efficiency", "by_cells": "ns_per_cell"}),
     "any-angle": (["city", "--seeds", "1", "--passes", "1"], {"planners": "median_ms"}),
+    "dubins": (["--benchmark_filter=length/easy", "--benchmark_min_time=0.001"],
+               "length/easy/altiplan"),
     "field": (["--passes", "1"], {"steps": "p99_us"}),
     "pilot": (["--flights", "1"], {"steps": "p99.9_us"}),
     "replan": (["--trials", "1"], {"first_plans": "ms", "repairs": "ratio"}),

@@ -61,7 +61,7 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
   if (!stored.route) {
     return std::nullopt;
   }
-  source.route = *stored.route;
+  source.route = stored.route->waypoints();
   return source;
 }
 
@@ -75,6 +75,11 @@ int export_result(const Arguments& arguments) {
   std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
   if (!source) {
     say(stored.file + " contains no " + (arguments.flight ? "flight" : "accepted route"));
+    return kNoRoute;
+  }
+  if (!arguments.flight && !stored.route->is_straight()) {
+    say("not written: the route of " + stored.file +
+        " has turns, and missions are written with straight legs only");
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);

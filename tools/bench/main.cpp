@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   bench::Subcommands all(app);
   for (const auto add : {bench::add_grid, bench::add_any_angle, bench::add_search,
                          bench::add_replan, bench::add_sampling, bench::add_ants, bench::add_pilot,
-                         bench::add_field, bench::add_queries}) {
+                         bench::add_field, bench::add_queries, bench::add_dubins}) {
     add(all);
   }
   try {

@@ -17,8 +17,20 @@ void ConstraintEntry::describe(Fields& f) {
 
 void PointEntry::describe(Fields& f) { f.point(point).required(); }
 
+namespace {
+void describe_heading(Fields& f, std::optional<double>& heading_deg, const char* doc) {
+  f("heading_deg", heading_deg).unit("deg").range(0, 360).doc(doc);
+}
+}  // namespace
+
+void StartEntry::describe(Fields& f) {
+  f.point(point).required();
+  describe_heading(f, heading_deg, "heading at the start, clockwise from north; default: any");
+}
+
 void GoalEntry::describe(Fields& f) {
   f.point(point).required();
+  describe_heading(f, heading_deg, "heading on arrival, clockwise from north; default: any");
   f("tolerance_m", tolerance_m)
       .unit("m")
       .at_least(0)
@@ -45,6 +57,54 @@ void SpeedNearEntry::describe(Fields& f) {
       .doc("speed within this distance");
 }
 
+void WingEntry::describe(Fields& f) {
+  f("airspeed_mps", airspeed_mps)
+      .unit("m/s")
+      .range(0.1, 1000)
+      .required()
+      .doc("airspeed, horizontal component");
+  f("bank_deg", bank_deg)
+      .unit("deg")
+      .range(1, 85)
+      .doc("maximum bank angle: the turn radius is airspeed² / (g tan bank)");
+  f("climb_deg", climb_deg).unit("deg").range(0, 89).doc("maximum climb angle through the air");
+  f("sink_deg", sink_deg).unit("deg").range(0, 89).doc("maximum descent angle through the air");
+}
+
+namespace {
+void describe_from(Fields& f, double& from_deg, double& speed_mps) {
+  f("from_deg", from_deg)
+      .unit("deg")
+      .range(0, 360)
+      .required()
+      .doc("direction from which the wind blows, clockwise from north");
+  f("speed_mps", speed_mps).unit("m/s").range(0, 100).required().doc("wind speed");
+}
+}  // namespace
+
+void WindLayerEntry::describe(Fields& f) {
+  f("above_m", above_m)
+      .unit("m")
+      .required()
+      .doc("lower border of the layer, above sea level; it reaches up to the next one's");
+  describe_from(f, from_deg, speed_mps);
+}
+
+void WindEntry::describe(Fields& f) {
+  f("from_deg", from_deg)
+      .unit("deg")
+      .range(0, 360)
+      .doc("direction from which the wind blows, clockwise from north");
+  f("speed_mps", speed_mps).unit("m/s").range(0, 100).doc("wind speed");
+  f("layers", layers).doc("alternatively: wind by layers of height, from the lowest");
+  f.check(from_deg.has_value() == speed_mps.has_value(), "expected from_deg with speed_mps");
+  f.check(!from_deg || layers.empty(), "expected from_deg and speed_mps, or layers, not both");
+  for (std::size_t i = 1; i < layers.size(); ++i) {
+    f.check(layers[i - 1].above_m < layers[i].above_m,
+            "expected layers in ascending order of above_m");
+  }
+}
+
 void VehicleEntry::describe(Fields& f) {
   f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the vehicle's safety sphere");
   f("speed_mps", speed_mps).unit("m/s").greater_than(0).doc("speed away from obstacles");
@@ -56,6 +116,9 @@ void VehicleEntry::describe(Fields& f) {
       .doc(
           "true: may turn to any heading while it climbs or descends vertically; false: keeps its "
           "heading");
+  f("wing", wing).doc("an aeroplane: it turns by banking at a constant airspeed");
+  f.check(!wing || !turns_on_the_spot, "an aeroplane cannot turn on the spot");
+  f.check(!wing || speed_near.empty(), "an aeroplane has one airspeed: remove speed_near");
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");
   for (std::size_t i = 1; i < speed_near.size(); ++i) {
     f.check(speed_near[i - 1].within_m < speed_near[i].within_m,
@@ -132,6 +195,7 @@ void ScenarioFile::describe(Fields& f) {
       .doc(
           "a ground station's file (.plan, .waypoints, .kml, .gpx): its first point is the start, "
           "its last the goal and the others via points, unless they are given here");
+  f("wind", wind).doc("horizontal wind");
   f("start", start).required().doc("start of the route");
   f("via", via).doc("points to pass, in order");
   f("goal", goal).required().doc("end of the route");

@@ -31,9 +31,17 @@ struct PointEntry {
   void describe(Fields& f);
 };
 
+/// Of the start: a pose, if it has a heading.
+struct StartEntry {
+  Point point;
+  std::optional<double> heading_deg;
+  void describe(Fields& f);
+};
+
 struct GoalEntry {
   Point point;
   double tolerance_m = 0;
+  std::optional<double> heading_deg;
   void describe(Fields& f);
 };
 
@@ -49,12 +57,37 @@ struct SpeedNearEntry {
   void describe(Fields& f);
 };
 
+struct WingEntry {
+  double airspeed_mps = 0;
+  double bank_deg = 30;
+  double climb_deg = 10;
+  double sink_deg = 10;
+  void describe(Fields& f);
+};
+
+/// Wind within a layer of height.
+struct WindLayerEntry {
+  double above_m = 0;
+  double from_deg = 0;
+  double speed_mps = 0;
+  void describe(Fields& f);
+};
+
+/// `{from_deg, speed_mps}` at every height, or `{layers: […]}`.
+struct WindEntry {
+  std::optional<double> from_deg;
+  std::optional<double> speed_mps;
+  std::vector<WindLayerEntry> layers;
+  void describe(Fields& f);
+};
+
 struct VehicleEntry {
   double radius_m = 0;
   double speed_mps = 15;
   std::optional<double> sensing_m;
   std::vector<SpeedNearEntry> speed_near;
   bool turns_on_the_spot = false;
+  std::optional<WingEntry> wing;
   void describe(Fields& f);
 };
 
@@ -124,7 +157,8 @@ struct ScenarioFile {
   std::optional<double> level_flight_at_m;
   std::optional<std::string> start_time;
   std::optional<Path> mission;
-  PointEntry start;
+  WindEntry wind;
+  StartEntry start;
   std::vector<GoalEntry> via;
   GoalEntry goal;
   std::vector<MovingEntry> moving;

@@ -21,7 +21,7 @@ Flight::Flight(const FlightSetup& setup)
       world_(setup),
       request_(setup.request),
       truth_request_(setup.request),
-      path_(setup.route),
+      path_(setup.route.chords(kChordTolerance)),
       events_(setup.events),
       state_(setup.request.start),
       before_(setup.request.before_start()),
@@ -86,9 +86,8 @@ double Flight::max_time() const {
     return *setup_.max_time_s;
   }
   double duration = 0;
-  for (std::size_t i = 0; i + 1 < setup_.route.size(); ++i) {
-    duration += leg_duration(*setup_.request.world, setup_.request.vehicle, setup_.route[i],
-                             setup_.route[i + 1]);
+  for (std::size_t i = 0; i < setup_.route.leg_count(); ++i) {
+    duration += leg_duration(setup_.route.leg(i), setup_.request);
   }
   return std::max(kTimesDuration * duration, 10 * setup_.step_s);
 }

@@ -40,7 +40,7 @@ void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) 
 
 void Flight::finish() {
   result_.reached = !ended_ && request_.goal.reached_at(state_.position);
-  Route track;
+  Polyline track;
   for (const auto& [t, p] : result_.track) {
     track.push_back(p);
   }
@@ -74,7 +74,7 @@ std::string Flight::attribute_to() const {
   return std::string(when) + ", near " + place(at) + " m: " + first.message;
 }
 
-void Flight::judge_whole(const Route& track) {
+void Flight::judge_whole(const Polyline& track) {
   const Request& request = truth_request_;
   std::vector<Violation>& found = result_.check.violations;
   const Goal& goal = request_.goal;  // as it is now

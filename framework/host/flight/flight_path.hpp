@@ -11,7 +11,7 @@ namespace altiplan::host {
 /// The route still to be flown, parametrised by distance along it (m).
 class FlightPath {
  public:
-  explicit FlightPath(const Route& route) : points_(without_repeats(route)) { measure(); }
+  explicit FlightPath(const Polyline& route) : points_(without_repeats(route)) { measure(); }
 
   double length() const { return along_.back(); }
   Vec3 at(double s) const {
@@ -61,7 +61,7 @@ class FlightPath {
 
   /// Goes from p straight to position s, then along the path.
   void rejoin(const Vec3& p, double s) {
-    Route route{p, at(s)};
+    Polyline route{p, at(s)};
     if (s < length()) {
       append_waypoints_after(s, route);
     }
@@ -70,7 +70,7 @@ class FlightPath {
   }
   /// Restarts the path at p, in place of position s, with another end.
   void move_end(const Vec3& p, double s, const Vec3& goal) {
-    Route route{p};
+    Polyline route{p};
     append_waypoints_after(s, route);
     route.back() = goal;
     points_ = without_repeats(route);
@@ -94,7 +94,7 @@ class FlightPath {
     return after == along_.begin() ? 0 : std::size_t(after - along_.begin()) - 1;
   }
 
-  Route points_;
+  Polyline points_;
   std::vector<double> along_;
 };
 }  // namespace altiplan::host

@@ -82,7 +82,7 @@ void Flight::take_route(Route route, const Request& request) {
     } catch (const PluginError&) {  // the route stays unchanged
     }
   }
-  path_ = FlightPath(route);
+  path_ = FlightPath(route.chords(kChordTolerance));
   progress_ = 0;
   stuck_ = 0;
   end_moved_ = false;

@@ -66,7 +66,7 @@ class Flight {
   /// The first violated constraint, with time and position.
   std::string attribute_to() const;
   /// The checks of a whole route, as in check(); legs were judged in the world of their time.
-  void judge_whole(const Route& track);
+  void judge_whole(const Polyline& track);
 
   const FlightSetup& setup_;
   FlightWorld world_;

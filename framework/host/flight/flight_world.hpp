@@ -67,6 +67,6 @@ class FlightWorld {
   std::vector<SensedObstacle> sensed_;
   NearestLeg separation_{0, kInfinity};
   std::size_t legs_ = 0;
-  Route flown_;  ///< the latest legs, in the current layers, not yet measured
+  Polyline flown_;  ///< the latest legs, in the current layers, not yet measured
 };
 }  // namespace altiplan::host

@@ -38,7 +38,7 @@ class Replay {
       }
     }
     meet_events(track.back(), track.size() - 1, touching);
-    Route places;
+    Polyline places;
     for (const auto& [t, p] : track) {
       places.push_back(p);
     }
@@ -103,7 +103,7 @@ class Replay {
     touching = met != nullptr;
   }
 
-  void finish(const Route& track) {
+  void finish(const Polyline& track) {
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
     verdict_.reached = verdict_.collisions == 0 && request_.goal.reached_at(track.back());
     if (!request_.goal.reached_at(track.back())) {
@@ -115,7 +115,7 @@ class Replay {
     }
   }
 
-  void take_measures(const Track& track, const Route& places) {
+  void take_measures(const Track& track, const Polyline& places) {
     verdict_.measures = measure(places, request_);
     verdict_.measures.min_radius_m = track_radius(places, request_.vehicle).radius_m;
     verdict_.measures.duration_s = track.back().first - track.front().first;
@@ -139,8 +139,8 @@ TrackVerdict judge_track(const Track& track, const FlightSetup& setup) {
 namespace {
 /// Drops the points that lie on the straight line from the last one kept to the next; `index`
 /// receives the track indices of the points kept.
-Route stretches(const Route& track, std::vector<std::size_t>& index) {
-  Route kept;
+Polyline stretches(const Polyline& track, std::vector<std::size_t>& index) {
+  Polyline kept;
   for (std::size_t i = 0; i < track.size(); ++i) {
     const bool ends = i == 0 || i + 1 == track.size();
     if (ends || point_leg_distance(track[i], kept.back(), track[i + 1]) > kLengthTolerance) {
@@ -152,10 +152,10 @@ Route stretches(const Route& track, std::vector<std::size_t>& index) {
 }
 }  // namespace
 
-TrackRadius track_radius(const Route& track, const Vehicle& vehicle) {
+TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
   TrackRadius least;
   std::vector<std::size_t> index;
-  const Route bends = stretches(track, index);
+  const Polyline bends = stretches(track, index);
   std::optional<Approach> before;
   for (std::size_t k = 1; k + 1 < bends.size(); ++k) {
     before = onward(before, bends[k - 1]);
@@ -171,7 +171,7 @@ TrackRadius track_radius(const Route& track, const Vehicle& vehicle) {
   return least;
 }
 
-std::vector<Violation> whole_track_violations(const Route& track, const Request& request,
+std::vector<Violation> whole_track_violations(const Polyline& track, const Request& request,
                                               double min_turn_radius) {
   std::vector<Violation> found;
   const TrackRadius tightest = track_radius(track, request.vehicle);

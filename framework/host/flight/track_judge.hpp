@@ -34,11 +34,11 @@ struct TrackRadius {
 /// At each point the larger radius of two interpretations of the samples: they lie on the curve
 /// flown (the circle through a sample and its neighbours), or the vehicle flew straight legs with
 /// fillets between them (fillet_radius). One sampling cannot distinguish the two.
-TrackRadius track_radius(const Route& track, const Vehicle& vehicle);
+TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle);
 
 /// Violations of a whole track, beyond its legs: its minimum turn radius, its length, and the
 /// constraints on whole tracks.
-std::vector<Violation> whole_track_violations(const Route& track, const Request& request,
+std::vector<Violation> whole_track_violations(const Polyline& track, const Request& request,
                                               double min_turn_radius);
 
 /// The maximum of the vehicle's speed profile.

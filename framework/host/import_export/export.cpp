@@ -98,7 +98,7 @@ class Placing {
 };
 
 /// The end point of the landing below the last point.
-Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
+Vec3 landing(const Mission& mission, const Polyline& route, const Placing& place) {
   Vec3 down = route.back();
   down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
   return down;
@@ -106,7 +106,7 @@ Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
 
 /// The problem of the vertical climb and descent, which are not part of the route: a layer that
 /// they come too near to, except the ground, where they begin and end; "" if none.
-std::string column_problem(const Mission& mission, const Route& route, const Placing& place,
+std::string column_problem(const Mission& mission, const Polyline& route, const Placing& place,
                            const ExportOptions& options) {
   Vec3 home = route.front();
   home.z() = place.home().altitude_m;
@@ -128,7 +128,7 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
 
 kit::MissionFile mission_of(const Mission& mission, const ExportSource& source,
                             const Placing& place, const ExportOptions& options) {
-  const Route& route = source.route;
+  const Polyline& route = source.route;
   kit::MissionFile file;
   file.format = options.format.value();
   file.name = source.name;
@@ -169,7 +169,7 @@ std::string csv_text(const ExportSource& source, const Placing& place, bool plac
 }
 
 /// The first violation of the route as written and read back; "" if it is valid.
-std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route) {
+std::string problem_of(const Mission& mission, const ExportSource& source, const Polyline& route) {
   CheckResult check;
   if (source.times.empty()) {
     check = judge(route, mission.request, mission.via);
@@ -225,7 +225,7 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
 }
 
 /// Adds the zones; reports it if the format cannot hold them.
-void add_zones(const Mission& mission, const Route& route, kit::MissionFile& file,
+void add_zones(const Mission& mission, const Polyline& route, kit::MissionFile& file,
                std::vector<std::string>& messages) {
   const World& world = mission.known;
   const bool flat = file.format == Format::qgc_plan;
@@ -291,7 +291,7 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
                        : csv_text(source, place, mission.truth.frame().has_position(), decimals);
     const ImportedRoute read = read_imported_route(file_name(options.format), written,
                                                    mission.truth, mission.request.start.position);
-    const std::string now = problem_of(mission, source, read.route);
+    const std::string now = problem_of(mission, source, read.route.waypoints());
     if (now.empty()) {
       result.messages.push_back(std::to_string(source.route.size()) + " points" +
                                 (options.land ? " and a landing" : "") + ", " + place.in_words() +

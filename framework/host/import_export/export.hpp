@@ -28,7 +28,7 @@ struct ExportOptions {
 /// The source of an export: a route, or a flight with its times.
 struct ExportSource {
   std::string name;
-  Route route;
+  Polyline route;
   std::vector<double> times;        ///< of a flight, one per point
   std::vector<FlightEvent> events;  ///< of the flight
 };

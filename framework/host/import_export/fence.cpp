@@ -110,7 +110,7 @@ std::vector<Zone> all_zones(const World& world) {
   return zones;
 }
 
-bool crosses(const Shape& flat, const Route& route) {
+bool crosses(const Shape& flat, const Polyline& route) {
   for (std::size_t n = 0; n + 1 < route.size(); ++n) {
     if (leg_depth(flat, route[n], route[n + 1]) > 0) {
       return true;
@@ -142,7 +142,7 @@ Fence zones_of(const World& world) {
   return fence;
 }
 
-Fence flat_fence_of(const World& world, const Route& route) {
+Fence flat_fence_of(const World& world, const Polyline& route) {
   Fence fence;
   for (const Zone& zone : all_zones(world)) {
     const MissionZone& said = zone.zone;

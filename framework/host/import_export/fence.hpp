@@ -21,5 +21,5 @@ Fence zones_of(const World& world);
 
 /// The zones as a fence without vertical limits, as ground stations use it. A zone that the route
 /// passes over, under, or through a hole of would stop it there: it is left out with a note.
-Fence flat_fence_of(const World& world, const Route& route);
+Fence flat_fence_of(const World& world, const Polyline& route);
 }  // namespace altiplan::host

@@ -28,7 +28,9 @@ const char* reference_of(AltitudeFrame frame) {
 
 void undo_rounding(Route& route, const Vec3& start) {
   if ((route.front() - start).norm() <= kRoundingReach) {
-    route.front() = start;
+    Polyline points = route.waypoints();
+    points.front() = start;
+    route = std::move(points);
   }
 }
 
@@ -102,7 +104,7 @@ ImportedRoute read_imported_route(const std::string& file, const std::string& te
   }
   ImportedRoute result;
   result.route = read_route_csv(file, text);
-  expect_reachable(result.route, file);
+  expect_reachable(result.route.waypoints(), file);
   undo_rounding(result.route, start);
   return result;
 }
@@ -126,6 +128,6 @@ ImportedRoute read_imported_route(const std::string& file, const Mission& missio
   if (json.is_object() && !json.contains("route")) {
     throw Error(file + ": expected " + expected);
   }
-  return {route_of(json.is_object() ? json.at("route") : json, file), {}};
+  return {route_of(json, file), {}};
 }
 }  // namespace altiplan::host

@@ -60,8 +60,8 @@ void expect_frame(const std::vector<std::string_view>& head,
 }
 }  // namespace
 
-Route read_route_csv(const std::string& file, const std::string& text) {
-  Route route;
+Polyline read_route_csv(const std::string& file, const std::string& text) {
+  Polyline route;
   std::vector<std::string_view> head;
   std::array<std::size_t, 3> columns{};
   std::size_t line = 0;

@@ -9,5 +9,5 @@ namespace altiplan::host {
 
 /// Reads the columns x_m, y_m and z_m of a table whose first line names its columns; ignores
 /// others. Throws Error with file and line.
-Route read_route_csv(const std::string& file, const std::string& text);
+Polyline read_route_csv(const std::string& file, const std::string& text);
 }  // namespace altiplan::host

@@ -21,7 +21,7 @@ double off_line(const Vec3& a, const Vec3& p, const Vec3& b) {
 /// The remaining points of the route, and which of them cannot currently be dropped.
 class Thinning {
  public:
-  Thinning(const Route& route, const Request& request, const std::vector<Goal>& via)
+  Thinning(const Polyline& route, const Request& request, const std::vector<Goal>& via)
       : route_(route), request_(request), left_(route.size()), stuck_(route.size(), false) {
     std::iota(left_.begin(), left_.end(), std::size_t{0});
     for (const std::size_t n : via_indices(route, via)) {
@@ -89,7 +89,7 @@ class Thinning {
     return true;
   }
 
-  const Route& route_;
+  const Polyline& route_;
   const Request& request_;
   std::vector<std::size_t> left_;
   std::vector<bool> stuck_;
@@ -97,7 +97,7 @@ class Thinning {
 };
 }  // namespace
 
-std::vector<std::size_t> thinned(const Route& route, std::size_t most, const Request& request,
+std::vector<std::size_t> thinned(const Polyline& route, std::size_t most, const Request& request,
                                  const std::vector<Goal>& via) {
   return Thinning(route, request, via).down_to(most);
 }

@@ -15,9 +15,10 @@ void check_consistency(const Layer& layer, const Route& route, std::vector<Viola
   constexpr int kSamples = 8;  // per leg; this checks layers, not the route
   const Environment& environment = *layer.environment;
   const double slack = environment.over_approximation();
-  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
     for (int k = 0; k < kSamples; ++k) {
-      const Vec3 p = route[i] + (route[i + 1] - route[i]) * (double(k) / kSamples);
+      const Vec3 p = leg.at(double(k) / kSamples);
       const double clearance = environment.clearance(p);
       const bool inside = environment.blocked(p, p, 0);
       const bool solid = clearance < -slack - 1e-3;

@@ -12,6 +12,7 @@
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
+#include "host/mission/vehicle.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -57,18 +58,6 @@ Box volume_of(const Config& config, const World& truth, const std::optional<doub
     }
   }
   return box;
-}
-
-Vehicle vehicle_of(const VehicleEntry& entry) {
-  Vehicle vehicle;
-  vehicle.radius_m = entry.radius_m;
-  vehicle.speed_mps = entry.speed_mps;
-  vehicle.sensing_m = entry.sensing_m.value_or(kInfinity);
-  vehicle.turns_on_the_spot = entry.turns_on_the_spot;
-  for (const SpeedNearEntry& near : entry.speed_near) {
-    vehicle.speed_near.push_back({near.within_m, near.speed_mps});
-  }
-  return vehicle;
 }
 
 std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, const Box& volume,
@@ -315,6 +304,10 @@ Site site_of(const Config& config) {
   return site;
 }
 
+std::optional<double> heading_of(const std::optional<double>& compass_deg) {
+  return compass_deg ? std::optional(radians(90 - *compass_deg)) : std::nullopt;
+}
+
 /// Resolves start, goal and via points, in the frame that is now known.
 void place_points(const Config& config, Mission& mission) {
   const ScenarioFile& file = config.scenario;
@@ -325,13 +318,17 @@ void place_points(const Config& config, Mission& mission) {
     return resolve_point(point, site, file.level_flight_at_m, where, key);
   };
   request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
-  request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m};
+  request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m,
+                  heading_of(file.goal.heading_deg)};
+  if (const auto heading = heading_of(file.start.heading_deg)) {
+    request.start.velocity = request.ground_velocity({request.start.position, *heading});
+  }
   site.start = request.start.position;
   site.goal = request.goal.position;
   for (std::size_t i = 0; i < file.via.size(); ++i) {
     mission.via.push_back(
         {placed(file.via[i].point, tree.find("via")->items[i].where, "via." + std::to_string(i)),
-         file.via[i].tolerance_m});
+         file.via[i].tolerance_m, heading_of(file.via[i].heading_deg)});
   }
 }
 }  // namespace
@@ -369,6 +366,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told,
 
   Request& request = mission.request;
   request.vehicle = site.vehicle;
+  request.wind = wind_of(file.wind);
   request.volume = site.volume;
   request.level_m = level;
   request.threads = threads;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/result/result_json.hpp"
 
+#include "host/result/legs_json.hpp"
+
 #include <cmath>
 #include <set>
 
@@ -50,6 +52,7 @@ Json step_json(const StepResult& step) {
   json["setup_time_s"] = step.setup_time_s;
   json["counters"] = counters_json(step.counters);
   json["route"] = to_json(step.route);
+  json["legs"] = legs_json(step.route);
   json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
   json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
   return json;
@@ -120,7 +123,7 @@ Json lonlat_json(const Route& route, const Frame& frame) {
     return nullptr;
   }
   Json json = Json::array();
-  for (const Vec3& p : route) {
+  for (const Vec3& p : route.chords(kChordTolerance)) {
     const auto at = frame.to_lonlat(p.x(), p.y());
     json.push_back({at[0], at[1], p.z()});
   }
@@ -193,7 +196,7 @@ Json plugins_json(const Config& config) {
 
 Json to_json(const Route& route) {
   Json json = Json::array();
-  for (const Vec3& p : route) {
+  for (const Vec3& p : route.chords(kChordTolerance)) {
     json.push_back({number(p.x()), number(p.y()), number(p.z())});
   }
   return json;
@@ -247,6 +250,7 @@ Json result_json(const Config& config, const RunResult& result) {
   }
   const StepResult* accepted = result.accepted ? &result.steps[*result.accepted] : nullptr;
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
+  json["legs"] = accepted ? legs_json(accepted->route) : Json(nullptr);
   json["route_lonlat"] = accepted ? lonlat_json(accepted->route, result.frame) : Json(nullptr);
   json["metrics"] = run_metrics(result);
   json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);

@@ -18,6 +18,7 @@ Json result_json(const Config& config, const RunResult& result);
 /// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
 Json plugins_json(const Config& config);
 
+/// Points of the route; of turns, ends of chords within kChordTolerance.
 Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);

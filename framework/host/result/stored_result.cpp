@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/result/stored_result.hpp"
 
+#include "host/result/legs_json.hpp"
+
 #include <algorithm>
 #include <set>
 
@@ -90,7 +92,7 @@ Json read_json(const std::string& file, const std::string& expected) {
   }
 }
 
-void expect_reachable(const Route& route, const std::string& file) {
+void expect_reachable(const Polyline& route, const std::string& file) {
   constexpr double kFarthest = 1e8;  // metres
   for (std::size_t n = 0; n < route.size(); ++n) {
     if (!(route[n].cwiseAbs().maxCoeff() <= kFarthest)) {
@@ -100,8 +102,23 @@ void expect_reachable(const Route& route, const std::string& file) {
   }
 }
 
-Route route_of(const Json& json, const std::string& file) {
-  Route route;
+namespace {
+/// A result has its route twice; if they differ, which one was flown is unknown.
+void expect_equal(const Polyline& route, const Polyline& legs, const std::string& file) {
+  const std::size_t common = std::min(route.size(), legs.size());
+  std::size_t n = 0;
+  while (n < common && (route[n] - legs[n]).norm() <= kLengthTolerance) {
+    ++n;
+  }
+  if (n < common || route.size() != legs.size()) {
+    throw Error(file + ": route and legs disagree at point " + std::to_string(n));
+  }
+}
+}  // namespace
+
+Route route_of(const Json& holder, const std::string& file) {
+  const Json& json = holder.is_object() ? holder.at("route") : holder;
+  Polyline route;
   try {
     for (const Json& p : json.get_ref<const Json::array_t&>()) {  // or it throws
       if (!is_point(p, 3)) {
@@ -117,7 +134,16 @@ Route route_of(const Json& json, const std::string& file) {
     throw Error(file + ": it contains no route");
   }
   expect_reachable(route, file);
-  return route;
+  if (!holder.is_object() || !holder.contains("legs") || holder.at("legs").is_null()) {
+    return route;
+  }
+  const Route legs = route_of_legs(route.front(), holder.at("legs"), file + ": legs");
+  expect_reachable(legs.waypoints(), file);
+  if (legs.is_straight()) {
+    return route;
+  }
+  expect_equal(route, legs.chords(kChordTolerance), file);
+  return legs;
 }
 
 StoredResult read_result(const std::string& file, const Overrides& overrides) {
@@ -142,7 +168,7 @@ StoredResult stored_result(const std::string& file, Json content, const Override
       }
     }
     if (!json.at("route").is_null()) {
-      stored.route = route_of(json.at("route"), file);
+      stored.route = route_of(json, file);
     }
     if (!json.at("flight").is_null()) {
       stored.track = track_of(json.at("flight").at("track"), file);

@@ -34,8 +34,9 @@ Json read_json(const std::string& file, const std::string& expected);
 
 /// Throws Error for a point farther away than anything flies: queries of the world would take
 /// forever.
-void expect_reachable(const Route& route, const std::string& file);
+void expect_reachable(const Polyline& route, const std::string& file);
 
-/// Reads a list of [x, y, z]; `file` is for messages. Throws Error, also for an empty list.
-Route route_of(const Json& json, const std::string& file);
+/// Reads the legs of a result or a step, or else its route, or a list of [x, y, z]; `file` is for
+/// messages. Throws Error, also for an empty route.
+Route route_of(const Json& holder, const std::string& file);
 }  // namespace altiplan::host

@@ -28,19 +28,11 @@ struct Key {
 };
 
 constexpr Key kResult[] = {
-    {"pipeline", kText},
-    {"scenario", kText},
-    {"files", kList},
-    {"overrides", kObject},
-    {"seed", kSeed},
-    {"status", kStatus},
-    {"message", kText},
-    {"steps", kList},
-    {"route", kList | kNull},
-    {"metrics", kObject},
-    {"check", kObject | kNull},
-    {"flight", kObject | kNull},
-    {"trace", kText | kNull},
+    {"pipeline", kText},         {"scenario", kText},      {"files", kList},
+    {"overrides", kObject},      {"seed", kSeed},          {"status", kStatus},
+    {"message", kText},          {"steps", kList},         {"route", kList | kNull},
+    {"legs", kList | kNull},     {"metrics", kObject},     {"check", kObject | kNull},
+    {"flight", kObject | kNull}, {"trace", kText | kNull},
 };
 constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};
 constexpr Key kStep[] = {
@@ -52,6 +44,7 @@ constexpr Key kStep[] = {
     {"status", kStatus},
     {"message", kText},
     {"route", kList | kNull},
+    {"legs", kList | kNull},
     {"metrics", kObject | kNull},
     {"check", kObject | kNull},
 };

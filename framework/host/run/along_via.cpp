@@ -40,10 +40,10 @@ std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
 
 /// The vehicle's velocity at the end of a route.
 Vec3 velocity_at_end(const Route& route, double speed) {
-  for (std::size_t i = route.size(); i-- > 1;) {
-    const Vec3 leg = route[i] - route[i - 1];
-    if (leg.squaredNorm() > 0) {
-      return leg.normalized() * speed;
+  for (std::size_t i = route.leg_count(); i-- > 0;) {
+    const Vec3 rate = route.leg(i).rate(1);
+    if (rate.squaredNorm() > 0) {
+      return rate.normalized() * speed;
     }
   }
   return Vec3::Zero();
@@ -93,8 +93,7 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
                           ? to + " " + point_problem(request.goal.position, request)
                           : on_the_way(part.message);
     }
-    const std::ptrdiff_t shared = whole.route.empty() || part.route.empty() ? 0 : 1;
-    whole.route.insert(whole.route.end(), part.route.begin() + shared, part.route.end());
+    whole.route.append(part.route);
     if (part.status != PlanStatus::solved) {
       break;
     }

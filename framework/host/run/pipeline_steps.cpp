@@ -69,9 +69,7 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   std::size_t piece = 0;
   std::string told;  // one message per section: a smoother sees only its own
   PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
-    const Route raw(before.begin() + std::ptrdiff_t(from),
-                    before.begin() + std::ptrdiff_t(cuts[piece]) + 1);
-    PlanResult result = smoother.smooth(raw, part);
+    PlanResult result = smoother.smooth(before.part(from, cuts[piece]), part);
     if (!result.message.empty()) {
       told += (told.empty() ? "to " : "; to ") +
               (piece == fixed.size() ? "the goal" : "via point " + std::to_string(piece)) + ": " +

@@ -10,8 +10,8 @@ namespace altiplan::host {
 
 /// Writes a run's search events as lines of JSON: first {"altiplan_trace": 1}, then for each event
 /// {"step", "kind", "node", "parent", "at": [x, y, z], "value"}, with "mean" and "alive" for
-/// iterations of a population (docs/reference/result.md). The file is moved to its place on close. Throws
-/// Error if it cannot be written.
+/// iterations of a population (docs/reference/result.md). The file is moved to its place on close.
+/// Throws Error if it cannot be written.
 class TraceFile final : public Trace {
  public:
   explicit TraceFile(std::filesystem::path file);

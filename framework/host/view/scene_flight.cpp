@@ -178,7 +178,7 @@ std::set<TrackPlace> places_of(const Track& track, const std::set<std::size_t>& 
   for (const std::size_t i : points) {
     places.emplace(i, 0);
   }
-  Route route;
+  Polyline route;
   for (const auto& [t, p] : track) {
     route.push_back(p);
   }

@@ -17,7 +17,8 @@ struct Sample {
 };
 
 /// The positions of the route's minimum clearances and height, as leg and fraction of it.
-std::vector<std::pair<std::size_t, double>> nearest_places(const Route& route, const World& world) {
+std::vector<std::pair<std::size_t, double>> nearest_places(const Polyline& route,
+                                                           const World& world) {
   struct Nearest {
     NearestLeg leg;
     const Environment* layer;
@@ -44,7 +45,7 @@ std::vector<std::pair<std::size_t, double>> nearest_places(const Route& route, c
 }
 
 /// The waypoints, those positions, and evenly spaced others up to the sample limit.
-std::vector<Sample> samples_of(const Route& route,
+std::vector<Sample> samples_of(const Polyline& route,
                                const std::vector<std::pair<std::size_t, double>>& places,
                                std::size_t most, bool turns_on_the_spot) {
   const double total = length(route);
@@ -119,9 +120,9 @@ void ClearanceProfile::write(Json& profile) const {
   profile["to"] = to_;
 }
 
-Json route_profile(const Route& whole, const Request& request, std::size_t samples) {
+Json route_profile(const Polyline& whole, const Request& request, std::size_t samples) {
   const World& world = *request.world;
-  const Route route = without_repeats(whole);
+  const Polyline route = without_repeats(whole);
   Json profile;
   for (const char* key : {"s", "at", "altitude", "ground", "speed", "turn"}) {
     profile[key] = Json::array();

@@ -34,6 +34,20 @@ Judged judged(const Route& route, const Mission& mission) {
   return {route, judge(route, mission.request, mission.via), measure(route, mission.request)};
 }
 
+/// The verdict with indices into the points that show the route's turns.
+Json check_of_points(const Judged& judged) {
+  std::vector<std::size_t> point_of{0};  // by waypoint
+  for (std::size_t i = 0; i < judged.route.leg_count(); ++i) {
+    point_of.push_back(point_of.back() + judged.route.leg(i).chords(kChordTolerance).size() - 1);
+  }
+  Json check = to_json(judged.check);
+  for (Json& violation : check.at("violations")) {
+    violation["at"] =
+        point_of[std::min(violation.at("at").get<std::size_t>(), point_of.size() - 1)];
+  }
+  return check;
+}
+
 /// The metrics of a run without a route.
 Json no_metrics() {
   Json metrics = to_json(Measures{});
@@ -57,12 +71,12 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
   if (route.is_null() || route.empty()) {
     return json;
   }
-  Route places = route_of(route, stored.file);
+  Route places = route_of(step, stored.file);
   const Judged now = accepted && accepted->route == places ? *accepted : judged(places, mission);
   json["route"] = to_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
   if (!json.at("check").is_null()) {  // else the run ended before a verdict
-    json["check"] = check_scene(to_json(now.check), whose, notes);
+    json["check"] = check_scene(check_of_points(now), whose, notes);
     set_status(json, stored.file, status_of(now.check), first_found(now.check));
   }
   return json;
@@ -140,7 +154,7 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
       metrics_now(result.at("metrics"), accepted ? to_json(accepted->measures) : no_metrics());
   result.at("check");  // throws if it is not a result
   json["check"] =
-      check_scene(accepted ? to_json(accepted->check) : Json(nullptr), stored.file, notes);
+      check_scene(accepted ? check_of_points(*accepted) : Json(nullptr), stored.file, notes);
   json["steps"] = Json::array();
   for (const Json& step : result.at("steps")) {
     json["steps"].push_back(step_scene(step, stored, accepted, mission, notes));
@@ -148,7 +162,8 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
   json["profile"] =
-      accepted ? route_profile(accepted->route, mission.request, samples) : Json(nullptr);
+      accepted ? route_profile(accepted->route.chords(kChordTolerance), mission.request, samples)
+               : Json(nullptr);
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
   conclude(json, stored, accepted, notes);
   json["trace"] = trace_scene(stored, notes);

@@ -24,14 +24,25 @@ ALTIPLAN_API CheckResult check(const Route& route, const Request& request);
 ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
                          const Request& request);
 
+/// The same for a leg of any kind. Turns are judged by proof, not by samples: a chord within e of
+/// its piece of the turn decides for the whole piece if it keeps or violates a limit by more than
+/// e; else the piece is halved until e is below 1e-6 m, where doubt counts as a violation.
+ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Leg& leg,
+                         const Request& request);
+
 /// True if the turn from the approach into the leg a–b satisfies the request's turn limits.
 ALTIPLAN_API bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b,
                           const Request& request);
 
 /// Violations of the leg, one sentence each; empty if and only if leg_ok. `index` becomes `at`.
 ALTIPLAN_API std::vector<Violation> leg_violations(const std::optional<Approach>& before,
-                                                   const Vec3& a, const Vec3& b,
-                                                   const Request& request, std::size_t index);
+                                                   const Leg& leg, const Request& request,
+                                                   std::size_t index);
+inline std::vector<Violation> leg_violations(const std::optional<Approach>& before, const Vec3& a,
+                                             const Vec3& b, const Request& request,
+                                             std::size_t index) {
+  return leg_violations(before, Leg::straight(a, b), request, index);
+}
 
 /// Why a point (start, goal, via) is infeasible in this problem, in words and figures; "" where it
 /// is feasible.

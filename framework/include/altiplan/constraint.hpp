@@ -14,11 +14,14 @@ namespace altiplan {
 struct Request;
 
 /// A straight motion, with the preceding point where there is one.
-struct Leg {
+struct Motion {
   std::optional<Vec3> before;
   Vec3 from{0, 0, 0};
   Vec3 to{0, 0, 0};
 };
+
+/// Maximum distance, metres, between a turn and the chords that constraints see of it.
+inline constexpr double kChordTolerance = 0.01;
 
 /// A violation of a constraint at one place of a route.
 struct Violation {
@@ -38,15 +41,16 @@ enum class AppliesTo { route, track, both };
 ///  1. Pure and const: callable from any number of threads.
 ///  2. tighten only ever makes a limit stricter.
 ///  3. admits depends on the leg alone, and is monotone under the constraint's own parameter.
-///  4. violations is empty if and only if the route satisfies the constraint; it covers what
+///  4. Legs are straight: a turn is given as chords at most kChordTolerance from it.
+///  5. violations is empty if and only if the route satisfies the constraint; it covers what
 ///     tighten and admits cannot express (path-dependent constraints).
 class ALTIPLAN_API Constraint {
  public:
   virtual ~Constraint();
   AppliesTo applies_to() const { return do_applies_to(); }
   void tighten(Limits& limits, const Request& request) const { do_tighten(limits, request); }
-  bool admits(const Leg& leg) const { return do_admits(leg); }
-  std::vector<Violation> violations(const Route& route, const Request& request) const {
+  bool admits(const Motion& leg) const { return do_admits(leg); }
+  std::vector<Violation> violations(const Polyline& route, const Request& request) const {
     return do_violations(route, request);
   }
 
@@ -54,8 +58,8 @@ class ALTIPLAN_API Constraint {
   virtual AppliesTo do_applies_to() const;
   /// The request has its world, start and goal; its limits are those tightened so far.
   virtual void do_tighten(Limits& limits, const Request& request) const;
-  virtual bool do_admits(const Leg& leg) const;
-  virtual std::vector<Violation> do_violations(const Route& route, const Request& request) const;
+  virtual bool do_admits(const Motion& leg) const;
+  virtual std::vector<Violation> do_violations(const Polyline& route, const Request& request) const;
 };
 
 /// A constraint under the name that the user gave it.
@@ -64,6 +68,6 @@ struct ALTIPLAN_API NamedConstraint {
   std::shared_ptr<const Constraint> constraint;
 
   /// The constraint's admits; exceptions are attributed to `name`.
-  bool admits(const Leg& leg) const;
+  bool admits(const Motion& leg) const;
 };
 }  // namespace altiplan

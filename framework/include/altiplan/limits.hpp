@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,8 +30,12 @@ struct Limits {
   double min_turn_radius = 0;  ///< for the corners of a route (fillet_radius) and the curvature of
                                ///< a track
   double max_climb = kPi / 2;
+  std::optional<double> max_sink{};  ///< of descents; none: max_climb
   double max_route_length = kInfinity;
 
+  /// The steepest leg that may be flown both ways.
+  double max_slope() const { return std::min(max_climb, max_descent()); }
+  double max_descent() const { return max_sink.value_or(max_climb); }
   /// True if two legs that each satisfy the limits may violate one together.
   bool turns() const {
     return max_turn_horizontal < kPi || max_turn_space < kPi || min_turn_radius > 0;

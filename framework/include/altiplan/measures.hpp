@@ -21,6 +21,7 @@ struct Measures {
   std::optional<double> duration_s;      ///< at the vehicle's speed profile
 };
 
+/// Of turns, clearances are those of chords within 1e-4 m.
 ALTIPLAN_API Measures measure(const Route& route, const Request& request);
 
 /// Minimum clearance of the leg a–b, by bisection on `blocked` so that it agrees with the judge
@@ -32,4 +33,6 @@ ALTIPLAN_API double leg_clearance(const Environment& environment, const Vec3& a,
 /// Seconds from a to b at the vehicle's speed profile.
 ALTIPLAN_API double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a,
                                  const Vec3& b);
+/// Seconds of a leg of any kind: of an aeroplane, or in wind, at its airspeed.
+ALTIPLAN_API double leg_duration(const Leg& leg, const Request& request);
 }  // namespace altiplan

@@ -13,6 +13,7 @@
 #include "altiplan/random.hpp"
 #include "altiplan/trace.hpp"
 #include "altiplan/vehicle.hpp"
+#include "altiplan/wind.hpp"
 #include "altiplan/world.hpp"
 
 namespace altiplan {
@@ -20,6 +21,7 @@ namespace altiplan {
 struct Goal {
   Vec3 position{0, 0, 0};
   double tolerance_m = 0;
+  std::optional<double> heading{};  ///< on arrival, through the air, counter-clockwise from east
 
   bool reached_at(const Vec3& p) const {
     return (p - position).norm() <= tolerance_m + kLengthTolerance;
@@ -73,6 +75,7 @@ struct Request {
   Vehicle vehicle;
   State start;  ///< a non-zero velocity gives the heading that the first leg must follow
   Goal goal;
+  Wind wind;
   Limits limits;
   std::vector<NamedConstraint> constraints;
   Box volume;                     ///< bounded
@@ -89,6 +92,12 @@ struct Request {
     }
     return Approach(start.position - start.velocity);
   }
+  /// Velocity over the ground of a vehicle with a pose.
+  Vec3 ground_velocity(const Pose& pose) const {
+    return air_speed() * unit_heading(pose.heading) + wind.at(pose.position.z());
+  }
+  /// Airspeed, m/s: of an aeroplane its own, else the vehicle's speed.
+  double air_speed() const { return vehicle.wing ? vehicle.wing->airspeed_mps : vehicle.speed_mps; }
   /// True if headings persist through legs that have none, and some limit depends on that.
   bool headings_last() const {
     return !vehicle.turns_on_the_spot &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "altiplan/geometry.hpp"
@@ -13,6 +14,17 @@ struct SpeedNear {
   double speed_mps = 0;
 };
 
+/// An aeroplane: it flies at a constant airspeed and turns by banking.
+struct ALTIPLAN_API Wing {
+  double airspeed_mps = 15;    ///< horizontal component
+  double bank = radians(30);   ///< maximum bank angle, radians, in (0, pi/2)
+  double climb = radians(10);  ///< maximum climb angle through the air
+  double sink = radians(10);   ///< maximum descent angle through the air
+
+  /// Radius of a coordinated turn at the maximum bank angle: airspeed² / (g tan bank).
+  double turn_radius() const;
+};
+
 /// A sphere whose speed depends on its distance to the nearest obstacle.
 struct ALTIPLAN_API Vehicle {
   double radius_m = 0;
@@ -20,6 +32,7 @@ struct ALTIPLAN_API Vehicle {
   double sensing_m = kInfinity;
   std::vector<SpeedNear> speed_near;  ///< by ascending within_m
   bool turns_on_the_spot = false;     ///< to any heading, when climbing or descending vertically
+  std::optional<Wing> wing{};         ///< of an aeroplane; speed_mps is then its airspeed
 
   /// Speed at a distance to the nearest obstacle (for example paper 002, eq. 6).
   double speed_at(double distance_m) const;

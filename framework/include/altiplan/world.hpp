@@ -88,6 +88,8 @@ class ALTIPLAN_API World {
   bool ground_below(const Vec3& a, const Vec3& b) const;
   /// Maximum height of the leg above the ground; +infinity where there is none.
   double ground_gap_max(const Vec3& a, const Vec3& b) const;
+  /// Maximum slope of the ground within the horizontal box; infinite where it is unknown or ends.
+  double ground_slope(const Box& box) const;
   std::vector<Threat> threats() const;
   /// Largest over-approximation of the layers, metres.
   double over_approximation() const;

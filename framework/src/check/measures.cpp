@@ -73,6 +73,69 @@ double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, c
   return time;
 }
 
+double leg_duration(const Leg& leg, const Request& request) {
+  if (leg.turns()) {
+    return leg.air_length() / request.air_speed();
+  }
+  if (request.vehicle.wing || !request.wind.is_calm()) {
+    return flight_time(leg.from, leg.to, request.air_speed(), request.wind);
+  }
+  return leg_duration(*request.world, request.vehicle, leg.from, leg.to);
+}
+
+namespace {
+
+/// Climb angle of a leg over the ground, signed.
+double slope_of(const Leg& leg) {
+  const Vec3 way = leg.to - leg.from;
+  return leg.turns() ? std::asin(std::clamp(way.z() / leg.length(), -1.0, 1.0))
+                     : std::atan2(way.z(), std::hypot(way.x(), way.y()));
+}
+
+void measure_legs(const Route& route, const Request& request, Measures& m) {
+  double climb = 0;
+  double duration = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    climb = std::max(climb, std::abs(slope_of(leg)));
+    duration += leg_duration(leg, request);
+  }
+  m.max_climb_deg = degrees(climb);
+  m.duration_s = duration;
+}
+
+/// Corners between legs, and turns.
+void measure_turns(const Route& route, const Request& request, Measures& m) {
+  double turn = 0;
+  double radius = kInfinity;
+  double smoothness = 0;
+  const bool on_the_spot = request.vehicle.turns_on_the_spot;
+  std::optional<Approach> before;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    if (before) {
+      const Vec3 onto = leg.from + leg.rate(0);
+      const double angle = horizontal_turn(*before, leg.from, onto, on_the_spot);
+      turn = std::max(turn, angle);
+      smoothness += angle + std::abs(slope_of(leg) - slope_of(route.leg(i - 1)));
+      if (!leg.turns() && !before->turning) {
+        radius = std::min(radius, corner_radius(*before, leg.from, leg.to, on_the_spot));
+      }
+    }
+    if (leg.turns()) {
+      radius = std::min(radius, leg.radius);
+      smoothness += std::abs(leg.turn);
+    }
+    before = onward(before, leg);
+  }
+  m.max_turn_deg = degrees(turn);
+  m.smoothness_rad = smoothness;
+  if (std::isfinite(radius)) {
+    m.min_radius_m = radius;
+  }
+}
+}  // namespace
+
 Measures measure(const Route& route, const Request& request) {
   Measures m;
   m.waypoints = route.size();
@@ -81,52 +144,28 @@ Measures measure(const Route& route, const Request& request) {
     return m;
   }
   const World& world = *request.world;
-  const Route bends = without_repeats(route);
-  if (bends.size() >= 2) {
-    double climb = 0;
-    double duration = 0;
-    for (std::size_t i = 0; i + 1 < bends.size(); ++i) {
-      climb = std::max(climb, climb_angle(bends[i + 1] - bends[i]));
-      duration += leg_duration(world, request.vehicle, bends[i], bends[i + 1]);
-    }
-    m.max_climb_deg = degrees(climb);
-    m.duration_s = duration;
+  const Route legs = without_repeats(route);
+  if (legs.leg_count() > 0) {
+    measure_legs(legs, request, m);
   }
-  if (bends.size() >= 3) {
-    double turn = 0;
-    double radius = kInfinity;
-    double smoothness = 0;
-    const bool on_the_spot = request.vehicle.turns_on_the_spot;
-    std::optional<Approach> before;
-    for (std::size_t i = 1; i + 1 < bends.size(); ++i) {
-      before = onward(before, bends[i - 1]);
-      const Vec3 in = bends[i] - bends[i - 1];
-      const Vec3 out = bends[i + 1] - bends[i];
-      const double angle = horizontal_turn(*before, bends[i], bends[i + 1], on_the_spot);
-      const auto climb = [](const Vec3& leg) {
-        return std::atan2(leg.z(), std::hypot(leg.x(), leg.y()));
-      };
-      turn = std::max(turn, angle);
-      radius = std::min(radius, corner_radius(*before, bends[i], bends[i + 1], on_the_spot));
-      smoothness += angle + std::abs(climb(out) - climb(in));
-    }
-    m.max_turn_deg = degrees(turn);
-    m.smoothness_rad = smoothness;
-    if (std::isfinite(radius)) {
-      m.min_radius_m = radius;
-    }
+  if (legs.leg_count() > 1 || !legs.is_straight()) {
+    measure_turns(legs, request, m);
   }
-  const Route legs = bends.size() > 1 ? bends : Route{bends.front(), bends.front()};
+  constexpr double kFineChords = 1e-4;  // metres
+  Polyline points = legs.chords(kFineChords);
+  if (points.size() == 1) {
+    points.push_back(points.front());
+  }
   double clearance = kInfinity;
   for (const Layer& layer : world.layers()) {
-    if (const auto nearest = nearest_leg(*layer.environment, legs, clearance)) {
+    if (const auto nearest = nearest_leg(*layer.environment, points, clearance)) {
       clearance = nearest->distance;
     }
   }
   if (std::isfinite(clearance)) {
     m.min_clearance_m = clearance;
   }
-  if (const auto lowest = lowest_leg(world, legs)) {
+  if (const auto lowest = lowest_leg(world, points)) {
     m.min_ground_clearance_m = lowest->distance;
   }
   return m;

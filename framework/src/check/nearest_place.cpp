@@ -78,7 +78,7 @@ DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& 
 
 // The legs nearest by the clearance of their midpoints are measured first, and the others only if
 // they may be nearer.
-std::optional<NearestLeg> nearest_leg(const Environment& environment, const Route& route,
+std::optional<NearestLeg> nearest_leg(const Environment& environment, const Polyline& route,
                                       double enough) {
   std::vector<NearestLeg> candidates;
   const double spare = environment.over_approximation() + 2 * kLengthTolerance;
@@ -114,7 +114,7 @@ double nearest_share(const Environment& environment, const Vec3& a, const Vec3& 
       a, b, [&](const Vec3& from, const Vec3& to) { return environment.blocked(from, to, met); });
 }
 
-std::optional<NearestLeg> lowest_leg(const World& world, const Route& route) {
+std::optional<NearestLeg> lowest_leg(const World& world, const Polyline& route) {
   std::optional<NearestLeg> lowest;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     const double least = lowest ? lowest->distance : kInfinity;

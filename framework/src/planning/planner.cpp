@@ -25,8 +25,10 @@ Smoother::~Smoother() = default;
 
 AppliesTo Constraint::do_applies_to() const { return AppliesTo::both; }
 void Constraint::do_tighten(Limits&, const Request&) const {}
-bool Constraint::do_admits(const Leg&) const { return true; }
-std::vector<Violation> Constraint::do_violations(const Route&, const Request&) const { return {}; }
+bool Constraint::do_admits(const Motion&) const { return true; }
+std::vector<Violation> Constraint::do_violations(const Polyline&, const Request&) const {
+  return {};
+}
 
 namespace {
 
@@ -252,15 +254,27 @@ PilotStep Pilot::step(const Observation& seen) {
 
 Counters Pilot::do_counters() const { return {}; }
 
+PlanResult Smoother::do_smooth_turns(const Route& route, const Request&) const {
+  PlanResult result;
+  result.status = PlanStatus::solved;
+  result.message =
+      "left unchanged: this smoother takes straight legs only, and the route has turns";
+  result.route = route;
+  return result;
+}
+
 PlanResult Smoother::smooth(const Route& route, const Request& request) const {
-  if (route.size() <= 2) {
+  if (route.is_straight() && route.size() <= 2) {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.message = "nothing to smooth";
     result.route = route;
     return result;
   }
-  PlanResult result = guarded([&] { return do_smooth(route, request); });
+  PlanResult result = guarded([&] {
+    return route.is_straight() ? do_smooth(route.waypoints(), request)
+                               : do_smooth_turns(route, request);
+  });
   if (result.status == PlanStatus::solved &&
       (result.route.empty() || result.route.front() != route.front() ||
        result.route.back() != route.back() ||

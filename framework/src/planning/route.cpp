@@ -1,24 +1,103 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/route.hpp"
 
+#include <cmath>
+
 namespace altiplan {
 
-double length(const Route& route) {
+void Route::push_back(const Vec3& to) {
+  if (!turns_.empty()) {
+    turns_.push_back(Leg::straight(back(), to));
+  }
+  waypoints_.push_back(to);
+}
+
+void Route::push_back(const Leg& leg) {
+  if (empty()) {
+    waypoints_.push_back(leg.from);
+  }
+  if (leg.turns() && is_straight()) {
+    for (std::size_t i = 0; i < leg_count(); ++i) {
+      turns_.push_back(Leg::straight(waypoints_[i], waypoints_[i + 1]));
+    }
+  }
+  if (leg.turns() || !is_straight()) {
+    turns_.push_back(leg);
+  }
+  waypoints_.push_back(leg.to);
+}
+
+void Route::append(const Route& next) {
+  if (empty()) {
+    *this = next;
+    return;
+  }
+  for (std::size_t i = 0; i < next.leg_count(); ++i) {
+    push_back(next.leg(i));
+  }
+}
+
+Route Route::part(std::size_t first, std::size_t last) const {
+  Route route{waypoints_[first]};
+  for (std::size_t i = first; i < last; ++i) {
+    route.push_back(leg(i));
+  }
+  return route;
+}
+
+Polyline Route::chords(double tolerance) const {
+  if (is_straight()) {
+    return waypoints_;
+  }
+  Polyline points = {front()};
+  for (const Leg& leg : turns_) {
+    const Polyline part = leg.chords(tolerance);
+    points.insert(points.end(), part.begin() + 1, part.end());
+  }
+  return points;
+}
+
+double length(const Polyline& points) {
   double sum = 0;
-  for (std::size_t i = 1; i < route.size(); ++i) {
-    sum += (route[i] - route[i - 1]).norm();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    sum += (points[i] - points[i - 1]).norm();
   }
   return sum;
 }
 
-Route without_repeats(const Route& route) {
-  Route out;
-  for (const Vec3& p : route) {
+double length(const Route& route) {
+  if (route.is_straight()) {
+    return length(route.waypoints());
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    sum += route.leg(i).length();
+  }
+  return sum;
+}
+
+Polyline without_repeats(const Polyline& points) {
+  Polyline out;
+  for (const Vec3& p : points) {
     if (out.empty() || p != out.back()) {
       out.push_back(p);
     }
   }
   return out;
+}
+
+Route without_repeats(const Route& route) {
+  if (route.is_straight()) {
+    return without_repeats(route.waypoints());
+  }
+  Route out;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    if (leg.turns() || leg.from != leg.to) {
+      out.push_back(leg);
+    }
+  }
+  return out.empty() ? Route{route.front()} : out;
 }
 
 double horizontal_turn(const Approach& before, const Vec3& here, const Vec3& next,
@@ -36,7 +115,7 @@ double corner_radius(const Approach& before, const Vec3& here, const Vec3& next,
   return turned_on_the_spot ? 0 : fillet_radius(incoming, next - here);
 }
 
-std::optional<Approach> approach(const Route& route, std::size_t to,
+std::optional<Approach> approach(const Polyline& route, std::size_t to,
                                  const std::optional<Approach>& before) {
   std::size_t last = to;  // last point that differs from point number `to`
   while (last > 0 && route[last] == route[to]) {

@@ -261,6 +261,15 @@ bool World::ground_below(const Vec3& a, const Vec3& b) const {
   return ground_gap(a, b, std::numeric_limits<double>::lowest()) > -kInfinity;
 }
 
+double World::ground_slope(const Box& box) const {
+  double steepest = grounds_.empty() ? kInfinity : 0;
+  for (const auto& ground : grounds_) {
+    steepest = std::max(steepest, answer_of(layers_, ground,
+                                            [&](const Ground& asked) { return asked.slope(box); }));
+  }
+  return steepest;
+}
+
 double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
   double most = -kInfinity;
   bool covered = false;

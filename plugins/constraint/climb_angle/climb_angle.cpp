@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 
 #include "altiplan/constraint.hpp"
 #include "altiplan/plugin.hpp"
@@ -9,13 +10,15 @@ using namespace altiplan;
 
 struct Params {
   double max_deg = 0;
+  std::optional<double> max_sink_deg;
 
   void describe(Fields& f) {
     f("max_deg", max_deg)
         .unit("deg")
         .range(0, 90)
         .required()
-        .doc("maximum climb or descent angle of a leg");
+        .doc("maximum climb angle of a leg, and descent angle unless max_sink_deg is given");
+    f("max_sink_deg", max_sink_deg).unit("deg").range(0, 90).doc("maximum descent angle of a leg");
   }
 };
 
@@ -25,6 +28,8 @@ class ClimbAngle final : public Constraint {
 
  private:
   void do_tighten(Limits& limits, const Request&) const override {
+    const double sink = radians(params_.max_sink_deg.value_or(params_.max_deg));
+    limits.max_sink = std::min(limits.max_descent(), sink);
     limits.max_climb = std::min(limits.max_climb, radians(params_.max_deg));
   }
 

@@ -42,6 +42,15 @@ TEST(ClimbAngle, TheJudgeMeasuresClimbAndDescent) {
   EXPECT_EQ(result.violations[1].at, 1u);
 }
 
+TEST(ClimbAngle, LimitsDescentsByThemselves) {
+  const Route route{{0, 0, 100}, {500, 0, 600}, {1000, 0, 100}};  // 45 degrees up and down
+  const CheckResult result = check(route, problem("{max_deg: 50, max_sink_deg: 40}"));
+  ASSERT_EQ(result.violations.size(), 1u);
+  EXPECT_EQ(result.violations[0].at, 1u);
+  EXPECT_NE(result.violations[0].message.find("descent"), std::string::npos);
+  EXPECT_TRUE(check(route, problem("{max_deg: 46, max_sink_deg: 50}")).ok());
+}
+
 TEST(ClimbAngle, HoldsForTracksToo) {
   EXPECT_DOUBLE_EQ(problem("{max_deg: 20}", AppliesTo::track).limits.max_climb, radians(20));
 }

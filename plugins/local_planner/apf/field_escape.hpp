@@ -67,7 +67,7 @@ class Escape {
   /// Expands the positions from `from` to `to` time steps away.
   Outcome look_on(Aim aim, int from, int to);
   double steepest() const {
-    return request_.level_m ? 0 : std::min(request_.limits.max_climb, radians(60)) * (1 - 1e-9);
+    return request_.level_m ? 0 : std::min(request_.limits.max_slope(), radians(60)) * (1 - 1e-9);
   }
   /// The end of a straight path from the position that serves the aim.
   std::optional<Instant> straight(Aim aim, std::size_t every, int speeds) const;

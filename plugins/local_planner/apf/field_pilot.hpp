@@ -52,7 +52,7 @@ class FieldPilot final : public Pilot {
   void observe(const Observation& seen);
   double max_turn() const { return radians(p_.max_turn_deg); }
   double turn_to(const Vec3& direction) const;
-  double max_climb() const { return request_.level_m ? 0 : request_.limits.max_climb; }
+  double max_climb() const { return request_.level_m ? 0 : request_.limits.max_slope(); }
   double room_of_ground() const { return request_.limits.min_ground_clearance.value_or(0); }
   PilotStep fly(const Observation& seen, const Leg& leg);
   /// Keeps positions at least a hundredth of the influence, or kWindow steps, apart.

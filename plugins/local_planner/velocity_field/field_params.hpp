@@ -110,7 +110,9 @@ struct Params {
         .doc(
             "terrain: edge of the cells that sample the ground; auto: the volume's longer side "
             "/ 512");
-    f("max_steps", max_steps).range(1, 1'000'000).doc("number of steps after which the pilot gives up");
+    f("max_steps", max_steps)
+        .range(1, 1'000'000)
+        .doc("number of steps after which the pilot gives up");
   }
 
   Field field() const { return {pull_weight, edge_ratio, surface_ratio, ring_m, guide_ratio}; }

@@ -105,7 +105,7 @@ TEST(RobustPilot, KeepsTheStartsCourse) {
     request.start.velocity = {30 * std::cos(radians(degree)), 30 * std::sin(radians(degree)), 0};
     const Flown flown = flight(request, kRobust);
     ASSERT_EQ(flown.outcome, PilotStep::Outcome::arrived) << degree;
-    Route route = flown.route;
+    Polyline route = flown.route.waypoints();
     route.insert(route.begin(), request.start.position - request.start.velocity);
     EXPECT_GE(min_radius(route), 500 - 1e-6) << degree;
   }

@@ -48,7 +48,7 @@ TerrainFlight::TerrainFlight(const Params& params, const Request& request)
       max_turn_level_(request.limits.max_turn_horizontal),
       max_turn_space_(request.limits.max_turn_space),
       // Slightly less, so that rounding respects the judge's limit.
-      max_climb_(std::min(radians(params.max_climb_deg), request.limits.max_climb) * (1 - 1e-9)),
+      max_climb_(std::min(radians(params.max_climb_deg), request.limits.max_slope()) * (1 - 1e-9)),
       slope_(request.level_m ? 0 : std::tan(max_climb_)),
       detour_(params.detour_m),
       ring_(params.ring_m),

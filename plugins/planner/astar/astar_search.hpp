@@ -148,8 +148,8 @@ class Search : kit::GoalSearch {
            settings_.max_bytes;
   }
 
-  Route route_to(std::uint32_t last, bool at_goal) const {
-    Route route = kit::route_to(
+  Polyline route_to(std::uint32_t last, bool at_goal) const {
+    Polyline route = kit::route_to(
         last, request_, lattice_,
         [&](std::uint32_t index, int) { return kit::direction_of(nodes_[index].in); },
         [&](std::uint32_t) { return at_start_; });

@@ -266,7 +266,7 @@ class CellSearch {
   }
 
   PlanResult found(std::uint32_t last, bool at_goal) const {
-    Route route = kit::route_to(
+    Polyline route = kit::route_to(
         last, request_, lattice_,
         [&](std::uint32_t index, int likely) { return step_to(index, likely); },
         [&](std::uint32_t index) { return g(index) == 0; });

@@ -83,7 +83,7 @@ TEST(BidirectionalAStar, TurnsAreKeptAtBothEndsAndWhereTheSidesMeet) {
 
 /// Allows a leg after another only if both climb, both descend or both are level.
 class NoPorpoising final : public Constraint {
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return !leg.before || (leg.from.z() > leg.before->z()) == (leg.to.z() > leg.from.z());
   }
 };

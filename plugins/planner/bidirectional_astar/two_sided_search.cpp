@@ -47,8 +47,8 @@ bool TwoSidedSearch::first_legs_ok(std::optional<Approach> from, Arrival away, V
   }
 }
 
-Route TwoSidedSearch::route(std::uint32_t to, std::uint32_t away) const {
-  Route route;
+Polyline TwoSidedSearch::route(std::uint32_t to, std::uint32_t away) const {
+  Polyline route;
   const auto add = [&](const Arrival& arrival) {
     route.push_back(lattice_.position(lattice_.cell(arrival.cell)));
   };

@@ -320,7 +320,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     return bytes > settings_.max_bytes;
   }
 
-  Route route(std::uint32_t to, std::uint32_t away) const;
+  Polyline route(std::uint32_t to, std::uint32_t away) const;
 
   void add_to_trace(Side side, std::uint32_t index, const Arrival& arrival, const Cell& c,
                     const Vec3& here) const {

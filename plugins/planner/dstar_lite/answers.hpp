@@ -11,7 +11,7 @@
 namespace altiplan::dstar_lite {
 
 /// The constraint that a leg of the route violates, or "".
-inline std::string first_broken(const Route& route, const Request& request) {
+inline std::string first_broken(const Polyline& route, const Request& request) {
   std::optional<Approach> before = request.before_start();
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     if (!leg_ok(before, route[i], route[i + 1], request)) {

@@ -191,7 +191,7 @@ TEST(DStarLiteLayers, AGroundComesAndGoes) {
 
 /// No eastward legs in the north, and no left turns in the south.
 class OneWay final : public Constraint {
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     const Vec3 way = leg.to - leg.from;
     if (leg.from.y() > 55) {
       return way.x() <= 0;

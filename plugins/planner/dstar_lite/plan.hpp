@@ -116,7 +116,7 @@ class Plan {
     if (status != PlanStatus::solved) {
       return without_route(by_cell_->search, status);
     }
-    const Route route = route_over(*by_cell_);
+    const Polyline route = route_over(*by_cell_);
     const std::string broken =
         looks_back || legs_.judges() ? first_broken(route, problem_.request) : "";
     if (broken.empty()) {
@@ -306,9 +306,9 @@ class Plan {
   }
 
   template <class Graph>
-  Route route_over(const Incremental<Graph>& at) const {
+  Polyline route_over(const Incremental<Graph>& at) const {
     const Request& request = problem_.request;
-    Route route = {request.start.position};
+    Polyline route = {request.start.position};
     bool at_start = lattice_.nearest(request.start.position).length == 0;
     for (const std::uint32_t node : at.search.way()) {
       if (!at_start) {
@@ -324,7 +324,7 @@ class Plan {
   }
 
   template <class Graph>
-  PlanResult with_route(const Search<Graph>& search, const Route& route) {
+  PlanResult with_route(const Search<Graph>& search, const Polyline& route) {
     const double allowed = problem_.request.limits.max_route_length;
     if (const double shortest = length(route); shortest > allowed + kLengthTolerance) {
       PlanResult result = without_route(search, PlanStatus::no_route);

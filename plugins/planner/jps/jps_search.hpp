@@ -270,8 +270,8 @@ class Search {
   }
 
   /// Corners from the start to a cell.
-  Route route_to(std::uint32_t last) const {
-    Route route{lattice_.position(lattice_.cell(last))};
+  Polyline route_to(std::uint32_t last) const {
+    Polyline route{lattice_.position(lattice_.cell(last))};
     std::uint32_t at = last;
     int in = NodeWord::in(nodes_[at]);
     while (in != kit::kHere) {
@@ -298,7 +298,8 @@ class Search {
     result.route = route_to(last);
     if (at_goal) {
       if (last == goal_cell_) {
-        result.route.back() = request_.goal.position;  // the cell's centre, except for rounding
+        result.route.edit().back() =
+            request_.goal.position;  // the cell's centre, except for rounding
       } else {
         result.route.push_back(request_.goal.position);
       }

@@ -219,10 +219,10 @@ class Ompl final : public Planner {
     return info;
   }
 
-  static Route route_of(const ob::ProblemDefinition& problem, const Axes& axes,
-                        const Request& request) {
+  static Polyline route_of(const ob::ProblemDefinition& problem, const Axes& axes,
+                           const Request& request) {
     const auto& path = dynamic_cast<og::PathGeometric&>(*problem.getSolutionPath());
-    Route route;
+    Polyline route;
     for (std::size_t i = 0; i < path.getStateCount(); ++i) {
       route.push_back(axes.point(path.getState(unsigned(i))));
     }
@@ -234,7 +234,7 @@ class Ompl final : public Planner {
   }
 
   /// Constraints on two consecutive legs and on whole routes are checked last.
-  static PlanResult judged(Route route, const Request& request, const Questions& questions,
+  static PlanResult judged(Polyline route, const Request& request, const Questions& questions,
                            const std::string& planner) {
     const std::vector<Violation> broken = check(route, request).violations;
     if (!broken.empty()) {

@@ -240,7 +240,7 @@ class Growth {
         ((goal - p).norm() > 2 * settings_.step || !leg_ok(before(node), p, goal, request_))) {
       return;
     }
-    Route route = tree_.way_to(node);
+    Polyline route = tree_.way_to(node);
     if (!is_there) {
       route.push_back(goal);
     }
@@ -254,7 +254,7 @@ class Growth {
   }
 
   /// Checks the constraints that single legs cannot decide.
-  bool keeps_route_rules(const Route& route) const {
+  bool keeps_route_rules(const Polyline& route) const {
     const double most = request_.limits.max_route_length;
     return (most == kInfinity && request_.constraints.empty()) ||
            (length(route) <= most + kLengthTolerance && check(route, request_).ok());

@@ -18,7 +18,7 @@ class Detour {
   struct Way {
     Node from = kNone;
     Node to = kNone;
-    Route line;  ///< empty if none was found
+    Polyline line;  ///< empty if none was found
   };
 
   /// From one of the nodes `from` to one of `to`, by random points in the box.
@@ -73,14 +73,14 @@ class Detour {
   bool is_free(const Vec3& a, const Vec3& b) const { return leg_ok(std::nullopt, a, b, request_); }
 
   Way joined(Node a, Node b) const {
-    Route line = sides_[0].legs.way_to(a);
-    const Route rest = sides_[1].legs.way_to(b);
+    Polyline line = sides_[0].legs.way_to(a);
+    const Polyline rest = sides_[1].legs.way_to(b);
     line.insert(line.end(), rest.rbegin(), rest.rend());
     return {sides_[0].root_of(a), sides_[1].root_of(b), without_idle_corners(line)};
   }
 
-  Route without_idle_corners(const Route& line) const {
-    Route shorter = {line.front()};
+  Polyline without_idle_corners(const Polyline& line) const {
+    Polyline shorter = {line.front()};
     for (std::size_t i = 0; i + 1 < line.size();) {
       std::size_t next = line.size() - 1;
       while (next > i + 1 && !is_free(line[i], line[next])) {
@@ -135,7 +135,7 @@ class Repair {
   static constexpr int kBack = 5;
 
   /// Appends the old route from a node of its tail on.
-  void add_rest_of_tail(Node node, Route& line) const {
+  void add_rest_of_tail(Node node, Polyline& line) const {
     const std::size_t first = line.size();
     for (Node n = growth_.end(); n != kNone && n != node; n = tree_.parent(n)) {
       line.push_back(tree_.point(n));
@@ -145,7 +145,7 @@ class Repair {
 
   /// Grows step by step along the line, as far as turns allow; the tail attaches itself when it is
   /// near.
-  void follow(const Route& line, Node node) {
+  void follow(const Polyline& line, Node node) {
     std::size_t next = 1;
     double left = 0;  // metres, to prevent circling
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -164,7 +164,7 @@ class Repair {
     }
   }
 
-  bool is_past(const Route& line, std::size_t corner, const Vec3& p) const {
+  bool is_past(const Polyline& line, std::size_t corner, const Vec3& p) const {
     const Vec3 to = line[corner] - p;
     return to.norm() < growth_.step() || to.dot(line[corner] - line[corner - 1]) <= 0;
   }

@@ -191,7 +191,7 @@ class TwoTrees {
       return false;
     }
     route_ = tree(kStart).legs.way_to(from);
-    const Route rest = tree(kGoal).legs.way_to(to);
+    const Polyline rest = tree(kGoal).legs.way_to(to);
     route_.insert(route_.end(), rest.rbegin(), rest.rend());
     return true;
   }
@@ -276,7 +276,7 @@ class TwoTrees {
   std::optional<Approach> before_start_;
   Box box_;
   RandomStream random_;
-  Route route_;
+  Polyline route_;
   bool ended_ = false;
   std::uint64_t expanded_ = 0;
   std::int64_t joins_tried_ = 0;

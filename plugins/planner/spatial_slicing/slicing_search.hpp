@@ -227,7 +227,7 @@ class Search {
   /// Removes points on the straight line from the point before to the one after, if the changed
   /// legs satisfy every constraint.
   void straighten() {
-    Route kept = {route_.front()};
+    Polyline kept = {route_.front()};
     for (std::size_t i = 1; i + 1 < route_.size(); ++i) {
       const Vec3& a = kept.back();
       const std::optional<Approach> before =
@@ -314,7 +314,7 @@ class Search {
   BudgetWatch watch_;
   const Vec3 goal_;
   std::vector<Candidate>& candidates_;
-  Route route_;        ///< p_0 … p_(i-1)
+  Polyline route_;     ///< p_0 … p_(i-1)
   double length_ = 0;  ///< its length
   std::int64_t looked_at_ = 0;
   std::int64_t node_ = -1;                ///< in the trace: the last point examined,

@@ -50,7 +50,7 @@ Request drawn_world(SplitMix64& random, bool cells, bool is_level) {
 
 /// The same with the judge's own checks and a scan of every cell of a plane; empty if a plane has
 /// no point. With a waypoint on every plane.
-Route full_scan(const Request& request, int axis, int apart) {
+Polyline full_scan(const Request& request, int axis, int apart) {
   const kit::Lattice lattice(request, {1, 1, 1}, kit::Neighbourhood::all, {});
   const auto grid = kit::occupancy(request, lattice);
   const Vec3& goal = request.goal.position;
@@ -71,7 +71,7 @@ Route full_scan(const Request& request, int axis, int apart) {
     return kit::walk_cells(lattice.nearest(a).cell, lattice.nearest(b).cell,
                            [&](const Cell& cell) { return !grid->blocked(cell); });
   };
-  Route route = {request.start.position};
+  Polyline route = {request.start.position};
   const auto on_line = [&](std::size_t i) {
     if (i >= planes.size()) {
       return goal;
@@ -111,11 +111,12 @@ Route full_scan(const Request& request, int axis, int apart) {
     route.push_back(*best);
   }
   route.push_back(goal);
-  return planes.empty() && !leg_ok(request.before_start(), route.front(), goal, request) ? Route()
-                                                                                         : route;
+  return planes.empty() && !leg_ok(request.before_start(), route.front(), goal, request)
+             ? Polyline()
+             : route;
 }
 
-double distance_to(const Vec3& p, const Route& route) {
+double distance_to(const Vec3& p, const Polyline& route) {
   double least = kInfinity;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     least = std::min(least, point_leg_distance(p, route[i], route[i + 1]));
@@ -150,7 +151,7 @@ TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {
     if (result.status == PlanStatus::invalid_problem) {  // an end in a random obstacle
       continue;
     }
-    const Route expected = full_scan(request, axis, apart);
+    const Polyline expected = full_scan(request, axis, apart);
     ASSERT_EQ(result.status == PlanStatus::solved, !expected.empty())
         << n << ": " << result.message;
     if (expected.empty()) {
@@ -162,7 +163,7 @@ TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {
     EXPECT_TRUE(check(result.route, request).ok()) << n;
     EXPECT_NEAR(length(result.route), length(expected), 1e-9) << n;
     for (const Vec3& p : expected) {
-      ASSERT_LT(distance_to(p, result.route), 1e-6) << n;
+      ASSERT_LT(distance_to(p, result.route.waypoints()), 1e-6) << n;
     }
     for (std::size_t i = 0; i + 2 < result.route.size(); ++i) {
       const Route& r = result.route;

@@ -183,7 +183,7 @@ class Level {
 
 /// The chain of a level's nodes along a route: the nearest ones to points one spacing apart. (The
 /// bends alone would leave clusters without a path between them.)
-inline std::vector<Cell> chain(const Level& level, const Route& route, const GridSpec& cells) {
+inline std::vector<Cell> chain(const Level& level, const Polyline& route, const GridSpec& cells) {
   const auto in_cells = [&](const Vec3& p) {
     std::array<double, 3> place;
     for (std::size_t axis = 0; axis < 3; ++axis) {

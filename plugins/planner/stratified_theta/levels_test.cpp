@@ -127,7 +127,7 @@ TEST(Levels, AChainIsConnectedAndNearItsRoute) {
   const VoxelGrid grid = empty({80, 80, 100});
   for (int round = 0; round < 200; ++round) {
     const Level level(random.integer(2, 7), grid);
-    Route route;
+    Polyline route;
     for (int n = random.integer(1, 5); n >= 0; --n) {
       const double x = random.uniform() * 80;
       const double y = random.uniform() * 80;

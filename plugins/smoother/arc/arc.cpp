@@ -48,13 +48,13 @@ double tangent_length(double radius, double turn) { return radius * std::tan(tur
 
 /// The arc that touches both legs, as the waypoints at which `turns` equal turns are made: the
 /// vertices of its circle's circumscribed polygon.
-Route arc_at(const Corner& corner, double radius, int turns) {
+Polyline arc_at(const Corner& corner, double radius, int turns) {
   const double t = tangent_length(radius, corner.turn);
   const double half = corner.turn / turns / 2;
   const Vec3& u = corner.into;
   const Vec3 inward = (corner.out_of - corner.out_of.dot(u) * u).normalized();
   const Vec3 begin = corner.at - t * u;
-  Route arc;
+  Polyline arc;
   for (int n = 0; n < turns; ++n) {
     const double angle = (2 * n + 1) * half;
     const double outside = radius / std::cos(half);
@@ -80,10 +80,10 @@ int turns_of(double radius, double sag, double turn, const Limits& limits) {
 }
 
 /// The route without the waypoints at which it goes straight on.
-Route straightened(const Route& route, const Request& request) {
+Polyline straightened(const Polyline& route, const Request& request) {
   return kit::round_corners(route, request,
                             [](const Corner& corner, int attempt) {
-                              return corner.turn == 0 && attempt == 0 ? std::optional(Route{})
+                              return corner.turn == 0 && attempt == 0 ? std::optional(Polyline{})
                                                                       : std::nullopt;
                             })
       .route;
@@ -120,7 +120,7 @@ class Arc final : public Smoother {
   explicit Arc(const Params& params) : params_(params) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     PlanResult result;
     const double limit = request.limits.min_turn_radius;
     const double wanted = std::max(params_.radius_m.value.value_or(limit), limit);
@@ -133,7 +133,7 @@ class Arc final : public Smoother {
     const double sag = params_.sag_m.value.value_or(wanted / 100);
     kit::RoundedRoute rounded = kit::round_corners(
         straightened(route, request), request,
-        [&](const Corner& corner, int attempt) -> std::optional<Route> {
+        [&](const Corner& corner, int attempt) -> std::optional<Polyline> {
           if (corner.turn == 0 || attempt >= kTries) {
             return std::nullopt;
           }

@@ -13,14 +13,14 @@ using testing::make_smoother;
 using testing::open_request;
 
 /// The route's arcs of this radius, without obstacles.
-PlanResult arcs(const Route& route, double radius, const std::string& more = "") {
+PlanResult arcs(const Polyline& route, double radius, const std::string& more = "") {
   Request request = open_request(route);
   request.limits.min_turn_radius = radius;
   return make_smoother("arc", "{" + more + "}")->smooth(route, request);
 }
 
 TEST(Arc, IsACircumscribedPolygonOfItsCircle) {
-  const Route route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
+  const Polyline route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   const PlanResult result = arcs(route, 200);
   ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_EQ(result.message, "1 of 1 corners are arcs of 200 m");
@@ -39,7 +39,7 @@ TEST(Arc, IsACircumscribedPolygonOfItsCircle) {
 }
 
 TEST(Arc, TangentsKeepTheSag) {
-  const Route route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
+  const Polyline route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   for (const double sag : {0.1, 1.0, 30.0}) {
     const Route arc = arcs(route, 400, "sag_m: " + std::to_string(sag)).route;
     const double radius = *measure(arc, open_request(arc)).min_radius_m;
@@ -53,9 +53,9 @@ TEST(Arc, TangentsKeepTheSag) {
 }
 
 /// The route as an autopilot stores it: in 1e-7 degree and centimetres, at the worst latitude.
-Route as_written(const Route& route, RandomStream& random) {
+Polyline as_written(const Polyline& route, RandomStream& random) {
   const double metres_per_degree = 111'320;
-  Route written;
+  Polyline written;
   for (const Vec3& p : route) {
     const auto moved = [&](double quantum) { return random.uniform(-0.5, 0.5) * quantum; };
     written.push_back(
@@ -69,7 +69,7 @@ TEST(Arc, TheRadiusHoldsForEveryRouteWhoseCornersAllHaveArcs) {
   int whole = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     RandomStream random(seed);
-    Route route = {{0, 0, 0}};
+    Polyline route = {{0, 0, 0}};
     while (route.size() < 7) {
       route.push_back(route.back() + random.in({Vec3::Constant(-3000), Vec3::Constant(3000)}));
     }
@@ -94,7 +94,7 @@ TEST(Arc, TheRadiusHoldsForEveryRouteWhoseCornersAllHaveArcs) {
       if (all) {
         EXPECT_TRUE(check(result.route, request).ok()) << seed;
         if (share * radius > 100) {
-          EXPECT_GE(*measure(as_written(result.route, random), request).min_radius_m,
+          EXPECT_GE(*measure(as_written(result.route.waypoints(), random), request).min_radius_m,
                     share * radius)
               << seed;
         }
@@ -137,7 +137,7 @@ TEST(Arc, NoRuleOfRandomRoutesGetsWorse) {
 
 TEST(Arc, MendsWhatTheJudgeFoundTooTight) {
   // Half of each leg allows 500 m; an arc of several turns may use more of them.
-  const Route route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
+  const Polyline route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   Request request = open_request(route);
   request.limits.min_turn_radius = 800;
   EXPECT_FALSE(check(route, request).ok());
@@ -145,7 +145,7 @@ TEST(Arc, MendsWhatTheJudgeFoundTooTight) {
 }
 
 TEST(Arc, LeavesShortLegsAndObstacles) {
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {130, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {130, 100, 0}};
   const PlanResult tight =
       make_smoother("arc", "{radius_m: 40}")->smooth(route, open_request(route));
   EXPECT_EQ(tight.message, "1 of 2 corners are arcs of 40 m; the legs of 1 are too short for it");
@@ -162,7 +162,7 @@ TEST(Arc, LeavesShortLegsAndObstacles) {
 }
 
 TEST(Arc, TangentsKeepTheLimitsOnLegsAndTurns) {
-  const Route route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
+  const Polyline route = {{0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   Request request = open_request(route);
   request.limits.min_leg = 100;
   request.limits.max_turn_space = radians(20);
@@ -178,21 +178,21 @@ TEST(Arc, TangentsKeepTheLimitsOnLegsAndTurns) {
 }
 
 TEST(Arc, StraightStretchesAreOneLeg) {
-  const Route route = {{0, 0, 0},    {40, 0, 0},   {80, 0, 0},  {100, 0, 0},
-                       {100, 20, 0}, {100, 50, 0}, {100, 99, 0}};
+  const Polyline route = {{0, 0, 0},    {40, 0, 0},   {80, 0, 0},  {100, 0, 0},
+                          {100, 20, 0}, {100, 50, 0}, {100, 99, 0}};
   EXPECT_EQ(arcs(route, 60).message, "1 of 1 corners are arcs of 60 m");
 }
 
 TEST(Arc, OddRoutesAndNoRadius) {
   const Vec3 p(3, 4, 5);
-  EXPECT_EQ(arcs({p, p, p}, 5).route, Route(3, p));
+  EXPECT_EQ(arcs({p, p, p}, 5).route, Polyline(3, p));
   EXPECT_EQ(arcs({p, {9, 9, 9}}, 5).route.size(), 2u);
-  const Route back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
+  const Polyline back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
   EXPECT_EQ(arcs(back, 5).route, back);
   EXPECT_GT(arcs({{0, 0, 0}, {50, 0, 0}, {50, 0, 0}, {50, 50, 0}}, 5).route.size(), 7u);
   EXPECT_GT(arcs({{0, 0, 0}, {0, 0, 50}, {50, 0, 50}}, 5).route.size(), 7u) << "straight up first";
 
-  const Route bent = {{0, 0, 0}, {50, 0, 0}, {50, 50, 0}};
+  const Polyline bent = {{0, 0, 0}, {50, 0, 0}, {50, 50, 0}};
   const PlanResult none = make_smoother("arc")->smooth(bent, open_request(bent));
   EXPECT_EQ(none.status, PlanStatus::invalid_problem);
   EXPECT_NE(none.message.find("radius_m"), std::string::npos);

@@ -42,9 +42,9 @@ struct Params {
 
 /// The spline of the control points C - 2du, C - du, C, C + dv, C + 2dv: it begins and ends on the
 /// legs, in their directions.
-Route curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int samples) {
+Polyline curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int samples) {
   const kit::CubicSpline spline({c - 2 * d * u, c - d * u, c, c + d * v, c + 2 * d * v});
-  Route curve = {spline.at(0, 0)};
+  Polyline curve = {spline.at(0, 0)};
   for (std::size_t piece = 0; piece < spline.pieces(); ++piece) {
     for (int n = 1; n <= samples; ++n) {
       curve.push_back(spline.at(piece, double(n) / samples));
@@ -57,7 +57,7 @@ Route curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int sample
 /// precision of autopilots requires. (The curve leaves its legs in their direction, so that nothing
 /// bends where it begins and ends.)
 double reach_for(double radius, const kit::Corner& corner, int samples) {
-  const Route curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
+  const Polyline curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
   double least = kInfinity;
   double tightest = 0;  // leg and turn of the tightest corner
   double turn = 0;
@@ -79,7 +79,7 @@ class BSpline final : public Smoother {
   explicit BSpline(const Params& params) : params_(params) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     const double radius = request.limits.min_turn_radius;
     kit::RoundedRoute rounded = kit::round_corners(
         route, request,
@@ -94,7 +94,7 @@ class BSpline final : public Smoother {
     return result;
   }
 
-  std::optional<Route> curve_of(const kit::Corner& corner, int attempt, double radius) const {
+  std::optional<Polyline> curve_of(const kit::Corner& corner, int attempt, double radius) const {
     if (corner.turn == 0) {
       return std::nullopt;
     }

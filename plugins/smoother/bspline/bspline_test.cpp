@@ -14,7 +14,7 @@ const Box kSpace = {{-100, -100, -100}, {200, 200, 200}};
 
 TEST(BSpline, RoundsACornerWithinItsReach) {
   const Request request = testing::request_in(World(), {0, 0, 0}, {100, 100, 0}, kSpace);
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   const PlanResult result =
       make_smoother("bspline", "{reach_m: 20, samples: 8}")->smooth(route, request);
   ASSERT_EQ(result.status, PlanStatus::solved);
@@ -31,7 +31,7 @@ TEST(BSpline, RoundsACornerWithinItsReach) {
 TEST(BSpline, ComesNearerWhereTheCurveWouldHitAndElseLeaves) {
   // The point where the middle of the widest curve would pass.
   const Vec3 beside(100 - 25.0 / 6, 25.0 / 6, 0);
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   Request request = testing::request_in(testing::world_of({Shape{Sphere{beside, 1.5}}}), {0, 0, 0},
                                         {100, 100, 0}, kSpace);
   ASSERT_TRUE(check(route, request).ok());
@@ -73,11 +73,11 @@ TEST(BSpline, NoRuleOfRandomRoutesGetsWorse) {
 }
 
 /// A route of one corner in empty space with this reach.
-Route rounded_at(const Route& route, double reach, int samples) {
+Polyline rounded_at(const Polyline& route, double reach, int samples) {
   Request request = testing::open_request(route);
   const std::string yaml = "{tries: 1, reach_m: " + std::to_string(reach) +
                            ", samples: " + std::to_string(samples) + "}";
-  return make_smoother("bspline", yaml)->smooth(route, request).route;
+  return make_smoother("bspline", yaml)->smooth(route, request).route.waypoints();
 }
 
 TEST(BSpline, ACornerThatCanBeRoundedIs) {
@@ -95,7 +95,7 @@ TEST(BSpline, ACornerThatCanBeRoundedIs) {
     const double most = std::min((route[1] - route[0]).norm(), (route[2] - route[1]).norm()) / 2;
     bool any = false;
     for (int n = 1; n <= 60; ++n) {
-      any = any || check(rounded_at(route, most * n / 60, 4), request).ok();
+      any = any || check(rounded_at(route.waypoints(), most * n / 60, 4), request).ok();
     }
     const PlanResult result = make_smoother("bspline", "{tries: 12}")->smooth(route, request);
     EXPECT_TRUE(!any || result.route != route) << seed;
@@ -109,7 +109,7 @@ TEST(BSpline, ACornerThatCanBeRoundedIs) {
 TEST(BSpline, FindsTheReachBetweenTheBallAndTheRadius) {
   // A reach of 50 m or 25 m hits a ball inside the corner; 12.5 m would turn with a radius of 2.5
   // m.
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
   Request request = testing::open_request(route);
   request.limits.min_turn_radius = 4;
   const auto smoothed_beside_ball = [&](double radius) {
@@ -126,7 +126,7 @@ TEST(BSpline, FindsTheReachBetweenTheBallAndTheRadius) {
 }
 
 TEST(BSpline, TakesMoreThanHalfALegForTheRadius) {
-  const Route route = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}};
+  const Polyline route = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}};
   Request request = testing::open_request(route);
   request.limits.min_turn_radius = 5;  // of curves with a reach of 24.6 m
   const PlanResult result = make_smoother("bspline")->smooth(route, request);
@@ -136,7 +136,7 @@ TEST(BSpline, TakesMoreThanHalfALegForTheRadius) {
 }
 
 TEST(BSpline, OddRoutes) {
-  const auto smoothed = [](const Route& route) {
+  const auto smoothed = [](const Polyline& route) {
     Request request = testing::open_request(route);
     request.limits.min_turn_radius = 1;
     const PlanResult result = make_smoother("bspline")->smooth(route, request);
@@ -145,9 +145,9 @@ TEST(BSpline, OddRoutes) {
     return result.route;
   };
   const Vec3 p(3, 4, 5);
-  EXPECT_EQ(smoothed({p, p, p}), Route(3, p));
+  EXPECT_EQ(smoothed({p, p, p}), Polyline(3, p));
   EXPECT_EQ(smoothed({p, {9, 9, 9}}).size(), 2u);
-  const Route back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
+  const Polyline back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
   EXPECT_EQ(smoothed(back), back);
   // A repeated point hides no corner.
   EXPECT_GT(smoothed({{0, 0, 0}, {50, 0, 0}, {50, 0, 0}, {50, 50, 0}}).size(), 10u);
@@ -155,9 +155,9 @@ TEST(BSpline, OddRoutes) {
 
 TEST(BSpline, StraightRoutesAndBudgets) {
   Request request = testing::request_in(World(), {0, 0, 0}, {90, 0, 0}, kSpace);
-  const Route straight = {{0, 0, 0}, {30, 0, 0}, {90, 0, 0}};
+  const Polyline straight = {{0, 0, 0}, {30, 0, 0}, {90, 0, 0}};
   EXPECT_EQ(make_smoother("bspline")->smooth(straight, request).route, straight);
-  const Route bent = {{0, 0, 0}, {30, 30, 0}, {90, 0, 0}};
+  const Polyline bent = {{0, 0, 0}, {30, 30, 0}, {90, 0, 0}};
   request.budget.max_iterations = 0;
   const PlanResult result = make_smoother("bspline")->smooth(bent, request);
   EXPECT_EQ(result.route, bent);

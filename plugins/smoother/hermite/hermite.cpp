@@ -58,7 +58,7 @@ struct Params {
 /// The curve through one route while it is fitted to the constraints.
 class Fitting {
  public:
-  Fitting(const Route& route, const Request& request, const Params& params)
+  Fitting(const Polyline& route, const Request& request, const Params& params)
       : route_(route),
         request_(request),
         params_(params),
@@ -89,7 +89,7 @@ class Fitting {
   }
 
   /// The curve's route once all of it is accepted; the original route if the budget ran out.
-  Route fitted() {
+  Polyline fitted() {
     if (curve_.rounded() == 0) {
       return route_;
     }
@@ -122,7 +122,7 @@ class Fitting {
 
  private:
   struct Leg {
-    Route points;         ///< of the curve, without the first
+    Polyline points;      ///< of the curve, without the first
     kit::Excess allowed;  ///< violations of the straight leg and the one after it
     bool judged = false;
   };
@@ -145,7 +145,7 @@ class Fitting {
 
   /// Resamples a leg; where that changes it, it must be rechecked, and so must the next leg.
   void sample(std::size_t i) {
-    Route points;
+    Polyline points;
     for (const Span& span : curve_.spans(i)) {
       const int n = pieces(span);
       for (int k = 1; k <= n; ++k) {
@@ -161,8 +161,8 @@ class Fitting {
     }
   }
 
-  Route sampled() const {
-    Route all = {curve_.waypoints().front()};
+  Polyline sampled() const {
+    Polyline all = {curve_.waypoints().front()};
     for (const Leg& leg : legs_) {
       all.insert(all.end(), leg.points.begin(), leg.points.end());
     }
@@ -213,7 +213,7 @@ class Fitting {
                          !has_heading(curve_.waypoints()[first + 1] - curve_.waypoints()[first]))) {
       --first;
     }
-    Route flown = {curve_.waypoints()[first]};
+    Polyline flown = {curve_.waypoints()[first]};
     for (std::size_t leg = first; leg < i; ++leg) {
       flown.insert(flown.end(), legs_[leg].points.begin(), legs_[leg].points.end());
     }
@@ -283,7 +283,7 @@ class Fitting {
     }
   }
 
-  const Route& route_;
+  const Polyline& route_;
   const Request& request_;
   const Params& params_;
   BudgetWatch watch_;
@@ -321,7 +321,7 @@ class Hermite final : public Smoother {
   explicit Hermite(const Params& params) : params_(params) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     Fitting fitting(route, request, params_);
     PlanResult result;
     result.status = PlanStatus::solved;

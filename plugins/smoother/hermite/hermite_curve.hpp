@@ -27,7 +27,7 @@ class HermiteCurve {
  public:
   /// The waypoints must contain no consecutive duplicates. Initially every corner is rounded,
   /// except those of legs that reverse direction, and no node is inserted.
-  HermiteCurve(Route waypoints, Tangents tangents)
+  HermiteCurve(Polyline waypoints, Tangents tangents)
       : p_(std::move(waypoints)), tangents_(tangents), corners_(p_.size()) {
     for (std::size_t i = 0; i + 1 < p_.size(); ++i) {
       const Vec3 leg = p_[i + 1] - p_[i];
@@ -41,7 +41,7 @@ class HermiteCurve {
     }
   }
 
-  const Route& waypoints() const { return p_; }
+  const Polyline& waypoints() const { return p_; }
   std::size_t legs() const { return d_.size(); }
   double length(std::size_t leg) const { return lengths_[leg]; }
   bool rounded(std::size_t waypoint) const { return corners_[waypoint].rounded; }
@@ -139,7 +139,7 @@ class HermiteCurve {
     return m - d_[leg];
   }
 
-  Route p_;
+  Polyline p_;
   Tangents tangents_;
   std::vector<Corner> corners_;  ///< of all waypoints
   std::vector<double> lengths_;  ///< of legs

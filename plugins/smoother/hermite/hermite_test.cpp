@@ -14,11 +14,13 @@ namespace {
 using testing::counter;
 using testing::make_smoother;
 
-Route smoothed(const Route& route, const std::string& yaml) {
-  return make_smoother("hermite", yaml)->smooth(route, testing::open_request(route)).route;
+Polyline smoothed(const Polyline& route, const std::string& yaml) {
+  return make_smoother("hermite", yaml)
+      ->smooth(route, testing::open_request(route))
+      .route.waypoints();
 }
 
-const Route kBends = {{0, 0, 0}, {100, 20, 5}, {130, 90, 10}, {300, 80, 40}};
+const Polyline kBends = {{0, 0, 0}, {100, 20, 5}, {130, 90, 10}, {300, 80, 40}};
 
 /// Barry and Goldman's pyramid: the cubic between the inner two of four points, each of which it
 /// passes at its parameter.
@@ -32,7 +34,7 @@ Vec3 pyramid(const std::vector<Vec3>& p, const std::vector<double>& t, double at
 }
 
 TEST(Hermite, HasTheTangentsOfChordLength) {
-  const Route smooth = smoothed(kBends, "{samples: 10}");
+  const Polyline smooth = smoothed(kBends, "{samples: 10}");
   ASSERT_EQ(smooth.size(), 31u);
   std::vector<double> t = {0};
   for (std::size_t i = 1; i < kBends.size(); ++i) {
@@ -43,7 +45,7 @@ TEST(Hermite, HasTheTangentsOfChordLength) {
     EXPECT_LT((smooth[10 + k] - pyramid(kBends, t, at)).norm(), 1e-9) << k;
   }
   // Along the chord of the neighbours: by the four Hermite polynomials.
-  const Route near = smoothed(kBends, "{samples: 10, tangents: chord}");
+  const Polyline near = smoothed(kBends, "{samples: 10, tangents: chord}");
   const double h = t[2] - t[1];
   const Vec3 m1 = (kBends[2] - kBends[0]) / (t[2] - t[0]);
   const Vec3 m2 = (kBends[3] - kBends[1]) / (t[3] - t[1]);
@@ -57,7 +59,7 @@ TEST(Hermite, HasTheTangentsOfChordLength) {
   EXPECT_LT(length(near), length(smooth));
 }
 
-bool crosses_itself(const Route& route) {
+bool crosses_itself(const Polyline& route) {
   const auto side = [](const Vec3& a, const Vec3& b, const Vec3& p) {
     return (b - a).cross(p - a).z() > 0;
   };
@@ -74,8 +76,8 @@ bool crosses_itself(const Route& route) {
 
 TEST(Hermite, DoesNotLoopWhereAUniformParameterDoes) {
   // A short leg between two long ones.
-  const Route route = {{0, 0, 0}, {100, 0, 0}, {101, 2, 0}, {10, 60, 0}};
-  Route uniform;
+  const Polyline route = {{0, 0, 0}, {100, 0, 0}, {101, 2, 0}, {10, 60, 0}};
+  Polyline uniform;
   for (int k = 0; k <= 40; ++k) {
     uniform.push_back(pyramid(route, {0, 1, 2, 3}, 1 + double(k) / 40));
   }
@@ -86,7 +88,7 @@ TEST(Hermite, DoesNotLoopWhereAUniformParameterDoes) {
 }
 
 /// True if these points are among those of the route, in their order.
-bool passes(const Route& route, const Route& points) {
+bool passes(const Polyline& route, const Polyline& points) {
   auto at = route.begin();
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     at = std::find(at, route.end(), p);
@@ -94,7 +96,7 @@ bool passes(const Route& route, const Route& points) {
   });
 }
 
-double largest_turn(const Route& route) {
+double largest_turn(const Polyline& route) {
   double most = 0;
   for (std::size_t i = 1; i + 1 < route.size(); ++i) {
     most = std::max(most, turn_angle_in_space(route[i] - route[i - 1], route[i + 1] - route[i]));
@@ -105,7 +107,7 @@ double largest_turn(const Route& route) {
 TEST(Hermite, PassesAllWaypointsWithoutAKink) {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     RandomStream random(seed);
-    Route route = {random.in({{0, 0, 0}, {10, 10, 10}})};
+    Polyline route = {random.in({{0, 0, 0}, {10, 10, 10}})};
     for (int i = 0; i < 7; ++i) {
       // Turns of up to 90 degrees: at sharper ones the curve is too short to be fine at any step.
       const Vec3 step = random.in({{1, -1, -1}, {9, 1, 1}});
@@ -113,7 +115,7 @@ TEST(Hermite, PassesAllWaypointsWithoutAKink) {
     }
     const std::string tangents = seed % 2 == 0 ? "chord" : "parabola";
     const auto turn_at = [&](int samples) {
-      const Route smooth =
+      const Polyline smooth =
           smoothed(route, "{samples: " + std::to_string(samples) + ", tangents: " + tangents + "}");
       EXPECT_EQ(smooth.size(), std::size_t(7 * samples + 1));
       EXPECT_TRUE(passes(smooth, route));
@@ -149,7 +151,7 @@ TEST(Hermite, TellsTheLeastRadiusOfTheCurveAndTheStep) {
 
 TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
   // After the second corner the curve runs outside the leg, where the ball is.
-  Route route = {{0, 0, 0}, {100, 0, 0}, {150, 100, 0}, {250, 100, 0}};
+  Polyline route = {{0, 0, 0}, {100, 0, 0}, {150, 100, 0}, {250, 100, 0}};
   for (int i = 1; i < 20; ++i) {
     route.emplace_back(250 + 100 * i, i % 2 == 0 ? 100 : 150, 0);
   }
@@ -162,7 +164,7 @@ TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
   ASSERT_FALSE(check(open.route, request).ok());
   const PlanResult mended = smoother->smooth(route, request);
   EXPECT_TRUE(check(mended.route, request).ok());
-  EXPECT_TRUE(passes(mended.route, route));
+  EXPECT_TRUE(passes(mended.route.waypoints(), route));
   EXPECT_GE(counter(mended, "inserted"), 1);
   EXPECT_EQ(counter(mended, "rounded"), counter(mended, "corners"));
   // Only spans next to the new nodes are rechecked.
@@ -174,7 +176,7 @@ TEST(Hermite, InsertsNodesWhereTheCurveWouldHitAndElseTheCornerStays) {
   EXPECT_TRUE(check(stays.route, request).ok());
   EXPECT_EQ(counter(stays, "inserted"), 0);
   EXPECT_LT(counter(stays, "rounded"), counter(stays, "corners"));
-  EXPECT_TRUE(passes(stays.route, {route[2], route[3]}));
+  EXPECT_TRUE(passes(stays.route.waypoints(), {route[2], route[3]}));
   EXPECT_NE(stays.message.find(" left sharp"), std::string::npos);
 }
 
@@ -204,7 +206,7 @@ TEST(Hermite, NoRuleOfRandomRoutesGetsWorse) {
     ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
-    ASSERT_TRUE(passes(result.route, route)) << seed;
+    ASSERT_TRUE(passes(result.route.waypoints(), route.waypoints())) << seed;
     EXPECT_GE(length(result.route), length(route) - 1e-9);
     EXPECT_EQ(result.route != route, counter(result, "rounded") > 0);
     (sound ? changed : changed_unsound) += result.route != route;
@@ -216,7 +218,7 @@ TEST(Hermite, NoRuleOfRandomRoutesGetsWorse) {
 }
 
 TEST(Hermite, UnderATurnRadiusOnlyCurvesOfThatRadius) {
-  const Route route = {{0, 0, 0}, {200, 0, 0}, {400, 100, 0}, {410, 110, 0}, {410, 300, 0}};
+  const Polyline route = {{0, 0, 0}, {200, 0, 0}, {400, 100, 0}, {410, 110, 0}, {410, 300, 0}};
   Request request = testing::open_request(route);
   request.limits.min_turn_radius = 5;
   ASSERT_TRUE(check(route, request).ok());
@@ -228,7 +230,7 @@ TEST(Hermite, UnderATurnRadiusOnlyCurvesOfThatRadius) {
 }
 
 TEST(Hermite, KeepsTheLevelAndTheLengthOfARoute) {
-  Route route = {{0, 0, 50}, {100, 0, 50}, {100, 100, 50}, {250, 170, 50}};
+  Polyline route = {{0, 0, 50}, {100, 0, 50}, {100, 100, 50}, {250, 170, 50}};
   Request request = testing::open_request(route);
   request.level_m = 50;
   const auto smoother = make_smoother("hermite");
@@ -245,14 +247,14 @@ TEST(Hermite, KeepsTheLevelAndTheLengthOfARoute) {
 
 TEST(Hermite, OddRoutesAndBudgets) {
   const Vec3 p(3, 4, 5);
-  EXPECT_EQ(smoothed({p, p, p}, "{}"), Route(3, p));
+  EXPECT_EQ(smoothed({p, p, p}, "{}"), Polyline(3, p));
   EXPECT_EQ(smoothed({p, {9, 9, 9}}, "{}").size(), 2u);
-  const Route back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
+  const Polyline back = {{0, 0, 0}, {50, 0, 0}, {20, 0, 0}};
   EXPECT_EQ(smoothed(back, "{}"), back);
-  const Route straight = {{0, 0, 0}, {30, 0, 0}, {90, 0, 0}, {91, 0, 0}};
+  const Polyline straight = {{0, 0, 0}, {30, 0, 0}, {90, 0, 0}, {91, 0, 0}};
   EXPECT_EQ(smoothed(straight, "{}"), straight);
   // A repeated point hides no corner.
-  const Route corner = {{0, 0, 0}, {50, 0, 0}, {50, 50, 0}};
+  const Polyline corner = {{0, 0, 0}, {50, 0, 0}, {50, 50, 0}};
   EXPECT_EQ(smoothed({corner[0], corner[1], corner[1], corner[2]}, "{}"), smoothed(corner, "{}"));
   EXPECT_EQ(smoothed(corner, "{step_m: 1e-9}").size(), 20'001u);
   Request request = testing::open_request(kBends);

@@ -35,7 +35,7 @@ struct Cost {
 /// Searches the fewest waypoints of one route.
 class Pruning {
  public:
-  Pruning(const Route& route, const Request& request)
+  Pruning(const Polyline& route, const Request& request)
       : route_(route),
         request_(request),
         watch_(request.budget),
@@ -182,7 +182,7 @@ class Pruning {
 
   double distance(std::size_t j, std::size_t k) const { return (route_[k] - route_[j]).norm(); }
 
-  const Route& route_;
+  const Polyline& route_;
   const Request& request_;
   BudgetWatch watch_;
   std::size_t count_;
@@ -198,15 +198,15 @@ class Prune final : public Smoother {
   explicit Prune(const NoParams&) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.route = route;
-    const Route clean = without_repeats(route);
+    const Polyline clean = without_repeats(route);
     Pruning pruning(clean, request);
     const std::vector<std::size_t> kept = pruning.fewest();
     result.budget_hit = pruning.budget_hit();
-    Route thinned;
+    Polyline thinned;
     for (const std::size_t index : kept) {
       thinned.push_back(clean[index]);
     }

@@ -21,8 +21,8 @@ Request among_balls(SplitMix64& random, int count) {
 }
 
 /// A valid route of random points; repeats until one is found.
-Route random_route(SplitMix64& random, Request& request, std::size_t points) {
-  Route route;
+Polyline random_route(SplitMix64& random, Request& request, std::size_t points) {
+  Polyline route;
   for (int attempt = 0; attempt < 3000 && route.size() < points; ++attempt) {
     const Vec3 p(random.uniform() * 100, random.uniform() * 100, random.uniform() * 100);
     if (route.empty() ? point_problem(p, request).empty()
@@ -38,11 +38,11 @@ Route random_route(SplitMix64& random, Request& request, std::size_t points) {
 
 /// Fewest points, then shortest length, over all subsets that keep the ends and satisfy every
 /// constraint.
-std::pair<std::size_t, double> best_subset(const Route& route, const Request& request) {
+std::pair<std::size_t, double> best_subset(const Polyline& route, const Request& request) {
   std::pair<std::size_t, double> best = {route.size() + 1, kInfinity};
   const unsigned inner = unsigned(route.size()) - 2;
   for (unsigned subset = 0; subset < 1U << inner; ++subset) {
-    Route kept = {route.front()};
+    Polyline kept = {route.front()};
     for (unsigned i = 0; i < inner; ++i) {
       if ((subset >> i & 1) != 0) {
         kept.push_back(route[i + 1]);
@@ -67,7 +67,7 @@ TEST(Prune, KeepsTheFewestOfAllSubsets) {
       request.limits.max_turn_space = radians(100);
       request.limits.max_climb = radians(60);
     }
-    const Route route = random_route(random, request, 9);
+    const Polyline route = random_route(random, request, 9);
     if (route.size() < 4 || !check(route, request).ok()) {
       continue;
     }
@@ -88,7 +88,7 @@ TEST(Prune, HoldsTheFirstLegToTheHeading) {
       testing::request_in(World(), {0, 0, 0}, {10, 10, 0}, {{-20, -20, -20}, {20, 20, 20}});
   request.limits.max_turn_horizontal = radians(65);
   request.start.velocity = {1, 0, 0};
-  const Route route = {{0, 0, 0}, {5, 0, 0}, {10, 5, 0}, {10, 10, 0}};
+  const Polyline route = {{0, 0, 0}, {5, 0, 0}, {10, 5, 0}, {10, 10, 0}};
   EXPECT_EQ(make_smoother("prune")->smooth(route, request).route.size(), 2u);
   request.start.velocity = {1, -1, 0};
   const Route kept = make_smoother("prune")->smooth(route, request).route;
@@ -100,9 +100,9 @@ TEST(Prune, LeavesWhatIsUnsoundOrOutOfBudget) {
   SplitMix64 random(12);
   Request request = testing::request_in(testing::world_of({Shape{Sphere{{5, 0, 0}, 2}}}), {0, 0, 0},
                                         {10, 0, 0}, {{-20, -20, -20}, {20, 20, 20}});
-  const Route through = {{0, 0, 0}, {1, 0, 0}, {9, 0, 0}, {10, 0, 0}};
+  const Polyline through = {{0, 0, 0}, {1, 0, 0}, {9, 0, 0}, {10, 0, 0}};
   EXPECT_EQ(make_smoother("prune")->smooth(through, request).route, through);
-  const Route around = {{0, 0, 0}, {1, 1, 0}, {5, 5, 0}, {9, 1, 0}, {10, 0, 0}};
+  const Polyline around = {{0, 0, 0}, {1, 1, 0}, {5, 5, 0}, {9, 1, 0}, {10, 0, 0}};
   EXPECT_EQ(make_smoother("prune")->smooth(around, request).route.size(), 3u);
   request.budget.max_iterations = 0;
   const PlanResult result = make_smoother("prune")->smooth(around, request);
@@ -113,7 +113,7 @@ TEST(Prune, LeavesWhatIsUnsoundOrOutOfBudget) {
 TEST(Prune, RepeatedPointsGo) {
   const Request request =
       testing::request_in(World(), {0, 0, 0}, {1, 0, 0}, {{-9, -9, -9}, {9, 9, 9}});
-  const Route route = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}};
+  const Polyline route = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}};
   EXPECT_EQ(make_smoother("prune")->smooth(route, request).route.size(), 2u);
 }
 }  // namespace

@@ -45,7 +45,7 @@ constexpr double kMinGain = 1e-5;
 /// Shortens one route.
 class Shortening {
  public:
-  Shortening(Route route, const Request& request, double waypoint_share)
+  Shortening(Polyline route, const Request& request, double waypoint_share)
       : pi_(std::move(route)),
         request_(request),
         random_(request.random.sub("shortcut")),
@@ -65,7 +65,7 @@ class Shortening {
     if (straight_already || gain <= kMinGain * from_start_.back()) {
       return false;
     }
-    Route shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
+    Polyline shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.before));
     shorter.insert(shorter.end(), {a.at, b.at});
     shorter.insert(shorter.end(), pi_.begin() + std::ptrdiff_t(b.after), pi_.end());
     // The leg a-b, and the adjacent ones that are cut, or whose turn changes.
@@ -78,7 +78,7 @@ class Shortening {
     return true;
   }
 
-  const Route& route() const { return pi_; }
+  const Polyline& route() const { return pi_; }
   std::int64_t legs_checked() const { return legs_checked_; }
 
  private:
@@ -112,7 +112,7 @@ class Shortening {
   }
 
   /// Checks the legs `first` to `last`, and past one without a heading the following legs.
-  bool legs_kept(const Route& route, std::size_t first, std::size_t last) {
+  bool legs_kept(const Polyline& route, std::size_t first, std::size_t last) {
     std::optional<Approach> before = approach(route, first, request_.before_start());
     for (std::size_t i = first; i + 1 < route.size(); ++i) {
       if (i > last && has_heading(route[i] - route[i - 1])) {
@@ -127,7 +127,7 @@ class Shortening {
     return true;
   }
 
-  Route pi_;
+  Polyline pi_;
   const Request& request_;
   RandomStream random_;
   double waypoint_share_;
@@ -140,7 +140,7 @@ class Shortcut final : public Smoother {
   explicit Shortcut(const Params& params) : params_(params) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     Shortening shortening(without_repeats(route), request, params_.waypoint_share);
     BudgetWatch watch(request.budget);
     PlanResult result;

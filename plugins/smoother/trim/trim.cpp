@@ -23,7 +23,7 @@ using namespace altiplan;
 /// The rounds over one route.
 class Trimming {
  public:
-  Trimming(const Route& route, const Request& request)
+  Trimming(const Polyline& route, const Request& request)
       : nodes_(without_repeats(route)), request_(request), watch_(request.budget) {}
 
   void round(std::size_t stride) {
@@ -37,7 +37,7 @@ class Trimming {
     });
   }
 
-  const Route& nodes() const { return nodes_; }
+  const Polyline& nodes() const { return nodes_; }
   std::int64_t tried() const { return tried_; }
   bool budget_hit() const { return budget_hit_; }
 
@@ -62,7 +62,7 @@ class Trimming {
     return true;
   }
 
-  Route nodes_;
+  Polyline nodes_;
   const Request& request_;
   BudgetWatch watch_;
   std::int64_t tried_ = 0;
@@ -74,7 +74,7 @@ class Trim final : public Smoother {
   explicit Trim(const kit::TrimParams& params) : strides_(params.strides()) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     Trimming trimming(route, request);
     for (const std::size_t stride : strides_) {
       trimming.round(stride);

@@ -11,8 +11,8 @@ using testing::counter;
 using testing::make_smoother;
 
 /// Waypoints on a line, 10 m apart.
-Route waypoints_on_a_line(int count) {
-  Route route;
+Polyline waypoints_on_a_line(int count) {
+  Polyline route;
   for (int i = 0; i < count; ++i) {
     route.emplace_back(10 * i, 0, 0);
   }
@@ -20,12 +20,12 @@ Route waypoints_on_a_line(int count) {
 }
 
 TEST(Trim, TakesStridesAndThenShorterOnes) {
-  const Route line = waypoints_on_a_line(101);
+  const Polyline line = waypoints_on_a_line(101);
   const Request request = testing::open_request(line);
   // 10 strides of 10 in the first round; of the 11 remaining waypoints, one stride to the 9th and
   // one to the last; then one.
   const PlanResult result = make_smoother("trim")->smooth(line, request);
-  EXPECT_EQ(result.route, (Route{line.front(), line.back()}));
+  EXPECT_EQ(result.route, (Polyline{line.front(), line.back()}));
   EXPECT_EQ(counter(result, "expanded"), 10 + 2 + 1);
   EXPECT_EQ(counter(result, "rounds"), 5);
   EXPECT_EQ(counter(result, "removed"), 99);
@@ -38,7 +38,7 @@ TEST(Trim, TakesStridesAndThenShorterOnes) {
 
 TEST(Trim, GoesOnByOneWaypointWhereAStrideIsNotFree) {
   // A ball between the first waypoint and the last two.
-  const Route route = {{0, 0, 0}, {10, 13, 0}, {20, 15, 0}, {30, 13, 0}, {40, 0, 0}, {50, 0, 0}};
+  const Polyline route = {{0, 0, 0}, {10, 13, 0}, {20, 15, 0}, {30, 13, 0}, {40, 0, 0}, {50, 0, 0}};
   const Request request =
       testing::request_in(testing::world_of({Shape{Sphere{{20, 0, 0}, 12.5}}}), route.front(),
                           route.back(), {{-99, -99, -99}, {99, 99, 99}});
@@ -47,13 +47,14 @@ TEST(Trim, GoesOnByOneWaypointWhereAStrideIsNotFree) {
     return make_smoother("trim", yaml)->smooth(route, request).route;
   };
   EXPECT_EQ(trimmed("{longest_stride: 2, shortest_stride: 2}"),
-            (Route{route[0], route[1], route[3], route[5]}));
+            (Polyline{route[0], route[1], route[3], route[5]}));
   // No stride of 4 is free except the last one, which ends with the route.
-  EXPECT_EQ(trimmed("{longest_stride: 4}"), (Route{route[0], route[1], route[2], route[5]}));
+  EXPECT_EQ(trimmed("{longest_stride: 4}"), (Polyline{route[0], route[1], route[2], route[5]}));
 }
 
 /// A direct implementation of the rounds: one waypoint after another is erased from a list.
-Route trimmed_plainly(Route route, const Request& request, const std::vector<std::size_t>& rounds) {
+Polyline trimmed_plainly(Polyline route, const Request& request,
+                         const std::vector<std::size_t>& rounds) {
   route = without_repeats(route);
   for (const std::size_t stride : rounds) {
     std::optional<Approach> before = request.before_start();
@@ -92,7 +93,7 @@ TEST(Trim, DoesWhatThePaperSaysAndNoRuleOfRandomRoutesGetsWorse) {
     }
     const PlanResult result = smoother->smooth(route, request);
     ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
-    EXPECT_EQ(result.route, trimmed_plainly(route, request, {5, 4, 3, 2})) << seed;
+    EXPECT_EQ(result.route, trimmed_plainly(route.waypoints(), request, {5, 4, 3, 2})) << seed;
     ASSERT_EQ(testing::grown_excess(route, result.route, request), "") << seed;
     ASSERT_TRUE(!sound || check(result.route, request).ok()) << seed;
     EXPECT_LE(length(result.route), length(route) + 1e-9);
@@ -104,35 +105,35 @@ TEST(Trim, DoesWhatThePaperSaysAndNoRuleOfRandomRoutesGetsWorse) {
 
 TEST(Trim, JudgesTheTurnsAtBothEndsOfAStride) {
   // Removing the second waypoint would turn the route by 90 degrees at the third.
-  const Route route = {{0, 0, 0}, {10, 10, 0}, {20, 0, 0}, {20, -20, 0}, {30, -30, 0}};
+  const Polyline route = {{0, 0, 0}, {10, 10, 0}, {20, 0, 0}, {20, -20, 0}, {30, -30, 0}};
   Request request = testing::open_request(route);
   const auto trimmed = [&] {
     return make_smoother("trim", "{longest_stride: 2, shortest_stride: 2}")
         ->smooth(route, request)
         .route;
   };
-  EXPECT_EQ(trimmed(), (Route{route[0], route[2], route[4]}));
+  EXPECT_EQ(trimmed(), (Polyline{route[0], route[2], route[4]}));
   request.limits.max_turn_space = radians(91);
   request.start.velocity = {1, 1, 0};
   EXPECT_TRUE(check(route, request).ok());
-  EXPECT_EQ(trimmed(), (Route{route[0], route[2], route[4]}));
+  EXPECT_EQ(trimmed(), (Polyline{route[0], route[2], route[4]}));
   request.limits.max_turn_space = radians(85);
   ASSERT_EQ(check(route, request).violations.size(), 1u);  // the second waypoint's 90 degrees
-  EXPECT_EQ(trimmed(), (Route{route[0], route[1], route[2], route[4]}));
+  EXPECT_EQ(trimmed(), (Polyline{route[0], route[1], route[2], route[4]}));
   // The first leg is checked against the start's heading.
   request.limits.max_turn_space = radians(91);
   request.start.velocity = {-1, 5, 0};
-  EXPECT_EQ(trimmed(), (Route{route[0], route[1], route[2], route[4]}));
+  EXPECT_EQ(trimmed(), (Polyline{route[0], route[1], route[2], route[4]}));
 }
 
 TEST(Trim, ARuleOfTheWholeRouteHasTheLastWord) {
   struct ManyWaypoints final : Constraint {
-    std::vector<Violation> do_violations(const Route& route, const Request&) const override {
+    std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
       return route.size() >= 5 ? std::vector<Violation>{}
                                : std::vector<Violation>{{"", 0, double(route.size()), 5, "few"}};
     }
   };
-  const Route line = waypoints_on_a_line(20);
+  const Polyline line = waypoints_on_a_line(20);
   Request request = testing::open_request(line);
   request.constraints.push_back({"many", std::make_shared<ManyWaypoints>()});
   const PlanResult result = make_smoother("trim")->smooth(line, request);
@@ -143,12 +144,13 @@ TEST(Trim, ARuleOfTheWholeRouteHasTheLastWord) {
 TEST(Trim, OddRoutesAndBudgets) {
   const auto trim = make_smoother("trim");
   const Vec3 p(3, 4, 5);
-  EXPECT_EQ(trim->smooth({p, p, p}, testing::open_request({p})).route, Route{p});
-  const Route two = {p, {9, 9, 9}};
+  EXPECT_EQ(trim->smooth({p, p, p}, testing::open_request({p})).route, Polyline{p});
+  const Polyline two = {p, {9, 9, 9}};
   EXPECT_EQ(trim->smooth(two, testing::open_request(two)).route, two);
-  const Route repeated = {p, p, {9, 9, 9}, {9, 9, 9}, {12, 0, 0}};
-  EXPECT_EQ(trim->smooth(repeated, testing::open_request(repeated)).route, (Route{p, {12, 0, 0}}));
-  const Route line = waypoints_on_a_line(101);
+  const Polyline repeated = {p, p, {9, 9, 9}, {9, 9, 9}, {12, 0, 0}};
+  EXPECT_EQ(trim->smooth(repeated, testing::open_request(repeated)).route,
+            (Polyline{p, {12, 0, 0}}));
+  const Polyline line = waypoints_on_a_line(101);
   Request request = testing::open_request(line);
   request.budget.max_iterations = 3;
   const PlanResult cut = trim->smooth(line, request);

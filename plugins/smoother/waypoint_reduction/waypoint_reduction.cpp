@@ -33,12 +33,12 @@ struct Params {
 /// The two pointers over one route.
 class Reduction {
  public:
-  Reduction(const Route& route, const Request& request, double max_turn)
+  Reduction(const Polyline& route, const Request& request, double max_turn)
       : route_(route), request_(request), watch_(request.budget), max_turn_(max_turn) {}
 
   /// The kept points; truncated if the budget was used up.
-  Route reduced() {
-    Route kept{route_.front()};
+  Polyline reduced() {
+    Polyline kept{route_.front()};
     std::optional<Approach> before = request_.before_start();  // at a via point: the leg to it
     std::size_t begin = 0;
     while (begin + 1 < route_.size() && !budget_hit_) {
@@ -76,7 +76,7 @@ class Reduction {
            leg_ok(before, a, b, request_);
   }
 
-  const Route& route_;
+  const Polyline& route_;
   const Request& request_;
   BudgetWatch watch_;
   double max_turn_;
@@ -90,10 +90,10 @@ class WaypointReduction final : public Smoother {
   explicit WaypointReduction(const Params& params) : max_turn_(radians(params.max_turn_deg)) {}
 
  private:
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
-    const Route clean = without_repeats(route);
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
+    const Polyline clean = without_repeats(route);
     Reduction reduction(clean, request, max_turn_);
-    Route reduced = reduction.reduced();
+    Polyline reduced = reduction.reduced();
     PlanResult result;
     result.status = PlanStatus::solved;
     result.budget_hit = reduction.budget_hit();

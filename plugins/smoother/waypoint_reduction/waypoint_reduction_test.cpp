@@ -11,46 +11,46 @@ using testing::make_smoother;
 
 const Box kVolume{{-100, -100, 0}, {100, 100, 0}};
 
-Request past(std::vector<Shape> shapes, const Route& route) {
+Request past(std::vector<Shape> shapes, const Polyline& route) {
   Request request = testing::request_in(testing::world_of(std::move(shapes)), route.front(),
                                         route.back(), kVolume);
   request.level_m = 0;
   return request;
 }
 
-const Route kOver{{0, 0, 0}, {2, 3, 0}, {5, 4.2, 0}, {8, 4, 0}, {10, 0, 0}};
+const Polyline kOver{{0, 0, 0}, {2, 3, 0}, {5, 4.2, 0}, {8, 4, 0}, {10, 0, 0}};
 const Cylinder kBelow{5, 0, 3};
 
 TEST(WaypointReduction, FarthestPointThatIsSeen) {
   // Over a disc: the start sees the top, and the top sees the end.
   const PlanResult result =
       make_smoother("waypoint_reduction")->smooth(kOver, past({kBelow}, kOver));
-  EXPECT_EQ(result.route, (Route{kOver[0], kOver[2], kOver[4]}));
+  EXPECT_EQ(result.route, (Polyline{kOver[0], kOver[2], kOver[4]}));
   EXPECT_EQ(result.message, "3 of 5 waypoints kept");
 }
 
 TEST(WaypointReduction, TurnsByAtMostNinetyDegrees) {
   // Around the end of a wall; from behind it the last point is visible, but straight back.
-  const Route route{{0, 0, 0}, {10, 0, 0}, {12, 1, 0}, {12, 5, 0}, {5, 5.5, 0}};
+  const Polyline route{{0, 0, 0}, {10, 0, 0}, {12, 1, 0}, {12, 5, 0}, {5, 5.5, 0}};
   const Request request = past({BoxShape{{{-5, 1, -1}, {8, 2, 1}}}}, route);
   const PlanResult result = make_smoother("waypoint_reduction")->smooth(route, request);
-  EXPECT_EQ(result.route, (Route{route[0], route[2], route[3], route[4]}));
+  EXPECT_EQ(result.route, (Polyline{route[0], route[2], route[3], route[4]}));
   EXPECT_EQ(counter(result, "points_without_end"), 0);
   const PlanResult sharp =
       make_smoother("waypoint_reduction", "{max_turn_deg: 180}")->smooth(route, request);
-  EXPECT_EQ(sharp.route, (Route{route[0], route[2], route[4]}));
+  EXPECT_EQ(sharp.route, (Polyline{route[0], route[2], route[4]}));
 }
 
 TEST(WaypointReduction, TurnsFromTheHeadingAtTheStart) {
   // The host passes this after a via point: the heading of the leg that leads to it.
-  const Route route{{0, 0, 0}, {0, 5, 0}, {5, 8, 0}, {10, 8, 0}};
+  const Polyline route{{0, 0, 0}, {0, 5, 0}, {5, 8, 0}, {10, 8, 0}};
   Request request = past({}, route);
   const auto reduced = [&](const char* parameters) {
     return make_smoother("waypoint_reduction", parameters)->smooth(route, request);
   };
-  EXPECT_EQ(reduced("{}").route, (Route{route[0], route[3]}));
+  EXPECT_EQ(reduced("{}").route, (Polyline{route[0], route[3]}));
   request.start.velocity = {-10, 0, 0};
-  EXPECT_EQ(reduced("{}").route, (Route{route[0], route[1], route[3]}));
+  EXPECT_EQ(reduced("{}").route, (Polyline{route[0], route[1], route[3]}));
   EXPECT_EQ(counter(reduced("{}"), "points_without_end"), 0);
   EXPECT_EQ(reduced("{max_turn_deg: 60}").route, route);
   EXPECT_EQ(counter(reduced("{max_turn_deg: 60}"), "points_without_end"), 1);
@@ -58,7 +58,7 @@ TEST(WaypointReduction, TurnsFromTheHeadingAtTheStart) {
 
 TEST(WaypointReduction, KeepsTheNextPointWhereNoEndIsAdmissible) {
   // No later point is within 60 degrees of the leg along the wall.
-  const Route route{{0, 0, 0}, {10, 0, 0}, {9, 4, 0}, {6, 8, 0}};
+  const Polyline route{{0, 0, 0}, {10, 0, 0}, {9, 4, 0}, {6, 8, 0}};
   const PlanResult result = make_smoother("waypoint_reduction", "{max_turn_deg: 60}")
                                 ->smooth(route, past({BoxShape{{{-5, 1, -1}, {8, 2, 1}}}}, route));
   EXPECT_EQ(result.route, route);
@@ -77,7 +77,7 @@ TEST(WaypointReduction, IsTheDefinitionOnRandomRoutes) {
     for (int i = 0; i < 8; ++i) {
       discs.push_back(Cylinder{random.uniform(0, 100), random.uniform(0, 100), 8});
     }
-    Route route;
+    Polyline route;
     for (int tries = 0; tries < 400 && route.size() < 12; ++tries) {
       const Vec3 p(random.uniform(0, 100), random.uniform(0, 100), 0);
       if (!testing::world_of(discs).blocked(route.empty() ? p : route.back(), p, 0)) {
@@ -85,7 +85,7 @@ TEST(WaypointReduction, IsTheDefinitionOnRandomRoutes) {
       }
     }
     const Request request = past(discs, route);
-    Route expected{route[0]};
+    Polyline expected{route[0]};
     for (std::size_t begin = 0; begin + 1 < route.size();) {
       std::size_t end = route.size() - 1;
       const auto turns = [&] {
@@ -119,7 +119,7 @@ TEST(WaypointReduction, KeepsTheTurnLimitOfTheRequest) {
 TEST(WaypointReduction, LeavesTheRouteWhereARuleWouldBreak) {
   // Half around a disc in turns of 20 degrees: after a long leg every other one turns by 25 or
   // more.
-  Route route;
+  Polyline route;
   for (int degree = 180; degree >= 0; degree -= 20) {
     route.emplace_back(40 * std::cos(radians(degree)), 40 * std::sin(radians(degree)), 0);
   }

@@ -12,7 +12,7 @@ class Iota final : public altiplan::Constraint {
   explicit Iota(const altiplan::NoParams&) {}
 
  private:
-  bool do_admits(const altiplan::Leg&) const override { return helper_of_iota() > 0; }
+  bool do_admits(const altiplan::Motion&) const override { return helper_of_iota() > 0; }
 };
 }  // namespace
 

@@ -37,7 +37,7 @@ struct Search {
   std::uint32_t start = lattice.index(first.cell);
   std::uint32_t goal = std::uint32_t(lattice.size());  // beyond the cells: not a cell centre
   std::int64_t expanded = 0;
-  Route route{};
+  Polyline route{};
 
   PlanStatus run() {
     nodes.reset(lattice.size() + 1);
@@ -91,15 +91,15 @@ struct Search {
   }
 
   bool line_of_sight(std::uint32_t a, std::uint32_t b) {
-    const Route flown = route_to(a);
+    const Polyline flown = route_to(a);
     const auto before = approach(flown, flown.size() - 1, request.before_start());
     return b == goal || (a == start && first.length > 0)  // not a cell centre
                ? rules.any_leg_ok(before, place(a), place(b))
                : rules.sees(before, lattice.cell(a), lattice.cell(b));
   }
 
-  Route route_to(std::uint32_t s) const {
-    Route route = {place(s)};
+  Polyline route_to(std::uint32_t s) const {
+    Polyline route = {place(s)};
     for (; s != start; s = nodes[s].parent) {
       route.insert(route.begin(), place(nodes[s].parent));
     }

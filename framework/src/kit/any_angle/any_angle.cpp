@@ -271,8 +271,8 @@ void AnyAngleSearch::remember_fallback(Node s) {
   }
 }
 
-Route AnyAngleSearch::route_to(Node last) const {
-  Route route;
+Polyline AnyAngleSearch::route_to(Node last) const {
+  Polyline route;
   for (Node n = last; n != start_.node; n = parent(n)) {
     route.push_back(position(n));
   }

@@ -11,7 +11,7 @@ namespace {
 /// True if a leg is free whenever its cells are, whatever precedes it.
 bool cells_alone_decide(const Request& request) {
   const Limits& limits = request.limits;
-  return MoveRules::cells_decide(request) && limits.max_climb >= kPi / 2 && limits.min_leg <= 0 &&
+  return MoveRules::cells_decide(request) && limits.max_slope() >= kPi / 2 && limits.min_leg <= 0 &&
          limits.max_leg == kInfinity;
 }
 

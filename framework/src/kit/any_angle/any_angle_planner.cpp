@@ -13,7 +13,7 @@ namespace {
 /// it: then a cell may be unreachable from one parent alone.
 bool legs_differ(const Request& request) {
   const Limits& limits = request.limits;
-  return limits.turns() || !request.constraints.empty() || limits.max_climb < kPi / 2 ||
+  return limits.turns() || !request.constraints.empty() || limits.max_slope() < kPi / 2 ||
          limits.min_leg > 0 || limits.max_leg < kInfinity || limits.max_route_length < kInfinity;
 }
 
@@ -57,7 +57,7 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
       params_.angle_rule == AnyAngleParams::Angles::printed) {
     if (const CheckResult judged = check(result.route, request); !judged.ok()) {
       result.status = result.budget_hit ? PlanStatus::timed_out : PlanStatus::no_route;
-      result.route.clear();
+      result.route = {};
       result.message =
           "the angle rule as printed gave an invalid route: " + judged.violations.front().message;
       result.counters.push_back({"routes_refused", 1});

@@ -108,7 +108,7 @@ std::optional<PlanResult> Colony::without_ants() {
   result.message = straight ? "start and goal share a cell: the straight leg"
                             : "no route: start and goal share a cell, and the straight leg "
                               "between them violates a constraint";
-  result.route = straight ? Route{start, goal} : Route{};
+  result.route = straight ? Polyline{start, goal} : Polyline{};
   return result;
 }
 
@@ -219,7 +219,7 @@ void Colony::note_iteration() {
     ++shown;
     std::int64_t parent = -1;
     double metres = 0;
-    const Route route = route_of(ant);
+    const Polyline route = route_of(ant);
     for (std::size_t n = 0; n < route.size(); ++n) {
       metres += n > 0 ? (route[n] - route[n - 1]).norm() : 0;
       request_.trace->add({TraceEvent::Kind::added, traced_, parent, route[n], metres});
@@ -280,8 +280,8 @@ double Colony::length_of(const std::vector<std::uint32_t>& way) const {
   return metres;
 }
 
-Route Colony::route_of(const Ant& ant) const {
-  Route route = {request_.start.position};
+Polyline Colony::route_of(const Ant& ant) const {
+  Polyline route = {request_.start.position};
   for (std::size_t n = start_link_ == 0 ? 1 : 0; n < ant.way.size(); ++n) {
     route.push_back(position(ant.way[n]));
   }
@@ -302,7 +302,7 @@ PlanResult Colony::result() const {
                   : cut_short  ? PlanStatus::timed_out
                                : PlanStatus::no_route;
   result.budget_hit = cut_short;
-  result.route = found ? route_of(best_) : Route{};
+  result.route = found ? route_of(best_) : Polyline{};
   result.message = reason();
   result.counters = {{"expanded", std::int64_t(expanded_)},
                      {"iterations", std::int64_t(past_.size())},

@@ -15,7 +15,7 @@ bool length_kept(double length, const Limits& limits) {
 }
 
 bool climb_kept(const Vec3& leg, const Limits& limits) {
-  return climb_angle(leg) <= limits.max_climb + kAngleTolerance;
+  return climb_angle(leg) <= limits.max_slope() + kAngleTolerance;
 }
 
 /// Comparison of an angle with a limit by its cosine: a product of two vectors, and of their
@@ -62,7 +62,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
   const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
-  cosines_ = {cosine(limits.max_climb), cosine(limits.max_turn_horizontal),
+  cosines_ = {cosine(limits.max_slope()), cosine(limits.max_turn_horizontal),
               cosine(limits.max_turn_space)};
   if (check == MoveCheck::cells) {
     grid_ = occupancy(request, lattice);
@@ -328,7 +328,7 @@ bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& 
     return false;
   }
   const Vec3 leg = b - a;
-  if (limits.max_climb < kPi / 2) {
+  if (limits.max_slope() < kPi / 2) {
     const Told told = by_cosine(leg.head<2>().norm(), length, cosines_.climb);
     if (told == Told::broken || (told == Told::nothing && !climb_kept(leg, limits))) {
       ++refused_[by_climb];

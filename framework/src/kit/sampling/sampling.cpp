@@ -59,7 +59,7 @@ Vec3 bent(const std::optional<Approach>& before, const Vec3& at, const Vec3& wan
       way = turned_in_space(incoming, way, most);
     }
   }
-  return limits.max_climb < kPi / 2 ? levelled(way, limits.max_climb) : way;
+  return limits.max_slope() < kPi / 2 ? levelled(way, limits.max_slope()) : way;
 }
 
 InformedSet::InformedSet(const Vec3& start, const Vec3& goal, const Box& box)

@@ -50,7 +50,7 @@ namespace {
 bool near(const Vec3& a, const Vec3& b) { return (a - b).norm() <= kLengthTolerance; }
 
 /// Appends a point unless it repeats the last one.
-void append(Route& route, const Vec3& p) {
+void append(Polyline& route, const Vec3& p) {
   if (p != route.back()) {
     route.push_back(p);
   }
@@ -58,7 +58,7 @@ void append(Route& route, const Vec3& p) {
 
 class Rounding {
  public:
-  Rounding(const Route& route, const Request& request, const CurveOf& curve_of)
+  Rounding(const Polyline& route, const Request& request, const CurveOf& curve_of)
       : original_(route),
         route_(without_repeats(route)),
         request_(request),
@@ -162,9 +162,9 @@ class Rounding {
       return kStays;
     }
     int chosen = kStays;
-    Route best;
+    Polyline best;
     for (int attempt = state.first;; ++attempt) {
-      const std::optional<Route> curve = curve_of_(corner, attempt);
+      const std::optional<Polyline> curve = curve_of_(corner, attempt);
       if (!curve) {
         break;
       }
@@ -173,7 +173,7 @@ class Rounding {
       }
       ++result_.attempts;
       state.offered = true;
-      const Route part = part_with(*curve);
+      const Polyline part = part_with(*curve);
       const bool keeps_all = sound(part);
       if ((keeps_all || (chosen == kStays && is_accepted(part))) && keeps_whole_rules(*curve)) {
         chosen = attempt;
@@ -208,7 +208,7 @@ class Rounding {
 
   /// Appends the points of a curve; those equal to the adjacent waypoints up to rounding become
   /// these.
-  void append_curve(Route& route, const Route& curve) const {
+  void append_curve(Polyline& route, const Polyline& curve) const {
     for (const Vec3& p : curve) {
       if (!near(p, route.back())) {
         route.push_back(near(p, route_[next_ + 1]) ? route_[next_ + 1] : p);
@@ -217,8 +217,8 @@ class Rounding {
   }
 
   /// From the last point so far over the curve to the next waypoint.
-  Route part_with(const Route& curve) const {
-    Route part = {done_.back()};
+  Polyline part_with(const Polyline& curve) const {
+    Polyline part = {done_.back()};
     append_curve(part, curve);
     append(part, route_[next_ + 1]);
     return part;
@@ -226,7 +226,7 @@ class Rounding {
 
   /// Calls judge(before, a, b) for the legs of a part until it returns false.
   template <class Judge>
-  bool all_legs(const Route& part, const Judge& judge) const {
+  bool all_legs(const Polyline& part, const Judge& judge) const {
     std::optional<Approach> before = approach(done_, done_.size() - 1, request_.before_start());
     for (std::size_t i = 0; i + 1 < part.size(); ++i) {
       if (!judge(before, part[i], part[i + 1])) {
@@ -237,7 +237,7 @@ class Rounding {
     return true;
   }
 
-  bool sound(const Route& part) const {
+  bool sound(const Polyline& part) const {
     return all_legs(part, [&](const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
       return leg_ok(before, a, b, request_);
     });
@@ -246,7 +246,7 @@ class Rounding {
   /// True if the part violates no constraint by more than the two legs of the corner: its first
   /// leg, in turning into it, by no more than the leg into the corner, or the one that began where
   /// it does; the others by no more than the corner.
-  bool is_accepted(const Route& part) const {
+  bool is_accepted(const Polyline& part) const {
     const LegExcess& into = legs_[next_ - 1];
     const LegExcess& out_of = legs_[next_];
     Excess first = into.with_turn;
@@ -266,11 +266,11 @@ class Rounding {
     });
   }
 
-  bool keeps_whole_rules(const Route& curve) const {
+  bool keeps_whole_rules(const Polyline& curve) const {
     if (allowed_ == nullptr) {
       return true;
     }
-    Route whole = done_;
+    Polyline whole = done_;
     append_curve(whole, curve);
     for (std::size_t i = next_ + 1; i < route_.size(); ++i) {
       append(whole, route_[i]);
@@ -288,21 +288,21 @@ class Rounding {
     }
   }
 
-  const Route& original_;
-  const Route route_;
+  const Polyline& original_;
+  const Polyline route_;
   const Request& request_;
   const CurveOf& curve_of_;
   BudgetWatch watch_;
   std::vector<LegExcess> legs_;      ///< of route_
   const Excess* allowed_ = nullptr;  ///< of the whole route, if checked
   std::vector<State> states_;        ///< of the waypoints of route_
-  Route done_;                       ///< the points so far, to be followed by route_ from next_ on
+  Polyline done_;                    ///< the points so far, to be followed by route_ from next_ on
   std::size_t next_ = 1;
   RoundedRoute result_;
 };
 }  // namespace
 
-RoundedRoute round_corners(const Route& route, const Request& request, const CurveOf& curve_of) {
+RoundedRoute round_corners(const Polyline& route, const Request& request, const CurveOf& curve_of) {
   return Rounding(route, request, curve_of).run();
 }
 }  // namespace altiplan::kit

@@ -47,7 +47,7 @@ class QuietVillage final : public Constraint {
   }
 
   // Called leg by leg by planners, pilots, smoothers and the judge.
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     return lowest_over(leg.from, leg.to) >= params_.min_m - kLengthTolerance;
   }
 

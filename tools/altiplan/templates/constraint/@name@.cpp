@@ -21,7 +21,7 @@ class QuietPlace final : public Constraint {
 
  private:
   // Called leg by leg by planners, pilots, smoothers and the judge.
-  bool do_admits(const Leg& leg) const override {
+  bool do_admits(const Motion& leg) const override {
     const Vec3 track(leg.to.x() - leg.from.x(), leg.to.y() - leg.from.y(), 0);
     const Vec3 place(params_.at_m[0] - leg.from.x(), params_.at_m[1] - leg.from.y(), 0);
     const double along =

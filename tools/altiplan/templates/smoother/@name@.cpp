@@ -21,7 +21,7 @@ class DropWaypoints final : public Smoother {
  private:
   // A waypoint is dropped only if the judge's own code accepts the shorter route, so a route that
   // violates a constraint is returned improved or unchanged.
-  PlanResult do_smooth(const Route& route, const Request& request) const override {
+  PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     PlanResult result;
     result.status = PlanStatus::solved;
     result.route = route;
@@ -34,7 +34,7 @@ class DropWaypoints final : public Smoother {
           break;
         }
         ++tried;
-        Route shorter = result.route;
+        Polyline shorter = result.route.waypoints();
         shorter.erase(shorter.begin() + std::ptrdiff_t(at));
         if (check(shorter, request).ok()) {
           result.route = std::move(shorter);

@@ -133,7 +133,7 @@ class ALTIPLAN_API AnyAngleSearch {
 
   struct Result {
     PlanStatus status = PlanStatus::no_route;
-    Route route;
+    Polyline route;
     bool at_goal = false;  ///< not only within its tolerance
     bool budget_hit = false;
     SearchStats progress;  ///< including the earlier searches
@@ -168,7 +168,7 @@ class ALTIPLAN_API AnyAngleSearch {
   bool sees(Node a, Node b);
   bool keeps_limits(Node a, Node b);
   void take(Node v, Node parent, std::uint32_t g, std::uint32_t h);
-  Route route_to(Node last) const;
+  Polyline route_to(Node last) const;
 
   static constexpr std::uint32_t kClosed = 1U << 31;
   static constexpr std::uint32_t kLongest = kClosed - 1;  ///< the longest path

@@ -165,7 +165,7 @@ class ALTIPLAN_API Colony {
   void lay_all();
   bool ends_well(Walker& walker) const;
   std::optional<Approach> before(const Ant& ant, std::size_t place) const;
-  Route route_of(const Ant& ant) const;
+  Polyline route_of(const Ant& ant) const;
   PlanResult result() const;
   std::string reason() const;
 

@@ -184,8 +184,8 @@ class HeadingSearch : GoalSearch {
            settings_.max_bytes;
   }
 
-  Route route_to(std::uint32_t last, bool at_goal) const {
-    Route route;
+  Polyline route_to(std::uint32_t last, bool at_goal) const {
+    Polyline route;
     for (std::uint32_t index = last; index != kNone; index = arrivals_[index].from) {
       route.push_back(lattice_.position(lattice_.cell(arrivals_[index].cell)));
     }

@@ -179,9 +179,9 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
 /// the step into a cell, kHere at a cell that is linked to the start, and `likely` that of the step
 /// after it; `at_start(index)` is true if that link has length zero.
 template <class StepTo, class AtStart>
-Route route_to(std::uint32_t last, const Request& request, const Lattice& lattice,
-               const StepTo& step_to, const AtStart& at_start) {
-  Route route;
+Polyline route_to(std::uint32_t last, const Request& request, const Lattice& lattice,
+                  const StepTo& step_to, const AtStart& at_start) {
+  Polyline route;
   std::uint32_t index = last;
   for (int d = step_to(index, kHere); d != kHere; d = step_to(index, d)) {
     route.push_back(lattice.position(lattice.cell(index)));
@@ -231,7 +231,7 @@ inline PlanResult without_route(PlanResult result) {
     result.status = PlanStatus::timed_out;
     result.message =
         "the budget was used up before the goal was reached or known to be out of reach";
-    result.route.clear();
+    result.route = {};
   }
   return result;
 }
@@ -275,7 +275,7 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
 }
 
 /// Ends the route at the goal; `at_goal`: the last cell's centre equals the goal up to rounding.
-inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
+inline void end_at_goal(Polyline& route, const Vec3& goal, bool at_goal) {
   if (at_goal && route.size() > 1) {
     route.back() = goal;
   } else {
@@ -283,7 +283,7 @@ inline void end_at_goal(Route& route, const Vec3& goal, bool at_goal) {
   }
 }
 
-inline PlanResult solved(Route route, const SearchStats& progress, const Lattice& lattice,
+inline PlanResult solved(Polyline route, const SearchStats& progress, const Lattice& lattice,
                          const MoveRules& rules) {
   PlanResult result;
   result.status = PlanStatus::solved;
@@ -362,7 +362,7 @@ class LatticeSearch {
   PlanStatus ended() const {
     return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
   }
-  SearchResult with(Route route, double cost, bool at_goal, bool budget_hit) const {
+  SearchResult with(Polyline route, double cost, bool at_goal, bool budget_hit) const {
     SearchResult found;
     found.cost = cost;
     found.at_goal = at_goal;

@@ -84,8 +84,8 @@ class LegTree {
   }
 
   /// The points from its root to the node.
-  Route way_to(Node node) const {
-    Route way;
+  Polyline way_to(Node node) const {
+    Polyline way;
     for (; node != kNone; node = parent(node)) {
       way.push_back(point(node));
     }

@@ -93,7 +93,7 @@ inline Vec3 steer(const std::optional<Approach>& before, const Vec3& at, const V
       std::min(std::max(std::min(run, range), limits.min_leg * kLonger), limits.max_leg);
   Vec3 way = wanted;
   double way_length = run;
-  if ((before && limits.turns()) || limits.max_climb < kPi / 2) {
+  if ((before && limits.turns()) || limits.max_slope() < kPi / 2) {
     way = bent(before, at, wanted, range, limits);
     way_length = way.norm();
   }

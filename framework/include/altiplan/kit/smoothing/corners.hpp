@@ -53,10 +53,10 @@ ALTIPLAN_API double radius_margin(double leg, double turn);
 
 /// Candidate number `attempt` (0, 1, …) for the curve of a corner: points from the leg before to
 /// the leg after it; an empty route to cut the corner out; nullopt when no candidate is left.
-using CurveOf = std::function<std::optional<Route>(const Corner&, int attempt)>;
+using CurveOf = std::function<std::optional<Polyline>(const Corner&, int attempt)>;
 
 struct RoundedRoute {
-  Route route;
+  Polyline route;
   std::int64_t attempts = 0;  ///< curves checked against the constraints; one iteration of the
                               ///< budget each
   std::int64_t corners = 0;   ///< waypoints at which the route turns
@@ -70,6 +70,6 @@ struct RoundedRoute {
 /// every constraint there is taken, else the first that violates none by more than the legs of the
 /// corner do, else the corner stays. (A corner kept beside a curve has a shorter leg, and so a
 /// smaller circle. Where that violates a constraint, the curve is dropped.)
-ALTIPLAN_API RoundedRoute round_corners(const Route& route, const Request& request,
+ALTIPLAN_API RoundedRoute round_corners(const Polyline& route, const Request& request,
                                         const CurveOf& curve_of);
 }  // namespace altiplan::kit

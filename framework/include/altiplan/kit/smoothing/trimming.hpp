@@ -26,8 +26,7 @@ struct TrimParams {
     f("decay", decay)
         .range(0.01, 0.99)
         .doc("factor of the stride from round to round, sigma of eq. (11)");
-    f.check(shortest_stride <= longest_stride,
-            "shortest_stride must not exceed longest_stride");
+    f.check(shortest_stride <= longest_stride, "shortest_stride must not exceed longest_stride");
   }
 
   /// Strides of the rounds: floor(longest * decay^v) while that is at least the shortest, each

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "altiplan/geometry.hpp"
+
+namespace altiplan {
+
+/// A position with a heading: the angle of the horizontal direction of motion through the air,
+/// counter-clockwise from east, radians.
+struct Pose {
+  Vec3 position{0, 0, 0};
+  double heading = 0;
+};
+
+/// Unit vector of a heading.
+inline Vec3 unit_heading(double heading) { return {std::cos(heading), std::sin(heading), 0}; }
+
+/// A leg of a route: straight, or a turn of constant radius and sense. A turn is a circle in the
+/// air mass, and its height is linear in time: without wind an arc (of a helix, if it climbs), in
+/// wind a trochoid. All kinds share one parameter t in [0, 1], the fraction of the leg's time:
+///   p(t) = from + circle(t) + t (drift + climb),  |p''(t)| = radius turn².
+struct ALTIPLAN_API Leg {
+  enum class Kind { straight, arc, trochoid };
+
+  Vec3 from{0, 0, 0};
+  Vec3 to{0, 0, 0};
+  double turn = 0;      ///< radians in the air mass, positive to the left, any size; 0: straight
+  double radius = 0;    ///< metres, of the circle in the air mass; > 0 if the leg turns
+  double heading = 0;   ///< radians, in the air mass at `from`; of a turn alone
+  Vec3 drift{0, 0, 0};  ///< horizontal displacement of the air mass during a turn, metres
+
+  static Leg straight(const Vec3& from, const Vec3& to) { return {from, to}; }
+  /// The turn that begins at a pose and changes the height by `climb`.
+  static Leg turning(const Pose& from, double turn, double radius, double climb,
+                     const Vec3& drift = Vec3::Zero());
+
+  Kind kind() const {
+    return turn == 0 ? Kind::straight : drift.isZero(0) ? Kind::arc : Kind::trochoid;
+  }
+  bool turns() const { return turn != 0; }
+  /// Position at a fraction of the leg's time; exactly `from` at 0 and `to` at 1.
+  Vec3 at(double t) const;
+  /// Derivative of the position by t: the displacement over the ground at that rate for a whole
+  /// leg; its horizontal part has the direction of the track.
+  Vec3 rate(double t) const;
+  /// Length of the path over the ground, metres.
+  double length() const;
+  /// Length of the horizontal path through the air, metres (of a straight leg: over the ground).
+  double air_length() const;
+  /// Smallest axis-aligned box around the leg.
+  Box box() const;
+  /// The part between two fractions of time.
+  Leg piece(double begin, double end) const;
+  /// Bound on the distance between points of the leg and of its chord at equal t: radius turn² / 8.
+  double sagitta() const { return radius * turn * turn / 8; }
+  /// Points from `from` to `to` whose chords lie at most `tolerance` metres from the leg.
+  std::vector<Vec3> chords(double tolerance) const;
+  /// The same path flown backwards, in the reversed wind.
+  Leg reversed() const;
+
+  bool operator==(const Leg&) const = default;
+};
+}  // namespace altiplan

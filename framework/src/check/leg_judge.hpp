@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "altiplan/nearest_place.hpp"
+#include "altiplan/request.hpp"
+#include "altiplan/what_blocks.hpp"
+#include "pieces.hpp"
+#include "words.hpp"
+
+namespace altiplan {
+
+/// Start of the first part of a leg that has no ground below it.
+Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
+  if (!world.ground_below(a, a)) {
+    return a;
+  }
+  double known = 0;
+  double unknown = 1;
+  for (int i = 0; i < 50; ++i) {
+    const double t = (known + unknown) / 2;
+    (world.ground_below(a, a + t * (b - a)) ? known : unknown) = t;
+  }
+  return a + unknown * (b - a);
+}
+
+double required_clearance(const Request& request) {
+  return std::max(request.limits.min_clearance, request.vehicle.radius_m);
+}
+
+/// The layer that blocks a turn for a sphere of radius r, or null. By bisection: a piece is free if
+/// its chord is free for r + e, and blocked if its chord is blocked for r - e.
+inline const Layer* blocked_by(const World& world, const Leg& turn, double r) {
+  const Layer* layer = nullptr;
+  const bool is_free = every_piece(turn, [&](const Piece& piece) {
+    layer = world.blocked_by(piece.a, piece.b, r + piece.e);
+    if (layer == nullptr) {
+      return Verdict::kept;
+    }
+    const bool is_blocked = r > piece.e && world.blocked(piece.a, piece.b, r - piece.e);
+    return is_blocked ? Verdict::violated : Verdict::halve;
+  });
+  return is_free ? nullptr : layer;
+}
+
+/// Checks one leg against every constraint, the cheap ones first: one call of `report` (with a
+/// function that makes the violation) per violated constraint, until report returns false.
+template <class Report>
+class LegJudge {
+ public:
+  LegJudge(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+           const Request& request, std::size_t at, const Report& report)
+      : before_(before),
+        a_(a),
+        b_(b),
+        leg_(b - a),
+        request_(request),
+        limits_(request.limits),
+        at_(at),
+        report_(report) {}
+
+  /// A turn, or a straight leg as above.
+  LegJudge(const std::optional<Approach>& before, const Leg& leg, const Request& request,
+           std::size_t at, const Report& report)
+      : LegJudge(before, leg.from, leg.to, request, at, report) {
+    if (leg.turns()) {
+      turn_ = &leg;
+      leg_ = leg.rate(0);
+    }
+  }
+
+  void judge() const {
+    if (!is_finite(a_) || !is_finite(b_)) {
+      report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
+      return;
+    }
+    // Each returns whether to continue.
+    (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_turn() && keeps_size() &&
+           keeps_bend() && keeps_heights() && keeps_constraints() && keeps_off());
+  }
+  void judge_bend() const { (void)keeps_bend(); }
+
+ private:
+  // Quantities and their limits; `scale` converts both to the unit of the message.
+  bool at_least(double value, double limit, double tolerance, const char* rule, const char* what,
+                const char* unit, double scale = 1) const {
+    return value >= limit - tolerance || report_([&] {
+             return beyond(rule, at_, value * scale, limit * scale, unit, what, true);
+           });
+  }
+  bool at_most(double value, double limit, double tolerance, const char* rule, const char* what,
+               const char* unit, double scale = 1) const {
+    return value <= limit + tolerance || report_([&] {
+             return beyond(rule, at_, value * scale, limit * scale, unit, what, false);
+           });
+  }
+  /// `angle` is evaluated only if the limit is below `widest`, the maximum of any angle.
+  template <class Angle>
+  bool at_most_angle(const Angle& angle, double limit, double widest, const char* rule,
+                     const char* what) const {
+    return limit >= widest ||
+           at_most(angle(), limit, kAngleTolerance, rule, what, " degrees", degrees(1));
+  }
+
+  bool keeps_place(const Vec3& p, std::size_t index) const {
+    if (!request_.volume.contains(p, kLengthTolerance) && !report_([&] {
+          const double outside =
+              std::max((request_.volume.min - p).maxCoeff(), (p - request_.volume.max).maxCoeff());
+          return Violation{"volume", index, outside, 0,
+                           place(p) + " lies " + fixed(outside) + " m outside the volume"};
+        })) {
+      return false;
+    }
+    return !request_.level_m || std::abs(p.z() - *request_.level_m) <= kLengthTolerance ||
+           report_([&] {
+             return Violation{
+                 "level_flight", index, p.z(), *request_.level_m,
+                 place(p) + " is not on the level of " + fixed(*request_.level_m) + " m"};
+           });
+  }
+
+  /// The geometry that a turn alone has: its box, its radius, and the drift of the air.
+  bool keeps_turn() const {
+    if (turn_ == nullptr) {
+      return true;
+    }
+    const Box box = turn_->box();
+    if (!request_.volume.contains(box.min, kLengthTolerance) ||
+        !request_.volume.contains(box.max, kLengthTolerance)) {
+      const double outside = std::max((request_.volume.min - box.min).maxCoeff(),
+                                      (box.max - request_.volume.max).maxCoeff());
+      if (!report_([&] {
+            return Violation{"volume", at_, outside, 0,
+                             "the turn leaves the volume by " + fixed(outside) + " m"};
+          })) {
+        return false;
+      }
+    }
+    return at_least(turn_->radius, limits_.min_turn_radius, kLengthTolerance, "turn_radius",
+                    "the turn radius", " m") &&
+           keeps_drift();
+  }
+
+  bool keeps_drift() const {
+    const double speed = request_.air_speed();
+    const double time = turn_->air_length() / speed;
+    const Vec3 drift = time * request_.wind.at((a_.z() + b_.z()) / 2);
+    const double off = (turn_->drift - drift).norm();
+    return (off <= kLengthTolerance && request_.wind.crossings(a_.z(), b_.z()).empty()) ||
+           report_([&] {
+             return Violation{"wind", at_, off, 0,
+                              "the turn drifts by (" + fixed(turn_->drift.x()) + ", " +
+                                  fixed(turn_->drift.y()) +
+                                  ") m, where the wind at its height"
+                                  " carries it by (" +
+                                  fixed(drift.x()) + ", " + fixed(drift.y()) + ") m"};
+           });
+  }
+
+  /// Climb angle through the air, which moves with the wind.
+  double climb_of_leg() const {
+    if (turn_ == nullptr && request_.wind.is_calm()) {
+      return climb_angle(leg_);
+    }
+    const double run =
+        turn_ != nullptr ? turn_->air_length()
+        : has_heading(leg_)
+            ? flight_time(a_, b_, request_.air_speed(), request_.wind) * request_.air_speed()
+            : 0;
+    return std::atan2(std::abs(b_.z() - a_.z()), run);
+  }
+
+  bool keeps_course() const {
+    return turn_ != nullptr || request_.wind.is_calm() || !has_heading(leg_) ||
+           std::isfinite(flight_time(a_, b_, request_.air_speed(), request_.wind)) || report_([&] {
+             const double wind = request_.wind.at((a_.z() + b_.z()) / 2).norm();
+             return Violation{
+                 "wind", at_, wind, request_.air_speed(),
+                 "the leg cannot be flown: an airspeed of " + fixed(request_.air_speed()) +
+                     " m/s does not hold its course in a wind of " + fixed(wind) + " m/s"};
+           });
+  }
+
+  bool keeps_size() const {
+    const double run = turn_ != nullptr ? turn_->length() : leg_.norm();
+    return at_least(run, limits_.min_leg, kLengthTolerance, "leg_length", "the leg's length",
+                    " m") &&
+           at_most(run, limits_.max_leg, kLengthTolerance, "leg_length", "the leg's length",
+                   " m") &&
+           at_most_angle([&] { return climb_of_leg(); },
+                         b_.z() < a_.z() ? limits_.max_descent() : limits_.max_climb, kPi / 2,
+                         "climb_angle",
+                         b_.z() < a_.z() ? "the descent angle" : "the climb angle") &&
+           keeps_course();
+  }
+
+  bool keeps_bend() const {
+    if (!before_) {
+      return true;
+    }
+    const bool on_the_spot = request_.vehicle.turns_on_the_spot;
+    return at_most_angle([&] { return horizontal_turn(*before_, a_, b_, on_the_spot); },
+                         limits_.max_turn_horizontal, kPi, "turn_angle", "the turn angle") &&
+           at_most_angle([&] { return turn_angle_in_space(a_ - before_->from, leg_); },
+                         limits_.max_turn_space, kPi, "turn_angle", "the turn angle") &&
+           (limits_.min_turn_radius == 0 ||
+            (turn_ != nullptr || before_->turning
+                 ? keeps_tangent()
+                 : at_least(corner_radius(*before_, a_, b_, on_the_spot), limits_.min_turn_radius,
+                            kLengthTolerance, "turn_radius", "the turn radius", " m")));
+  }
+
+  /// Beside a turn there is no leg left to fillet a corner: it must join its neighbours
+  /// tangentially.
+  bool keeps_tangent() const {
+    const double corner =
+        horizontal_turn(*before_, a_, a_ + leg_, request_.vehicle.turns_on_the_spot);
+    const double reach = std::min((a_ - before_->from).norm(), leg_.norm());
+    return corner <= kAngleTolerance || corner * reach <= kLengthTolerance || report_([&] {
+             return Violation{"turn_radius", at_, 0, limits_.min_turn_radius,
+                              "the leg begins with a corner of " + fixed(degrees(corner), 6) +
+                                  " degrees beside a turn, where it must be tangential"};
+           });
+  }
+
+  bool keeps_heights() const {
+    const World& world = *request_.world;
+    const bool over_ground = is_over_ground();
+    if (!over_ground && !report_([&] {
+          return Violation{"ground", at_, 0, 0,
+                           "there is no ground of known height below " +
+                               place(ground_ends(world, a_, b_)) + ", a point of the leg"};
+        })) {
+      return false;
+    }
+    for (const AltitudeBand& band : limits_.altitude) {
+      if ((over_ground || band.datum == AltitudeBand::Datum::sea) && !keeps_band(band)) {
+        return false;
+      }
+    }
+    return !limits_.min_ground_clearance || !over_ground ||
+           keeps_above(*limits_.min_ground_clearance, "ground_clearance",
+                       "the height above ground");
+  }
+
+  bool keeps_band(const AltitudeBand& band) const {
+    if (band.datum == AltitudeBand::Datum::sea) {
+      return at_least(std::min(a_.z(), b_.z()), band.min, kLengthTolerance, "altitude",
+                      "the altitude", " m") &&
+             at_most(std::max(a_.z(), b_.z()), band.max, kLengthTolerance, "altitude",
+                     "the altitude", " m");
+    }
+    return keeps_above(band.min, "altitude", "the altitude") &&
+           (band.max == kInfinity || keeps_below(band.max, "altitude", "the altitude"));
+  }
+
+  bool is_over_ground() const {
+    const World& world = *request_.world;
+    if (turn_ == nullptr || !world.has_ground()) {
+      return world.ground_below(a_, b_);
+    }
+    return every_piece(*turn_, [&](const Piece& piece) {
+      // A finite slope means that the ground has no hole in the box.
+      const bool is_whole = piece.last || std::isfinite(slope_about(piece));
+      return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept : Verdict::halve;
+    });
+  }
+
+  /// The difference in height of the ground below a point of the piece and below its partner on
+  /// the chord is at most e times this.
+  double slope_about(const Piece& piece) const {
+    return request_.world->ground_slope(leg_box(piece.a, piece.b).grown(piece.e));
+  }
+
+  bool keeps_above(double limit, const char* rule, const char* what) const {
+    const World& world = *request_.world;
+    if (turn_ == nullptr) {
+      return at_least(world.ground_gap(a_, b_, limit), limit, kLengthTolerance, rule, what, " m");
+    }
+    double gap = kInfinity;
+    const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
+      const double error = piece.last ? 0 : piece.e * slope_about(piece);
+      gap = world.ground_gap(piece.a, piece.b, limit + error);
+      return gap >= limit + error - kLengthTolerance  ? Verdict::kept
+             : gap < limit - error - kLengthTolerance ? Verdict::violated
+                                                      : Verdict::halve;
+    });
+    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, true); });
+  }
+
+  bool keeps_below(double limit, const char* rule, const char* what) const {
+    const World& world = *request_.world;
+    if (turn_ == nullptr) {
+      return at_most(world.ground_gap_max(a_, b_), limit, kLengthTolerance, rule, what, " m");
+    }
+    double gap = 0;
+    const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
+      const double error = piece.last ? 0 : piece.e * slope_about(piece);
+      gap = world.ground_gap_max(piece.a, piece.b);
+      return gap <= limit - error + kLengthTolerance  ? Verdict::kept
+             : gap > limit + error + kLengthTolerance ? Verdict::violated
+                                                      : Verdict::halve;
+    });
+    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, false); });
+  }
+
+  bool keeps_constraints() const {
+    if (request_.constraints.empty()) {
+      return true;
+    }
+    std::optional<Vec3> before = before_ ? std::optional(before_->from) : std::nullopt;
+    if (turn_ == nullptr) {
+      return admitted({before, a_, b_});
+    }
+    const Polyline points = turn_->chords(kChordTolerance);
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      if (!admitted({before, points[i], points[i + 1]})) {
+        return false;
+      }
+      before = points[i];
+    }
+    return true;
+  }
+
+  bool admitted(const Motion& motion) const {
+    return std::all_of(request_.constraints.begin(), request_.constraints.end(),
+                       [&](const NamedConstraint& named) {
+                         return named.admits(motion) || report_([&] {
+                                  return Violation{named.name, at_, 0, 0,
+                                                   "the constraint does not admit the leg from " +
+                                                       place(motion.from) + " to " +
+                                                       place(motion.to)};
+                                });
+                       });
+  }
+
+  bool keeps_off() const {
+    const double needed = required_clearance(request_);
+    const Layer* layer = turn_ != nullptr ? blocked_by(*request_.world, *turn_, needed)
+                                          : request_.world->blocked_by(a_, b_, needed);
+    return layer == nullptr || report_([&] { return too_near(layer, needed); });
+  }
+
+  /// The violation of a leg that `layer` blocks: of all blocking layers, by the one nearest to it.
+  Violation too_near(const Layer* layer, double needed) const {
+    const Polyline points =
+        turn_ != nullptr ? turn_->chords(kChordTolerance / 10) : Polyline{a_, b_};
+    NearestLeg nearest{0, kInfinity};
+    for (const Layer& other : request_.world->layers()) {
+      const auto its = nearest_leg(*other.environment, points, nearest.distance);
+      if (its && (&other == layer ||
+                  other.environment->blocked(points[its->leg], points[its->leg + 1], needed))) {
+        nearest = *its;
+        layer = &other;
+      }
+    }
+    const double clearance = nearest.distance;
+    // The layer may block from around: outside a keep-in zone.
+    std::string where =
+        clearance < 0
+            ? "lies up to " + fixed(-clearance) + " m inside what '" + layer->id + "' blocks"
+            : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
+    if (const auto* says = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
+      const std::string what =
+          says->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
+      where += what.empty() ? "" : " (" + what + ")";
+    }
+    return {"clearance", at_, clearance, needed,
+            where + ", where " + fixed(needed) + " m of clearance are needed"};
+  }
+
+  const std::optional<Approach>& before_;
+  const Vec3& a_;
+  const Vec3& b_;
+  const Leg* turn_ = nullptr;  ///< null: the leg is straight
+  Vec3 leg_;                   ///< its displacement, or the rate at which a turn begins
+  const Request& request_;
+  const Limits& limits_;
+  std::size_t at_;
+  const Report& report_;
+};
+}  // namespace altiplan

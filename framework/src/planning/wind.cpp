@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/wind.hpp"
+
+#include <algorithm>
+
+#include "altiplan/vehicle.hpp"
+
+namespace altiplan {
+
+double Wing::turn_radius() const {
+  constexpr double kGravity = 9.80665;
+  return airspeed_mps * airspeed_mps / (kGravity * std::tan(bank));
+}
+
+Vec3 Wind::at(double z) const {
+  Vec3 velocity(0, 0, 0);
+  for (const Layer& layer : layers) {
+    if (z >= layer.above_m) {
+      velocity = layer.velocity;
+    }
+  }
+  return velocity;
+}
+
+std::vector<double> Wind::crossings(double from_z, double to_z) const {
+  std::vector<double> shares;
+  for (const Layer& layer : layers) {
+    const double share = (layer.above_m - from_z) / (to_z - from_z);
+    if (share > 0 && share < 1) {
+      shares.push_back(share);
+    }
+  }
+  std::sort(shares.begin(), shares.end());
+  return shares;
+}
+
+std::optional<double> ground_speed(const Vec3& course, double airspeed, const Vec3& wind) {
+  const double run = course.head<2>().norm();
+  const double along = (wind.x() * course.x() + wind.y() * course.y()) / run;
+  const double across = (wind.y() * course.x() - wind.x() * course.y()) / run;
+  if (!(std::abs(across) <= airspeed)) {
+    return std::nullopt;
+  }
+  const double speed = along + std::sqrt(airspeed * airspeed - across * across);
+  return speed > 0 ? std::optional(speed) : std::nullopt;
+}
+
+double flight_time(const Vec3& from, const Vec3& to, double airspeed, const Wind& wind) {
+  const Vec3 leg = to - from;
+  if (!has_heading(leg)) {
+    return leg.norm() / airspeed;
+  }
+  double time = 0;
+  double begin = 0;
+  std::vector<double> ends = wind.crossings(from.z(), to.z());
+  ends.push_back(1);
+  for (const double end : ends) {
+    const double z = from.z() + (begin + end) / 2 * leg.z();
+    const std::optional<double> speed = ground_speed(leg, airspeed, wind.at(z));
+    time += speed ? (end - begin) * leg.head<2>().norm() / *speed : kInfinity;
+    begin = end;
+  }
+  return time;
+}
+}  // namespace altiplan

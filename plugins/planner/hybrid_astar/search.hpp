@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <queue>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "altiplan/check.hpp"
+#include "altiplan/planner.hpp"
+#include "columns.hpp"
+#include "steering.hpp"
+
+namespace altiplan::hybrid_astar {
+
+struct Settings {
+  double radius = 0;       ///< of turns, metres
+  double cell_m = 0;       ///< horizontal
+  double cell_height = 0;  ///< metres
+  int headings = 16;
+  double weight_h = 1;
+  std::size_t max_bytes = 0;
+};
+
+/// The search of one request.
+class Search {
+ public:
+  Search(const Request& request, const Settings& settings)
+      : request_(request),
+        settings_(settings),
+        steering_(request, settings.radius),
+        columns_(request, settings.cell_m),
+        watch_(request.budget),
+        length_(std::max(std::numbers::sqrt2 * settings.cell_m,
+                         2 * kPi / settings.headings * settings.radius)) {
+    for (const double angle : {steering_.limits().climb, -steering_.limits().sink}) {
+      if (angle != 0) {
+        gradients_.push_back(std::tan(angle));
+      }
+    }
+  }
+
+  PlanResult run() {
+    PlanResult result;
+    if (steering_.is_too_windy()) {
+      result.status = PlanStatus::no_route;
+      result.message = "the wind is as fast as the aeroplane: no circle leads back to its start";
+      return counted(std::move(result));
+    }
+    if (columns_.search(watch_)) {
+      add_starts();
+      expand();
+    } else {
+      ended_ = true;
+    }
+    return finished();
+  }
+
+ private:
+  using Index = std::uint32_t;
+  static constexpr Index kNone = ~Index{0};
+  /// A route shorter by less than this share is not worth its search.
+  static constexpr double kTie = 1e-9;
+
+  /// A continuous pose, reached by one piece from its parent.
+  struct Node {
+    Pose pose;
+    double g = 0;  ///< metres through the air from the start
+    Index parent = kNone;
+    double turn = 0;      ///< of the piece, radians
+    double gradient = 0;  ///< of the piece
+  };
+
+  struct Entry {
+    double f;
+    Index node;
+    bool operator>(const Entry& other) const {
+      return f != other.f ? f > other.f : node < other.node;  // the newest of equals first
+    }
+  };
+
+  void add_starts() {
+    const Vec3& velocity = request_.start.velocity;
+    if (has_heading(velocity)) {
+      const Vec3 through_air = velocity - request_.wind.at(request_.start.position.z());
+      add({{request_.start.position, std::atan2(through_air.y(), through_air.x())}, 0, kNone});
+      return;
+    }
+    for (int k = 0; k < settings_.headings; ++k) {
+      add({{request_.start.position, 2 * kPi * k / settings_.headings}, 0, kNone});
+    }
+  }
+
+  void expand() {
+    while (!open_.empty() && open_.top().f < best_ * (1 - kTie)) {
+      const auto [f, at] = open_.top();
+      if (watch_.spent(expanded_) || bytes() > settings_.max_bytes) {
+        ended_ = true;
+        return;
+      }
+      open_.pop();
+      const Node node = nodes_[at];
+      if (const auto known = closed_.find(key(node.pose)); known->second != at) {
+        continue;  // a shorter path to its cell has been found since
+      }
+      ++expanded_;
+      if (request_.trace != nullptr) {
+        request_.trace->add({TraceEvent::Kind::expanded, at,
+                             node.parent == kNone ? -1 : std::int64_t(node.parent),
+                             node.pose.position, f});
+      }
+      note_nearest(node.pose.position);
+      if (is_time_for_a_shot(f - node.g)) {
+        shoot(at, node);
+      }
+      grow(at, node);
+    }
+  }
+
+  /// Pieces straight on and on both sides, level and at the limits of climb and descent.
+  void grow(Index at, const Node& node) {
+    const std::optional<Approach> before = approach(at);
+    const double sharpest = length_ / settings_.radius;
+    for (const double turn : {0.0, sharpest, -sharpest, sharpest / 2, -sharpest / 2}) {
+      for (const double gradient : gradients_) {
+        step(at, node, before, turn, gradient);
+      }
+    }
+  }
+
+  void step(Index at, const Node& node, const std::optional<Approach>& before, double turn,
+            double gradient) {
+    Node next;
+    next.turn = turn;
+    next.gradient = gradient;
+    next.parent = at;
+    const Leg leg = leg_of(node, next);
+    next.pose = {leg.to, node.pose.heading + turn};
+    next.g = node.g + length_;
+    if (!is_better(next) || !request_.volume.contains(leg.to)) {
+      return;
+    }
+    ++checked_;
+    if (leg_ok(before, leg, request_)) {
+      add(next);
+    } else {
+      ++refused_;
+    }
+  }
+
+  Leg leg_of(const Node& from, const Node& to) const {
+    return steering_.piece(from.pose, length_, to.turn, to.gradient);
+  }
+
+  bool is_better(const Node& node) const {
+    const auto known = closed_.find(key(node.pose));
+    return known == closed_.end() || node.g < nodes_[known->second].g;
+  }
+
+  void add(const Node& node) {
+    const double h = steering_.least_length(node.pose, columns_(node.pose.position));
+    if (!(node.g + h < best_)) {
+      return;
+    }
+    const auto at = Index(nodes_.size());
+    nodes_.push_back(node);
+    closed_[key(node.pose)] = at;
+    open_.push({node.g + settings_.weight_h * h, at});
+  }
+
+  /// Far from the goal one in many: a shot costs as much as several pieces, and seldom hits.
+  bool is_time_for_a_shot(double h) const {
+    const auto every = std::uint64_t(std::clamp(h / (8 * length_), 1.0, 32.0));
+    return (expanded_ - 1) % every == 0;
+  }
+
+  /// The path without obstacles to the goal, if it is free.
+  void shoot(Index at, const Node& node) {
+    const int headings = request_.goal.heading ? 1 : settings_.headings;
+    for (int k = 0; k < headings; ++k) {
+      const double heading = request_.goal.heading.value_or(2 * kPi * k / settings_.headings);
+      double length = kInfinity;
+      const auto legs = steering_.path(node.pose, {request_.goal.position, heading}, length);
+      if (legs && node.g + length < best_ * (1 - kTie) && is_free(at, *legs)) {
+        best_ = node.g + length;
+        best_node_ = at;
+        best_legs_ = *legs;
+        if (request_.trace != nullptr) {
+          request_.trace->add({TraceEvent::Kind::added, std::int64_t(nodes_.size()), at,
+                               request_.goal.position, best_});
+        }
+      }
+    }
+  }
+
+  bool is_free(Index at, const std::vector<Leg>& legs) {
+    std::optional<Approach> before = approach(at);
+    for (const Leg& leg : legs) {
+      ++checked_;
+      if (!leg_ok(before, leg, request_)) {
+        ++refused_;
+        return false;
+      }
+      before = onward(before, leg);
+    }
+    return request_.limits.max_route_length == kInfinity ||
+           length(route_to(at, legs)) <= request_.limits.max_route_length;
+  }
+
+  std::optional<Approach> approach(Index at) const {
+    const Node& node = nodes_[at];
+    return node.parent == kNone ? request_.before_start()
+                                : onward(std::nullopt, leg_of(nodes_[node.parent], node));
+  }
+
+  Route route_to(Index at, const std::vector<Leg>& last) const {
+    std::vector<Leg> legs;
+    for (Index node = at; nodes_[node].parent != kNone; node = nodes_[node].parent) {
+      legs.push_back(leg_of(nodes_[nodes_[node].parent], nodes_[node]));
+    }
+    std::reverse(legs.begin(), legs.end());
+    legs.insert(legs.end(), last.begin(), last.end());
+    const Route whole = route_of(joined(legs));
+    return check(whole, request_).ok() ? whole : route_of(legs);
+  }
+
+  Route route_of(const std::vector<Leg>& legs) const {
+    Route route{request_.start.position};
+    for (const Leg& leg : legs) {
+      route.push_back(leg);
+    }
+    return route;
+  }
+
+  /// The same path with equal pieces in a row as one leg.
+  static std::vector<Leg> joined(const std::vector<Leg>& legs) {
+    std::vector<Leg> all;
+    for (const Leg& leg : legs) {
+      if (!all.empty() && are_one(all.back(), leg)) {
+        Leg& last = all.back();
+        last.turn += leg.turn;
+        last.drift += leg.drift;
+        last.to = leg.to;
+      } else {
+        all.push_back(leg);
+      }
+    }
+    return all;
+  }
+
+  static bool are_one(const Leg& a, const Leg& b) {
+    if (!a.turns() || !b.turns()) {
+      const bool straight = !a.turns() && !b.turns();
+      return straight && turn_angle_in_space(a.to - a.from, b.to - b.from) <= kAngleTolerance / 10;
+    }
+    const double slope_a = (a.to.z() - a.from.z()) / a.air_length();
+    const double slope_b = (b.to.z() - b.from.z()) / b.air_length();
+    return a.turn * b.turn > 0 && std::abs(a.radius - b.radius) <= 1e-9 * a.radius &&
+           std::abs(slope_a - slope_b) <= 1e-9 &&
+           (a.drift / a.air_length() - b.drift / b.air_length()).norm() <= 1e-9;
+  }
+
+  std::uint64_t key(const Pose& pose) const {
+    const Vec3 p = pose.position - request_.volume.min;
+    const auto cell = [](double x, double size) { return std::uint64_t(std::int64_t(x / size)); };
+    const double turn = pose.heading / (2 * kPi) - std::floor(pose.heading / (2 * kPi));
+    const auto heading =
+        std::uint64_t(turn * settings_.headings + 0.5) % std::uint64_t(settings_.headings);
+    return cell(p.x(), settings_.cell_m) << 44 | cell(p.y(), settings_.cell_m) << 24 |
+           cell(p.z(), settings_.cell_height) << 8 | heading;
+  }
+
+  std::size_t bytes() const {
+    constexpr std::size_t kHashed = 48;  // an entry of the map with its bucket
+    return nodes_.size() * (sizeof(Node) + sizeof(Entry) + kHashed);
+  }
+
+  void note_nearest(const Vec3& p) {
+    const double off = (p - request_.goal.position).norm();
+    if (off < nearest_) {
+      nearest_ = off;
+    }
+  }
+
+  PlanResult counted(PlanResult result) const {
+    result.counters = {{"expanded", std::int64_t(expanded_)},
+                       {"nodes", std::int64_t(nodes_.size())},
+                       {"legs_checked", checked_}};
+    return result;
+  }
+
+  PlanResult finished() {
+    PlanResult result;
+    result.budget_hit = ended_ && !watch_.cancelled();
+    if (best_ < kInfinity) {
+      result.status = PlanStatus::solved;
+      result.route = route_to(best_node_, best_legs_);
+      return counted(std::move(result));
+    }
+    const bool by_memory = bytes() > settings_.max_bytes;
+    result.reason = by_memory ? Reason::memory : Reason::none;
+    result.status = !ended_              ? PlanStatus::no_route
+                    : watch_.cancelled() ? PlanStatus::cancelled
+                                         : PlanStatus::timed_out;
+    result.message = reason(by_memory);
+    return counted(std::move(result));
+  }
+
+  std::string reason(bool by_memory) const {
+    const auto metres = [](double value) {
+      return std::isfinite(value) ? std::to_string(std::int64_t(value)) + " m" : "any distance";
+    };
+    return std::to_string(expanded_) + " poses expanded, the nearest " + metres(nearest_) +
+           " from the goal; " + std::to_string(refused_) + " of " + std::to_string(checked_) +
+           " legs refused, with turns of " + metres(settings_.radius) +
+           (by_memory ? "; max_memory_mb is used up" : "");
+  }
+
+  const Request& request_;
+  const Settings& settings_;
+  Steering steering_;
+  Columns columns_;
+  BudgetWatch watch_;
+  double length_;  ///< of a piece, through the air: it leaves its cell, or its heading
+  std::vector<double> gradients_{0};  ///< of pieces
+  std::vector<Node> nodes_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open_;
+  std::unordered_map<std::uint64_t, Index> closed_;  ///< the best node of each cell
+  double best_ = kInfinity;
+  Index best_node_ = kNone;
+  std::vector<Leg> best_legs_;
+  bool ended_ = false;
+  std::uint64_t expanded_ = 0;
+  std::int64_t checked_ = 0;
+  std::int64_t refused_ = 0;
+  double nearest_ = kInfinity;
+};
+}  // namespace altiplan::hybrid_astar

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "measuring.hpp"
+
+namespace altiplan::bench {
+
+/// Random pairs of poses in a square.
+struct PosePairs {
+  std::string name;
+  double edge;  ///< of the square, turn radii
+};
+
+// Each adds its rows; a row's items are pairs.
+void add_length_rows(const PosePairs& pairs);
+void add_path_rows(const PosePairs& pairs);
+}  // namespace altiplan::bench
