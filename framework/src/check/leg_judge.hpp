@@ -262,8 +262,11 @@ class LegJudge {
     if (turn_ == nullptr || !world.has_ground()) {
       return world.ground_below(a_, b_);
     }
+    // A finite slope means that the ground has no hole in the box.
+    if (std::isfinite(slope_of_turn())) {
+      return true;
+    }
     return every_piece(*turn_, [&](const Piece& piece) {
-      // A finite slope means that the ground has no hole in the box.
       const bool is_whole = piece.last || std::isfinite(slope_about(piece));
       return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept : Verdict::halve;
     });
@@ -272,7 +275,16 @@ class LegJudge {
   /// The difference in height of the ground below a point of the piece and below its partner on
   /// the chord is at most e times this.
   double slope_about(const Piece& piece) const {
-    return request_.world->ground_slope(leg_box(piece.a, piece.b).grown(piece.e));
+    return std::isfinite(slope_of_turn())
+               ? slope_of_turn()
+               : request_.world->ground_slope(leg_box(piece.a, piece.b).grown(piece.e));
+  }
+
+  double slope_of_turn() const {
+    if (std::isnan(slope_of_turn_)) {
+      slope_of_turn_ = request_.world->ground_slope(turn_->box());
+    }
+    return slope_of_turn_;
   }
 
   bool keeps_above(double limit, const char* rule, const char* what) const {
@@ -377,6 +389,7 @@ class LegJudge {
   const Vec3& b_;
   const Leg* turn_ = nullptr;  ///< null: the leg is straight
   Vec3 leg_;                   ///< its displacement, or the rate at which a turn begins
+  mutable double slope_of_turn_ = std::nan("");  ///< of the ground below it; NaN: not yet asked
   const Request& request_;
   const Limits& limits_;
   std::size_t at_;

@@ -26,7 +26,12 @@ bool every_piece(const Leg& leg, const Decide& verdict) {
   // A turn that touches an obstacle from outside keeps its distance; its chord comes nearer by e.
   // Both e and the judge's own tolerance must fit in kLengthTolerance.
   constexpr double kShortest = kLengthTolerance / 4;
-  std::vector<std::pair<double, double>> open{{0, 1}};
+  // Longer pieces seldom decide: e is a seventh of the radius at a sixth of a circle.
+  const double parts = std::ceil(std::abs(leg.turn) / (kPi / 3));
+  std::vector<std::pair<double, double>> open;
+  for (double i = parts; i > 0; --i) {
+    open.emplace_back((i - 1) / parts, i / parts);
+  }
   while (!open.empty()) {
     const auto [begin, end] = open.back();
     open.pop_back();
