@@ -42,13 +42,15 @@ class Columns {
         continue;
       }
       for (int k = 0; k < 9; ++k) {
-        const int x = column % nx_ + k % 3 - 1;
-        const int y = column / nx_ + k / 3 - 1;
+        const int dx = k % 3 - 1;
+        const int dy = k / 3 - 1;
+        const int x = column % nx_ + dx;
+        const int y = column / nx_ + dy;
         if (k == 4 || x < 0 || x >= nx_ || y < 0 || y >= ny_) {
           continue;
         }
         const auto next = std::size_t(y) * std::size_t(nx_) + std::size_t(x);
-        const double to = d + through_air(Vec3(1 - k % 3, 1 - k / 3, 0) * cell_);
+        const double to = d + through_air(Vec3(-dx, -dy, 0) * cell_);
         if (to < distance_[next] && is_open(rules, int(next), open)) {
           distance_[next] = to;
           queue.emplace(to, int(next));
@@ -101,8 +103,9 @@ class Columns {
   }
 
   bool is_flyable(const kit::LegRules& rules, int column) const {
+    const int row = column / nx_;
     const double x = min_.x() + (column % nx_ + 0.5) * cell_;
-    const double y = min_.y() + (column / nx_ + 0.5) * cell_;
+    const double y = min_.y() + (row + 0.5) * cell_;
     double low = request_.level_m.value_or(request_.volume.min.z());
     double high = request_.level_m.value_or(request_.volume.max.z());
     if (const auto ground = request_.world->ground(x, y); ground && !request_.level_m) {

@@ -267,7 +267,7 @@ class Search {
     const auto cell = [](double x, double size) { return std::uint64_t(std::int64_t(x / size)); };
     const double turn = pose.heading / (2 * kPi) - std::floor(pose.heading / (2 * kPi));
     const auto heading =
-        std::uint64_t(turn * settings_.headings + 0.5) % std::uint64_t(settings_.headings);
+        std::uint64_t(std::llround(turn * settings_.headings)) % std::uint64_t(settings_.headings);
     return cell(p.x(), settings_.cell_m) << 44 | cell(p.y(), settings_.cell_m) << 24 |
            cell(p.z(), settings_.cell_height) << 8 | heading;
   }
