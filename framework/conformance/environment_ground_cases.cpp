@@ -125,7 +125,7 @@ void distances(const Bench& bench, Report& report) {
     }
     const auto distance = ground->distance(leg.a, leg.b);
     if (!distance) {
-      return;  // not implemented
+      return;  // the layer offers no distances
     }
     const bool too_far = layer.blocked(leg.a, leg.b, *distance - kWithin);
     const bool too_near = !layer.blocked(leg.a, leg.b, *distance + kWithin);

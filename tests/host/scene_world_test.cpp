@@ -82,6 +82,15 @@ TEST_F(SceneWorld, TooManyPostsAreThinned) {
   expect_heights(ground, mission().truth, 0);
 }
 
+TEST_F(SceneWorld, LoiterCirclesAreShown) {
+  scenario("",
+           "start: {at_m: [100, 500, 500], loiter: {radius_m: 80, sense: left}}\n"
+           "goal: {at_m: [900, 500, 500]}\n",
+           "volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 1000]}\n");
+  const Json circle = {{"at", {100, 500, 500}}, {"radius", 80}};
+  EXPECT_EQ(scene(kTold).at("loiters"), Json::array({circle}));
+}
+
 /// Four by three posts, one of them without a height.
 class Holed final : public Environment, public Ground {
   Box do_bounds() const override { return {{0, 0, 0}, {30, 20, 9}}; }

@@ -29,7 +29,7 @@ SPACE = ("astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta
          "informed_rrt_star", "apf", "ompl")
 LEVEL = ("jps", "ant_colony", "improved_ant_colony", "velocity_field", "astar", "theta_star", "rrt_star",
          "dstar_lite", "bidirectional_astar")
-SMOOTHERS = ("prune", "shortcut", "bspline", "hermite", "arc", "trim", "waypoint_reduction")
+SMOOTHERS = ("prune", "shortcut", "bspline", "hermite", "trim", "waypoint_reduction")
 OF_CELLS = {"astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta_star", "jps",
             "stratified_theta", "spatial_slicing", "ant_colony", "improved_ant_colony"}
 
@@ -108,8 +108,6 @@ class Case:
         steps = [step]
         for name in self.rng.choice(SMOOTHERS, int(self.rng.integers(1, 4)), replace=False):
             steps.append({"smooth": str(name)})
-            if name == "arc":
-                steps[-1]["with"] = {"radius_m": round(w.side / 60, 1)}
         if self.chance(0.5):
             steps.append(self.flight())
         return steps

@@ -13,6 +13,7 @@ TRAITS = {
     "incremental": "its session keeps what it searched",
     "planar": "plans level flight",
     "spatial": "plans in three dimensions",
+    "loiters": "plans from and to loiter circles",
     "avoids_obstacles": "no leg through a known obstacle",
 }
 

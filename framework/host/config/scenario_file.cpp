@@ -23,9 +23,16 @@ void describe_heading(Fields& f, std::optional<double>& heading_deg, const char*
 }
 }  // namespace
 
+void LoiterEntry::describe(Fields& f) {
+  f("radius_m", radius_m).unit("m").greater_than(0).required().doc("radius of the circle");
+  f("sense", left, {{"left", true}, {"right", false}}).doc("direction of the turns");
+}
+
 void StartEntry::describe(Fields& f) {
   f.point(point).required();
   describe_heading(f, heading_deg, "heading at the start, clockwise from north; default: any");
+  f("loiter", loiter).doc("circle around the point, which the route leaves tangentially");
+  f.check(!loiter || !heading_deg, "a route leaves a loiter circle anywhere: remove heading_deg");
 }
 
 void GoalEntry::describe(Fields& f) {
@@ -35,6 +42,9 @@ void GoalEntry::describe(Fields& f) {
       .unit("m")
       .at_least(0)
       .doc("maximum distance of the last point from the goal");
+  f("loiter", loiter).doc("circle around the point, which the route joins tangentially");
+  f.check(!loiter || (!heading_deg && tolerance_m == 0),
+          "a route joins a loiter circle anywhere: remove heading_deg and tolerance_m");
 }
 
 void VolumeEntry::describe(Fields& f) {

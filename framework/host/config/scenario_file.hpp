@@ -31,10 +31,17 @@ struct PointEntry {
   void describe(Fields& f);
 };
 
+struct LoiterEntry {
+  double radius_m = 0;
+  bool left = false;
+  void describe(Fields& f);
+};
+
 /// Of the start: a pose, if it has a heading.
 struct StartEntry {
   Point point;
   std::optional<double> heading_deg;
+  std::optional<LoiterEntry> loiter;
   void describe(Fields& f);
 };
 
@@ -42,6 +49,7 @@ struct GoalEntry {
   Point point;
   double tolerance_m = 0;
   std::optional<double> heading_deg;
+  std::optional<LoiterEntry> loiter;
   void describe(Fields& f);
 };
 

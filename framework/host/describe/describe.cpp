@@ -152,10 +152,15 @@ Json json_of(const FieldSpec& spec) {
 }
 
 std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
-  return {{"complete", traits.complete},       {"optimal", traits.optimal},
-          {"any_angle", traits.any_angle},     {"anytime", traits.anytime},
-          {"incremental", traits.incremental}, {"planar", traits.planar},
-          {"spatial", traits.spatial},         {"avoids_obstacles", traits.avoids_obstacles}};
+  return {{"complete", traits.complete},
+          {"optimal", traits.optimal},
+          {"any_angle", traits.any_angle},
+          {"anytime", traits.anytime},
+          {"incremental", traits.incremental},
+          {"planar", traits.planar},
+          {"spatial", traits.spatial},
+          {"loiters", traits.loiters},
+          {"avoids_obstacles", traits.avoids_obstacles}};
 }
 
 std::optional<Traits> traits_of(const PluginEntry& entry) {

@@ -308,6 +308,10 @@ std::optional<double> heading_of(const std::optional<double>& compass_deg) {
   return compass_deg ? std::optional(radians(90 - *compass_deg)) : std::nullopt;
 }
 
+std::optional<Loiter> loiter_of(const std::optional<LoiterEntry>& entry) {
+  return entry ? std::optional(Loiter{entry->radius_m, entry->left ? 1 : -1}) : std::nullopt;
+}
+
 /// Resolves start, goal and via points, in the frame that is now known.
 void place_points(const Config& config, Mission& mission) {
   const ScenarioFile& file = config.scenario;
@@ -319,7 +323,8 @@ void place_points(const Config& config, Mission& mission) {
   };
   request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
   request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m,
-                  heading_of(file.goal.heading_deg)};
+                  heading_of(file.goal.heading_deg), loiter_of(file.goal.loiter)};
+  request.start.loiter = loiter_of(file.start.loiter);
   if (const auto heading = heading_of(file.start.heading_deg)) {
     request.start.velocity = request.ground_velocity({request.start.position, *heading});
   }
@@ -328,7 +333,8 @@ void place_points(const Config& config, Mission& mission) {
   for (std::size_t i = 0; i < file.via.size(); ++i) {
     mission.via.push_back(
         {placed(file.via[i].point, tree.find("via")->items[i].where, "via." + std::to_string(i)),
-         file.via[i].tolerance_m, heading_of(file.via[i].heading_deg)});
+         file.via[i].tolerance_m, heading_of(file.via[i].heading_deg),
+         loiter_of(file.via[i].loiter)});
   }
 }
 }  // namespace

@@ -90,7 +90,7 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
       // The planner calls the end of each section the goal; an invalid via point is reported as
       // such.
       whole.message = goals.size() > 1 && part.reason == Reason::goal
-                          ? to + " " + point_problem(request.goal.position, request)
+                          ? to + " " + goal_problem(request)
                           : on_the_way(part.message);
     }
     whole.route.append(part.route);
@@ -100,6 +100,7 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
     request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
     request.start.velocity = velocity_at_end(whole.route, request.vehicle.speed_mps);
     request.start.position = whole.route.back();
+    request.start.loiter.reset();
   }
   return whole;
 }

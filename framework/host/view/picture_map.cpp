@@ -143,6 +143,10 @@ std::string ends(const Json& scene, const Map& map) {
   for (const Json& via : scene.at("via")) {
     goal_like(via, "#ffffff");
   }
+  for (const Json& loiter : scene.at("loiters")) {
+    svg += circle(map, loiter.at("at"), loiter.at("radius").get<double>() * map.per_metre(),
+                  ink + " fill=\"none\"");
+  }
   const auto name = [&](double x, double y, const char* text) {
     const std::string halo = text_at(x + 12, y + 5, text, kInk, 14, Align::start, true);
     svg +=

@@ -24,6 +24,20 @@ Json goal_json(const Goal& goal) {
   return {{"at", rounded(goal.position)}, {"tolerance", rounded(goal.tolerance_m)}};
 }
 
+/// The loiter circles at the ends of routes.
+Json loiters_json(const Mission& mission) {
+  Json all = Json::array();
+  const auto add = [&](const auto& end) {
+    if (end.loiter) {
+      all.push_back({{"at", rounded(end.position)}, {"radius", rounded(end.loiter->radius)}});
+    }
+  };
+  add(mission.request.start);
+  std::for_each(mission.via.begin(), mission.via.end(), add);
+  add(mission.request.goal);
+  return all;
+}
+
 Json corners_json(const Frame& frame, const Box& box) {
   if (!frame.has_position()) {
     return nullptr;
@@ -75,6 +89,7 @@ Json world_scene(const Config& config, const Mission& mission, const Box& box, S
   for (const Goal& via : mission.via) {
     scene["via"].push_back(goal_json(via));
   }
+  scene["loiters"] = loiters_json(mission);
   scene["ground"] = ground_json(mission.truth, box, notes);
   for (const char* key : {"solids", "boxes", "meshes", "moving", "events"}) {
     scene[key] = Json::array();

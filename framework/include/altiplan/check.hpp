@@ -47,6 +47,9 @@ inline std::vector<Violation> leg_violations(const std::optional<Approach>& befo
 /// Why a point (start, goal, via) is infeasible in this problem, in words and figures; "" where it
 /// is feasible.
 ALTIPLAN_API std::string point_problem(const Vec3& p, const Request& request);
+/// The same of a request's start and goal, which may be loiter circles.
+ALTIPLAN_API std::string start_problem(const Request& request);
+ALTIPLAN_API std::string goal_problem(const Request& request);
 
 /// Adds the constraints that apply to `to` to the request, and tightens its limits by them.
 ALTIPLAN_API void apply_constraints(Request& request, std::vector<NamedConstraint> constraints,

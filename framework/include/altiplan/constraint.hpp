@@ -53,6 +53,8 @@ class ALTIPLAN_API Constraint {
   std::vector<Violation> violations(const Polyline& route, const Request& request) const {
     return do_violations(route, request);
   }
+  /// True if the constraint does not override do_admits: it admits every leg.
+  bool admits_all() const;
 
  private:
   virtual AppliesTo do_applies_to() const;
@@ -66,6 +68,7 @@ class ALTIPLAN_API Constraint {
 struct ALTIPLAN_API NamedConstraint {
   std::string name;
   std::shared_ptr<const Constraint> constraint;
+  bool admits_all = false;  ///< known to admit every leg: need not be asked
 
   /// The constraint's admits; exceptions are attributed to `name`.
   bool admits(const Motion& leg) const;

@@ -62,4 +62,22 @@ struct ALTIPLAN_API Leg {
 
   bool operator==(const Leg&) const = default;
 };
+
+/// A horizontal circle that is flown over the ground to wait; its centre is kept beside it.
+struct ALTIPLAN_API Loiter {
+  double radius = 0;  ///< metres, positive
+  int sense = 1;      ///< 1: to the left (counter-clockwise from above), -1: to the right
+
+  /// True if p lies on the circle.
+  bool passes(const Vec3& centre, const Vec3& p) const;
+  /// The direction over the ground at a point of the circle, of any length.
+  Vec3 course(const Vec3& centre, const Vec3& p) const {
+    return sense * Vec3(centre.y() - p.y(), p.x() - centre.x(), 0);
+  }
+  /// The whole circle.
+  Leg circle(const Vec3& centre) const {
+    return Leg::turning({centre + Vec3(radius, 0, 0), sense * kPi / 2}, sense * 2 * kPi, radius, 0);
+  }
+  bool operator==(const Loiter&) const = default;
+};
 }  // namespace altiplan

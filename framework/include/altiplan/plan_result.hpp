@@ -50,6 +50,7 @@ struct Traits {
   bool incremental = false;      ///< its session reuses earlier search effort
   bool planar = true;            ///< level flight
   bool spatial = true;           ///< three dimensions
+  bool loiters = false;          ///< plans from and to loiter circles
   bool avoids_obstacles = true;  ///< no leg through a known one; a local planner without it may
                                  ///< cross one, and the judge reports that
 };

@@ -18,13 +18,17 @@
 
 namespace altiplan {
 
+/// A point with a tolerance, a pose, or a circle around the position, which a route joins anywhere,
+/// tangentially.
 struct Goal {
   Vec3 position{0, 0, 0};
   double tolerance_m = 0;
   std::optional<double> heading{};  ///< on arrival, through the air, counter-clockwise from east
+  std::optional<Loiter> loiter{};
 
   bool reached_at(const Vec3& p) const {
-    return (p - position).norm() <= tolerance_m + kLengthTolerance;
+    return loiter ? loiter->passes(position, p)
+                  : (p - position).norm() <= tolerance_m + kLengthTolerance;
   }
 };
 
@@ -70,7 +74,7 @@ class BudgetWatch {
 };
 
 /// A planning problem: the complete input of a planner, local planner or smoother.
-struct Request {
+struct ALTIPLAN_API Request {
   std::shared_ptr<const World> world;  ///< the known world
   Vehicle vehicle;
   State start;  ///< a non-zero velocity gives the heading that the first leg must follow
@@ -85,13 +89,20 @@ struct Request {
   RandomStream random;
   Trace* trace = nullptr;
 
-  /// The approach to the start, for a start with a velocity: from the point one second before.
-  std::optional<Approach> before_start() const {
-    if (start.velocity.squaredNorm() == 0) {
-      return std::nullopt;
-    }
-    return Approach(start.position - start.velocity);
-  }
+  /// The approach to the first point of a route, if the start has a velocity or is a loiter circle:
+  /// from the point one second before, or on the tangent.
+  std::optional<Approach> before_start(const Vec3& first) const;
+  std::optional<Approach> before_start() const { return before_start(start.position); }
+  /// Direction over the ground, of any length, that a route must have on arrival at its last point,
+  /// if the goal has a heading or is a loiter circle.
+  std::optional<Vec3> arrival_course(const Vec3& last) const;
+  /// The poses from which a route may start: one if the start has a velocity, else `count` of all
+  /// headings, or of all points of the loiter circle.
+  std::vector<Pose> start_poses(int count) const;
+  /// The poses in which a route may arrive at the goal's position or loiter circle.
+  std::vector<Pose> goal_poses(int count) const;
+  /// The heading through the air that holds a course over the ground; none if the wind prevents it.
+  std::optional<double> heading_on(const Vec3& course, double z) const;
   /// Velocity over the ground of a vehicle with a pose.
   Vec3 ground_velocity(const Pose& pose) const {
     return air_speed() * unit_heading(pose.heading) + wind.at(pose.position.z());

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/geometry.hpp"
+#include "altiplan/leg.hpp"
 
 namespace altiplan {
 
@@ -38,10 +38,17 @@ struct ALTIPLAN_API Vehicle {
   double speed_at(double distance_m) const;
 };
 
-/// Position and velocity of the vehicle; a velocity of zero means that no heading is given.
+/// Position and velocity of the vehicle; a velocity of zero means that no heading is given. A route
+/// from a vehicle that loiters around the position leaves the circle anywhere, tangentially.
 struct State {
   double time_s = 0;
   Vec3 position{0, 0, 0};
   Vec3 velocity{0, 0, 0};
+  std::optional<Loiter> loiter{};
+
+  /// True if a route may begin at p.
+  bool starts_at(const Vec3& p) const {
+    return loiter ? loiter->passes(position, p) : p == position;
+  }
 };
 }  // namespace altiplan

@@ -72,6 +72,47 @@ Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {
 }
 }  // namespace
 
+namespace {
+void check_course(const Vec3& course, const Vec3& wanted, const char* rule, std::size_t at,
+                  const char* what, std::vector<Violation>& found) {
+  const double off = turn_angle_horizontal(course, wanted);
+  if (off > kAngleTolerance && off * course.norm() > kLengthTolerance) {
+    found.push_back(beyond(rule, at, degrees(off), 0, " degrees", what, false));
+  }
+}
+
+/// The ends of a route that is not empty; a loiter circle is left tangentially.
+void check_ends(const Route& route, const Request& request, std::vector<Violation>& found) {
+  const State& start = request.start;
+  const Goal& goal = request.goal;
+  const auto off_circle = [](const Loiter& loiter, const Vec3& centre, const Vec3& p) {
+    const double across = std::hypot(p.x() - centre.x(), p.y() - centre.y()) - loiter.radius;
+    return std::hypot(across, p.z() - centre.z());
+  };
+  if (!start.starts_at(route.front())) {
+    const double off = start.loiter ? off_circle(*start.loiter, start.position, route.front())
+                                    : (route.front() - start.position).norm();
+    found.push_back({"start", 0, off, 0,
+                     "the route begins " + distance_text(off) + " m from the " +
+                         (start.loiter ? "loiter circle of the start" : "start")});
+  } else if (start.loiter && route.leg_count() > 0) {
+    check_course(route.leg(0).rate(0), start.loiter->course(start.position, route.front()),
+                 "start_heading", 0, "the angle between the first leg and the loiter circle",
+                 found);
+  }
+  if (!goal.reached_at(route.back())) {
+    const double off = goal.loiter ? off_circle(*goal.loiter, goal.position, route.back())
+                                   : (route.back() - goal.position).norm();
+    found.push_back(
+        {"goal", route.size() - 1, off, goal.tolerance_m,
+         goal.loiter
+             ? "the route ends " + distance_text(off) + " m from the loiter circle of the goal"
+             : "the route ends " + fixed(off) + " m from the goal, whose tolerance is " +
+                   fixed(goal.tolerance_m) + " m"});
+  }
+}
+}  // namespace
+
 CheckResult check(const Route& route, const Request& request) {
   CheckResult result;
   std::vector<Violation>& found = result.violations;
@@ -79,20 +120,14 @@ CheckResult check(const Route& route, const Request& request) {
     found.push_back({"route", 0, 0, 0, "there is no route"});
     return result;
   }
-  if (route.front() != request.start.position) {
-    const double off = (route.front() - request.start.position).norm();
-    found.push_back(
-        {"start", 0, off, 0, "the route begins " + distance_text(off) + " m from the start"});
-  }
-  if (!request.goal.reached_at(route.back())) {
-    const double off = (route.back() - request.goal.position).norm();
-    found.push_back({"goal", route.size() - 1, off, request.goal.tolerance_m,
-                     "the route ends " + fixed(off) + " m from the goal, whose tolerance is " +
-                         fixed(request.goal.tolerance_m) + " m"});
-  }
-  std::optional<Approach> before = request.before_start();
+  check_ends(route, request, found);
+  std::optional<Approach> before = request.before_start(route.front());
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
+    if (leg.from != route[i] || leg.to != route[i + 1]) {
+      found.push_back({"leg", i, 0, 0, "the leg does not join its two waypoints"});
+      return result;  // what follows would judge another path
+    }
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));
     }
@@ -100,14 +135,9 @@ CheckResult check(const Route& route, const Request& request) {
       before = onward(before, leg);
     }
   }
-  if (request.goal.heading && before) {
-    const Pose pose{route.back(), *request.goal.heading};
-    const Vec3 arrival = before->heading_at(route.back());
-    const double off = turn_angle_horizontal(arrival, request.ground_velocity(pose));
-    if (off > kAngleTolerance && off * arrival.norm() > kLengthTolerance) {
-      found.push_back(beyond("goal_heading", route.size() - 1, degrees(off), 0, " degrees",
-                             "the angle between the course on arrival and the goal's", false));
-    }
+  if (const auto course = request.arrival_course(route.back()); course && before) {
+    check_course(before->heading_at(route.back()), *course, "goal_heading", route.size() - 1,
+                 "the angle between the course on arrival and the goal's", found);
   }
   const double total = length(route);
   if (total > request.limits.max_route_length + kLengthTolerance) {
@@ -144,6 +174,37 @@ std::string point_problem(const Vec3& p, const Request& request) {
     return leg_violations(std::nullopt, Leg::straight(p, p), alone, 0);
   }();
   return found.empty() ? "" : place(p) + " cannot be flown: " + found.front().message;
+}
+
+namespace {
+std::string loiter_problem(const Vec3& centre, const Loiter& loiter, const Request& request) {
+  Request alone = request;
+  alone.limits.min_leg = 0;
+  alone.limits.max_leg = kInfinity;
+  alone.constraints.clear();
+  // The circle is flown over the ground: downwind at the greatest speed, which takes a bank angle
+  // of tan = speed² / (g radius) where the limit's circle takes airspeed² / (g radius).
+  const double fastest = 1 + request.wind.at(centre.z()).norm() / request.air_speed();
+  alone.limits.min_turn_radius *= fastest * fastest;
+  alone.wind = {};
+  const std::vector<Violation> found =
+      leg_violations(std::nullopt, loiter.circle(centre), alone, 0);
+  return found.empty() ? ""
+                       : "circle of radius " + fixed(loiter.radius) + " m around " + place(centre) +
+                             " cannot be flown: " + found.front().message;
+}
+}  // namespace
+
+std::string start_problem(const Request& request) {
+  const State& start = request.start;
+  return start.loiter ? loiter_problem(start.position, *start.loiter, request)
+                      : point_problem(start.position, request);
+}
+
+std::string goal_problem(const Request& request) {
+  const Goal& goal = request.goal;
+  return goal.loiter ? loiter_problem(goal.position, *goal.loiter, request)
+                     : point_problem(goal.position, request);
 }
 
 namespace {
@@ -187,6 +248,8 @@ void apply_constraints(Request& request, std::vector<NamedConstraint> constraint
             "the constraint '" + named.name +
             "' violated the contract of its interface: it loosened a limit, or made it no number");
       }
+      named.admits_all =
+          answer_of(named, [](const Constraint& asked) { return asked.admits_all(); });
       request.constraints.push_back(std::move(named));
     }
   }

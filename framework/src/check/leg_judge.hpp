@@ -8,43 +8,11 @@
 #include "altiplan/nearest_place.hpp"
 #include "altiplan/request.hpp"
 #include "altiplan/what_blocks.hpp"
+#include "leg_parts.hpp"
 #include "pieces.hpp"
 #include "words.hpp"
 
 namespace altiplan {
-
-/// Start of the first part of a leg that has no ground below it.
-Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
-  if (!world.ground_below(a, a)) {
-    return a;
-  }
-  double known = 0;
-  double unknown = 1;
-  for (int i = 0; i < 50; ++i) {
-    const double t = (known + unknown) / 2;
-    (world.ground_below(a, a + t * (b - a)) ? known : unknown) = t;
-  }
-  return a + unknown * (b - a);
-}
-
-double required_clearance(const Request& request) {
-  return std::max(request.limits.min_clearance, request.vehicle.radius_m);
-}
-
-/// The layer that blocks a turn for a sphere of radius r, or null. By bisection: a piece is free if
-/// its chord is free for r + e, and blocked if its chord is blocked for r - e.
-inline const Layer* blocked_by(const World& world, const Leg& turn, double r) {
-  const Layer* layer = nullptr;
-  const bool is_free = every_piece(turn, [&](const Piece& piece) {
-    layer = world.blocked_by(piece.a, piece.b, r + piece.e);
-    if (layer == nullptr) {
-      return Verdict::kept;
-    }
-    const bool is_blocked = r > piece.e && world.blocked(piece.a, piece.b, r - piece.e);
-    return is_blocked ? Verdict::violated : Verdict::halve;
-  });
-  return is_free ? nullptr : layer;
-}
 
 /// Checks one leg against every constraint, the cheap ones first: one call of `report` (with a
 /// function that makes the violation) per violated constraint, until report returns false.
@@ -77,14 +45,20 @@ class LegJudge {
       report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
       return;
     }
-    // Each returns whether to continue.
+    if (turn_ != nullptr && !is_turn(*turn_)) {
+      report_([&] {
+        return Violation{"leg", at_, 0, 0,
+                         "its turn, radius, heading and drift do not lead to its end"};
+      });
+      return;
+    }
     (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_turn() && keeps_size() &&
            keeps_bend() && keeps_heights() && keeps_constraints() && keeps_off());
   }
   void judge_bend() const { (void)keeps_bend(); }
 
  private:
-  // Quantities and their limits; `scale` converts both to the unit of the message.
+  // Each returns whether to continue. `scale` converts value and limit to the message's unit.
   bool at_least(double value, double limit, double tolerance, const char* rule, const char* what,
                 const char* unit, double scale = 1) const {
     return value >= limit - tolerance || report_([&] {
@@ -127,7 +101,7 @@ class LegJudge {
     if (turn_ == nullptr) {
       return true;
     }
-    const Box box = turn_->box();
+    const Box& box = box_ = turn_->box();
     if (!request_.volume.contains(box.min, kLengthTolerance) ||
         !request_.volume.contains(box.max, kLengthTolerance)) {
       const double outside = std::max((request_.volume.min - box.min).maxCoeff(),
@@ -148,15 +122,14 @@ class LegJudge {
     const double speed = request_.air_speed();
     const double time = turn_->air_length() / speed;
     const Vec3 drift = time * request_.wind.at((a_.z() + b_.z()) / 2);
+    const bool crosses = !request_.wind.crossings(a_.z(), b_.z()).empty();
     const double off = (turn_->drift - drift).norm();
-    return (off <= kLengthTolerance && request_.wind.crossings(a_.z(), b_.z()).empty()) ||
-           report_([&] {
+    return (off <= kLengthTolerance && !crosses) || report_([&] {
              return Violation{"wind", at_, off, 0,
-                              "the turn drifts by (" + fixed(turn_->drift.x()) + ", " +
-                                  fixed(turn_->drift.y()) +
-                                  ") m, where the wind at its height"
-                                  " carries it by (" +
-                                  fixed(drift.x()) + ", " + fixed(drift.y()) + ") m"};
+                              crosses ? "the turn crosses a border of layers of wind: cut it there"
+                                      : "the turn drifts by " + place(turn_->drift) +
+                                            " m, where the wind at its height carries it by " +
+                                            place(drift) + " m"};
            });
   }
 
@@ -202,7 +175,9 @@ class LegJudge {
       return true;
     }
     const bool on_the_spot = request_.vehicle.turns_on_the_spot;
-    return at_most_angle([&] { return horizontal_turn(*before_, a_, b_, on_the_spot); },
+    // A turn begins along its tangent.
+    const Vec3 next = turn_ != nullptr ? Vec3(a_ + leg_) : b_;
+    return at_most_angle([&] { return horizontal_turn(*before_, a_, next, on_the_spot); },
                          limits_.max_turn_horizontal, kPi, "turn_angle", "the turn angle") &&
            at_most_angle([&] { return turn_angle_in_space(a_ - before_->from, leg_); },
                          limits_.max_turn_space, kPi, "turn_angle", "the turn angle") &&
@@ -263,28 +238,41 @@ class LegJudge {
       return world.ground_below(a_, b_);
     }
     // A finite slope means that the ground has no hole in the box.
-    if (std::isfinite(slope_of_turn())) {
-      return true;
-    }
-    return every_piece(*turn_, [&](const Piece& piece) {
-      const bool is_whole = piece.last || std::isfinite(slope_about(piece));
-      return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept : Verdict::halve;
-    });
+    return std::isfinite(slope_of_turn()) || every_piece(*turn_, [&](const Piece& piece) {
+             const bool is_whole = piece.last || std::isfinite(slope_about(piece));
+             return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept
+                                                                     : Verdict::halve;
+           });
   }
 
-  /// The difference in height of the ground below a point of the piece and below its partner on
-  /// the chord is at most e times this.
   double slope_about(const Piece& piece) const {
-    return std::isfinite(slope_of_turn())
-               ? slope_of_turn()
-               : request_.world->ground_slope(leg_box(piece.a, piece.b).grown(piece.e));
+    return request_.world->ground_slope(leg_box(piece.a, piece.b).grown(piece.e));
+  }
+
+  /// Decides a piece, given the greatest difference in height of the ground below a point of it and
+  /// below its partner on the chord: by the slope of the whole turn, which is asked for once, and
+  /// if that does not decide by its own.
+  template <class Decide>
+  Verdict by_ground(const Piece& piece, const Decide& decide) const {
+    if (piece.last) {
+      return decide(0.0);
+    }
+    Verdict verdict = Verdict::halve;
+    if (std::isfinite(slope_of_turn())) {
+      verdict = decide(piece.e * slope_of_turn());
+    }
+    if (verdict != Verdict::halve) {
+      return verdict;
+    }
+    const double slope = slope_about(piece);
+    return std::isfinite(slope) ? decide(piece.e * slope) : verdict;
   }
 
   double slope_of_turn() const {
-    if (std::isnan(slope_of_turn_)) {
-      slope_of_turn_ = request_.world->ground_slope(turn_->box());
+    if (std::isnan(slope_)) {
+      slope_ = request_.world->ground_slope(box_.grown(required_clearance(request_)));
     }
-    return slope_of_turn_;
+    return slope_;
   }
 
   bool keeps_above(double limit, const char* rule, const char* what) const {
@@ -294,12 +282,14 @@ class LegJudge {
     }
     double gap = kInfinity;
     const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
-      const double error = piece.last ? 0 : piece.e * slope_about(piece);
-      gap = world.ground_gap(piece.a, piece.b, limit + error);
-      return gap >= limit + error - kLengthTolerance  ? Verdict::kept
-             : gap < limit - error - kLengthTolerance ? Verdict::violated
-                                                      : Verdict::halve;
+      return by_ground(piece, [&](double error) {
+        gap = world.ground_gap(piece.a, piece.b, limit + error);
+        return gap >= limit + error - kLengthTolerance  ? Verdict::kept
+               : gap < limit - error - kLengthTolerance ? Verdict::violated
+                                                        : Verdict::halve;
+      });
     });
+    height_kept_ = is_kept ? std::max(height_kept_, limit) : height_kept_;
     return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, true); });
   }
 
@@ -310,17 +300,19 @@ class LegJudge {
     }
     double gap = 0;
     const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
-      const double error = piece.last ? 0 : piece.e * slope_about(piece);
       gap = world.ground_gap_max(piece.a, piece.b);
-      return gap <= limit - error + kLengthTolerance  ? Verdict::kept
-             : gap > limit + error + kLengthTolerance ? Verdict::violated
-                                                      : Verdict::halve;
+      return by_ground(piece, [&](double error) {
+        return gap <= limit - error + kLengthTolerance  ? Verdict::kept
+               : gap > limit + error + kLengthTolerance ? Verdict::violated
+                                                        : Verdict::halve;
+      });
     });
     return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, false); });
   }
 
   bool keeps_constraints() const {
-    if (request_.constraints.empty()) {
+    if (std::all_of(request_.constraints.begin(), request_.constraints.end(),
+                    [](const NamedConstraint& named) { return named.admits_all; })) {
       return true;
     }
     std::optional<Vec3> before = before_ ? std::optional(before_->from) : std::nullopt;
@@ -340,7 +332,7 @@ class LegJudge {
   bool admitted(const Motion& motion) const {
     return std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
-                         return named.admits(motion) || report_([&] {
+                         return named.admits_all || named.admits(motion) || report_([&] {
                                   return Violation{named.name, at_, 0, 0,
                                                    "the constraint does not admit the leg from " +
                                                        place(motion.from) + " to " +
@@ -351,9 +343,14 @@ class LegJudge {
 
   bool keeps_off() const {
     const double needed = required_clearance(request_);
-    const Layer* layer = turn_ != nullptr ? blocked_by(*request_.world, *turn_, needed)
-                                          : request_.world->blocked_by(a_, b_, needed);
+    const Layer* layer =
+        turn_ == nullptr ? request_.world->blocked_by(a_, b_, needed) : turn_blocked_by(needed);
     return layer == nullptr || report_([&] { return too_near(layer, needed); });
+  }
+
+  const Layer* turn_blocked_by(double needed) const {
+    const double slope = height_kept_ > -kInfinity ? slope_of_turn() : kInfinity;
+    return blocked_by(*request_.world, *turn_, box_, needed, {height_kept_, slope});
   }
 
   /// The violation of a leg that `layer` blocks: of all blocking layers, by the one nearest to it.
@@ -389,7 +386,10 @@ class LegJudge {
   const Vec3& b_;
   const Leg* turn_ = nullptr;  ///< null: the leg is straight
   Vec3 leg_;                   ///< its displacement, or the rate at which a turn begins
-  mutable double slope_of_turn_ = std::nan("");  ///< of the ground below it; NaN: not yet asked
+  mutable Box box_;            ///< of the turn
+  /// Of the ground within the required clearance of it; NaN: not yet asked.
+  mutable double slope_ = std::nan("");
+  mutable double height_kept_ = -kInfinity;  ///< above ground, that a turn is known to have
   const Request& request_;
   const Limits& limits_;
   std::size_t at_;

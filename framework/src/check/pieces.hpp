@@ -27,19 +27,26 @@ bool every_piece(const Leg& leg, const Decide& verdict) {
   // Both e and the judge's own tolerance must fit in kLengthTolerance.
   constexpr double kShortest = kLengthTolerance / 4;
   // Longer pieces seldom decide: e is a seventh of the radius at a sixth of a circle.
-  const double parts = std::ceil(std::abs(leg.turn) / (kPi / 3));
-  std::vector<std::pair<double, double>> open;
-  for (double i = parts; i > 0; --i) {
-    open.emplace_back((i - 1) / parts, i / parts);
+  const int parts = int(std::ceil(std::abs(leg.turn) / (kPi / 3)));
+  struct End {
+    double t;
+    Vec3 p;
+  };
+  std::vector<End> ends;  // of the pieces ahead, the nearest last
+  ends.reserve(std::size_t(parts) + 8);
+  for (int i = parts; i > 0; --i) {
+    const double t = double(i) / parts;
+    ends.push_back({t, leg.at(t)});
   }
-  while (!open.empty()) {
-    const auto [begin, end] = open.back();
-    open.pop_back();
-    const double e = leg.sagitta() * (end - begin) * (end - begin);
-    const double middle = (begin + end) / 2;
-    const bool last = e <= kShortest || middle <= begin || middle >= end;
-    switch (verdict(Piece{leg.at(begin), leg.at(end), e, last})) {
+  for (End begin{0, leg.from}; !ends.empty();) {
+    const End end = ends.back();
+    const double e = leg.sagitta() * (end.t - begin.t) * (end.t - begin.t);
+    const double middle = (begin.t + end.t) / 2;
+    const bool last = e <= kShortest || middle <= begin.t || middle >= end.t;
+    switch (verdict(Piece{begin.p, end.p, e, last})) {
       case Verdict::kept:
+        begin = end;
+        ends.pop_back();
         break;
       case Verdict::violated:
         return false;
@@ -47,8 +54,7 @@ bool every_piece(const Leg& leg, const Decide& verdict) {
         if (last) {
           return false;
         }
-        open.emplace_back(middle, end);
-        open.emplace_back(begin, middle);
+        ends.push_back({middle, leg.at(middle)});
         break;
     }
   }

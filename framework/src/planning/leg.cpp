@@ -110,4 +110,9 @@ std::vector<Vec3> Leg::chords(double tolerance) const {
 }
 
 Leg Leg::reversed() const { return {to, from, -turn, radius, heading + turn + kPi, -drift}; }
+bool Loiter::passes(const Vec3& centre, const Vec3& p) const {
+  return std::abs(std::hypot(p.x() - centre.x(), p.y() - centre.y()) - radius) <=
+             kLengthTolerance &&
+         std::abs(p.z() - centre.z()) <= kLengthTolerance;
+}
 }  // namespace altiplan

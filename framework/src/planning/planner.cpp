@@ -25,7 +25,16 @@ Smoother::~Smoother() = default;
 
 AppliesTo Constraint::do_applies_to() const { return AppliesTo::both; }
 void Constraint::do_tighten(Limits&, const Request&) const {}
-bool Constraint::do_admits(const Motion&) const { return true; }
+
+namespace {
+thread_local bool is_inherited = false;  ///< set where do_admits is not overridden
+}
+bool Constraint::do_admits(const Motion&) const { return is_inherited = true; }
+bool Constraint::admits_all() const {
+  is_inherited = false;
+  (void)admits({std::nullopt, Vec3::Zero(), Vec3::Zero()});
+  return is_inherited;
+}
 std::vector<Violation> Constraint::do_violations(const Polyline&, const Request&) const {
   return {};
 }
@@ -76,7 +85,7 @@ Reason spent_part(const PlanResult& result, const Budget& budget) {
 }
 
 /// Checks a result against the contract on a route's ends; `start` and `goal` are those requested.
-PlanResult held_to_contract(PlanResult result, const Vec3& start, const Goal& goal,
+PlanResult held_to_contract(PlanResult result, const State& start, const Goal& goal,
                             const Budget& budget) {
   if (result.status == PlanStatus::timed_out && result.reason == Reason::none) {
     result.reason = spent_part(result, budget);
@@ -96,7 +105,7 @@ PlanResult held_to_contract(PlanResult result, const Vec3& start, const Goal& go
   if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
     throw broken(Reason::contract, "returns a route with a coordinate that is not finite");
   }
-  if (result.route.front() != start) {
+  if (!start.starts_at(result.route.front())) {
     throw broken(Reason::contract_of_ends, "returns a route that does not begin at the start");
   }
   if (!goal.reached_at(result.route.back())) {
@@ -108,14 +117,32 @@ PlanResult held_to_contract(PlanResult result, const Vec3& start, const Goal& go
   return result;
 }
 
-/// Results that need no planner: infeasible ends, and a start within the goal's tolerance.
-std::optional<PlanResult> settled(const Request& request) {
+/// True if the start lies within the goal's tolerance, or both are one loiter circle.
+bool is_at_goal(const Request& request) {
+  const State& start = request.start;
+  const Goal& goal = request.goal;
+  return start.loiter ? start.loiter == goal.loiter && start.position == goal.position
+                      : goal.reached_at(start.position);
+}
+
+/// Results that need no planner: infeasible ends, ends that the planner does not know, and a start
+/// at the goal.
+std::optional<PlanResult> settled(const Request& request, const Planner& planner) {
   std::optional<PlanResult> result = impossible_ends(request);
-  if (!result && request.goal.reached_at(request.start.position)) {
+  if (!result && (request.start.loiter || request.goal.loiter) && !planner.traits().loiters) {
+    result.emplace();
+    result->status = PlanStatus::invalid_problem;
+    result->reason = request.start.loiter ? Reason::start : Reason::goal;
+    result->message = std::string("the ") + name(result->reason) +
+                      " is a loiter circle, which this planner does not support: use one with the "
+                      "trait `loiters`, such as hybrid_astar";
+  }
+  if (!result && is_at_goal(request)) {
+    const State& start = request.start;
     result.emplace();
     result->status = PlanStatus::solved;
     result->message = "the start is at the goal";
-    result->route = {request.start.position};
+    result->route = {start.loiter ? start.loiter->circle(start.position).from : start.position};
     result->counters = {{"expanded", 0}};
   }
   return result;
@@ -161,9 +188,9 @@ class HeldSession final : public Session {
 }  // namespace
 
 std::optional<PlanResult> impossible_ends(const Request& request) {
-  for (const auto& [end, p] : {std::pair(Reason::start, request.start.position),
-                               std::pair(Reason::goal, request.goal.position)}) {
-    if (const std::string problem = point_problem(p, request); !problem.empty()) {
+  for (const auto& [end, problem] : {std::pair(Reason::start, start_problem(request)),
+                                     std::pair(Reason::goal, goal_problem(request))}) {
+    if (!problem.empty()) {
       PlanResult result;
       result.status = PlanStatus::invalid_problem;
       result.reason = end;
@@ -177,8 +204,8 @@ std::optional<PlanResult> impossible_ends(const Request& request) {
 PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr<const World> world,
                            std::span<const Change> changes, const Budget& budget) {
   PlanResult said = held_to_contract(
-      guarded([&] { return do_update(state, goal, std::move(world), changes, budget); }),
-      state.position, goal, budget);
+      guarded([&] { return do_update(state, goal, std::move(world), changes, budget); }), state,
+      goal, budget);
   const PlanResult shown = guarded([&] { return do_result(); });
   if (!same(said, shown)) {
     throw PluginError(
@@ -188,16 +215,37 @@ PlanResult Session::update(const State& state, const Goal& goal, std::shared_ptr
   return said;
 }
 
+namespace {
+/// Names the constraints that refuse a leg of no length at the start or the goal, for a message.
+std::string refusing_ends(const Request& request) {
+  std::string text;
+  for (const auto& [end, p] :
+       {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
+    for (const NamedConstraint& named : request.constraints) {
+      if (!named.admits_all && !named.admits({std::nullopt, p, p})) {
+        text += "; the constraint '" + named.name + "' refuses the " + end + " itself";
+      }
+    }
+  }
+  return text;
+}
+}  // namespace
+
 PlanResult Planner::plan(const Request& request) const {
-  if (auto result = settled(request)) {
+  if (auto result = settled(request, *this)) {
     return *std::move(result);
   }
-  return held_to_contract(guarded([&] { return do_plan(request); }), request.start.position,
-                          request.goal, request.budget);
+  PlanResult result = held_to_contract(guarded([&] { return do_plan(request); }), request.start,
+                                       request.goal, request.budget);
+  if (result.status == PlanStatus::no_route || result.status == PlanStatus::timed_out) {
+    result.message += refusing_ends(request);
+  }
+  return result;
 }
 
 std::unique_ptr<Session> Planner::begin(const Request& request) const {
-  if (auto result = settled(request); result && result->status == PlanStatus::invalid_problem) {
+  if (auto result = settled(request, *this);
+      result && result->status == PlanStatus::invalid_problem) {
     return std::make_unique<HeldSession>(*std::move(result));
   }
   std::unique_ptr<Session> session;
@@ -206,8 +254,7 @@ std::unique_ptr<Session> Planner::begin(const Request& request) const {
     if (session == nullptr) {
       throw PluginError("begin returned no session", Reason::contract);
     }
-    return held_to_contract(session->result(), request.start.position, request.goal,
-                            request.budget);
+    return held_to_contract(session->result(), request.start, request.goal, request.budget);
   });
   return session;
 }

@@ -123,7 +123,7 @@ TEST(AStar, TurnsThatTheCellsAreTooSmallForAreNamed) {
   request.goal.position = {95, 45, 20};
   const std::string clause =
       "; turns of cells of 10 m have a radius of at most 12.071 m, below the required 12.5 m: use "
-      "larger cells, or theta_star";
+      "larger cells, or hybrid_astar, whose legs curve";
   for (const char* name : {"astar", "bidirectional_astar", "dstar_lite"}) {
     const auto planner = make_planner(name, "{cell_m: [10, 10, 5]}");
     request.limits.min_turn_radius = 12.5;

@@ -15,7 +15,10 @@ namespace altiplan::hybrid_astar {
 /// so up to 1.0824 times the least.
 class Columns {
  public:
-  Columns(const Request& request, double cell_m) : request_(request), min_(request.volume.min) {
+  /// Starts and goals count as places where the vehicle may be.
+  Columns(const Request& request, double cell_m, const std::vector<Pose>& starts,
+          const std::vector<Pose>& goals)
+      : request_(request), starts_(starts), goals_(goals), min_(request.volume.min) {
     const Vec3 extent = request.volume.max - request.volume.min;
     cell_ = std::max(cell_m, std::max(extent.x(), extent.y()) / kMaxColumns);
     nx_ = 1 + int(extent.x() / cell_);
@@ -29,9 +32,13 @@ class Columns {
     std::vector<signed char> open(distance_.size(), -1);  // -1: not yet known
     using Entry = std::pair<double, int>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    const int goal = index(request_.goal.position);
-    distance_[std::size_t(goal)] = 0;
-    queue.emplace(0, goal);
+    for (const Pose& start : starts_) {
+      open[std::size_t(index(start.position))] = 1;
+    }
+    for (const Pose& goal : goals_) {
+      distance_[std::size_t(index(goal.position))] = 0;
+      queue.emplace(0, index(goal.position));
+    }
     for (std::uint64_t n = 0; !queue.empty(); ++n) {
       if (watch.spent(0)) {
         return false;
@@ -63,9 +70,11 @@ class Columns {
   /// Metres through the air to the goal; infinite if no columns lead there.
   double operator()(const Vec3& p) const {
     const Vec3 straight = request_.goal.position - p;
-    // The ends lie anywhere in their columns.
-    const double spare = 2 * std::numbers::sqrt2 * cell_;
-    return std::max(through_air({straight.x(), straight.y(), 0}),
+    const double radius = request_.goal.loiter ? request_.goal.loiter->radius : 0;
+    // The ends lie anywhere in their columns, and beside their place on a loiter circle.
+    const double spare = 2 * std::numbers::sqrt2 * cell_ +
+                         kPi * radius / double(std::max<std::size_t>(goals_.size(), 1));
+    return std::max(through_air({straight.x(), straight.y(), 0}) - through_air({radius, 0, 0}),
                     distance_[std::size_t(index(p))] - spare);
   }
 
@@ -93,11 +102,11 @@ class Columns {
     return y * nx_ + x;
   }
 
-  /// True if the vehicle may be at some height above the column's centre. Its ends count as open.
+  /// True if the vehicle may be at some height above the column's centre.
   bool is_open(const kit::LegRules& rules, int column, std::vector<signed char>& known) const {
     signed char& open = known[std::size_t(column)];
     if (open < 0) {
-      open = column == index(request_.start.position) || is_flyable(rules, column) ? 1 : 0;
+      open = is_flyable(rules, column) ? 1 : 0;
     }
     return open == 1;
   }
@@ -127,6 +136,8 @@ class Columns {
   }
 
   const Request& request_;
+  const std::vector<Pose>& starts_;
+  const std::vector<Pose>& goals_;
   Vec3 min_;
   double cell_;
   int nx_;

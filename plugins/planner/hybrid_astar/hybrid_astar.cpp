@@ -82,7 +82,11 @@ class HybridAstar final : public Planner {
     return settings;
   }
 
-  Traits do_traits() const override { return {}; }
+  Traits do_traits() const override {
+    Traits traits;
+    traits.loiters = true;
+    return traits;
+  }
 
   Params params_;
 };

@@ -79,6 +79,49 @@ TEST(HybridAstar, RoutesAmongTowersAreValidInCalmAndWind) {
   EXPECT_EQ(turning, solved);
 }
 
+TEST(HybridAstar, LeavesAndJoinsLoiterCirclesTangentially) {
+  RandomStream random(11);
+  int solved = 0;
+  int possible = 0;
+  for (int n = 0; n < 30; ++n) {
+    Request request =
+        between({random.in({{-1800, -1800, 100}, {-1000, 1800, 300}}), 0},
+                {random.in({{1000, -1800, 100}, {1800, 1800, 300}}), 0}, random_towers(random, 30));
+    request.start.velocity.setZero();
+    request.goal.heading.reset();
+    const double wind = n % 3 == 0 ? 0 : 5;
+    if (wind > 0) {
+      request.wind.layers = {{-kInfinity, wind * unit_heading(random.uniform(-kPi, kPi))}};
+    }
+    const double radius = kRadius * (1 + wind / 20) * (1 + wind / 20);
+    request.start.loiter = Loiter{radius, random.integer(0, 1) == 0 ? 1 : -1};
+    request.goal.loiter = Loiter{radius * random.uniform(1, 2), random.integer(0, 1) == 0 ? 1 : -1};
+    request.budget.max_iterations = 20'000;
+    const PlanResult result = make_planner("hybrid_astar")->plan(request);
+    possible += result.status != PlanStatus::invalid_problem;
+    if (result.status == PlanStatus::solved) {
+      ++solved;
+      const CheckResult judged = check(result.route, request);
+      ASSERT_TRUE(judged.ok()) << n << ": " << judged.violations.front().message;
+    }
+  }
+  EXPECT_GT(possible, 5);
+  EXPECT_GE(solved, possible * 8 / 10);
+}
+
+TEST(HybridAstar, BetweenLoiterCirclesInTheOpenItIsNoLongerThanTheTangent) {
+  Request request = between({{-1000, 0, 200}, 0}, {{1000, 0, 200}, 0});
+  request.start.velocity.setZero();
+  request.goal.heading.reset();
+  request.start.loiter = request.goal.loiter = Loiter{100, 1};
+  const PlanResult result = make_planner("hybrid_astar")->plan(request);
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
+  // Leaving the circle where it is nearest to the goal is shorter than their common tangent.
+  EXPECT_LT(length(result.route), 2000);
+  EXPECT_GT(length(result.route), 1800);
+  EXPECT_TRUE(check(result.route, request).ok());
+}
+
 TEST(HybridAstar, ClimbsInCirclesWhereThereIsNoRoom) {
   const Pose from{{0, 0, 10}, 0};
   const Pose to{{300, 0, 390}, 0};

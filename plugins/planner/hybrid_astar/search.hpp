@@ -31,7 +31,9 @@ class Search {
       : request_(request),
         settings_(settings),
         steering_(request, settings.radius),
-        columns_(request, settings.cell_m),
+        starts_(request.start_poses(request.start.loiter ? kLoiterPoses : settings.headings)),
+        goals_(request.goal_poses(request.goal.loiter ? kLoiterPoses : settings.headings)),
+        columns_(request, settings.cell_m, starts_, goals_),
         watch_(request.budget),
         length_(std::max(std::numbers::sqrt2 * settings.cell_m,
                          2 * kPi / settings.headings * settings.radius)) {
@@ -63,6 +65,8 @@ class Search {
   static constexpr Index kNone = ~Index{0};
   /// A route shorter by less than this share is not worth its search.
   static constexpr double kTie = 1e-9;
+  /// Places where a loiter circle may be left or joined.
+  static constexpr int kLoiterPoses = 64;
 
   /// A continuous pose, reached by one piece from its parent.
   struct Node {
@@ -82,14 +86,8 @@ class Search {
   };
 
   void add_starts() {
-    const Vec3& velocity = request_.start.velocity;
-    if (has_heading(velocity)) {
-      const Vec3 through_air = velocity - request_.wind.at(request_.start.position.z());
-      add({{request_.start.position, std::atan2(through_air.y(), through_air.x())}, 0, kNone});
-      return;
-    }
-    for (int k = 0; k < settings_.headings; ++k) {
-      add({{request_.start.position, 2 * kPi * k / settings_.headings}, 0, kNone});
+    for (const Pose& pose : starts_) {
+      add({pose, 0, kNone});
     }
   }
 
@@ -176,21 +174,29 @@ class Search {
     return (expanded_ - 1) % every == 0;
   }
 
-  /// The path without obstacles to the goal, if it is free.
+  /// The shortest free one of the paths without obstacles to the goal.
   void shoot(Index at, const Node& node) {
-    const int headings = request_.goal.heading ? 1 : settings_.headings;
-    for (int k = 0; k < headings; ++k) {
-      const double heading = request_.goal.heading.value_or(2 * kPi * k / settings_.headings);
+    shots_.clear();
+    for (std::size_t k = 0; k < goals_.size(); ++k) {
       double length = kInfinity;
-      const auto legs = steering_.path(node.pose, {request_.goal.position, heading}, length);
-      if (legs && node.g + length < best_ * (1 - kTie) && is_free(at, *legs)) {
+      if (steering_.path(node.pose, goals_[k], length) && node.g + length < best_ * (1 - kTie)) {
+        shots_.emplace_back(length, k);
+      }
+    }
+    std::sort(shots_.begin(), shots_.end());
+    for (const auto& [promised, k] : shots_) {
+      double length = kInfinity;
+      const auto legs = steering_.path(node.pose, goals_[k], length);
+      if (is_free(at, *legs)) {
         best_ = node.g + length;
         best_node_ = at;
         best_legs_ = *legs;
         if (request_.trace != nullptr) {
           request_.trace->add({TraceEvent::Kind::added, std::int64_t(nodes_.size()), at,
-                               request_.goal.position, best_});
+                               best_legs_.empty() ? node.pose.position : best_legs_.back().to,
+                               best_});
         }
+        return;
       }
     }
   }
@@ -211,7 +217,7 @@ class Search {
 
   std::optional<Approach> approach(Index at) const {
     const Node& node = nodes_[at];
-    return node.parent == kNone ? request_.before_start()
+    return node.parent == kNone ? request_.before_start(node.pose.position)
                                 : onward(std::nullopt, leg_of(nodes_[node.parent], node));
   }
 
@@ -222,12 +228,12 @@ class Search {
     }
     std::reverse(legs.begin(), legs.end());
     legs.insert(legs.end(), last.begin(), last.end());
-    const Route whole = route_of(joined(legs));
-    return check(whole, request_).ok() ? whole : route_of(legs);
+    const Route whole = route_of(joined(legs), nodes_[at].pose.position);
+    return check(whole, request_).ok() ? whole : route_of(legs, nodes_[at].pose.position);
   }
 
-  Route route_of(const std::vector<Leg>& legs) const {
-    Route route{request_.start.position};
+  static Route route_of(const std::vector<Leg>& legs, const Vec3& alone) {
+    Route route{legs.empty() ? alone : legs.front().from};
     for (const Leg& leg : legs) {
       route.push_back(leg);
     }
@@ -278,7 +284,9 @@ class Search {
   }
 
   void note_nearest(const Vec3& p) {
-    const double off = (p - request_.goal.position).norm();
+    const Goal& goal = request_.goal;
+    const double off =
+        std::abs((p - goal.position).norm() - (goal.loiter ? goal.loiter->radius : 0));
     if (off < nearest_) {
       nearest_ = off;
     }
@@ -321,6 +329,9 @@ class Search {
   const Request& request_;
   const Settings& settings_;
   Steering steering_;
+  std::vector<Pose> starts_;
+  std::vector<Pose> goals_;
+  std::vector<std::pair<double, std::size_t>> shots_;  ///< lengths, of indices of goals_
   Columns columns_;
   BudgetWatch watch_;
   double length_;  ///< of a piece, through the air: it leaves its cell, or its heading

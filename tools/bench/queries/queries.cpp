@@ -9,6 +9,7 @@ void altiplan::bench::add_queries(Subcommands& all) {
              [](const Given&) {
                add_cell_rows();
                add_terrain_rows();
+               add_turn_rows();
                add_shape_rows(200);
                add_shape_rows(10000);
              });

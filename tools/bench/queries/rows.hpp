@@ -48,4 +48,5 @@ std::string share(const Ask& ask) {
 void add_shape_rows(int count);
 void add_cell_rows();
 void add_terrain_rows();
+void add_turn_rows();
 }  // namespace altiplan::bench

@@ -98,6 +98,11 @@ export function drift(moving, time) {
 export const tolerances = (scene) => [scene.goal, ...(scene.via ?? [])]
   .filter((goal) => goal?.tolerance > 0);
 
+/** Horizontal circles in the plan: around goals with a tolerance, and where vehicles loiter. */
+export const circles = (scene) => [
+  ...tolerances(scene).map(({at, tolerance}) => ({at, radius: tolerance})),
+  ...(scene.loiters ?? [])];
+
 export function event_times(scene, selected) {
   return scene.results[selected]?.flight?.event_times ?? null;
 }

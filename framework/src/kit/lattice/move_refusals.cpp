@@ -38,7 +38,7 @@ std::string MoveRules::sharp_turns() const {
   return "; turns of cells of " + metres(cell.x()) +
          (cell.x() == cell.y() ? "" : " x " + metres(cell.y())) + " m have a radius of at most " +
          metres(widest) + " m, below the required " + metres(required) +
-         " m: use larger cells, or theta_star";
+         " m: use larger cells, or hybrid_astar, whose legs curve";
 }
 
 std::string MoveRules::refusals() const {

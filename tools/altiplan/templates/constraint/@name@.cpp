@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/constraint.hpp>
 #include <altiplan/plugin.hpp>
+#include <altiplan/shape.hpp>
 
 namespace {
 using namespace altiplan;
@@ -22,11 +23,9 @@ class QuietPlace final : public Constraint {
  private:
   // Called leg by leg by planners, pilots, smoothers and the judge.
   bool do_admits(const Motion& leg) const override {
-    const Vec3 track(leg.to.x() - leg.from.x(), leg.to.y() - leg.from.y(), 0);
-    const Vec3 place(params_.at_m[0] - leg.from.x(), params_.at_m[1] - leg.from.y(), 0);
-    const double along =
-        track.isZero(0) ? 0.0 : std::clamp(place.dot(track) / track.squaredNorm(), 0.0, 1.0);
-    return (place - along * track).norm() >= params_.min_m - kLengthTolerance;  // touching is free
+    const Cylinder place{params_.at_m[0], params_.at_m[1]};  // of radius 0, at all altitudes
+    const double distance = leg_distance(place, leg.from, leg.to);
+    return distance >= params_.min_m - kLengthTolerance;  // touching is allowed
   }
 
   Params params_;

@@ -2,7 +2,7 @@
 import {casing, kKinds, mix, role_color, route_color, style_of} from '../colors.js';
 import {outline} from '../shapes.js';
 import {drift, event_times, grid_lines, layer_key, present,
-  tolerances} from '../world.js';
+  circles} from '../world.js';
 import {ground_image} from './ground_image.js';
 import {count_below, path_of_many} from './paths.js';
 
@@ -165,7 +165,7 @@ export class View2 {
     this.#paint_ground();
     if (this.store.state.grid) this.#paint_grid();
     for (const thing of this.#present()) this.#paint_solid(thing);
-    this.#paint_tolerances();
+    this.#paint_circles();
     this.#paint_search();
     // A track is a band under the route.
     const under = ({kind}) => kind === 'track' ? 0 : 1;
@@ -213,11 +213,11 @@ export class View2 {
     this.#stroke([low, [high[0], low[1]], high, [low[0], high[1]], low], 1, color);
   }
 
-  #paint_tolerances() {
-    for (const {at, tolerance} of tolerances(this.world.scene)) {
+  #paint_circles() {
+    for (const {at, radius} of circles(this.world.scene)) {
       const {x, y} = this.project(at);
       this.context.beginPath();
-      this.context.arc(x, y, tolerance * this.scale, 0, 2 * Math.PI);
+      this.context.arc(x, y, radius * this.scale, 0, 2 * Math.PI);
       Object.assign(this.context, {lineWidth: 1, strokeStyle: style_of('--ink')});
       this.context.stroke();
     }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "leg_parts.hpp"
+
+#include "altiplan/attributed.hpp"
+#include "altiplan/ground.hpp"
+#include "pieces.hpp"
+
+namespace altiplan {
+
+bool is_turn(const Leg& leg) {
+  if (!std::isfinite(leg.turn) || !std::isfinite(leg.radius) || !std::isfinite(leg.heading) ||
+      !is_finite(leg.drift) || leg.radius <= 0 || leg.drift.z() != 0) {
+    return false;
+  }
+  const Leg same = Leg::turning({leg.from, leg.heading}, leg.turn, leg.radius,
+                                leg.to.z() - leg.from.z(), leg.drift);
+  return (same.to - leg.to).norm() <= kLengthTolerance;
+}
+
+Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
+  if (!world.ground_below(a, a)) {
+    return a;
+  }
+  double known = 0;
+  double unknown = 1;
+  for (int i = 0; i < 50; ++i) {
+    const double t = (known + unknown) / 2;
+    (world.ground_below(a, a + t * (b - a)) ? known : unknown) = t;
+  }
+  return a + unknown * (b - a);
+}
+
+namespace {
+bool is_blocked(const Environment& layer, const Leg& turn, double r) {
+  return !every_piece(turn, [&](const Piece& piece) {
+    if (!layer.blocked(piece.a, piece.b, r + piece.e)) {
+      return Verdict::kept;
+    }
+    const bool surely = r > piece.e && layer.blocked(piece.a, piece.b, r - piece.e);
+    return surely ? Verdict::violated : Verdict::halve;
+  });
+}
+}  // namespace
+
+const Layer* blocked_by(const World& world, const Leg& turn, const Box& box, double r,
+                        const AboveGround& above) {
+  const Box reach = box.grown(r + kLengthTolerance);
+  const bool is_high =
+      above.height - kLengthTolerance >= r * std::sqrt(1 + above.slope * above.slope);
+  const auto blocks = [&](const Environment& layer) {
+    const Box bounds = layer.bounds();  // its ground reaches further down
+    if (bounds.min.x() > reach.max.x() || bounds.max.x() < reach.min.x() ||
+        bounds.min.y() > reach.max.y() || bounds.max.y() < reach.min.y() ||
+        bounds.max.z() < reach.min.z()) {
+      return false;
+    }
+    const Ground* ground = is_high ? layer.ground() : nullptr;
+    return !(ground != nullptr && ground->is_all()) && is_blocked(layer, turn, r);
+  };
+  for (const Layer& layer : world.layers()) {
+    if (attributed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
+                   [&] { return blocks(*layer.environment); })) {
+      return &layer;
+    }
+  }
+  return nullptr;
+}
+}  // namespace altiplan

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "altiplan/request.hpp"
+
+namespace altiplan {
+
+/// Distance that a vehicle must keep from obstacles, metres.
+inline double required_clearance(const Request& request) {
+  return std::max(request.limits.min_clearance, request.vehicle.radius_m);
+}
+
+/// True if a turn's figures are finite, its radius is positive, and they lead to its end.
+bool is_turn(const Leg& leg);
+
+/// Start of the first part of a leg that has no ground below it.
+Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b);
+
+/// How high above the ground a turn is known to lie, and the slope within its clearance.
+struct AboveGround {
+  double height = -kInfinity;
+  double slope = kInfinity;
+};
+
+/// The layer that blocks a turn, whose box is known, for a sphere of radius r, or null. By
+/// bisection: a piece is free if its chord is free for r + e, and blocked if its chord is blocked
+/// for r - e. Layers that block nothing but their ground are left out if the turn is high enough.
+const Layer* blocked_by(const World& world, const Leg& turn, const Box& box, double r,
+                        const AboveGround& above);
+}  // namespace altiplan
