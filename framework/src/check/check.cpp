@@ -70,6 +70,23 @@ Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {
   leg_of.push_back(route.leg_count());
   return points;
 }
+
+/// The violation of the goal's heading, if it has one and the route arrives with another.
+std::optional<Violation> heading_on_arrival(const Route& route,
+                                            const std::optional<Approach>& before,
+                                            const Request& request) {
+  if (!request.goal.heading || !before) {
+    return std::nullopt;
+  }
+  const Pose pose{route.back(), *request.goal.heading};
+  const Vec3 arrival = before->heading_at(route.back());
+  const double off = turn_angle_horizontal(arrival, request.ground_velocity(pose));
+  if (off <= kAngleTolerance || off * arrival.norm() <= kLengthTolerance) {
+    return std::nullopt;
+  }
+  return beyond("goal_heading", route.size() - 1, degrees(off), 0, " degrees",
+                "the angle between the course on arrival and the goal's", false);
+}
 }  // namespace
 
 CheckResult check(const Route& route, const Request& request) {
@@ -93,6 +110,11 @@ CheckResult check(const Route& route, const Request& request) {
   std::optional<Approach> before = request.before_start();
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
+    if (const double gap = (leg.from - route[i]).norm(); !(gap <= kLengthTolerance)) {
+      found.push_back(
+          {"route", i, gap, 0,
+           "the leg begins " + distance_text(gap) + " m from the end of the one before"});
+    }
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));
     }
@@ -100,14 +122,8 @@ CheckResult check(const Route& route, const Request& request) {
       before = onward(before, leg);
     }
   }
-  if (request.goal.heading && before) {
-    const Pose pose{route.back(), *request.goal.heading};
-    const Vec3 arrival = before->heading_at(route.back());
-    const double off = turn_angle_horizontal(arrival, request.ground_velocity(pose));
-    if (off > kAngleTolerance && off * arrival.norm() > kLengthTolerance) {
-      found.push_back(beyond("goal_heading", route.size() - 1, degrees(off), 0, " degrees",
-                             "the angle between the course on arrival and the goal's", false));
-    }
+  if (auto violation = heading_on_arrival(route, before, request)) {
+    found.push_back(*std::move(violation));
   }
   const double total = length(route);
   if (total > request.limits.max_route_length + kLengthTolerance) {

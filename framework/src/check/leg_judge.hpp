@@ -31,21 +31,6 @@ double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
 
-/// The layer that blocks a turn for a sphere of radius r, or null. By bisection: a piece is free if
-/// its chord is free for r + e, and blocked if its chord is blocked for r - e.
-inline const Layer* blocked_by(const World& world, const Leg& turn, double r) {
-  const Layer* layer = nullptr;
-  const bool is_free = every_piece(turn, [&](const Piece& piece) {
-    layer = world.blocked_by(piece.a, piece.b, r + piece.e);
-    if (layer == nullptr) {
-      return Verdict::kept;
-    }
-    const bool is_blocked = r > piece.e && world.blocked(piece.a, piece.b, r - piece.e);
-    return is_blocked ? Verdict::violated : Verdict::halve;
-  });
-  return is_free ? nullptr : layer;
-}
-
 /// Checks one leg against every constraint, the cheap ones first: one call of `report` (with a
 /// function that makes the violation) per violated constraint, until report returns false.
 template <class Report>
@@ -122,7 +107,7 @@ class LegJudge {
            });
   }
 
-  /// The geometry that a turn alone has: its box, its radius, and the drift of the air.
+  /// The geometry that a turn alone has: its box, its end, its radius, and the drift of the air.
   bool keeps_turn() const {
     if (turn_ == nullptr) {
       return true;
@@ -139,9 +124,23 @@ class LegJudge {
         return false;
       }
     }
-    return at_least(turn_->radius, limits_.min_turn_radius, kLengthTolerance, "turn_radius",
+    return keeps_end() &&
+           at_least(turn_->radius, limits_.min_turn_radius, kLengthTolerance, "turn_radius",
                     "the turn radius", " m") &&
            keeps_drift();
+  }
+
+  /// A turn holds its end twice: as a point, and where its circle leads.
+  bool keeps_end() const {
+    const Vec3 end = Leg::turning({a_, turn_->heading}, turn_->turn, turn_->radius, b_.z() - a_.z(),
+                                  turn_->drift)
+                         .to;
+    const double off = (b_ - end).norm();
+    return off <= kLengthTolerance || report_([&] {
+             return Violation{"route", at_, off, 0,
+                              "the turn leads to " + place(end) + ", " + distance_text(off) +
+                                  " m from the end of its leg"};
+           });
   }
 
   bool keeps_drift() const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "altiplan/leg.hpp"
+#include "altiplan/world.hpp"
 
 namespace altiplan {
 
@@ -53,5 +54,20 @@ bool every_piece(const Leg& leg, const Decide& verdict) {
     }
   }
   return true;
+}
+
+/// The layer that blocks a turn for a sphere of radius r, or null. By bisection: a piece is free if
+/// its chord is free for r + e, and blocked if its chord is blocked for r - e.
+inline const Layer* blocked_by(const World& world, const Leg& turn, double r) {
+  const Layer* layer = nullptr;
+  const bool is_free = every_piece(turn, [&](const Piece& piece) {
+    layer = world.blocked_by(piece.a, piece.b, r + piece.e);
+    if (layer == nullptr) {
+      return Verdict::kept;
+    }
+    const bool is_blocked = r > piece.e && world.blocked(piece.a, piece.b, r - piece.e);
+    return is_blocked ? Verdict::violated : Verdict::halve;
+  });
+  return is_free ? nullptr : layer;
 }
 }  // namespace altiplan
