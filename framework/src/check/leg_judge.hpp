@@ -8,26 +8,13 @@
 #include "altiplan/nearest_place.hpp"
 #include "altiplan/request.hpp"
 #include "altiplan/what_blocks.hpp"
+#include "ground_ends.hpp"
 #include "pieces.hpp"
 #include "words.hpp"
 
 namespace altiplan {
 
-/// Start of the first part of a leg that has no ground below it.
-Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
-  if (!world.ground_below(a, a)) {
-    return a;
-  }
-  double known = 0;
-  double unknown = 1;
-  for (int i = 0; i < 50; ++i) {
-    const double t = (known + unknown) / 2;
-    (world.ground_below(a, a + t * (b - a)) ? known : unknown) = t;
-  }
-  return a + unknown * (b - a);
-}
-
-double required_clearance(const Request& request) {
+inline double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
 
@@ -227,11 +214,13 @@ class LegJudge {
 
   bool keeps_heights() const {
     const World& world = *request_.world;
-    const bool over_ground = is_over_ground();
+    Vec3 end = a_;
+    const bool over_ground = is_over_ground(end);
     if (!over_ground && !report_([&] {
           return Violation{"ground", at_, 0, 0,
                            "there is no ground of known height below " +
-                               place(ground_ends(world, a_, b_)) + ", a point of the leg"};
+                               place(turn_ != nullptr ? end : ground_ends(world, a_, b_)) +
+                               ", a point of the leg"};
         })) {
       return false;
     }
@@ -256,7 +245,8 @@ class LegJudge {
            (band.max == kInfinity || keeps_below(band.max, "altitude", "the altitude"));
   }
 
-  bool is_over_ground() const {
+  /// `looked_at` begins the part of a turn that was looked at last: where the ground ends.
+  bool is_over_ground(Vec3& looked_at) const {
     const World& world = *request_.world;
     if (turn_ == nullptr || !world.has_ground()) {
       return world.ground_below(a_, b_);
@@ -266,6 +256,7 @@ class LegJudge {
       return true;
     }
     return every_piece(*turn_, [&](const Piece& piece) {
+      looked_at = piece.a;
       const bool is_whole = piece.last || std::isfinite(slope_about(piece));
       return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept : Verdict::halve;
     });
