@@ -19,6 +19,10 @@ steps:
   - plan: rrt
     id: tree
     with: {goal_share: 0.2}
+  - smooth: hermite
+    with: {least_leg_m: 20}
+  - plan: improved_ant_colony
+    with: {least_steps: 5}
 """
 STUDY = """altiplan: 1
 scenarios: [{file: scenario.yaml}]
@@ -42,6 +46,8 @@ class RenamedKeys(CliCase):
     def test_former_keys_are_refused_with_the_present_ones(self):
         _, err = self.call("validate", "former.yaml", code=3)
         self.assertIn("former.yaml:8:12: steps.0.with.goal_share: is now 'goal_bias'", err)
+        self.assertIn("former.yaml:10:12: steps.1.with.least_leg_m: is now 'min_leg_m'", err)
+        self.assertIn("former.yaml:12:12: steps.2.with.least_steps: is now 'min_steps'", err)
         self.assertIn("expected one of horizontal, spatial; found 'space'", err)
 
     def test_a_former_result_is_refused(self):

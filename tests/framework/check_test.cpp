@@ -203,6 +203,40 @@ TEST(Check, NumbersBeyondAnyWorldAreToldShortly) {
   }
 }
 
+/// The violations of a route whose one leg is that turn.
+std::string rules_of_turn(const Leg& turn) {
+  Request request = empty_request();
+  request.goal.position = turn.to;
+  Route route;
+  route.push_back(turn);
+  return rules(check(route, request));
+}
+
+TEST(Check, ATurnEndsWhereItsCircleLeads) {
+  const Leg turn = Leg::turning({{0, 0, 100}, 0}, kPi / 2, 80, 5);
+  EXPECT_EQ(rules_of_turn(turn), "");
+  for (const double off : {1e-3, 500.0}) {
+    Leg longer = turn;
+    longer.to.x() += off;
+    EXPECT_EQ(rules_of_turn(longer), "route@0 ") << off;
+  }
+  Leg other = turn;
+  other.heading = std::nan("");
+  EXPECT_EQ(rules_of_turn(other), "route@0 ");
+}
+
+TEST(Check, ALegBeginsWhereTheOneBeforeEnds) {
+  Request request = empty_request();
+  Route route{{0, 0, 100}, {400, 0, 100}};
+  const Leg turn = Leg::turning({{600, 0, 100}, 0}, kPi / 2, 80, 0);
+  route.push_back(turn);
+  request.goal.position = turn.to;
+  const CheckResult result = check(route, request);
+  EXPECT_EQ(rules(result), "route@1 ");
+  EXPECT_EQ(result.violations.at(0).message,
+            "the leg begins 200.000000 m from the end of the one before");
+}
+
 TEST(Check, PointProblemsNameTheFigure) {
   Request request =
       request_in(world_of({Sphere{{0, 0, 100}, 50}}), {0, 0, 100}, {500, 0, 100}, kVolume);

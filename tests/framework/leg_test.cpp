@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "altiplan/leg_limits.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/route.hpp"
 #include "altiplan/vehicle.hpp"
@@ -34,6 +35,25 @@ TEST(Leg, ALeftTurnFromEastLeadsNorth) {
   EXPECT_LT(leg.rate(1).normalized().head<2>().x(), 1e-12);
   const Leg right = Leg::turning({{100, 200, 50}, 0}, -kQuarter, 80, 0);
   EXPECT_LT((right.to - Vec3(180, 120, 50)).norm(), 1e-12);
+}
+
+TEST(Leg, AWellFormedLegIsFiniteAndItsTurnHasARadius) {
+  EXPECT_TRUE(is_well_formed(Leg::straight({0, 0, 0}, {1, 2, 3})));
+  EXPECT_FALSE(is_well_formed(Leg::straight({0, 0, 0}, {1, kInfinity, 3})));
+  const Leg turn = Leg::turning({{0, 0, 0}, 0}, -200 * kPi, 80, 12);
+  EXPECT_TRUE(is_well_formed(turn));
+  const auto with = [&](auto member, double value) {
+    Leg leg = turn;
+    leg.*member = value;
+    return is_well_formed(leg);
+  };
+  for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
+    EXPECT_FALSE(with(&Leg::turn, bad) || with(&Leg::radius, bad) || with(&Leg::heading, bad));
+  }
+  EXPECT_FALSE(with(&Leg::turn, 201 * kPi) || with(&Leg::radius, 0) || with(&Leg::radius, 2e8));
+  Leg drifting = turn;
+  drifting.drift.x() = kInfinity;
+  EXPECT_FALSE(is_well_formed(drifting));
 }
 
 TEST(Leg, AWholeHelixEndsAboveItsStart) {

@@ -53,14 +53,14 @@ TEST(TurnJudge, TheFiguresOfATurnLeadToItsEnd) {
   wrong[6].radius = -kRadius;
   wrong[7].drift.z() = 1;
   for (const Leg& leg : wrong) {
-    EXPECT_EQ(violated(route_along({leg}), open_request(leg.to)), Rules{"leg@0"});
+    EXPECT_EQ(violated(route_along({leg}), open_request(leg.to)), Rules{"route@0"});
   }
 }
 
 TEST(TurnJudge, LegsBeginWhereTheLastOneEnds) {
   const Leg turn = Leg::turning({kStart, 0}, kPi / 2, kRadius, 0);
   const Leg apart = Leg::turning({turn.to + Vec3(0, 300, 0), kPi / 2}, -kPi / 2, kRadius, 0);
-  EXPECT_EQ(violated(route_along({turn, apart}), open_request(apart.to)), Rules{"leg@1"});
+  EXPECT_EQ(violated(route_along({turn, apart}), open_request(apart.to)), Rules{"route@1"});
 }
 
 TEST(TurnJudge, ATurnBeginsAlongItsTangentNotItsChord) {

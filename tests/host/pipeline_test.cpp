@@ -29,6 +29,7 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
       {"nan", RunStatus::failed, 4, "a coordinate that is not finite"},
       {"wrong_end", RunStatus::failed, 4, "ends 7.000000 m from the goal, outside its tolerance"},
       {"no_points", RunStatus::failed, 4, "reports solved but returns no route"},
+      {"endless_turn", RunStatus::failed, 4, "of more than a hundred circles"},
       {"huge", RunStatus::rejected, 1, "m outside the volume"},
   };
   for (const auto& [does, status, exit_code, message] : cases) {

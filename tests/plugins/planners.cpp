@@ -18,7 +18,8 @@ struct Params {
   void describe(Fields& f) {
     f("does", does)
         .one_of({"straight", "past", "never_stops", "throws", "throws_int", "nan", "huge",
-                 "wrong_end", "no_points", "allocates", "uses_budget", "refuses_does", "no_route"})
+                 "wrong_end", "no_points", "endless_turn", "allocates", "uses_budget",
+                 "refuses_does", "no_route"})
         .doc("what it does");
     f("past_m", past_m).unit("m").doc("of past: the one waypoint between");
   }
@@ -83,6 +84,13 @@ class Told final : public Planner {
     if (does == "no_points") {
       PlanResult result = route(request, {});
       result.route.edit().clear();
+      return result;
+    }
+    if (does == "endless_turn") {
+      PlanResult result = route(request, {});
+      result.route = {};
+      result.route.push_back(
+          Leg{request.start.position, request.goal.position, kInfinity, 100, 0, Vec3::Zero()});
       return result;
     }
     if (does == "never_stops") {

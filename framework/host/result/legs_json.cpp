@@ -2,15 +2,13 @@
 #include "host/result/legs_json.hpp"
 
 #include "altiplan/error.hpp"
+#include "altiplan/leg_limits.hpp"
 #include "host/result/stored_shape.hpp"
 
 namespace altiplan::host {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// More turns than any vehicle flies in one leg.
-constexpr double kMaxTurnDeg = 36'000;
 
 const char* name(Leg::Kind kind) {
   return kind == Leg::Kind::straight ? "straight" : kind == Leg::Kind::arc ? "arc" : "trochoid";
@@ -67,16 +65,15 @@ Leg leg_of(const Vec3& from, const Json& json, const std::string& place) {
     throw Error(place + ".kind: expected one of straight, arc, trochoid, found " +
                 found_text(kind));
   }
-  const double turn = number_of(json, "turn_deg", place);
+  leg.turn = radians(number_of(json, "turn_deg", place));
   leg.radius = number_of(json, "radius_m", place);
-  if (turn == 0 || !(std::abs(turn) <= kMaxTurnDeg)) {
+  if (leg.turn == 0 || std::abs(leg.turn) > kMaxTurn) {
     throw Error(place + ".turn_deg: expected an angle other than 0, at most " +
-                std::to_string(int(kMaxTurnDeg)) + " degrees either way");
+                std::to_string(std::lround(degrees(kMaxTurn))) + " degrees either way");
   }
-  if (!(leg.radius > 0) || !(leg.radius <= 1e8)) {
+  if (!(leg.radius > 0) || leg.radius > kMaxTurnRadius) {
     throw Error(place + ".radius_m: expected a radius above 0, at most 1e8 m");
   }
-  leg.turn = radians(turn);
   if (is_given(json, "drift_m")) {
     leg.drift = vector_of(json, "drift_m", 2, place);
   }

@@ -70,9 +70,7 @@ Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {
   leg_of.push_back(route.leg_count());
   return points;
 }
-}  // namespace
 
-namespace {
 void check_course(const Vec3& course, const Vec3& wanted, const char* rule, std::size_t at,
                   const char* what, std::vector<Violation>& found) {
   const double off = turn_angle_horizontal(course, wanted);
@@ -124,9 +122,10 @@ CheckResult check(const Route& route, const Request& request) {
   std::optional<Approach> before = request.before_start(route.front());
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
-    if (leg.from != route[i] || leg.to != route[i + 1]) {
-      found.push_back({"leg", i, 0, 0, "the leg does not join its two waypoints"});
-      return result;  // what follows would judge another path
+    if (const double gap = (leg.from - route[i]).norm(); !(gap <= kLengthTolerance)) {
+      found.push_back(
+          {"route", i, gap, 0,
+           "the leg begins " + distance_text(gap) + " m from the end of the one before"});
     }
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));

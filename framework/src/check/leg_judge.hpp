@@ -45,11 +45,9 @@ class LegJudge {
       report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
       return;
     }
-    if (turn_ != nullptr && !is_turn(*turn_)) {
-      report_([&] {
-        return Violation{"leg", at_, 0, 0,
-                         "its turn, radius, heading and drift do not lead to its end"};
-      });
+    if (const std::string problem = turn_ != nullptr ? turn_problem(*turn_) : "";
+        !problem.empty()) {
+      report_([&] { return Violation{"route", at_, 0, 0, problem}; });
       return;
     }
     (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_turn() && keeps_size() &&
@@ -203,11 +201,13 @@ class LegJudge {
 
   bool keeps_heights() const {
     const World& world = *request_.world;
-    const bool over_ground = is_over_ground();
+    Vec3 end = a_;
+    const bool over_ground = is_over_ground(end);
     if (!over_ground && !report_([&] {
           return Violation{"ground", at_, 0, 0,
                            "there is no ground of known height below " +
-                               place(ground_ends(world, a_, b_)) + ", a point of the leg"};
+                               place(turn_ != nullptr ? end : ground_ends(world, a_, b_)) +
+                               ", a point of the leg"};
         })) {
       return false;
     }
@@ -232,13 +232,15 @@ class LegJudge {
            (band.max == kInfinity || keeps_below(band.max, "altitude", "the altitude"));
   }
 
-  bool is_over_ground() const {
+  /// `looked_at` begins the part of a turn that was looked at last: where the ground ends.
+  bool is_over_ground(Vec3& looked_at) const {
     const World& world = *request_.world;
     if (turn_ == nullptr || !world.has_ground()) {
       return world.ground_below(a_, b_);
     }
     // A finite slope means that the ground has no hole in the box.
     return std::isfinite(slope_of_turn()) || every_piece(*turn_, [&](const Piece& piece) {
+             looked_at = piece.a;
              const bool is_whole = piece.last || std::isfinite(slope_about(piece));
              return is_whole && world.ground_below(piece.a, piece.b) ? Verdict::kept
                                                                      : Verdict::halve;

@@ -3,18 +3,23 @@
 
 #include "altiplan/attributed.hpp"
 #include "altiplan/ground.hpp"
+#include "altiplan/leg_limits.hpp"
 #include "pieces.hpp"
+#include "words.hpp"
 
 namespace altiplan {
 
-bool is_turn(const Leg& leg) {
-  if (!std::isfinite(leg.turn) || !std::isfinite(leg.radius) || !std::isfinite(leg.heading) ||
-      !is_finite(leg.drift) || leg.radius <= 0 || leg.drift.z() != 0) {
-    return false;
+std::string turn_problem(const Leg& turn) {
+  if (!is_well_formed(turn)) {
+    return "a figure of the turn is not finite, or beyond what a leg may have";
   }
-  const Leg same = Leg::turning({leg.from, leg.heading}, leg.turn, leg.radius,
-                                leg.to.z() - leg.from.z(), leg.drift);
-  return (same.to - leg.to).norm() <= kLengthTolerance;
+  const Vec3 end = Leg::turning({turn.from, turn.heading}, turn.turn, turn.radius,
+                                turn.to.z() - turn.from.z(), turn.drift)
+                       .to;
+  const double off = (turn.to - end).norm();
+  return off <= kLengthTolerance ? ""
+                                 : "the turn leads to " + place(end) + ", " + distance_text(off) +
+                                       " m from the end of its leg";
 }
 
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "altiplan/request.hpp"
 
 namespace altiplan {
@@ -10,8 +12,8 @@ inline double required_clearance(const Request& request) {
   return std::max(request.limits.min_clearance, request.vehicle.radius_m);
 }
 
-/// True if a turn's figures are finite, its radius is positive, and they lead to its end.
-bool is_turn(const Leg& leg);
+/// Why the figures of a turn describe none, or not the one to its end; "" if they do.
+std::string turn_problem(const Leg& turn);
 
 /// Start of the first part of a leg that has no ground below it.
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b);

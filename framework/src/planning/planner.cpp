@@ -9,6 +9,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/leg_limits.hpp"
 #include "altiplan/local_planner.hpp"
 #include "altiplan/smoother.hpp"
 
@@ -64,6 +65,10 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
   }
 }
 
+constexpr const char* kMalformedLeg =
+    "returns a leg with a number that is not finite, or a turn without a radius above 0 or of more "
+    "than a hundred circles";
+
 bool same(const PlanResult& a, const PlanResult& b) {
   return a.status == b.status && a.message == b.message && a.route == b.route &&
          a.budget_hit == b.budget_hit && a.proved == b.proved &&
@@ -82,6 +87,15 @@ Reason spent_part(const PlanResult& result, const Budget& budget) {
   }
   return budget.deadline && Budget::Clock::now() >= *budget.deadline ? Reason::deadline
                                                                      : Reason::none;
+}
+
+bool legs_are_well_formed(const Route& route) {
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    if (!is_well_formed(route.leg(i))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// Checks a result against the contract on a route's ends; `start` and `goal` are those requested.
@@ -104,6 +118,9 @@ PlanResult held_to_contract(PlanResult result, const State& start, const Goal& g
   }
   if (!std::all_of(result.route.begin(), result.route.end(), is_finite)) {
     throw broken(Reason::contract, "returns a route with a coordinate that is not finite");
+  }
+  if (!legs_are_well_formed(result.route)) {
+    throw broken(Reason::contract, kMalformedLeg);
   }
   if (!start.starts_at(result.route.front())) {
     throw broken(Reason::contract_of_ends, "returns a route that does not begin at the start");
@@ -330,6 +347,11 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
         "the smoother violated the contract of its interface: first and last points must stay, all "
         "finite",
         Reason::contract_of_ends);
+  }
+  if (result.status == PlanStatus::solved && !legs_are_well_formed(result.route)) {
+    throw PluginError(
+        std::string("the smoother violated the contract of its interface: ") + kMalformedLeg,
+        Reason::contract);
   }
   return result;
 }

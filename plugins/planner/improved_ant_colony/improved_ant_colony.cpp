@@ -46,6 +46,7 @@ struct Params : kit::ColonyParams {
         .doc("l_c: a step leads to the border of the square of this half-width around the ant");
     f("min_steps", min_steps)
         .range(1, 1'000'000)
+        .was("least_steps")
         .doc("N_c of eq. (6): steps from start to goal in open air, in place of reach_cells");
     f("spacing_cells", settings.spacing)
         .range(0, 1000)

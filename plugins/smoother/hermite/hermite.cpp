@@ -51,6 +51,7 @@ struct Params {
     f("min_leg_m", min_leg_m)
         .unit("m")
         .greater_than(0)
+        .was("least_leg_m")
         .doc("inserted nodes divide no leg into parts shorter than this; auto: a 32nd of the leg");
   }
 };
