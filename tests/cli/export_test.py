@@ -268,6 +268,95 @@ class Zones(Flight):
             self.assertIn(name + ": " + ("mission.items.0" if name == "z.plan" else "point 1"), out)
 
 
+WING = """altiplan: 1
+frame: {origin_lonlat: [25.0, 60.0]}
+environment:
+  - zones:
+      list:
+        - {id: mast, cylinder: {at_m: [2000, 2000], radius_m: 600}}
+volume: {min_m: [0, 0, 0], max_m: [5000, 5000, 900]}
+vehicle:
+  radius_m: 5
+  wing: {airspeed_mps: 20, bank_deg: 30, climb_deg: 8, sink_deg: 8}
+start: {at_m: [500, 500, 300], heading_deg: 180}
+goal: {at_m: [3500, 3500, 300], tolerance_m: 5}
+"""
+
+
+class Turns(unittest.TestCase):
+    """A route of an aeroplane: a turn, and a straight leg that passes the zone."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.scenario = os.path.join(cls.folder, "wing.yaml")
+        cls.result = os.path.join(cls.folder, "result.json")
+        with open(cls.scenario, "w", encoding="utf-8") as file:
+            file.write(WING)
+        pipeline = os.path.join(cls.folder, "p.yaml")
+        with open(pipeline, "w", encoding="utf-8") as file:
+            file.write("altiplan: 1\nscenario: wing.yaml\nsteps:\n  - plan: hybrid_astar\n")
+        code, _, err = altiplan("run", pipeline, "--out", cls.result)
+        assert code == 0, err
+        cls.turns = sum(leg["kind"] == "arc" for leg in json.loads(text_of(cls.result))["legs"])
+        assert cls.turns > 1
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def test_every_format_takes_points(self):
+        for to, ending in FORMATS.items():
+            path = os.path.join(self.folder, f"points.{ending}")
+            code, _, err = altiplan("export", self.result, "--to", to, "-o", path)
+            self.assertEqual(code, 0, err)
+            self.assertIn("read back and judged: valid", err)
+            self.assertIn("within 0.5 m of them", err)
+
+    def test_loiters(self):
+        code, out, err = altiplan("export", self.result, "--to", "qgc-plan", "--arcs", "loiter")
+        self.assertEqual(code, 0, err)
+        plan = ground_station.plan(out)["mission"]
+        self.assertEqual(plan["vehicleType"], 1)
+        loiters = [item for item in plan["items"] if item["command"] == 31]
+        self.assertGreater(len(loiters), 0)
+        self.assertIn(f" and {len(loiters)} loiter", err)
+        for item in loiters:
+            self.assertEqual((item["params"][0], item["params"][3]), (1, 1))
+            self.assertGreaterEqual(abs(item["params"][1]), 70.6)
+        code, out, err = altiplan("export", self.result, "--to", "waypoints", "--arcs", "loiter")
+        self.assertEqual(code, 0, err)
+        rows = ground_station.waypoints(out)
+        self.assertEqual([row[4:8] for row in rows if row[3] == 31],
+                         [item["params"][:4] for item in loiters])
+
+    def test_wrong_usage(self):
+        for options in (("--to", "kml", "--arcs", "loiter"),
+                        ("--to", "qgc-plan", "--arcs", "loiter", "--altitude", "ground"),
+                        ("--to", "qgc-plan", "--arcs", "circles")):
+            code, out, err = altiplan("export", self.result, *options)
+            self.assertEqual((code, out), (2, ""), options)
+            self.assertIn("arcs", err)
+
+    def test_check_reads_circles(self):
+        """Straight, a climbing turn to the left, straight: as others write it."""
+        path = os.path.join(self.folder, "turn.waypoints")
+        rows = ["QGC WPL 110", "0\t1\t0\t16\t0\t0\t0\t0\t60\t25\t0\t1",
+                "1\t0\t0\t16\t0\t0\t0\t0\t60.0044878\t25.0089610\t300\t1",
+                "2\t0\t0\t31\t1\t-100\t0\t1\t60.0044878\t25.0300000\t320\t1",
+                "3\t0\t0\t16\t0\t0\t0\t0\t60.0200000\t25.0317932\t320\t1"]
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(rows) + "\n")
+        code, out, err = altiplan("check", "--route", path, "--scenario", self.scenario,
+                                  "--log-level", "info")
+        self.assertEqual(code, 1, err)  # it ends elsewhere, and begins with another heading
+        self.assertIn("1 loiters read as circles", err)
+        self.assertIn("4 waypoints", out)
+        for leg in (1, 2):
+            self.assertNotIn(f"waypoint {leg}, turn_radius", out)
+        self.assertNotIn("climb", out)
+
+
 @unittest.skipUnless(os.path.isdir(MISSIONS), "no test data: set ALTIPLAN_TEST_DATA")
 class OfOthers(unittest.TestCase):
     """ground_station.py accepts and rejects files of other programs correctly."""

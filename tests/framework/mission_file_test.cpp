@@ -136,6 +136,24 @@ TEST(MissionFile, TakesHomeTakeOffAndFramesFromWaypoints) {
   EXPECT_EQ(fence.zones[0].polygon.outline.size(), 4U);
 }
 
+TEST(MissionFile, ALoiterHasACircleIfItsRadiusAndItsTangentialExitAreGiven) {
+  using Until = MissionCircle::Until;
+  const auto circle = [](const std::string& command_and_params) {
+    return read_mission("f.txt",
+                        "QGC WPL 110\n0\t0\t3\t" + command_and_params + "\t60.1\t25.2\t100\t1\n")
+        .items.front()
+        .circle;
+  };
+  EXPECT_EQ(circle("18\t2\t1\t-80\t1"), (MissionCircle{Until::turns, 80, 1, 2}));
+  EXPECT_EQ(circle("31\t1\t80.5\t0\t1"), (MissionCircle{Until::altitude, 80.5, -1, 0}));
+  EXPECT_EQ(circle("17\t0\t0\t60\t0"), (MissionCircle{Until::forever, 60, -1, 0}));
+  for (const char* without :
+       {"18\t2\t1\t-80\t0", "18\t2\t1\t0\t1", "18\t-1\t1\t80\t1", "31\t1\t80\t0\tnan",
+        "31\t1\tnan\t0\t1", "19\t30\t1\t80\t1", "16\t0\t0\t80\t1", "17\t0\t0\t1e9\t0"}) {
+    EXPECT_FALSE(circle(without)) << without;
+  }
+}
+
 TEST(MissionFile, ReadsCirclesOfBothFenceForms) {
   const MissionFile wpl =
       read_mission("f.txt",

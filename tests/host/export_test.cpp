@@ -122,7 +122,7 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
                                    : "relative to home, which is 120 m"));
       EXPECT_EQ(says(result, "warning: judged with straight legs"), frame == AltitudeFrame::ground);
       const ImportedRoute back =
-          read_imported_route(file, *result.text, scene.mission.truth, kAround.front());
+          read_imported_route(file, *result.text, scene.mission.truth, scene.mission.request);
       EXPECT_EQ(back.route.front(), kAround.front());
       EXPECT_LT(farthest(back.route.waypoints(), kAround), 0.01);
       EXPECT_GT(farthest(back.route.waypoints(), kAround), 0);
@@ -228,7 +228,7 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
       EXPECT_EQ(read.items.back().kind, MissionItem::Kind::land);
       EXPECT_EQ(read.items.back().at.altitude_m, frame == AltitudeFrame::sea ? 120 : 0);
       EXPECT_EQ(read.items.back().at.lat, read.items[kAround.size() - 1].at.lat);
-      EXPECT_EQ(read_imported_route(file, *result.text, scene.mission.truth, kAround.front())
+      EXPECT_EQ(read_imported_route(file, *result.text, scene.mission.truth, scene.mission.request)
                     .route.size(),
                 kAround.size());
     }
@@ -354,7 +354,7 @@ TEST(ImportedRoute, FramesAreResolvedInTheWorld) {
 TEST(ImportedRoute, RefusesTablesWithTheLine) {
   const auto refusal = [](const std::string& text) {
     try {
-      read_imported_route("r.csv", text, World(), {0, 0, 0});
+      read_imported_route("r.csv", text, World(), {});
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -17,6 +17,7 @@ struct Arguments {
   std::string result;
   std::string to;
   std::string altitude = "sea";
+  std::string arcs = "points";
   std::optional<std::string> out;
   bool flight = false;
   host::ExportOptions options;
@@ -61,7 +62,7 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
   if (!stored.route) {
     return std::nullopt;
   }
-  source.route = stored.route->waypoints();
+  source.route = *stored.route;
   return source;
 }
 
@@ -75,11 +76,6 @@ int export_result(const Arguments& arguments) {
   std::optional<host::ExportSource> source = source_of(stored, arguments.flight);
   if (!source) {
     say(stored.file + " contains no " + (arguments.flight ? "flight" : "accepted route"));
-    return kNoRoute;
-  }
-  if (!arguments.flight && !stored.route->is_straight()) {
-    say("not written: the route of " + stored.file +
-        " has turns, and missions are written with straight legs only");
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
@@ -123,6 +119,12 @@ void add_export(CLI::App& app, Action& action) {
                    "altitude reference: sea, ground or home (default sea)")
       ->type_name("FROM")
       ->check(CLI::IsMember({"sea", "ground", "home"}));
+  command
+      ->add_option("--arcs", arguments->arcs,
+                   "turns as points within 0.5 m (points, the default), or as loiters that end on "
+                   "a tangent where an autopilot flies the same turn (loiter)")
+      ->type_name("FORM")
+      ->check(CLI::IsMember({"points", "loiter"}));
   command->add_flag("--flight", arguments->flight, "export the flown track instead of the route");
   command->add_flag("--takeoff", arguments->options.takeoff,
                     "begin the mission with a take-off item");
@@ -143,6 +145,7 @@ void add_export(CLI::App& app, Action& action) {
   set_example(*command, "altiplan export result.json --to qgc-plan --takeoff --land -o ridge.plan");
   command->callback([&action, arguments] {
     arguments->options.format = formats().at(arguments->to);
+    arguments->options.loiters = arguments->arcs == "loiter";
     arguments->options.altitude = altitudes().at(arguments->altitude);
     if (const std::string problem = arguments->options.problem(); !problem.empty()) {
       throw CLI::ValidationError(problem);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/export.hpp"
 
-#include "altiplan/error.hpp"
+#include <algorithm>
+
+#include "host/import_export/export_notes.hpp"
 #include "host/import_export/fence.hpp"
 #include "host/import_export/imported_route.hpp"
+#include "host/import_export/placing.hpp"
 #include "host/import_export/thinning.hpp"
+#include "host/import_export/written_route.hpp"
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
@@ -19,86 +23,11 @@ using Format = kit::MissionFile::Format;
 /// judge's tolerance.
 constexpr Decimals kDecimals[] = {{7, 3}, {9, 5}, {13, 8}};
 
-/// Height of home above sea level, if known.
-std::optional<double> home_altitude(const Mission& mission, const ExportOptions& options,
-                                    const Vec3& start) {
-  return options.home_altitude_m ? options.home_altitude_m
-                                 : mission.truth.ground(start.x(), start.y());
-}
-
-/// Throws Error if the options need something that the world does not have.
-void expect_possible(const Mission& mission, const ExportOptions& options, const Vec3& start) {
-  if (options.format && !mission.truth.frame().has_position()) {
-    throw Error(
-        "the scenario's world is not georeferenced: add a georeferenced layer, or "
-        "frame: {origin_lonlat: …}; csv needs neither");
-  }
-  if (options.altitude == AltitudeFrame::ground && !mission.truth.has_ground()) {
-    throw Error("--altitude ground needs a world with ground");
-  }
-  const std::optional<double> home = home_altitude(mission, options, start);
-  if (!home && (options.altitude == AltitudeFrame::home || options.takeoff || options.land)) {
-    throw Error(
-        "--altitude home, --takeoff and --land need the altitude of home, and the world has no "
-        "ground below the start: give --home-altitude M, in metres above sea level");
-  }
-  if (options.takeoff && *home >= start.z()) {
-    throw Error("--takeoff: the start, " + rounded_text(start.z(), 3) +
-                " m above sea level, is not above home, " + rounded_text(*home, 3) + " m");
-  }
-}
-
-double ground_at(const World& world, const Vec3& p) {
-  const std::optional<double> ground = world.ground(p.x(), p.y());
-  if (!ground) {
-    throw Error("the world has no ground below the route");
-  }
-  return *ground;
-}
-
-/// Converts local points to points of a file; without a georeference, only their heights.
-class Placing {
- public:
-  Placing(const Mission& mission, const ExportOptions& options, const Vec3& start)
-      : world_(mission.truth), frame_(options.altitude) {
-    const auto at = lonlat(start);
-    home_ = {at[0], at[1], home_altitude(mission, options, start).value_or(start.z()),
-             AltitudeFrame::sea};
-  }
-  const MissionPoint& home() const { return home_; }
-  MissionPoint operator()(const Vec3& p) const {
-    const double reference = frame_ == AltitudeFrame::sea      ? 0
-                             : frame_ == AltitudeFrame::ground ? ground_at(world_, p)
-                                                               : home_.altitude_m;
-    const auto at = lonlat(p);
-    return {at[0], at[1], p.z() - reference, frame_};
-  }
-  std::string in_words() const {
-    switch (frame_) {
-      case AltitudeFrame::sea:
-        return "altitudes above sea level";
-      case AltitudeFrame::ground:
-        return "altitudes above the ground below each point";
-      case AltitudeFrame::home:
-        break;
-    }
-    return "altitudes relative to home, which is " + rounded_text(home_.altitude_m, 3) +
-           " m above sea level";
-  }
-
- private:
-  std::array<double, 2> lonlat(const Vec3& p) const {
-    const Frame& frame = world_.frame();
-    return frame.has_position() ? frame.to_lonlat(p.x(), p.y()) : std::array<double, 2>{0, 0};
-  }
-
-  const World& world_;
-  AltitudeFrame frame_;
-  MissionPoint home_;
-};
+/// Of points that stand for turns: finer where an obstacle or the ground is too near beside them.
+constexpr double kTolerances[] = {kArcTolerance, kArcTolerance / 5, kArcTolerance / 25};
 
 /// The end point of the landing below the last point.
-Vec3 landing(const Mission& mission, const Polyline& route, const Placing& place) {
+Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
   Vec3 down = route.back();
   down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
   return down;
@@ -106,7 +35,7 @@ Vec3 landing(const Mission& mission, const Polyline& route, const Placing& place
 
 /// The problem of the vertical climb and descent, which are not part of the route: a layer that
 /// they come too near to, except the ground, where they begin and end; "" if none.
-std::string column_problem(const Mission& mission, const Polyline& route, const Placing& place,
+std::string column_problem(const Mission& mission, const Route& route, const Placing& place,
                            const ExportOptions& options) {
   Vec3 home = route.front();
   home.z() = place.home().altitude_m;
@@ -126,32 +55,39 @@ std::string column_problem(const Mission& mission, const Polyline& route, const 
   return "";
 }
 
-kit::MissionFile mission_of(const Mission& mission, const ExportSource& source,
-                            const Placing& place, const ExportOptions& options) {
-  const Polyline& route = source.route;
+/// The mission without its items.
+kit::MissionFile frame_of(const ExportSource& source, const Placing& place, Format format) {
   kit::MissionFile file;
-  file.format = options.format.value();
+  file.format = format;
   file.name = source.name;
   file.home = place.home();
-  for (const Vec3& p : route) {
-    file.items.push_back({MissionItem::Kind::waypoint, place(p), 0, ""});
-  }
-  if (options.takeoff) {
-    file.items.front().kind = MissionItem::Kind::takeoff;
-  }
-  if (options.land) {
-    file.items.push_back({MissionItem::Kind::land, place(landing(mission, route, place)), 0, ""});
-  }
   return file;
 }
 
-std::string csv_text(const ExportSource& source, const Placing& place, bool placed,
-                     const Decimals& decimals) {
+std::vector<MissionItem> items_of(const std::vector<MissionPlace>& places, const Mission& mission,
+                                  const Placing& place, const ExportOptions& options) {
+  std::vector<MissionItem> items;
+  for (const auto& [at, circle] : places) {
+    const auto kind = circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
+    items.push_back({kind, place(at), 0, "", circle});
+  }
+  if (options.takeoff) {
+    items.front().kind = MissionItem::Kind::takeoff;
+  }
+  if (options.land) {
+    const Vec3 down = landing(mission, {places.back().at}, place);
+    items.push_back({MissionItem::Kind::land, place(down), 0, ""});
+  }
+  return items;
+}
+
+std::string csv_text(const ExportSource& source, const std::vector<MissionPlace>& places,
+                     const Placing& place, bool placed, const Decimals& decimals) {
   const bool timed = !source.times.empty();
   std::string out = std::string(timed ? "time_s," : "") + "x_m,y_m,z_m" +
                     (placed ? ",longitude_deg,latitude_deg" : "") + ",altitude_m,altitude_frame\n";
-  for (std::size_t n = 0; n < source.route.size(); ++n) {
-    const Vec3& p = source.route[n];
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Vec3& p = places[n].at;
     const MissionPoint at = place(p);
     if (timed) {
       out += rounded_text(source.times[n], 3) + ",";
@@ -168,11 +104,26 @@ std::string csv_text(const ExportSource& source, const Placing& place, bool plac
   return out;
 }
 
+/// The request without what a turn satisfies and the legs between its points do not: those have
+/// corners, and are a little longer.
+Request beside_turns(Request request) {
+  Limits& limits = request.limits;
+  limits.min_turn_radius = limits.min_leg = 0;
+  limits.max_turn_horizontal = limits.max_turn_space = kPi;
+  limits.max_climb = kPi / 2;
+  limits.max_sink.reset();
+  limits.max_route_length = kInfinity;
+  request.start.velocity = Vec3::Zero();
+  request.goal.heading.reset();
+  return request;
+}
+
 /// The first violation of the route as written and read back; "" if it is valid.
-std::string problem_of(const Mission& mission, const ExportSource& source, const Polyline& route) {
+std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
+                       const Request& request) {
   CheckResult check;
   if (source.times.empty()) {
-    check = judge(route, mission.request, mission.via);
+    check = judge(route, request, mission.via);
   } else {
     Track track;
     for (std::size_t n = 0; n < route.size(); ++n) {
@@ -191,31 +142,40 @@ std::string problem_of(const Mission& mission, const ExportSource& source, const
   return "point " + std::to_string(first.at) + ", " + first.constraint + ": " + first.message;
 }
 
-/// Drops points, and their times, to fit max_items, and reports it. False if the route cannot be
+WrittenRoute places_of(const Mission& mission, const Route& route, const ExportOptions& options,
+                       double tolerance = kArcTolerance) {
+  return written_route(route, {options.loiters, tolerance}, mission.via, mission.request.limits);
+}
+
+std::size_t item_count(const WrittenRoute& written, const ExportOptions& options) {
+  return written.places.size() + (options.land ? 1 : 0);
+}
+
+/// Drops waypoints, and their times, to fit max_items, and reports it. False if the route cannot be
 /// thinned that far.
 bool thin(const Mission& mission, ExportSource& source, const ExportOptions& options,
           std::vector<std::string>& messages) {
-  const std::size_t extra = options.land ? 1 : 0;
-  if (!options.max_items || source.route.size() + extra <= *options.max_items) {
+  const std::size_t items = item_count(places_of(mission, source.route, options), options);
+  if (!options.max_items || items <= *options.max_items) {
     return true;
   }
   const bool flown = !source.times.empty();
-  const std::size_t most = *options.max_items > extra ? *options.max_items - extra : 0;
+  const std::size_t count = source.route.size();
+  const std::size_t most = count - std::min(count, items - *options.max_items);
   const std::vector<std::size_t> kept =
       thinned(source.route, most, flown ? mission.track_request : mission.request,
               flown ? std::vector<Goal>() : mission.via);
-  if (kept.size() > most) {
-    messages.push_back("not written: the route needs " + std::to_string(kept.size() + extra) +
+  ExportSource less{source.name, part_of(source.route, kept), {}, source.events};
+  const std::size_t left = item_count(places_of(mission, less.route, options), options);
+  if (left > *options.max_items) {
+    messages.push_back("not written: the route needs " + std::to_string(left) +
                        " items to stay valid, more than --max-items " +
                        std::to_string(*options.max_items));
     return false;
   }
-  messages.push_back(std::to_string(source.route.size() - kept.size()) + " of " +
-                     std::to_string(source.route.size()) +
+  messages.push_back(std::to_string(count - kept.size()) + " of " + std::to_string(count) +
                      " points dropped: the route stays valid without them");
-  ExportSource less{source.name, {}, {}, source.events};
   for (const std::size_t n : kept) {
-    less.route.push_back(source.route[n]);
     if (flown) {
       less.times.push_back(source.times[n]);
     }
@@ -225,11 +185,11 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
 }
 
 /// Adds the zones; reports it if the format cannot hold them.
-void add_zones(const Mission& mission, const Polyline& route, kit::MissionFile& file,
+void add_zones(const Mission& mission, const Route& route, kit::MissionFile& file,
                std::vector<std::string>& messages) {
   const World& world = mission.known;
   const bool flat = file.format == Format::qgc_plan;
-  Fence fence = flat ? flat_fence_of(world, route) : zones_of(world);
+  Fence fence = flat ? flat_fence_of(world, route.chords(kChordTolerance)) : zones_of(world);
   messages.insert(messages.end(), fence.notes.begin(), fence.notes.end());
   if (fence.zones.empty()) {
     return;
@@ -270,7 +230,14 @@ std::string ExportOptions::problem() const {
   if (format == Format::kml && altitude == AltitudeFrame::home) {
     return "kml only has heights above sea level or ground: give --altitude sea or ground";
   }
-  if ((takeoff || land) && format != Format::qgc_plan && format != Format::waypoints) {
+  const bool has_commands = format == Format::qgc_plan || format == Format::waypoints;
+  if (loiters && !has_commands) {
+    return "--arcs loiter needs qgc-plan or waypoints: other formats have no commands";
+  }
+  if (loiters && altitude == AltitudeFrame::ground) {
+    return "--arcs loiter needs --altitude sea or home: the ground below a circle has many heights";
+  }
+  if ((takeoff || land) && !has_commands) {
     return "--takeoff and --land need qgc-plan or waypoints: other formats have no commands";
   }
   return "";
@@ -278,35 +245,87 @@ std::string ExportOptions::problem() const {
 
 namespace {
 
-/// Writes the route with as few decimals as keep it valid when read back; returns the text and its
-/// messages.
+/// The route as text, in the ways that may be tried.
+struct Attempt {
+  const Mission& mission;
+  const ExportSource& source;
+  const Placing& place;
+  const ExportOptions& options;
+  MissionText text;  ///< without items
+  WrittenRoute written;
+  std::string problem;  ///< of the last one; "" before the first
+
+  /// Writes with as few decimals as make the route, read back, satisfy the request.
+  std::optional<std::string> with_decimals(const Request& request, Decimals& decimals) {
+    for (const Decimals& each : kDecimals) {
+      decimals = text.decimals = each;
+      const std::string now = as_text();
+      const ImportedRoute read =
+          read_imported_route(file_name(options.format), now, mission.truth, mission.request);
+      const std::string problem_now = problem_of(mission, source, read.route, request);
+      if (problem_now.empty()) {
+        return now;
+      }
+      problem = problem_now;
+    }
+    return std::nullopt;
+  }
+
+  std::string as_text() {
+    if (!options.format) {
+      const bool placed = mission.truth.frame().has_position();
+      return csv_text(source, written.places, place, placed, text.decimals);
+    }
+    text.mission.items = items_of(written.places, mission, place, options);
+    return mission_text(text);
+  }
+
+  Exported exported(std::string now, const Decimals& decimals) const {
+    const std::size_t points = written.places.size() - written.loiters;
+    Exported result;
+    result.messages.push_back(
+        std::to_string(points) + " points" +
+        (written.loiters > 0 ? " and " + counted(written.loiters, "loiter") : "") +
+        (options.land ? " and a landing" : "") + ", " + place.in_words() +
+        "; read back and judged: valid with " + std::to_string(decimals.degrees) +
+        " decimals of a degree and " + std::to_string(decimals.metres) + " of a metre" +
+        (problem.empty() ? "" : " (with fewer: " + problem + ")"));
+    result.text = std::move(now);
+    return result;
+  }
+};
+
+/// Writes the route so that it is valid when read back; returns the text and its messages.
 Exported written_soundly(const Mission& mission, const ExportSource& source, const Placing& place,
                          const ExportOptions& options, MissionText text) {
-  Exported result;
-  std::string problem;
-  for (const Decimals& decimals : kDecimals) {
-    text.decimals = decimals;
-    const std::string written =
-        options.format ? mission_text(text)
-                       : csv_text(source, place, mission.truth.frame().has_position(), decimals);
-    const ImportedRoute read = read_imported_route(file_name(options.format), written,
-                                                   mission.truth, mission.request.start.position);
-    const std::string now = problem_of(mission, source, read.route.waypoints());
-    if (now.empty()) {
-      result.messages.push_back(std::to_string(source.route.size()) + " points" +
-                                (options.land ? " and a landing" : "") + ", " + place.in_words() +
-                                "; read back and judged: valid with " +
-                                std::to_string(decimals.degrees) + " decimals of a degree and " +
-                                std::to_string(decimals.metres) + " of a metre" +
-                                (problem.empty() ? "" : " (with fewer: " + problem + ")"));
-      result.text = written;
+  Attempt attempt{mission, source, place, options, std::move(text), {}, ""};
+  Decimals decimals;
+  for (const double tolerance : kTolerances) {
+    attempt.written = places_of(mission, source.route, options, tolerance);
+    const WrittenRoute& written = attempt.written;
+    if (options.max_items && item_count(written, options) > *options.max_items) {
+      break;
+    }
+    std::optional<std::string> now = attempt.with_decimals(mission.request, decimals);
+    const bool as_turns = !now && written.turns > 0;
+    if (as_turns) {
+      attempt.problem.clear();
+      now = attempt.with_decimals(beside_turns(mission.request), decimals);
+    }
+    if (now) {
+      Exported result = attempt.exported(std::move(*now), decimals);
+      for (std::string& note : notes_on(written, options, tolerance, as_turns)) {
+        result.messages.push_back(std::move(note));
+      }
       return result;
     }
-    problem = now;
+    if (written.turns == 0) {
+      break;
+    }
   }
-  result.messages.push_back(
-      "not written: rounded to the format's precision, the route is not valid: " + problem);
-  return result;
+  return {std::nullopt,
+          {"not written: rounded to the format's precision, the route is not valid: " +
+           attempt.problem}};
 }
 }  // namespace
 
@@ -316,7 +335,8 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   Exported result;
   ExportSource source = wanted;
   std::vector<std::string> notes;
-  if (const std::string problem = problem_of(mission, source, source.route); !problem.empty()) {
+  if (const std::string problem = problem_of(mission, source, source.route, mission.request);
+      !problem.empty()) {
     result.messages.push_back("not written: the route is not valid: " + problem);
     return result;
   }
@@ -337,8 +357,9 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   }
   MissionText text;
   text.speed_mps = mission.request.vehicle.speed_mps;
+  text.is_wing = mission.request.vehicle.wing.has_value();
   if (options.format) {
-    text.mission = mission_of(mission, source, place, options);
+    text.mission = frame_of(source, place, *options.format);
     add_zones(mission, source.route, text.mission, notes);
   }
   result = written_soundly(mission, source, place, options, std::move(text));

@@ -17,6 +17,8 @@ struct ExportOptions {
   kit::AltitudeFrame altitude = kit::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
+  /// Turns as circles where an autopilot flies them so; else all as points.
+  bool loiters = false;
   /// Altitude of home above sea level; default: the ground below the start.
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
@@ -28,7 +30,7 @@ struct ExportOptions {
 /// The source of an export: a route, or a flight with its times.
 struct ExportSource {
   std::string name;
-  Polyline route;
+  Route route;
   std::vector<double> times;        ///< of a flight, one per point
   std::vector<FlightEvent> events;  ///< of the flight
 };
@@ -38,8 +40,9 @@ struct Exported {
   std::vector<std::string> messages;  ///< the verdict first
 };
 
-/// Writes the route, reads it back and judges the result; uses more decimals if fewer are not
-/// enough. Throws Error if the format or the world cannot express what is asked for.
+/// Writes the route, reads it back and judges the result; uses more decimals, and more points of
+/// turns, if fewer are not enough. Throws Error if the format or the world cannot express what is
+/// asked for.
 Exported export_route(const Mission& mission, const ExportSource& source,
                       const ExportOptions& options);
 }  // namespace altiplan::host

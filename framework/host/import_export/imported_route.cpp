@@ -8,6 +8,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/config/mission_key.hpp"
+#include "host/import_export/joined_route.hpp"
 #include "host/import_export/route_csv.hpp"
 #include "host/result/stored_result.hpp"
 
@@ -26,12 +27,28 @@ const char* reference_of(AltitudeFrame frame) {
                                           : "relative to home";
 }
 
-void undo_rounding(Route& route, const Vec3& start) {
-  if ((route.front() - start).norm() <= kRoundingReach) {
-    Polyline points = route.waypoints();
-    points.front() = start;
-    route = std::move(points);
+void undo_rounding(Vec3& first, const Vec3& start) {
+  if ((first - start).norm() <= kRoundingReach) {
+    first = start;
   }
+}
+
+/// The route past the items; reports those whose circle cannot be flown tangentially.
+Route join(const std::vector<MissionPlace>& places, const Request& request,
+           std::vector<std::string>& notes) {
+  std::optional<double> heading;
+  if (has_heading(request.start.velocity)) {
+    heading = std::atan2(request.start.velocity.y(), request.start.velocity.x());
+  }
+  JoinedRoute joined = joined_route(places, heading, request.limits);
+  if (joined.circles > 0) {
+    notes.push_back(std::to_string(joined.circles) + " loiters read as circles");
+  }
+  if (joined.unjoined > 0) {
+    notes.push_back(std::to_string(joined.unjoined) +
+                    " loiters read as positions: no tangent leads to their circle or from it");
+  }
+  return std::move(joined.route);
 }
 
 void note_frames(const std::vector<MissionItem>& items, std::vector<std::string>& notes) {
@@ -72,10 +89,11 @@ Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home
   return {x, y, home->altitude_m + point.altitude_m};
 }
 
-ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
+ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Request& request,
                        const std::string& file) {
   ImportedRoute result;
   result.notes = mission.notes;
+  std::vector<MissionPlace> places;
   try {
     const std::vector<MissionItem> items = route_items(mission);
     if (items.size() < mission.items.size()) {
@@ -84,7 +102,7 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
     }
     for (const MissionItem& item : items) {
       try {
-        result.route.push_back(to_local(item.at, mission.home, world));
+        places.push_back({to_local(item.at, mission.home, world), item.circle});
       } catch (const Error& error) {
         throw Error(item.place + ": " + error.what());
       }
@@ -93,32 +111,34 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
-  undo_rounding(result.route, start);
+  if (!places.front().circle) {
+    undo_rounding(places.front().at, request.start.position);
+  }
+  result.route = join(places, request, result.notes);
   return result;
 }
 
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                  const World& world, const Vec3& start) {
+                                  const World& world, const Request& request) {
   if (!is_csv(file)) {
-    return route_in(kit::read_mission(file, text), world, start, file);
+    return route_in(kit::read_mission(file, text), world, request, file);
   }
-  ImportedRoute result;
-  result.route = read_route_csv(file, text);
-  expect_reachable(result.route.waypoints(), file);
-  undo_rounding(result.route, start);
-  return result;
+  Polyline points = read_route_csv(file, text);
+  expect_reachable(points, file);
+  undo_rounding(points.front(), request.start.position);
+  return {std::move(points), {}};
 }
 
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission) {
-  const Vec3& start = mission.request.start.position;
+  const Request& request = mission.request;
   const World& world = mission.truth;
   if (is_csv(file)) {
-    return read_imported_route(file, kit::read_file(file), world, start);
+    return read_imported_route(file, kit::read_file(file), world, request);
   }
   const std::filesystem::path ending = std::filesystem::path(file).extension();
   if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||
       ending == ".mission") {
-    return route_in(kit::read_mission(file), world, start, file);
+    return route_in(kit::read_mission(file), world, request, file);
   }
   const std::string expected =
       "a route as a list of [x, y, z] in metres, or a mission whose name ends in .plan, "

@@ -26,8 +26,9 @@ inline constexpr double kRoundingReach = 0.02;
 Vec3 to_local(const kit::MissionPoint& point, const std::optional<kit::MissionPoint>& home,
               const World& world);
 
-/// A mission's route in the world; messages begin with `file`.
-ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Vec3& start,
+/// A mission's route in the world, as joined_route describes it; messages begin with `file`. The
+/// request gives the start and the limits on climb and descent.
+ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Request& request,
                        const std::string& file);
 
 /// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), CSV, or a
@@ -35,5 +36,5 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission);
 /// The same from a text in memory, not JSON.
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                  const World& world, const Vec3& start);
+                                  const World& world, const Request& request);
 }  // namespace altiplan::host

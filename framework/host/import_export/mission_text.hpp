@@ -17,6 +17,7 @@ struct Decimals {
 struct MissionText {
   kit::MissionFile mission;  ///< its format is the one to write; all items have one altitude frame
   double speed_mps = 15;
+  bool is_wing = false;  ///< the vehicle: an aeroplane, else a multirotor
   Decimals decimals;
 };
 

@@ -18,14 +18,23 @@ double off_line(const Vec3& a, const Vec3& p, const Vec3& b) {
   return (p - a - share * along).norm();
 }
 
+Leg leg_between(const Route& route, std::size_t a, std::size_t b) {
+  return b == a + 1 ? route.leg(a) : Leg::straight(route[a], route[b]);
+}
+
 /// The remaining points of the route, and which of them cannot currently be dropped.
 class Thinning {
  public:
-  Thinning(const Polyline& route, const Request& request, const std::vector<Goal>& via)
+  Thinning(const Route& route, const Request& request, const std::vector<Goal>& via)
       : route_(route), request_(request), left_(route.size()), stuck_(route.size(), false) {
     std::iota(left_.begin(), left_.end(), std::size_t{0});
     for (const std::size_t n : via_indices(route, via)) {
       fixed_.push_back(n);
+    }
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      if (route.leg(i).turns()) {
+        fixed_.insert(fixed_.end(), {i, i + 1});
+      }
     }
   }
 
@@ -50,6 +59,7 @@ class Thinning {
 
  private:
   const Vec3& at(std::size_t k) const { return route_[left_[k]]; }
+  Leg leg(std::size_t a, std::size_t b) const { return leg_between(route_, left_[a], left_[b]); }
 
   /// Index in left_ of the point to try next; 0 if none.
   std::size_t nearest_to_line() const {
@@ -73,23 +83,23 @@ class Thinning {
   bool can_go(std::size_t k) const {
     std::optional<Approach> before = request_.before_start();
     for (std::size_t i = 0; i + 1 < k; ++i) {
-      before = onward(before, at(i));
+      before = onward(before, leg(i, i + 1));
     }
     std::size_t from = k - 1;
     for (std::size_t to = k + 1; to < left_.size(); ++to) {
-      if (!leg_ok(before, at(from), at(to), request_)) {
+      if (!leg_ok(before, leg(from, to), request_)) {
         return false;
       }
       if (from > k && has_heading(at(to) - at(from))) {
         break;
       }
-      before = onward(before, at(from));
+      before = onward(before, leg(from, to));
       from = to;
     }
     return true;
   }
 
-  const Polyline& route_;
+  const Route& route_;
   const Request& request_;
   std::vector<std::size_t> left_;
   std::vector<bool> stuck_;
@@ -97,8 +107,16 @@ class Thinning {
 };
 }  // namespace
 
-std::vector<std::size_t> thinned(const Polyline& route, std::size_t most, const Request& request,
+std::vector<std::size_t> thinned(const Route& route, std::size_t most, const Request& request,
                                  const std::vector<Goal>& via) {
   return Thinning(route, request, via).down_to(most);
+}
+
+Route part_of(const Route& route, const std::vector<std::size_t>& kept) {
+  Route part{route[kept.front()]};
+  for (std::size_t k = 1; k < kept.size(); ++k) {
+    part.push_back(leg_between(route, kept[k - 1], kept[k]));
+  }
+  return part;
 }
 }  // namespace altiplan::host

@@ -70,10 +70,10 @@ class ClearanceProfile {
   Json to_ = Json::object();
 };
 
-/// The profile of a route, sampled at its waypoints, evenly between them, and at its minimum
-/// clearance from each kind of layer and minimum height above ground; `samples` points unless it
-/// has more waypoints.
-Json route_profile(const Polyline& route, const Request& request, std::size_t samples);
+/// The profile of a route along its length, sampled at its waypoints, evenly between them, and at
+/// its minimum clearance from each kind of layer and minimum height above ground; `samples` points
+/// unless it has more waypoints.
+Json route_profile(const Route& route, const Request& request, std::size_t samples);
 
 /// The stored flight, judged now, its track thinned to what is visible, its profile to `samples`
 /// points.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/nearest_place.hpp"
 #include "altiplan/route.hpp"
 #include "host/view/scene_parts.hpp"
@@ -16,70 +17,108 @@ struct Sample {
   std::optional<double> turn_deg;
 };
 
-/// The positions of the route's minimum clearances and height, as leg and fraction of it.
-std::vector<std::pair<std::size_t, double>> nearest_places(const Polyline& route,
-                                                           const World& world) {
+/// A leg and a fraction of its time.
+using LegPlace = std::pair<std::size_t, double>;
+
+/// The route as chords, with the begin of each as a place on it.
+struct Chords {
+  Polyline points;
+  std::vector<LegPlace> places;  ///< one per point
+
+  explicit Chords(const Route& route) : points{route.front()}, places{{0, 0}} {
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      const Polyline part = route.leg(i).chords(kChordTolerance);
+      places.back() = {i, 0};
+      for (std::size_t k = 1; k < part.size(); ++k) {
+        points.push_back(part[k]);
+        places.emplace_back(i, double(k) / double(part.size() - 1));
+      }
+    }
+  }
+  /// The place at a fraction of a chord.
+  LegPlace at(std::size_t chord, double share) const {
+    const auto [leg, from] = places[chord];
+    const double to = places[chord + 1].first == leg ? places[chord + 1].second : 1;
+    return {leg, from + share * (to - from)};
+  }
+};
+
+/// The places of the route's minimum clearances and height.
+std::vector<LegPlace> nearest_places(const Route& route, const World& world) {
   struct Nearest {
     NearestLeg leg;
     const Environment* layer;
   };
+  const Chords chords(route);
+  const Polyline& points = chords.points;
   std::map<std::string, Nearest> nearest;  // by kind
   for (const Layer& layer : world.layers()) {
     const auto before = nearest.find(layer.plugin);
     const double enough = before == nearest.end() ? kInfinity : before->second.leg.distance;
-    if (const auto leg = nearest_leg(*layer.environment, route, enough)) {
+    if (const auto leg = nearest_leg(*layer.environment, points, enough)) {
       nearest.insert_or_assign(layer.plugin, Nearest{*leg, layer.environment.get()});
     }
   }
-  std::vector<std::pair<std::size_t, double>> places;
+  std::vector<LegPlace> places;
   for (const auto& [kind, its] : nearest) {
     const std::size_t i = its.leg.leg;
-    places.emplace_back(i, nearest_share(*its.layer, route[i], route[i + 1], its.leg.distance));
+    places.push_back(
+        chords.at(i, nearest_share(*its.layer, points[i], points[i + 1], its.leg.distance)));
   }
-  if (const auto lowest = lowest_leg(world, route)) {
+  if (const auto lowest = lowest_leg(world, points)) {
     const std::size_t i = lowest->leg;
-    places.emplace_back(i, lowest_share(world, route[i], route[i + 1], lowest->distance));
+    places.push_back(chords.at(i, lowest_share(world, points[i], points[i + 1], lowest->distance)));
   }
   std::sort(places.begin(), places.end());
   return places;
 }
 
-/// The waypoints, those positions, and evenly spaced others up to the sample limit.
-std::vector<Sample> samples_of(const Polyline& route,
-                               const std::vector<std::pair<std::size_t, double>>& places,
+/// The turn angle at each waypoint between two legs; of legs that join tangentially 0.
+std::vector<std::optional<double>> turns_of(const Route& route, bool turns_on_the_spot) {
+  std::vector<std::optional<double>> turns(route.size());
+  std::optional<Approach> before;
+  for (std::size_t i = 1; i + 1 < route.size(); ++i) {
+    before = onward(before, route.leg(i - 1));
+    const Vec3 next = route[i] + route.leg(i).rate(0);
+    turns[i] = degrees(horizontal_turn(*before, route[i], next, turns_on_the_spot));
+  }
+  return turns;
+}
+
+/// The waypoints, those places, and evenly spaced others up to the sample limit.
+std::vector<Sample> samples_of(const Route& route, const std::vector<LegPlace>& places,
                                std::size_t most, bool turns_on_the_spot) {
   const double total = length(route);
   const std::size_t spare = most - std::min(most, route.size() + places.size());
   const double step = spare > 0 ? total / double(spare) : kInfinity;
+  const auto turns = turns_of(route, turns_on_the_spot);
   std::vector<Sample> samples;
   auto place = places.begin();
-  std::optional<Approach> before;
   double s = 0;
   for (std::size_t i = 0; i < route.size(); ++i) {
-    std::optional<double> turn;
-    if (i > 0 && i + 1 < route.size()) {
-      before = onward(before, route[i - 1]);
-      turn = degrees(horizontal_turn(*before, route[i], route[i + 1], turns_on_the_spot));
+    samples.push_back({s, route[i], turns[i]});
+    if (i + 1 == route.size()) {
+      break;
     }
-    samples.push_back({s, route[i], turn});
-    if (i + 1 < route.size()) {
-      const Vec3 leg = route[i + 1] - route[i];
-      const int parts = std::isfinite(step) ? 1 + int(leg.norm() / step) : 1;
-      std::vector<double> shares;
-      for (int part = 1; part < parts; ++part) {
-        shares.push_back(double(part) / parts);
-      }
-      for (; place != places.end() && place->first == i; ++place) {
-        if (place->second > 0 && place->second < 1) {
-          shares.push_back(place->second);
-        }
-      }
-      std::sort(shares.begin(), shares.end());
-      for (const double share : shares) {
-        samples.push_back({s + share * leg.norm(), route[i] + share * leg, std::nullopt});
-      }
-      s += leg.norm();
+    const Leg leg = route.leg(i);
+    const double run = leg.length();
+    const int parts = std::isfinite(step) ? 1 + int(run / step) : 1;
+    std::vector<double> shares;
+    for (int part = 1; part < parts; ++part) {
+      shares.push_back(double(part) / parts);
     }
+    for (; place != places.end() && place->first == i; ++place) {
+      if (place->second > 0 && place->second < 1) {
+        shares.push_back(place->second);
+      }
+    }
+    std::sort(shares.begin(), shares.end());
+    const bool is_even = leg.kind() != Leg::Kind::trochoid;
+    for (const double share : shares) {
+      const double from_here = is_even ? share * run : leg.piece(0, share).length();
+      samples.push_back({s + from_here, leg.at(share), std::nullopt});
+    }
+    s += run;
   }
   return samples;
 }
@@ -120,9 +159,9 @@ void ClearanceProfile::write(Json& profile) const {
   profile["to"] = to_;
 }
 
-Json route_profile(const Polyline& whole, const Request& request, std::size_t samples) {
+Json route_profile(const Route& whole, const Request& request, std::size_t samples) {
   const World& world = *request.world;
-  const Polyline route = without_repeats(whole);
+  const Route route = without_repeats(whole);
   Json profile;
   for (const char* key : {"s", "at", "altitude", "ground", "speed", "turn"}) {
     profile[key] = Json::array();

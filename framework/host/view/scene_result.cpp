@@ -34,12 +34,23 @@ Judged judged(const Route& route, const Mission& mission) {
   return {route, judge(route, mission.request, mission.via), measure(route, mission.request)};
 }
 
-/// The verdict with indices into the points that show the route's turns.
-Json check_of_points(const Judged& judged) {
-  std::vector<std::size_t> point_of{0};  // by waypoint
-  for (std::size_t i = 0; i < judged.route.leg_count(); ++i) {
-    point_of.push_back(point_of.back() + judged.route.leg(i).chords(kChordTolerance).size() - 1);
+/// Of each waypoint, its index in the points that show the route's turns.
+std::vector<std::size_t> points_of_waypoints(const Route& route) {
+  std::vector<std::size_t> point_of{0};
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    point_of.push_back(point_of.back() + route.leg(i).chords(kChordTolerance).size() - 1);
   }
+  return point_of;
+}
+
+/// The same, null where every point is a waypoint.
+Json waypoints_json(const Route& route) {
+  return route.is_straight() ? Json(nullptr) : Json(points_of_waypoints(route));
+}
+
+/// The verdict with indices into those points.
+Json check_of_points(const Judged& judged) {
+  const std::vector<std::size_t> point_of = points_of_waypoints(judged.route);
   Json check = to_json(judged.check);
   for (Json& violation : check.at("violations")) {
     violation["at"] =
@@ -64,7 +75,7 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
   copy_texts(json, step, {"id", "verb", "plugin", "status", "message"});
   json["instead_of"] = step.at("instead_of");
   json["accepted"] = step.at("accepted").get<bool>();
-  json["route"] = nullptr;
+  json["route"] = json["waypoints"] = nullptr;
   json["metrics"] = metrics_scene(step.at("metrics"));
   json["check"] = check_scene(step.at("check"), whose, notes);
   const Json& route = step.at("route");
@@ -74,6 +85,7 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
   Route places = route_of(step, stored.file);
   const Judged now = accepted && accepted->route == places ? *accepted : judged(places, mission);
   json["route"] = to_json(places);
+  json["waypoints"] = waypoints_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
   if (!json.at("check").is_null()) {  // else the run ended before a verdict
     json["check"] = check_scene(check_of_points(now), whose, notes);
@@ -160,10 +172,10 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
     json["steps"].push_back(step_scene(step, stored, accepted, mission, notes));
   }
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
+  json["waypoints"] = accepted ? waypoints_json(accepted->route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
   json["profile"] =
-      accepted ? route_profile(accepted->route.chords(kChordTolerance), mission.request, samples)
-               : Json(nullptr);
+      accepted ? route_profile(accepted->route, mission.request, samples) : Json(nullptr);
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
   conclude(json, stored, accepted, notes);
   json["trace"] = trace_scene(stored, notes);

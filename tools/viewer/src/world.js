@@ -40,12 +40,12 @@ export function lines_of(results) {
   results.forEach((result, index) => {
     if (result.route?.length) {
       lines.push({key: `${index}`, kind: 'route', result: index, step: null,
-        points: result.route});
+        points: result.route, waypoints: result.waypoints});
     }
     result.steps.forEach((step, at) => {
       if (step.route?.length) {
         lines.push({key: `${index}.${at}`, kind: 'attempt', result: index, step: step.id,
-          points: step.route});
+          points: step.route, waypoints: step.waypoints});
       }
     });
     const track = result.flight?.track;

@@ -14,6 +14,8 @@ namespace altiplan::kit {
 namespace {
 
 constexpr double kMaxAltitude = 100'000;
+constexpr double kMaxRadius = 100'000;  // of a circle
+constexpr double kMaxTurns = 1000;      // more than an autopilot stores
 
 std::string number_text(double value) {
   char text[32];
@@ -43,6 +45,25 @@ std::optional<MissionItem::Kind> kind_of(int command) {
     default:
       return std::nullopt;
   }
+}
+
+/// The circle of a loiter's parameters as MAVLink numbers them; radii are positive clockwise.
+std::optional<MissionCircle> circle_of(int command, const std::array<double, 4>& params) {
+  using Until = MissionCircle::Until;
+  const bool is_to_altitude = command == 31;
+  const double radius = is_to_altitude ? params[1] : params[2];
+  const bool is_left_by_tangent = params[3] == 1;  // "xtrack": from the location of the exit
+  const bool is_circle = command == 17 || (command == 18 && params[0] >= 0 && is_left_by_tangent) ||
+                         (is_to_altitude && is_left_by_tangent);
+  if (!is_circle || !(std::abs(radius) > 0 && std::abs(radius) <= kMaxRadius)) {
+    return std::nullopt;
+  }
+  MissionCircle circle;
+  circle.until = command == 17 ? Until::forever : is_to_altitude ? Until::altitude : Until::turns;
+  circle.radius_m = std::abs(radius);
+  circle.sense = radius > 0 ? -1 : 1;
+  circle.turns = command == 18 ? std::min(params[0], kMaxTurns) : 0;
+  return circle;
 }
 
 MissionFile read_json_mission(const std::string& file, const std::string& text) {
@@ -141,8 +162,9 @@ void CommandList::add(const Command& command) {
     skipped_numbers_.insert(command.number);
     return;
   }
-  mission_.items.push_back(
-      {*kind, place_of(command, *kind), std::max(0.0, command.acceptance_m), command.place});
+  const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
+  mission_.items.push_back({*kind, place_of(command, *kind), acceptance, command.place,
+                            circle_of(command.number, command.params)});
 }
 
 void CommandList::finish() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
@@ -39,7 +40,7 @@ class CommandList {
   struct Command {
     int number = 0;
     int frame = 0;
-    double acceptance_m = 0;
+    std::array<double, 4> params{};
     double lon = 0;  ///< both 0, or not finite: the vehicle's position at that time
     double lat = 0;
     double altitude_m = 0;

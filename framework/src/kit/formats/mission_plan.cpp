@@ -22,16 +22,17 @@ void read_simple_item(const Node& item, CommandList& commands) {
   if (places.size() != first + 3) {
     places.wrong("[latitude, longitude, altitude]");
   }
+  CommandList::Command command;
   for (std::size_t n = 0; n < expected; ++n) {
-    params.at(n).number_or_nan();
+    const double value = params.at(n).number_or_nan();
+    if (n < command.params.size()) {
+      command.params[n] = value;
+    }
   }
   item.at("autoContinue").boolean();
   item.at("doJumpId").whole(1'000'000);
-  CommandList::Command command;
   command.number = item.at("command").whole(65535);
   command.frame = item.at("frame").whole(21);
-  const double acceptance = command.number == 16 ? params.at(1).number_or_nan() : 0;
-  command.acceptance_m = acceptance > 0 ? acceptance : 0;
   command.lat = places.at(first).number_or_nan();
   command.lon = places.at(first + 1).number_or_nan();
   command.altitude_m = places.at(first + 2).number_or_nan();

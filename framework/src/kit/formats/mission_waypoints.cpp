@@ -187,8 +187,13 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
       expect_altitude(row.altitude());
       mission.home = {row.lon(), row.lat(), row.altitude(), AltitudeFrame::sea};
     } else {
-      const double acceptance = row.command() == 16 && row.fields[5] > 0 ? row.fields[5] : 0;
-      commands.add({row.command(), row.frame(), acceptance, row.lon(), row.lat(), row.altitude(),
+      const auto& of = row.fields;
+      commands.add({row.command(),
+                    row.frame(),
+                    {of[4], of[5], of[6], of[7]},
+                    row.lon(),
+                    row.lat(),
+                    row.altitude(),
                     "line " + std::to_string(line)});
     }
     ++number;

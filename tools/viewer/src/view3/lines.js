@@ -60,8 +60,9 @@ class Line {
       else this.casing = stroke(this.geometry, kWidth[line.kind] + 2.2, order, 0, false);
       this.object.add(this.stroke, ...(this.casing ? [this.casing] : []));
     }
-    if (line.kind !== 'track' && line.points.length <= kMaxDots) {
-      this.dots = dots(flat, 6, 4.5);
+    const waypoints = line.waypoints?.map((at) => line.points[at]) ?? line.points;
+    if (line.kind !== 'track' && waypoints.length <= kMaxDots) {
+      this.dots = dots(frame.flat(waypoints), 6, 4.5);
       this.object.add(this.dots);
     }
     if (line.kind === 'route') {

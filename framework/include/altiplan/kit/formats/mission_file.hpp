@@ -21,12 +21,26 @@ struct MissionPoint {
   AltitudeFrame frame = AltitudeFrame::sea;
 };
 
+/// The circle of a loiter around its item's position. It is left along the tangent to the next item
+/// that is reached first after a condition.
+struct MissionCircle {
+  enum class Until { turns, altitude, forever };
+  Until until = Until::altitude;
+  double radius_m = 0;  ///< positive
+  int sense = 1;        ///< 1: counter-clockwise, -1: clockwise
+  double turns = 0;     ///< full circles, of Until::turns
+
+  bool operator==(const MissionCircle&) const = default;
+};
+
 struct MissionItem {
   enum class Kind { takeoff, waypoint, loiter, land };
   Kind kind = Kind::waypoint;
   MissionPoint at;
   double acceptance_m = 0;  ///< acceptance radius; 0 where the file gives none
   std::string place;        ///< position in the file, for messages: "mission.items.3", "line 5"
+  /// Of a loiter whose radius the file gives, and which is left along a tangent or never.
+  std::optional<MissionCircle> circle{};
 };
 
 /// An area that must not be left (`keep_in`) or entered: a polygon, or a circle where the outline

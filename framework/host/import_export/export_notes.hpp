@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/import_export/export.hpp"
+#include "host/import_export/written_route.hpp"
+
+namespace altiplan::host {
+
+/// "1 turn", "2 turns".
+std::string counted(std::size_t count, const std::string& what);
+
+/// How the turns were written and judged, and how autopilots fly them where that differs.
+/// `beside_turns`: the points do not satisfy what the turns do.
+std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,
+                                  double tolerance, bool beside_turns);
+}  // namespace altiplan::host

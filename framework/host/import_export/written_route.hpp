@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "altiplan/request.hpp"
+#include "host/import_export/joined_route.hpp"
+
+namespace altiplan::host {
+
+/// A route as the places of a file.
+struct WrittenRoute {
+  std::vector<MissionPlace> places;
+  std::size_t loiters = 0;  ///< turns written as circles
+  std::size_t turns = 0;    ///< turns written as points
+  std::size_t points = 0;   ///< the number of those
+};
+
+/// Maximum distance between a turn and the legs between the points that stand for it, metres.
+inline constexpr double kArcTolerance = 0.5;
+
+/// How to write turns.
+struct ArcForm {
+  bool loiters = false;              ///< as circles, where joined_route reads back the same turn
+  double tolerance = kArcTolerance;  ///< of the points of all others
+};
+
+/// Points stand outside a turn, so that the legs between them touch it: they have its headings, and
+/// corners of its radius fit into them. Waypoints of a turn are left out where the legs on both
+/// sides pass through them, unless they are at a via point.
+WrittenRoute written_route(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
+                           const Limits& limits);
+}  // namespace altiplan::host
