@@ -117,6 +117,8 @@ TEST(TurnJudge, ALoiterCircleThatDoesNotFitIsNamed) {
   request.vehicle.speed_mps = 20;
   EXPECT_NE(goal_problem(request).find("below the limit of 125.00 m"), std::string::npos)
       << goal_problem(request);
+  request.wind.layers = {{0, {20, 0, 0}}};
+  EXPECT_NE(goal_problem(request).find("as fast as the aeroplane (20.00 m/s)"), std::string::npos);
   request.wind = {};
   request.world =
       std::make_shared<World>(testing::world_of({Cylinder{1000 + kRadius, 0, 10, 0, 500}}));

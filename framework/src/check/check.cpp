@@ -177,20 +177,25 @@ std::string point_problem(const Vec3& p, const Request& request) {
 
 namespace {
 std::string loiter_problem(const Vec3& centre, const Loiter& loiter, const Request& request) {
+  const double wind = request.wind.at(centre.z()).norm();
+  const std::string which = "circle of radius " + fixed(loiter.radius) + " m around " +
+                            place(centre) + " cannot be flown: ";
+  if (wind >= request.air_speed()) {
+    return which + "the wind of " + fixed(wind) + " m/s is as fast as the aeroplane (" +
+           fixed(request.air_speed()) + " m/s)";
+  }
   Request alone = request;
   alone.limits.min_leg = 0;
   alone.limits.max_leg = kInfinity;
   alone.constraints.clear();
   // The circle is flown over the ground: downwind at the greatest speed, which takes a bank angle
   // of tan = speed² / (g radius) where the limit's circle takes airspeed² / (g radius).
-  const double fastest = 1 + request.wind.at(centre.z()).norm() / request.air_speed();
+  const double fastest = 1 + wind / request.air_speed();
   alone.limits.min_turn_radius *= fastest * fastest;
   alone.wind = {};
   const std::vector<Violation> found =
       leg_violations(std::nullopt, loiter.circle(centre), alone, 0);
-  return found.empty() ? ""
-                       : "circle of radius " + fixed(loiter.radius) + " m around " + place(centre) +
-                             " cannot be flown: " + found.front().message;
+  return found.empty() ? "" : which + found.front().message;
 }
 }  // namespace
 
