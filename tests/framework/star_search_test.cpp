@@ -34,8 +34,8 @@ StarSettings settings(std::uint64_t iterations, bool bounded, bool informed) {
 }
 
 PlanResult search(const Request& request, const StarSettings& settings) {
-  StarSearch::Memory memory;
-  return StarSearch(request, settings, memory).run();
+  StarMemory memory;
+  return star_search(request, settings, memory);
 }
 
 TEST(StarSearch, TheLengthGoesToTheShortest) {

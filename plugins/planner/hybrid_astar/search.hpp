@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "altiplan/check.hpp"
+#include "altiplan/kit/dubins/steering.hpp"
 #include "altiplan/planner.hpp"
 #include "columns.hpp"
-#include "steering.hpp"
 
 namespace altiplan::hybrid_astar {
 
@@ -45,11 +45,8 @@ class Search {
   }
 
   PlanResult run() {
-    PlanResult result;
     if (steering_.is_too_windy()) {
-      result.status = PlanStatus::no_route;
-      result.message = "the wind is as fast as the aeroplane: no circle leads back to its start";
-      return counted(std::move(result));
+      return counted(kit::too_windy());
     }
     if (columns_.search(watch_)) {
       add_starts();
@@ -158,7 +155,7 @@ class Search {
   }
 
   void add(const Node& node) {
-    const double h = steering_.least_length(node.pose, columns_(node.pose.position));
+    const double h = steering_.least_length_to_goal(node.pose, columns_(node.pose.position));
     if (!(node.g + h < best_)) {
       return;
     }
@@ -178,19 +175,18 @@ class Search {
   void shoot(Index at, const Node& node) {
     shots_.clear();
     for (std::size_t k = 0; k < goals_.size(); ++k) {
-      double length = kInfinity;
-      if (steering_.path(node.pose, goals_[k], length) && node.g + length < best_ * (1 - kTie)) {
+      const double length = steering_.length(node.pose, goals_[k]);
+      if (node.g + length < best_ * (1 - kTie)) {
         shots_.emplace_back(length, k);
       }
     }
     std::sort(shots_.begin(), shots_.end());
     for (const auto& [promised, k] : shots_) {
-      double length = kInfinity;
-      const auto legs = steering_.path(node.pose, goals_[k], length);
-      if (is_free(at, *legs)) {
-        best_ = node.g + length;
+      const auto path = steering_.path(node.pose, goals_[k]);
+      if (path && is_free(at, path->legs)) {
+        best_ = node.g + path->length;
         best_node_ = at;
-        best_legs_ = *legs;
+        best_legs_ = path->legs;
         if (request_.trace != nullptr) {
           request_.trace->add({TraceEvent::Kind::added, std::int64_t(nodes_.size()), at,
                                best_legs_.empty() ? node.pose.position : best_legs_.back().to,
@@ -228,44 +224,7 @@ class Search {
     }
     std::reverse(legs.begin(), legs.end());
     legs.insert(legs.end(), last.begin(), last.end());
-    const Route whole = route_of(joined(legs), nodes_[at].pose.position);
-    return check(whole, request_).ok() ? whole : route_of(legs, nodes_[at].pose.position);
-  }
-
-  static Route route_of(const std::vector<Leg>& legs, const Vec3& alone) {
-    Route route{legs.empty() ? alone : legs.front().from};
-    for (const Leg& leg : legs) {
-      route.push_back(leg);
-    }
-    return route;
-  }
-
-  /// The same path with equal pieces in a row as one leg.
-  static std::vector<Leg> joined(const std::vector<Leg>& legs) {
-    std::vector<Leg> all;
-    for (const Leg& leg : legs) {
-      if (!all.empty() && are_one(all.back(), leg)) {
-        Leg& last = all.back();
-        last.turn += leg.turn;
-        last.drift += leg.drift;
-        last.to = leg.to;
-      } else {
-        all.push_back(leg);
-      }
-    }
-    return all;
-  }
-
-  static bool are_one(const Leg& a, const Leg& b) {
-    if (!a.turns() || !b.turns()) {
-      const bool straight = !a.turns() && !b.turns();
-      return straight && turn_angle_in_space(a.to - a.from, b.to - b.from) <= kAngleTolerance / 10;
-    }
-    const double slope_a = (a.to.z() - a.from.z()) / a.air_length();
-    const double slope_b = (b.to.z() - b.from.z()) / b.air_length();
-    return a.turn * b.turn > 0 && std::abs(a.radius - b.radius) <= 1e-9 * a.radius &&
-           std::abs(slope_a - slope_b) <= 1e-9 &&
-           (a.drift / a.air_length() - b.drift / b.air_length()).norm() <= 1e-9;
+    return kit::route_of(legs, nodes_[at].pose.position, request_);
   }
 
   std::uint64_t key(const Pose& pose) const {
@@ -328,7 +287,7 @@ class Search {
 
   const Request& request_;
   const Settings& settings_;
-  Steering steering_;
+  kit::Steering steering_;
   std::vector<Pose> starts_;
   std::vector<Pose> goals_;
   std::vector<std::pair<double, std::size_t>> shots_;  ///< lengths, of indices of goals_

@@ -30,12 +30,12 @@ class InformedRrtStar final : public Planner {
     const auto memory = memory_.take();
     kit::StarSettings settings = params_.settings(request);
     settings.bounded = settings.informed = true;
-    return kit::StarSearch(request, settings, *memory).run();
+    return kit::star_search(request, settings, *memory);
   }
-  Traits do_traits() const override { return kit::StarParams::traits(); }
+  Traits do_traits() const override { return params_.traits(); }
 
   kit::StarParams params_;
-  mutable kit::ScratchPool<kit::StarSearch::Memory> memory_;
+  mutable kit::ScratchPool<kit::StarMemory> memory_;
 };
 }  // namespace
 

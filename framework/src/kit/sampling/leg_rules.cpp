@@ -60,7 +60,19 @@ bool LegRules::ok(const std::optional<Approach>& before, const Vec3& a, const Ve
   if (leg_kept(before, a, b)) {
     return true;
   }
-  refused_[refused_count_++ % kRemembered] = {before, a, b};
+  refused_[refused_count_++ % kRemembered] = {before, Leg::straight(a, b)};
+  return false;
+}
+
+bool LegRules::ok(const std::optional<Approach>& before, const Leg& leg) {
+  if (!leg.turns()) {
+    return ok(before, leg.from, leg.to);
+  }
+  ++checked_;
+  if (leg_ok(before, leg, request_)) {
+    return true;
+  }
+  refused_[refused_count_++ % kRemembered] = {before, leg};
   return false;
 }
 
@@ -91,7 +103,7 @@ bool LegRules::follows(const Approach& before, const Vec3& a, const Vec3& b) {
                   })) {
     return true;
   }
-  refused_[refused_count_++ % kRemembered] = {before, a, b};
+  refused_[refused_count_++ % kRemembered] = {before, Leg::straight(a, b)};
   return false;
 }
 
@@ -232,7 +244,7 @@ LegRules::Answer LegRules::walk(const CellLeg& leg) const {
 /// The constraint or the layer that refuses the leg, by few queries of the world.
 std::string LegRules::refused_by(const Refused& leg, const Request& open) const {
   const auto first = [&](const Request& request) {
-    const auto found = leg_violations(leg.before, leg.a, leg.b, request, 0);
+    const auto found = leg_violations(leg.before, leg.leg, request, 0);
     return found.empty() ? std::string() : found.front().constraint;
   };
   const std::string limit = first(open);
@@ -240,8 +252,13 @@ std::string LegRules::refused_by(const Refused& leg, const Request& open) const 
     return limit;
   }
   const double needed = std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
-  const Layer* layer = request_.world->blocked_by(leg.a, leg.b, needed);
-  return layer != nullptr ? "'" + layer->id + "'" : first(request_);
+  const Polyline chords = leg.leg.chords(kChordTolerance);
+  for (std::size_t i = 0; i + 1 < chords.size(); ++i) {
+    if (const Layer* layer = request_.world->blocked_by(chords[i], chords[i + 1], needed)) {
+      return "'" + layer->id + "'";
+    }
+  }
+  return first(request_);
 }
 
 std::string LegRules::refusals() const {

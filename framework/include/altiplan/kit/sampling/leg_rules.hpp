@@ -22,6 +22,7 @@ class ALTIPLAN_API LegRules {
 
   /// Same answer as leg_ok.
   bool ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  bool ok(const std::optional<Approach>& before, const Leg& leg);
   /// True if a constraint depends on the point before a leg.
   bool looks_back() const { return looks_back_; }
   /// True if the leg a–b, known to be free, satisfies the constraints that depend on the point
@@ -39,8 +40,7 @@ class ALTIPLAN_API LegRules {
   enum class Answer { free, blocked, unsure };
   struct Refused {
     std::optional<Approach> before;
-    Vec3 a;
-    Vec3 b;
+    Leg leg;
   };
   struct CellLeg;
   static constexpr std::size_t kRemembered = 64;

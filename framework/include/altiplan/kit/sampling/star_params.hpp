@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "altiplan/kit/dubins/steering_params.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/kit/sampling/star_search.hpp"
 #include "altiplan/params.hpp"
 
 namespace altiplan::kit {
 
 /// Common parameters of rrt_star and informed_rrt_star.
-struct StarParams {
+struct StarParams : SteeringParams {
   AutoNumber range_m;
   double goal_bias = 0.05;
   double radius_scale = 1.1;
@@ -17,7 +19,10 @@ struct StarParams {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("maximum length of the tree's legs; auto: a tenth of the volume's diagonal");
+        .doc(
+            "maximum length of the tree's edges; auto: a tenth of the volume's diagonal, with "
+            "turns "
+            "at least a circle");
     f("goal_bias", goal_bias)
         .range(0, 1)
         .was("goal_share")
@@ -28,18 +33,21 @@ struct StarParams {
     f("max_iterations", max_iterations)
         .at_least(1)
         .doc("number of samples; all are used if the budget allows");
+    SteeringParams::describe(f);
   }
 
   StarSettings settings(const Request& request) const {
     StarSettings settings;
-    settings.range = range_of(range_m.value, request);
+    settings.turn_radius = turn_radius(request);
+    settings.range = range(range_of(range_m.value, request), !range_m.value, settings.turn_radius);
     settings.goal_bias = goal_bias;
     settings.radius_scale = radius_scale;
     settings.max_iterations = std::uint64_t(max_iterations);
     return settings;
   }
-  static Traits traits() {
+  Traits traits() const {
     Traits traits;
+    traits.loiters = loiters();
     traits.anytime = true;
     return traits;
   }

@@ -3,97 +3,46 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "altiplan/kit/sampling/leg_rules.hpp"
 #include "altiplan/kit/sampling/leg_tree.hpp"
 #include "altiplan/kit/sampling/point_grid.hpp"
-#include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/plan_result.hpp"
+#include "altiplan/request.hpp"
 
 namespace altiplan::kit {
 
 struct StarSettings {
-  double range = 0;         ///< metres; maximum length of the tree's legs (eta)
+  double range = 0;         ///< metres; maximum length of the tree's edges (eta)
   double goal_bias = 0;     ///< fraction of samples that are the goal, until it is in the tree
   double radius_scale = 1;  ///< in units of the smallest radius that converges
   std::uint64_t max_iterations = 0;
-  bool bounded = false;   ///< once a route is known, restrict the tree to points on shorter ones
-  bool informed = false;  ///< and sample only there
+  bool bounded = false;    ///< once a route is known, restrict the tree to points on shorter ones
+  bool informed = false;   ///< and sample only there
+  double turn_radius = 0;  ///< metres; 0: nodes are points joined by straight legs, else poses
+                           ///< joined by Dubins paths
+};
+
+/// Memory that the next search reuses.
+struct StarMemory {
+  /// What a node has where nodes are poses.
+  struct Arrival {
+    double heading = 0;                ///< through the air
+    double metres = 0;                 ///< of the edge from its parent
+    std::optional<Approach> approach;  ///< to the node
+  };
+
+  LegTree legs;
+  PointGrid points;                ///< with the numbers of `legs`
+  std::vector<double> cost;        ///< metres from the start, one entry per node
+  std::vector<std::uint8_t> ends;  ///< 1 if a route may end at the node
+  std::vector<Arrival> arrivals;   ///< one entry per node, or empty
+  std::vector<std::uint32_t> near;
+  std::vector<LegTree::Node> moved;
 };
 
 /// RRT* and Informed RRT* (see planners rrt_star and informed_rrt_star): one search, which samples
-/// the whole volume or the informed set. Under turn limits, a parent is chosen or changed only if
-/// the turns into all of a node's children remain valid.
-class ALTIPLAN_API StarSearch {
- public:
-  /// Memory that the next search reuses.
-  struct Memory {
-    LegTree legs;
-    PointGrid points;                ///< with the numbers of `legs`
-    std::vector<double> cost;        ///< metres from the start, one entry per node
-    std::vector<std::uint8_t> ends;  ///< 1 if a node lies within the goal's tolerance
-    std::vector<std::uint32_t> near;
-    std::vector<LegTree::Node> moved;
-  };
-
-  StarSearch(const Request& request, const StarSettings& settings, Memory& memory);
-  PlanResult run();
-
- private:
-  using Node = LegTree::Node;
-  struct Candidate {
-    Node node;
-    double metres;  ///< of the leg from it
-    double cost;    ///< of the path through it
-  };
-
-  bool may_go_on();
-  Vec3 sample();
-  void grow(const Vec3& x_rand);
-  Node find_near(const Vec3& p);
-  Node nearest_of_near(const Vec3& p) const;
-  void list_candidates(const Vec3& x_new);
-  std::optional<Candidate> choose_parent(const Vec3& x_new);
-  void reach_goal(Node node);
-  void rewire(Node x_new, Node x_near);
-  double near_radius();
-
-  std::optional<Approach> behind(Node node) const;
-  bool turns_follow(const Approach& before, Node node);
-  Node add(const Vec3& p, const Candidate& parent);
-  void add_root();
-  void note_end(Node node);
-  void learn_length();
-  PlanResult result();
-  std::string reason() const;
-
-  const Request& request_;
-  const StarSettings& settings_;
-  Memory& memory_;
-  LegRules rules_;
-  BudgetWatch watch_;
-  RandomStream random_;
-  std::optional<Approach> before_start_;
-  Box box_;
-  InformedSet set_;
-  int axes_;
-  double straight_;  ///< lower bound of the route length
-  std::size_t max_nodes_;
-  std::vector<Candidate> candidates_;
-  bool goal_is_in_ = false;
-  bool budget_ended_ = false;
-  Node best_end_ = LegTree::kNone;
-  double best_ = kInfinity;
-  double known_ = kInfinity;  ///< the best of the previous iterations
-  double forgotten_at_ = kInfinity;
-  double nearest_ = kInfinity;  ///< of all nodes to the goal
-  double radius_ = 0;
-  std::size_t radius_for_ = 0;  ///< number of nodes for which the radius was computed
-  std::uint64_t expanded_ = 0;
-  std::int64_t first_at_ = 0;
-  std::int64_t improved_ = 0;
-  std::int64_t rewired_ = 0;
-};
+/// the whole volume or the informed set, and steers with straight legs or with Dubins paths.
+ALTIPLAN_API PlanResult star_search(const Request& request, const StarSettings& settings,
+                                    StarMemory& memory);
 }  // namespace altiplan::kit

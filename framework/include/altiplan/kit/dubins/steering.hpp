@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/dubins/wind.hpp"
+#include "altiplan/plan_result.hpp"
+#include "altiplan/request.hpp"
+
+namespace altiplan::kit {
+
+/// A path between two poses without regard to obstacles.
+struct PosePath {
+  std::vector<Leg> legs;
+  double length = 0;  ///< through the air, horizontal, metres: the time by the airspeed
+};
+
+/// The motion of an aeroplane in a request: its limits, the air, and what it flies between poses.
+class ALTIPLAN_API Steering {
+ public:
+  /// The request must outlive this object.
+  Steering(const Request& request, double radius);
+
+  const AirplaneLimits& limits() const { return limits_; }
+  /// True if the wind can hold the aeroplane in one place.
+  bool is_too_windy() const { return strongest_ >= speed_; }
+  bool is_calm() const { return strongest_ == 0; }
+  /// Upper bound of the distance over the ground, in units of the length through the air.
+  double ground_per_air() const { return (speed_ + strongest_) / speed_; }
+
+  /// A piece of a given length through the air: with a turn (radians, 0: straight) and a gradient.
+  Leg piece(const Pose& from, double length, double turn, double gradient) const;
+
+  /// The shortest path through the air to a pose; none if there is none.
+  std::optional<PosePath> path(const Pose& from, const Pose& to) const;
+  /// Its length, which takes less time; infinite if there is none.
+  double length(const Pose& from, const Pose& to) const;
+  /// A lower bound of that, which takes far less.
+  double least_length(const Pose& from, const Pose& to) const;
+  /// A lower bound on the length to the goal, of which the ground covered takes at least
+  /// `over_ground`.
+  double least_length_to_goal(const Pose& from, double over_ground) const;
+
+  /// The pose on a path from a pose after a length through the air, at most that of the path.
+  static Pose pose_at(const Pose& from, const PosePath& path, double length);
+
+ private:
+  /// Of the air between two heights.
+  Vec3 wind_between(const Pose& from, const Pose& to) const {
+    return wind_.at((from.position.z() + to.position.z()) / 2);
+  }
+
+  AirplaneLimits limits_;
+  double speed_;
+  double strongest_ = 0;  ///< wind, m/s
+  const Wind& wind_;
+  const Goal& goal_;
+};
+
+/// The route of legs, or of a point alone where there are none: equal pieces in a row become one
+/// leg where every constraint allows it.
+ALTIPLAN_API Route route_of(const std::vector<Leg>& legs, const Vec3& alone,
+                            const Request& request);
+
+/// The result of a search in a wind that is as fast as the aeroplane.
+ALTIPLAN_API PlanResult too_windy();
+/// The result of a request that no search with that turn radius (0: straight legs) can solve: from
+/// or to a loiter circle with straight legs, or in too much wind.
+ALTIPLAN_API std::optional<PlanResult> unsolvable(const Request& request, double turn_radius);
+}  // namespace altiplan::kit

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/dubins/steering.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "altiplan/check.hpp"
+
+namespace altiplan::kit {
+namespace {
+
+/// A vertical climb has no heading.
+constexpr double kSteepest = radians(75);
+
+/// Length through the air, in units of the airspeed the time, of a straight displacement in a wind
+/// that is given in the same units and is slower than 1.
+double straight_through_air(const Vec3& displacement, const Vec3& wind) {
+  const double squared = displacement.head<2>().squaredNorm();
+  const double along = displacement.head<2>().dot(wind.head<2>());
+  const double a = 1 - wind.head<2>().squaredNorm();
+  return (std::sqrt(along * along + a * squared) - along) / a;
+}
+
+bool are_one(const Leg& a, const Leg& b) {
+  if (!a.turns() || !b.turns()) {
+    const bool straight = !a.turns() && !b.turns();
+    return straight && turn_angle_in_space(a.to - a.from, b.to - b.from) <= kAngleTolerance / 10;
+  }
+  const double slope_a = (a.to.z() - a.from.z()) / a.air_length();
+  const double slope_b = (b.to.z() - b.from.z()) / b.air_length();
+  return a.turn * b.turn > 0 && std::abs(a.radius - b.radius) <= 1e-9 * a.radius &&
+         std::abs(slope_a - slope_b) <= 1e-9 &&
+         (a.drift / a.air_length() - b.drift / b.air_length()).norm() <= 1e-9;
+}
+
+/// The same path with equal pieces in a row as one leg.
+std::vector<Leg> joined(const std::vector<Leg>& legs) {
+  std::vector<Leg> all;
+  for (const Leg& leg : legs) {
+    if (!all.empty() && are_one(all.back(), leg)) {
+      Leg& last = all.back();
+      last.turn += leg.turn;
+      last.drift += leg.drift;
+      last.to = leg.to;
+    } else {
+      all.push_back(leg);
+    }
+  }
+  return all;
+}
+
+Route chained(const std::vector<Leg>& legs, const Vec3& start) {
+  Route route{start};
+  for (const Leg& leg : legs) {
+    route.push_back(leg);
+  }
+  return route;
+}
+}  // namespace
+
+Steering::Steering(const Request& request, double radius)
+    : speed_(request.air_speed()), wind_(request.wind), goal_(request.goal) {
+  const Limits& limits = request.limits;
+  limits_.radius = radius;
+  limits_.climb = request.level_m ? 0 : std::min(limits.max_climb, kSteepest);
+  limits_.sink = request.level_m ? 0 : std::min(limits.max_descent(), kSteepest);
+  for (const Wind::Layer& layer : wind_.layers) {
+    strongest_ = std::max(strongest_, layer.velocity.norm());
+  }
+}
+
+Leg Steering::piece(const Pose& from, double length, double turn, double gradient) const {
+  const Vec3 drift = length / speed_ * wind_.at(from.position.z());
+  const double climb = gradient * length;
+  if (turn != 0) {
+    return Leg::turning(from, turn, length / std::abs(turn), climb, drift);
+  }
+  return Leg::straight(from.position, from.position + length * unit_heading(from.heading) + drift +
+                                          Vec3(0, 0, climb));
+}
+
+std::optional<PosePath> Steering::path(const Pose& from, const Pose& to) const {
+  const Vec3 wind = wind_between(from, to);
+  if (wind.isZero(0)) {
+    const auto path = airplane_path(from, to, limits_);
+    return path ? std::optional(PosePath{path->legs(from, to.position), path->length()})
+                : std::nullopt;
+  }
+  const auto path = wind_path(from, to, limits_, {speed_, wind});
+  return path ? std::optional(PosePath{path->legs(from, to.position), path->through_air.length()})
+              : std::nullopt;
+}
+
+double Steering::length(const Pose& from, const Pose& to) const {
+  const Vec3 wind = wind_between(from, to);
+  if (wind.isZero(0)) {
+    return airplane_length(from, to, limits_);
+  }
+  const auto path = wind_path(from, to, limits_, {speed_, wind});
+  return path ? path->through_air.length() : kInfinity;
+}
+
+double Steering::least_length(const Pose& from, const Pose& to) const {
+  const Vec3 apart = to.position - from.position;
+  const double straight = is_calm() ? apart.head<2>().norm()
+                          : is_too_windy()
+                              ? 0
+                              : straight_through_air(apart, wind_between(from, to) / speed_);
+  const double turn = std::abs(std::remainder(to.heading - from.heading, 2 * kPi));
+  return std::max({straight, limits_.radius * turn, limits_.least_length(apart.z())});
+}
+
+double Steering::least_length_to_goal(const Pose& from, double over_ground) const {
+  if (goal_.tolerance_m > 0) {
+    return std::max(0.0, over_ground - goal_.tolerance_m);
+  }
+  const double rise = goal_.position.z() - from.position.z();
+  const double length = std::max(over_ground, limits_.least_length(rise));
+  return is_calm() && goal_.heading
+             ? std::max(length, airplane_length(from, {goal_.position, *goal_.heading}, limits_))
+             : length;
+}
+
+Pose Steering::pose_at(const Pose& from, const PosePath& path, double length) {
+  // A path has one straight leg at most, whose length through the air is what the turns leave.
+  double straight = path.length;
+  for (const Leg& leg : path.legs) {
+    straight -= leg.turns() ? leg.air_length() : 0;
+  }
+  double heading = from.heading;
+  for (const Leg& leg : path.legs) {
+    const double flown = leg.turns() ? leg.air_length() : straight;
+    if (length < flown) {
+      const double part = length / flown;
+      return {leg.at(part), heading + part * leg.turn};
+    }
+    length -= flown;
+    heading += leg.turn;
+  }
+  return {path.legs.empty() ? from.position : path.legs.back().to, heading};
+}
+
+Route route_of(const std::vector<Leg>& legs, const Vec3& alone, const Request& request) {
+  const Vec3& start = legs.empty() ? alone : legs.front().from;
+  const Route whole = chained(joined(legs), start);
+  return check(whole, request).ok() ? whole : chained(legs, start);
+}
+
+PlanResult too_windy() {
+  PlanResult result;
+  result.status = PlanStatus::no_route;
+  result.message = "the wind is as fast as the aeroplane: no circle leads back to its start";
+  result.counters = {{"expanded", 0}};
+  return result;
+}
+
+std::optional<PlanResult> unsolvable(const Request& request, double turn_radius) {
+  if (turn_radius > 0) {
+    return Steering(request, turn_radius).is_too_windy() ? std::optional(too_windy())
+                                                         : std::nullopt;
+  }
+  if (!request.start.loiter && !request.goal.loiter) {
+    return std::nullopt;
+  }
+  PlanResult result;
+  result.status = PlanStatus::invalid_problem;
+  result.reason = request.start.loiter ? Reason::start : Reason::goal;
+  result.message = std::string("the ") + name(result.reason) +
+                   " is a loiter circle, which straight legs do not meet tangentially: give the "
+                   "vehicle a wing, or the planner `steering: dubins` and a radius_m";
+  result.counters = {{"expanded", 0}};
+  return result;
+}
+}  // namespace altiplan::kit

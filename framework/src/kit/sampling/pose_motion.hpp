@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/dubins/steering.hpp"
+#include "altiplan/kit/sampling/leg_rules.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
+#include "altiplan/kit/sampling/star_search.hpp"
+#include "straight_motion.hpp"
+
+namespace altiplan::kit {
+
+/// The nodes of a tree are poses joined by Dubins paths. These meet tangentially, so that a node's
+/// parent may change whatever follows the node, unless constraints look at slopes or at more.
+///
+/// A path costs its length; in wind, the time by the airspeed. A cheap lower bound of that decides
+/// most questions.
+class PoseMotion {
+ public:
+  using State = Pose;
+  using Node = LegTree::Node;
+  static constexpr bool kExact = false;
+  static constexpr std::size_t kBytesPerNode = 260;
+
+  PoseMotion(const Request& request, const StarSettings& settings, StarMemory& memory)
+      : request_(request),
+        settings_(settings),
+        memory_(memory),
+        rules_(request),
+        steering_(request, settings.turn_radius),
+        axes_(std::max(1, free_axes(sampled_box(request)))),
+        looks_back_(request.limits.max_turn_space < kPi || !request.constraints.empty() ||
+                    request.wind.layers.size() > 1),
+        starts_(request.start_poses(request.start.loiter ? kLoiterPoses : kHeadings)),
+        goals_(request.goal_poses(request.goal.loiter ? kLoiterPoses : kHeadings)) {
+    memory_.arrivals.clear();
+  }
+
+  static const Vec3& place(const State& state) { return state.position; }
+  State state(Node node) const {
+    return {memory_.legs.point(node), memory_.arrivals[std::size_t(node)].heading};
+  }
+  static bool same(const State& a, const State& b) {
+    return a.position == b.position && a.heading == b.heading;
+  }
+  static State sampled(const Vec3& p, RandomStream& random) {
+    return {p, random.uniform(-kPi, kPi)};
+  }
+  const std::vector<State>& starts() const { return starts_; }
+  const std::vector<State>& goals() const { return goals_; }
+  bool is_end(const State& state) const {
+    return (ends_anywhere() && request_.goal.reached_at(state.position)) ||
+           std::any_of(goals_.begin(), goals_.end(),
+                       [&](const State& goal) { return same(state, goal); });
+  }
+
+  double least(const State& from, const State& to) const {
+    return cost_of(steering_.least_length(from, to), from, to);
+  }
+  double least(Node from, const State& to) const { return least(state(from), to); }
+  double metres(const State& from, const State& to) const {
+    return cost_of(steering_.length(from, to), from, to);
+  }
+  double metres(Node from, const State& to) const { return metres(state(from), to); }
+  double metres_to(Node node) const { return memory_.arrivals[std::size_t(node)].metres; }
+  double to_go(const State& from) const {
+    if (ends_anywhere()) {
+      const double ground = (request_.goal.position - from.position).head<2>().norm();
+      return std::max(0.0, ground - request_.goal.tolerance_m) / steering_.ground_per_air();
+    }
+    double least_of_all = kInfinity;
+    for (const State& goal : goals_) {
+      least_of_all = std::min(least_of_all, least(from, goal));
+    }
+    return least_of_all;
+  }
+  /// Of a route from any start to any goal, without obstacles.
+  double least_route() const {
+    if (ends_anywhere() || request_.wind.layers.size() > 1) {
+      return 0;
+    }
+    double best = kInfinity;
+    for (const State& start : starts_) {
+      for (const State& goal : goals_) {
+        best = std::min(best, metres(start, goal));
+      }
+    }
+    return best;
+  }
+  /// Beyond this, a node is of no use while the best route costs `best`.
+  double max_cost(double best) const {
+    const double most = steering_.is_calm() ? request_.limits.max_route_length : kInfinity;
+    return settings_.bounded ? std::min(most, best) : most;
+  }
+  bool is_short_enough(Node node, double cost) const {
+    const double most = request_.limits.max_route_length;
+    return most == kInfinity || (steering_.is_calm() ? cost : length(route_to(node))) <= most;
+  }
+  double reach(double cost) const {
+    const double slope = std::tan(std::max(steering_.limits().climb, steering_.limits().sink));
+    const double ground =
+        steering_.is_calm() ? cost : cost * std::hypot(steering_.ground_per_air(), slope);
+    return ground + request_.goal.tolerance_m + farthest(starts_, request_.start.position) +
+           farthest(goals_, request_.goal.position);
+  }
+
+  /// Far apart, any two poses are joined by nearly straight paths: the radius of straight legs. In
+  /// a turn radius of a pose, only those count that lie ahead with nearly its heading: of a share
+  /// of the ball that falls with the square of the radius (S. Karaman, E. Frazzoli: Sampling-based
+  /// Optimal Motion Planning for Non-holonomic Dynamical Systems. ICRA 2013).
+  double near_radius(double n, double measure) const {
+    const double d = axes_;
+    const double turn = settings_.turn_radius;
+    const double share =
+        2 * (1 + 1 / d) * measure / std::pow(turn, d) / unit_ball(axes_) * std::log(n) / n;
+    return std::min(settings_.range,
+                    settings_.radius_scale * turn *
+                        std::max(std::pow(share, 1 / d), std::pow(share, 1 / (d + 2))));
+  }
+
+  /// From the node near `toward` whose path there is shortest, the part within range.
+  std::optional<State> steer(Node& from, const State& toward) const {
+    double shortest = kInfinity;
+    for (const std::uint32_t number : memory_.near) {
+      if (least(Node(number), toward) < shortest) {
+        if (const double its = metres(Node(number), toward); its < shortest) {
+          shortest = its;
+          from = Node(number);
+        }
+      }
+    }
+    const auto path =
+        shortest > settings_.range ? steering_.path(state(from), toward) : std::nullopt;
+    return path ? std::optional(Steering::pose_at(state(from), *path, settings_.range))
+                : std::nullopt;
+  }
+
+  bool joins(Node from, const State& to) {
+    const State& at = state(from);
+    const auto path = steering_.path(at, to);
+    if (!path || !is_in_volume(path->legs)) {
+      return false;
+    }
+    std::optional<Approach> before = memory_.arrivals[std::size_t(from)].approach;
+    for (const Leg& leg : path->legs) {
+      if (!rules_.ok(before, leg)) {
+        return false;
+      }
+      before = onward(before, leg);
+    }
+    arrival_ = {to.heading, cost_of(path->length, at, to), before};
+    return true;
+  }
+  /// Stores what the last call of `joins` found out, or a start's approach.
+  void added(Node node) {
+    if (memory_.legs.parent(node) == LegTree::kNone) {
+      const State& start = starts_[std::size_t(node)];
+      arrival_ = {start.heading, 0, request_.before_start(start.position)};
+    }
+    memory_.arrivals.push_back(arrival_);
+  }
+
+  bool may_move(Node node, Node parent) {
+    const LegTree& legs = memory_.legs;
+    if (!joins(parent, state(node))) {
+      return false;
+    }
+    const StarMemory::Arrival arrival = arrival_;
+    for (Node child = looks_back_ ? legs.first_child(node) : LegTree::kNone;
+         child != LegTree::kNone; child = legs.sibling(child)) {
+      const auto path = steering_.path(state(node), state(child));
+      if (!path->legs.empty() && !rules_.ok(arrival.approach, path->legs.front())) {
+        return false;
+      }
+    }
+    return true;
+  }
+  void moved(Node node) { memory_.arrivals[std::size_t(node)] = arrival_; }
+
+  const LegRules& rules() const { return rules_; }
+  Route route_to(Node node) const {
+    std::vector<Node> nodes;
+    for (; node != LegTree::kNone; node = memory_.legs.parent(node)) {
+      nodes.push_back(node);
+    }
+    std::vector<Leg> legs;
+    for (std::size_t i = nodes.size() - 1; i > 0; --i) {
+      const auto path = steering_.path(state(nodes[i]), state(nodes[i - 1]));
+      legs.insert(legs.end(), path->legs.begin(), path->legs.end());
+    }
+    return route_of(legs, state(nodes.back()).position, request_);
+  }
+
+ private:
+  static constexpr int kHeadings = 16;     ///< tried where none is given
+  static constexpr int kLoiterPoses = 64;  ///< where a loiter circle may be left or joined
+
+  double cost_of(double length, const State& from, const State& to) const {
+    return steering_.is_calm() ? std::hypot(length, to.position.z() - from.position.z()) : length;
+  }
+  static double farthest(const std::vector<State>& states, const Vec3& from) {
+    double most = 0;
+    for (const State& state : states) {
+      most = std::max(most, (state.position - from).norm());
+    }
+    return most;
+  }
+  bool is_in_volume(const std::vector<Leg>& legs) const {
+    return std::all_of(legs.begin(), legs.end(), [&](const Leg& leg) {
+      return request_.volume.contains(leg.to, kLengthTolerance);
+    });
+  }
+  bool ends_anywhere() const {
+    return request_.goal.tolerance_m > 0 && !request_.goal.heading && !request_.goal.loiter;
+  }
+
+  const Request& request_;
+  const StarSettings& settings_;
+  StarMemory& memory_;
+  LegRules rules_;
+  Steering steering_;
+  int axes_;
+  bool looks_back_;
+  std::vector<State> starts_;
+  std::vector<State> goals_;
+  StarMemory::Arrival arrival_;
+};
+}  // namespace altiplan::kit

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/sampling/leg_rules.hpp"
+#include "altiplan/kit/sampling/sampling.hpp"
+#include "altiplan/kit/sampling/star_search.hpp"
+
+namespace altiplan::kit {
+
+/// Measure of the unit ball.
+inline double unit_ball(int axes) { return axes == 3 ? 4 * kPi / 3 : axes == 2 ? kPi : 2.0; }
+
+/// The nodes of a tree are points joined by straight legs. Under turn limits, a parent is chosen or
+/// changed only if the turns into all of a node's children remain valid.
+class StraightMotion {
+ public:
+  using State = Vec3;
+  using Node = LegTree::Node;
+  static constexpr bool kExact = true;  ///< `least` is the length of an edge
+  static constexpr std::size_t kBytesPerNode = 160;
+
+  StraightMotion(const Request& request, const StarSettings& settings, StarMemory& memory)
+      : request_(request),
+        settings_(settings),
+        memory_(memory),
+        rules_(request),
+        before_start_(request.before_start()),
+        axes_(std::max(1, free_axes(sampled_box(request)))) {}
+
+  static const Vec3& place(const State& state) { return state; }
+  const State& state(Node node) const { return memory_.legs.point(node); }
+  static bool same(const State& a, const State& b) { return a == b; }
+  static const State& sampled(const Vec3& p, RandomStream&) { return p; }
+  std::vector<State> starts() const { return {request_.start.position}; }
+  std::vector<State> goals() const { return {request_.goal.position}; }
+  bool is_end(const State& p) const { return request_.goal.reached_at(p); }
+
+  double least(Node from, const State& to) const {
+    return (memory_.points.point(std::size_t(from)) - to).norm();
+  }
+  double metres(Node from, const State& to) const { return (to - state(from)).norm(); }
+  double metres_to(Node node) const {
+    return (state(node) - state(memory_.legs.parent(node))).norm();
+  }
+  double to_go(const State& p) const {
+    return std::max(0.0, (p - request_.goal.position).norm() - request_.goal.tolerance_m);
+  }
+  double least_route() const {
+    return std::max(
+        0.0, (request_.goal.position - request_.start.position).norm() - request_.goal.tolerance_m);
+  }
+  double max_cost(double) const { return request_.limits.max_route_length; }
+  bool is_short_enough(Node, double cost) const { return cost <= request_.limits.max_route_length; }
+  /// Distance over the ground from the foci of the informed set.
+  double reach(double cost) const { return cost + request_.goal.tolerance_m; }
+
+  /// min(gamma (log n / n)^(1/d), eta).
+  double near_radius(double n, double measure) const {
+    const double d = axes_;
+    return std::min(
+        settings_.range,
+        settings_.radius_scale *
+            std::pow(2 * (1 + 1 / d) * measure / unit_ball(axes_) * std::log(n) / n, 1 / d));
+  }
+
+  /// The state to which the node's path toward another leads; none if it leads nowhere new.
+  std::optional<State> steer(Node& from, const State& toward) const {
+    const Vec3& at = state(from);
+    const Vec3 x_new =
+        altiplan::kit::steer(behind(from), at, toward, settings_.range, request_.limits);
+    return x_new == toward || x_new == at ? std::nullopt : std::optional(x_new);
+  }
+
+  bool joins(Node from, const State& to) { return rules_.ok(behind(from), state(from), to); }
+  void added(Node) {}
+
+  /// True if the leg, the turns at both of its ends and the turns that follow satisfy every
+  /// constraint.
+  bool may_move(Node node, Node parent) {
+    const auto before = behind(parent);
+    return rules_.ok(before, state(parent), state(node)) &&
+           turns_follow(onward(before, state(parent)), node);
+  }
+  void moved(Node) {}
+
+  const LegRules& rules() const { return rules_; }
+  Route route_to(Node node) const { return memory_.legs.way_to(node); }
+
+ private:
+  /// The approach to the node, if a constraint depends on it.
+  std::optional<Approach> behind(Node node) const {
+    return rules_.looks_back() ? memory_.legs.approach(node, 0, before_start_) : std::nullopt;
+  }
+
+  /// True if the turns into the legs below a node are valid for a vehicle that reaches it by
+  /// `before`; beyond a leg without a heading, the turns that follow too.
+  bool turns_follow(const Approach& before, Node node) {
+    const LegTree& legs = memory_.legs;
+    const Vec3& at = legs.point(node);
+    for (Node child = legs.first_child(node); child != LegTree::kNone;
+         child = legs.sibling(child)) {
+      if (!rules_.follows(before, at, legs.point(child)) ||
+          (!has_heading(legs.point(child) - at) && !turns_follow(onward(before, at), child))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const Request& request_;
+  const StarSettings& settings_;
+  StarMemory& memory_;
+  LegRules rules_;
+  std::optional<Approach> before_start_;
+  int axes_;
+};
+}  // namespace altiplan::kit
