@@ -18,4 +18,6 @@ struct PosePairs {
 // Each adds its rows; a row's items are pairs.
 void add_length_rows(const PosePairs& pairs);
 void add_path_rows(const PosePairs& pairs);
+/// RRT* beside OMPL's.
+void add_dubins_star_rows(host::Registry& registry);
 }  // namespace altiplan::bench
