@@ -12,17 +12,20 @@
 //   minimum leg length; where limits on turn and climb would be violated, a leg is bent until they
 //   are satisfied; a node within the goal's tolerance ends the search.
 // Symbols: q_rand the sample, q_near the nearest node, q_new the end of the new leg.
+#include "altiplan/kit/dubins/steering_params.hpp"
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/params.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "pose_edges.hpp"
+#include "straight_edges.hpp"
 #include "two_trees.hpp"
 
 namespace {
 
 using namespace altiplan;
 
-struct Params {
+struct Params : kit::SteeringParams {
   AutoNumber range_m;
   int max_iterations = 100'000;
 
@@ -30,8 +33,12 @@ struct Params {
     f("range_m", range_m)
         .unit("m")
         .greater_than(0)
-        .doc("longest leg by which a tree grows; auto: a tenth of the volume's diagonal");
-    f("max_iterations", max_iterations).at_least(1).doc("maximum number of legs tried");
+        .doc(
+            "longest edge by which a tree grows; auto: a tenth of the volume's diagonal, with "
+            "turns "
+            "at least a circle");
+    f("max_iterations", max_iterations).at_least(1).doc("maximum number of edges tried");
+    SteeringParams::describe(f);
   }
 };
 
@@ -42,11 +49,23 @@ class RrtConnect final : public Planner {
  private:
   PlanResult do_plan(const Request& request) const override {
     const auto memory = memory_.take();
-    const rrt_connect::Settings settings{kit::range_of(params_.range_m.value, request),
-                                         std::uint64_t(params_.max_iterations)};
-    return rrt_connect::TwoTrees(request, settings, *memory).run();
+    const double turn_radius = params_.turn_radius(request);
+    const double range = kit::SteeringParams::range(kit::range_of(params_.range_m.value, request),
+                                                    !params_.range_m.value, turn_radius);
+    const rrt_connect::Settings settings{range, std::uint64_t(params_.max_iterations), turn_radius};
+    if (auto refused = kit::unsolvable(request, turn_radius)) {
+      return *refused;
+    }
+    if (turn_radius == 0) {
+      return rrt_connect::TwoTrees<rrt_connect::StraightEdges>(request, settings, *memory).run();
+    }
+    return rrt_connect::TwoTrees<rrt_connect::PoseEdges>(request, settings, *memory).run();
   }
-  Traits do_traits() const override { return {}; }
+  Traits do_traits() const override {
+    Traits traits;
+    traits.loiters = params_.loiters();
+    return traits;
+  }
 
   Params params_;
   mutable kit::ScratchPool<rrt_connect::Memory> memory_;

@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/kit/dubins/steering.hpp"
-#include "altiplan/kit/sampling/leg_rules.hpp"
+#include "altiplan/kit/dubins/path_rules.hpp"
 #include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/kit/sampling/star_search.hpp"
 #include "straight_motion.hpp"
@@ -30,13 +29,10 @@ class PoseMotion {
       : request_(request),
         settings_(settings),
         memory_(memory),
-        rules_(request),
-        steering_(request, settings.turn_radius),
+        paths_(request, settings.turn_radius),
         axes_(std::max(1, free_axes(sampled_box(request)))),
-        looks_back_(request.limits.max_turn_space < kPi || !request.constraints.empty() ||
-                    request.wind.layers.size() > 1),
-        starts_(request.start_poses(request.start.loiter ? kLoiterPoses : kHeadings)),
-        goals_(request.goal_poses(request.goal.loiter ? kLoiterPoses : kHeadings)) {
+        starts_(paths_.starts()),
+        goals_(paths_.goals()) {
     memory_.arrivals.clear();
   }
 
@@ -44,9 +40,7 @@ class PoseMotion {
   State state(Node node) const {
     return {memory_.legs.point(node), memory_.arrivals[std::size_t(node)].heading};
   }
-  static bool same(const State& a, const State& b) {
-    return a.position == b.position && a.heading == b.heading;
-  }
+  static bool same(const State& a, const State& b) { return are_same(a, b); }
   static State sampled(const Vec3& p, RandomStream& random) {
     return {p, random.uniform(-kPi, kPi)};
   }
@@ -59,18 +53,18 @@ class PoseMotion {
   }
 
   double least(const State& from, const State& to) const {
-    return cost_of(steering_.least_length(from, to), from, to);
+    return cost_of(steering().least_length(from, to), from, to);
   }
   double least(Node from, const State& to) const { return least(state(from), to); }
   double metres(const State& from, const State& to) const {
-    return cost_of(steering_.length(from, to), from, to);
+    return cost_of(steering().length(from, to), from, to);
   }
   double metres(Node from, const State& to) const { return metres(state(from), to); }
   double metres_to(Node node) const { return memory_.arrivals[std::size_t(node)].metres; }
   double to_go(const State& from) const {
     if (ends_anywhere()) {
       const double ground = (request_.goal.position - from.position).head<2>().norm();
-      return std::max(0.0, ground - request_.goal.tolerance_m) / steering_.ground_per_air();
+      return std::max(0.0, ground - request_.goal.tolerance_m) / steering().ground_per_air();
     }
     double least_of_all = kInfinity;
     for (const State& goal : goals_) {
@@ -93,17 +87,17 @@ class PoseMotion {
   }
   /// Beyond this, a node is of no use while the best route costs `best`.
   double max_cost(double best) const {
-    const double most = steering_.is_calm() ? request_.limits.max_route_length : kInfinity;
+    const double most = steering().is_calm() ? request_.limits.max_route_length : kInfinity;
     return settings_.bounded ? std::min(most, best) : most;
   }
   bool is_short_enough(Node node, double cost) const {
     const double most = request_.limits.max_route_length;
-    return most == kInfinity || (steering_.is_calm() ? cost : length(route_to(node))) <= most;
+    return most == kInfinity || (steering().is_calm() ? cost : length(route_to(node))) <= most;
   }
   double reach(double cost) const {
-    const double slope = std::tan(std::max(steering_.limits().climb, steering_.limits().sink));
+    const double slope = std::tan(std::max(steering().limits().climb, steering().limits().sink));
     const double ground =
-        steering_.is_calm() ? cost : cost * std::hypot(steering_.ground_per_air(), slope);
+        steering().is_calm() ? cost : cost * std::hypot(steering().ground_per_air(), slope);
     return ground + request_.goal.tolerance_m + farthest(starts_, request_.start.position) +
            farthest(goals_, request_.goal.position);
   }
@@ -134,26 +128,18 @@ class PoseMotion {
       }
     }
     const auto path =
-        shortest > settings_.range ? steering_.path(state(from), toward) : std::nullopt;
+        shortest > settings_.range ? steering().path(state(from), toward) : std::nullopt;
     return path ? std::optional(Steering::pose_at(state(from), *path, settings_.range))
                 : std::nullopt;
   }
 
   bool joins(Node from, const State& to) {
     const State& at = state(from);
-    const auto path = steering_.path(at, to);
-    if (!path || !is_in_volume(path->legs)) {
-      return false;
+    const auto arrival = paths_.arrival(memory_.arrivals[std::size_t(from)].approach, at, to);
+    if (arrival) {
+      arrival_ = {to.heading, cost_of(arrival->length, at, to), arrival->approach};
     }
-    std::optional<Approach> before = memory_.arrivals[std::size_t(from)].approach;
-    for (const Leg& leg : path->legs) {
-      if (!rules_.ok(before, leg)) {
-        return false;
-      }
-      before = onward(before, leg);
-    }
-    arrival_ = {to.heading, cost_of(path->length, at, to), before};
-    return true;
+    return arrival.has_value();
   }
   /// Stores what the last call of `joins` found out, or a start's approach.
   void added(Node node) {
@@ -165,15 +151,13 @@ class PoseMotion {
   }
 
   bool may_move(Node node, Node parent) {
-    const LegTree& legs = memory_.legs;
     if (!joins(parent, state(node))) {
       return false;
     }
-    const StarMemory::Arrival arrival = arrival_;
-    for (Node child = looks_back_ ? legs.first_child(node) : LegTree::kNone;
+    const LegTree& legs = memory_.legs;
+    for (Node child = paths_.looks_back() ? legs.first_child(node) : LegTree::kNone;
          child != LegTree::kNone; child = legs.sibling(child)) {
-      const auto path = steering_.path(state(node), state(child));
-      if (!path->legs.empty() && !rules_.ok(arrival.approach, path->legs.front())) {
+      if (!paths_.follows(arrival_.approach, state(node), state(child))) {
         return false;
       }
     }
@@ -181,26 +165,19 @@ class PoseMotion {
   }
   void moved(Node node) { memory_.arrivals[std::size_t(node)] = arrival_; }
 
-  const LegRules& rules() const { return rules_; }
+  const LegRules& rules() const { return paths_.legs(); }
   Route route_to(Node node) const {
-    std::vector<Node> nodes;
+    std::vector<State> poses;
     for (; node != LegTree::kNone; node = memory_.legs.parent(node)) {
-      nodes.push_back(node);
+      poses.push_back(state(node));
     }
-    std::vector<Leg> legs;
-    for (std::size_t i = nodes.size() - 1; i > 0; --i) {
-      const auto path = steering_.path(state(nodes[i]), state(nodes[i - 1]));
-      legs.insert(legs.end(), path->legs.begin(), path->legs.end());
-    }
-    return route_of(legs, state(nodes.back()).position, request_);
+    return paths_.route_through({poses.rbegin(), poses.rend()});
   }
 
  private:
-  static constexpr int kHeadings = 16;     ///< tried where none is given
-  static constexpr int kLoiterPoses = 64;  ///< where a loiter circle may be left or joined
-
+  const Steering& steering() const { return paths_.steering(); }
   double cost_of(double length, const State& from, const State& to) const {
-    return steering_.is_calm() ? std::hypot(length, to.position.z() - from.position.z()) : length;
+    return steering().is_calm() ? std::hypot(length, to.position.z() - from.position.z()) : length;
   }
   static double farthest(const std::vector<State>& states, const Vec3& from) {
     double most = 0;
@@ -209,11 +186,6 @@ class PoseMotion {
     }
     return most;
   }
-  bool is_in_volume(const std::vector<Leg>& legs) const {
-    return std::all_of(legs.begin(), legs.end(), [&](const Leg& leg) {
-      return request_.volume.contains(leg.to, kLengthTolerance);
-    });
-  }
   bool ends_anywhere() const {
     return request_.goal.tolerance_m > 0 && !request_.goal.heading && !request_.goal.loiter;
   }
@@ -221,10 +193,8 @@ class PoseMotion {
   const Request& request_;
   const StarSettings& settings_;
   StarMemory& memory_;
-  LegRules rules_;
-  Steering steering_;
+  PathRules paths_;
   int axes_;
-  bool looks_back_;
   std::vector<State> starts_;
   std::vector<State> goals_;
   StarMemory::Arrival arrival_;
