@@ -13,7 +13,8 @@
 //   samples states, which have no turns). A point is sampled on the legs or, with probability
 //   waypoint_share, moved to the nearest waypoint: then legs are not cut, which a minimum leg
 //   length may forbid. It ends after a number of consecutive failures. No partial shortcuts:
-//   coordinates that move independently are those of articulated robots.
+//   coordinates that move independently are those of articulated robots. In a route with turns a
+//   shortcut is the Dubins airplane's path between the poses, in wind the quickest.
 // Symbols: pi the route; pi_a and pi_b the two random points on it.
 #include <algorithm>
 
@@ -21,6 +22,7 @@
 #include "altiplan/kit/smoothing/corners.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
+#include "turning.hpp"
 
 namespace {
 using namespace altiplan;
@@ -78,6 +80,7 @@ class Shortening {
     return true;
   }
 
+  bool is_done() const { return pi_.size() <= 2; }
   const Polyline& route() const { return pi_; }
   std::int64_t legs_checked() const { return legs_checked_; }
 
@@ -142,12 +145,23 @@ class Shortcut final : public Smoother {
  private:
   PlanResult do_smooth(const Polyline& route, const Request& request) const override {
     Shortening shortening(without_repeats(route), request, params_.waypoint_share);
+    return shortened(shortening, route, request);
+  }
+
+  PlanResult do_smooth_turns(const Route& route, const Request& request) const override {
+    shortcut::TurnShortening shortening(without_repeats(route), request, params_.waypoint_share,
+                                        kMinGain);
+    return shortened(shortening, route, request);
+  }
+
+  template <class Kind>
+  PlanResult shortened(Kind& shortening, const Route& route, const Request& request) const {
     BudgetWatch watch(request.budget);
     PlanResult result;
     std::int64_t drawn = 0;
     std::int64_t taken = 0;
     for (int in_vain = 0;
-         drawn < params_.iterations && in_vain < params_.failures && shortening.route().size() > 2;
+         drawn < params_.iterations && in_vain < params_.failures && !shortening.is_done();
          ++drawn) {
       result.budget_hit = watch.spent(std::uint64_t(drawn));
       if (result.budget_hit) {
@@ -161,9 +175,10 @@ class Shortcut final : public Smoother {
     result.counters = {
         {"expanded", drawn}, {"taken", taken}, {"legs_checked", shortening.legs_checked()}};
     // Constraints on whole routes are checked last.
-    const bool accepted = taken > 0 && kit::Excess(check(shortening.route(), request).violations)
+    const Route shorter = taken > 0 ? Route(shortening.route()) : route;
+    const bool accepted = taken > 0 && kit::Excess(check(shorter, request).violations)
                                            .within(kit::Excess(check(route, request).violations));
-    result.route = accepted ? shortening.route() : route;
+    result.route = accepted ? shorter : route;
     result.message =
         taken > 0 && !accepted
             ? "the shorter route would violate a constraint on whole routes: it is unchanged"
@@ -177,4 +192,4 @@ class Shortcut final : public Smoother {
 }  // namespace
 
 ALTIPLAN_PLUGIN(Smoother, "shortcut", Shortcut, Params,
-                "straight legs between random points of the route")
+                "straight legs, or Dubins paths where the route turns, between random points of it")
