@@ -44,12 +44,19 @@ class PoseMotion {
   static State sampled(const Vec3& p, RandomStream& random) {
     return {p, random.uniform(-kPi, kPi)};
   }
+  /// Half of the samples point away from the node before the nearest one: straight on from there.
+  void aim(State& sample, Node nearest, RandomStream& random) const {
+    const Node parent = memory_.legs.parent(nearest);
+    const Vec3 course =
+        sample.position - memory_.legs.point(parent == LegTree::kNone ? nearest : parent);
+    if (random.uniform() < 0.5 && !is_goal(sample)) {
+      sample.heading = std::atan2(course.y(), course.x());
+    }
+  }
   const std::vector<State>& starts() const { return starts_; }
   const std::vector<State>& goals() const { return goals_; }
   bool is_end(const State& state) const {
-    return (ends_anywhere() && request_.goal.reached_at(state.position)) ||
-           std::any_of(goals_.begin(), goals_.end(),
-                       [&](const State& goal) { return same(state, goal); });
+    return is_goal(state) || (ends_anywhere() && request_.goal.reached_at(state.position));
   }
 
   double least(const State& from, const State& to) const {
@@ -185,6 +192,10 @@ class PoseMotion {
       most = std::max(most, (state.position - from).norm());
     }
     return most;
+  }
+  bool is_goal(const State& state) const {
+    return std::any_of(goals_.begin(), goals_.end(),
+                       [&](const State& goal) { return same(state, goal); });
   }
   bool ends_anywhere() const {
     return request_.goal.tolerance_m > 0 && !request_.goal.heading && !request_.goal.loiter;

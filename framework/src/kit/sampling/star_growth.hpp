@@ -107,11 +107,12 @@ class StarGrowth {
   /// One iteration of RRT*: Nearest, Steer, Near, the best parent, and rewiring. Where limits bend
   /// the leg from the nearest node, other nodes may still reach the sample itself: they are tried
   /// first.
-  void grow(const State& x_rand) {
+  void grow(State x_rand) {
     if (!is_useful(x_rand)) {
       return;
     }
     Node nearest = find_near(place(x_rand));
+    motion_.aim(x_rand, nearest, random_);
     State x_new = x_rand;
     std::optional<Candidate> parent;
     if ((place(x_rand) - memory_.legs.point(nearest)).norm() <= settings_.range) {

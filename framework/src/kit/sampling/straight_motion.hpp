@@ -36,6 +36,7 @@ class StraightMotion {
   const State& state(Node node) const { return memory_.legs.point(node); }
   static bool same(const State& a, const State& b) { return a == b; }
   static const State& sampled(const Vec3& p, RandomStream&) { return p; }
+  static void aim(State&, Node, RandomStream&) {}
   std::vector<State> starts() const { return {request_.start.position}; }
   std::vector<State> goals() const { return {request_.goal.position}; }
   bool is_end(const State& p) const { return request_.goal.reached_at(p); }
