@@ -230,5 +230,24 @@ TEST(DubinsWind, TheClimbKeepsTheLimitsInTheAir) {
   EXPECT_LT(longer, 40);
   EXPECT_FALSE(wind_path({{0, 0, 0}, 0}, {{9, 9, 9}, 0}, {kRadius, 0, 1}, {kAirspeed, {1, 0, 0}}));
 }
+
+TEST(DubinsWind, ABoundOnTheLengthChangesNoAnswerBelowIt) {
+  RandomStream random(12);
+  const AirplaneLimits limits{kRadius, radians(8), radians(11)};
+  for (int n = 0; n < 3000; ++n) {
+    const Pose from = random_pose(random, 600);
+    Pose to = random_pose(random, 600);
+    to.position.z() = from.position.z() + random.uniform(-100, 100);
+    const Air air = random_air(random, n % 3 == 0 ? 0 : 0.6);
+    const double length = wind_path(from, to, limits, air)->through_air.length();
+    const auto above = wind_path(from, to, limits, air, length * (1 + 1e-6));
+    ASSERT_TRUE(above) << n;
+    EXPECT_NEAR(above->through_air.length(), length, 1e-9 * length) << n;
+    EXPECT_FALSE(wind_path(from, to, limits, air, length * (1 - 1e-6))) << n;
+    const double calm = airplane_length(from, to, limits);
+    EXPECT_EQ(airplane_length(from, to, limits, calm * (1 + 1e-6)), calm) << n;
+    EXPECT_EQ(airplane_length(from, to, limits, calm * (1 - 1e-6)), kInfinity) << n;
+  }
+}
 }  // namespace
 }  // namespace altiplan::kit

@@ -54,7 +54,7 @@ class PoseEdges {
       const State at = state(side, Node(number));
       if ((side == kStart ? steering().least_length(at, q) : steering().least_length(q, at)) <
           shortest) {
-        if (const double its = metres(side, Node(number), q); its < shortest) {
+        if (const double its = metres(side, Node(number), q, shortest); its < shortest) {
           shortest = its;
           best = Node(number);
         }
@@ -62,9 +62,9 @@ class PoseEdges {
     }
     return best;
   }
-  double metres(int side, Node node, const State& q) const {
+  double metres(int side, Node node, const State& q, double at_most = kInfinity) const {
     const State at = state(side, node);
-    return side == kStart ? steering().length(at, q) : steering().length(q, at);
+    return side == kStart ? steering().length(at, q, at_most) : steering().length(q, at, at_most);
   }
   static const State& part(int, Node, const State& q, double) { return q; }
 

@@ -11,7 +11,7 @@ TEST(RrtStarWing, InTheOpenItIsTheDubinsPath) {
 }
 
 TEST(RrtStarWing, RoutesAmongTowersAreValidInCalmAndWind) {
-  testing::expect_valid_routes_among_towers("rrt_star", "{}", 0.8, 8'000);
+  testing::expect_valid_routes_among_towers("rrt_star", "{}", 0.8, 5'000);
 }
 
 TEST(RrtStarWing, MoreIterationsNeverGiveALongerRoute) {

@@ -249,11 +249,18 @@ std::optional<AirplanePath> airplane_path(const Pose& from, const Pose& to,
   return path_of_length(PosePair(from, to), limits.radius, least);
 }
 
-double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits) {
+double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits,
+                       double at_most) {
   const double least = limits.least_length(to.position.z() - from.position.z());
+  if (least > at_most) {
+    return kInfinity;
+  }
   const PosePair pair(from, to);
   const Lengths lengths = pair.lengths(limits.radius);
   const double shortest = *std::min_element(lengths.begin(), lengths.end());
+  if (shortest > at_most) {
+    return kInfinity;
+  }
   if (shortest >= least || least == kInfinity) {
     return std::max(shortest, least);
   }
@@ -262,7 +269,8 @@ double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& l
   if (with_circle <= least || pair.distance() >= 8 * limits.radius) {
     return least;
   }
-  return path_of_length(pair, limits.radius, least).length();
+  const double length = path_of_length(pair, limits.radius, least).length();
+  return length <= at_most ? length : kInfinity;
 }
 
 std::vector<Leg> AirplanePath::legs(const Pose& from, const Vec3& to, const Vec3& wind) const {

@@ -91,12 +91,12 @@ std::optional<PosePath> Steering::path(const Pose& from, const Pose& to) const {
               : std::nullopt;
 }
 
-double Steering::length(const Pose& from, const Pose& to) const {
+double Steering::length(const Pose& from, const Pose& to, double at_most) const {
   const Vec3 wind = wind_between(from, to);
   if (wind.isZero(0)) {
-    return airplane_length(from, to, limits_);
+    return airplane_length(from, to, limits_, at_most);
   }
-  const auto path = wind_path(from, to, limits_, {speed_, wind});
+  const auto path = wind_path(from, to, limits_, {speed_, wind}, at_most);
   return path ? path->through_air.length() : kInfinity;
 }
 

@@ -45,9 +45,14 @@ struct Moving {
 
 class WindSearch {
  public:
-  /// `wind` in units of the airspeed. Paths are at least `begin` long.
-  WindSearch(const PosePair& pair, double radius, const Vec3& wind, double begin)
-      : pair_(pair), radius_(radius), wind_(wind), circle_(kCircle * radius), begin_(begin) {
+  /// `wind` in units of the airspeed. Paths are at least `begin` long, and shorter than `end`.
+  WindSearch(const PosePair& pair, double radius, const Vec3& wind, double begin, double end)
+      : pair_(pair),
+        radius_(radius),
+        wind_(wind),
+        circle_(kCircle * radius),
+        begin_(begin),
+        best_(end) {
     const PosePair moved = pair.displaced(-wind);
     for (const bool right : {false, true}) {
       const double sign = right ? -1 : 1;
@@ -58,7 +63,7 @@ class WindSearch {
     }
   }
 
-  DubinsPath run() {
+  std::optional<DubinsPath> run() {
     for (const bool right : {false, true}) {
       try_same(right);
     }
@@ -212,32 +217,42 @@ class WindSearch {
   double begin_;
   std::array<Moving, 2> m_;
   std::array<double, 2> turn_;
-  double best_ = kInfinity;
-  DubinsPath best_path_;
+  double best_;
+  std::optional<DubinsPath> best_path_;
 };
 
 bool can_fly(const Air& air) { return air.wind.head<2>().norm() < air.speed; }
 }  // namespace
 
-std::optional<WindPath> wind_path(const Pose& from, const Pose& to, double radius, const Air& air) {
+namespace {
+std::optional<WindPath> quickest_path(const Pose& from, const Pose& to, double radius,
+                                      const Air& air, double end) {
   if (!can_fly(air)) {
     return std::nullopt;
   }
   const PosePair pair(from, to);
   if (air.wind.head<2>().norm() <= 1e-12 * air.speed) {
-    return WindPath{{pair.path(radius)}, air};
+    const DubinsPath path = pair.path(radius);
+    return path.length() < end ? std::optional(WindPath{{path}, air}) : std::nullopt;
   }
-  return WindPath{{WindSearch(pair, radius, air.wind / air.speed, 0).run()}, air};
+  const auto path = WindSearch(pair, radius, air.wind / air.speed, 0, end).run();
+  return path ? std::optional(WindPath{{*path}, air}) : std::nullopt;
+}
+}  // namespace
+
+std::optional<WindPath> wind_path(const Pose& from, const Pose& to, double radius, const Air& air) {
+  return quickest_path(from, to, radius, air, kInfinity);
 }
 
 std::optional<WindPath> wind_path(const Pose& from, const Pose& to, const AirplaneLimits& limits,
-                                  const Air& air) {
+                                  const Air& air, double at_most) {
   const double least = limits.least_length(to.position.z() - from.position.z());
-  const auto quickest = wind_path(from, to, limits.radius, air);
-  if (!quickest || least == kInfinity) {
+  if (least == kInfinity || least > at_most) {
     return std::nullopt;
   }
-  if (quickest->through_air.length() >= least) {
+  const double end = at_most * (1 + 1e-12);
+  const auto quickest = quickest_path(from, to, limits.radius, air, end);
+  if (!quickest || quickest->through_air.length() >= least) {
     return quickest;
   }
   const PosePair pair(from, to);
@@ -246,6 +261,7 @@ std::optional<WindPath> wind_path(const Pose& from, const Pose& to, const Airpla
   if (path.length() <= least * (1 + 1e-9)) {
     return WindPath{path, air};
   }
-  return WindPath{{WindSearch(pair, limits.radius, wind, least).run()}, air};
+  const auto longer = WindSearch(pair, limits.radius, wind, least, end).run();
+  return longer ? std::optional(WindPath{{*longer}, air}) : std::nullopt;
 }
 }  // namespace altiplan::kit

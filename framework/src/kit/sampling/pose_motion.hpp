@@ -63,10 +63,14 @@ class PoseMotion {
     return cost_of(steering().least_length(from, to), from, to);
   }
   double least(Node from, const State& to) const { return least(state(from), to); }
-  double metres(const State& from, const State& to) const {
-    return cost_of(steering().length(from, to), from, to);
+  /// Infinite if it is more than `at_most`.
+  double metres(const State& from, const State& to, double at_most = kInfinity) const {
+    // The length of the horizontal path is at most that.
+    return cost_of(steering().length(from, to, at_most), from, to);
   }
-  double metres(Node from, const State& to) const { return metres(state(from), to); }
+  double metres(Node from, const State& to, double at_most = kInfinity) const {
+    return metres(state(from), to, at_most);
+  }
   double metres_to(Node node) const { return memory_.arrivals[std::size_t(node)].metres; }
   double to_go(const State& from) const {
     if (ends_anywhere()) {
@@ -128,7 +132,7 @@ class PoseMotion {
     double shortest = kInfinity;
     for (const std::uint32_t number : memory_.near) {
       if (least(Node(number), toward) < shortest) {
-        if (const double its = metres(Node(number), toward); its < shortest) {
+        if (const double its = metres(Node(number), toward, shortest); its < shortest) {
           shortest = its;
           from = Node(number);
         }

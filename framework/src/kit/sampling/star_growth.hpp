@@ -168,15 +168,19 @@ class StarGrowth {
   std::optional<Candidate> choose_parent(const State& x_new) {
     list_candidates(x_new);
     const double to_go = motion_.to_go(x_new);
+    double known = kInfinity;  // the least of the exact costs in the list
     while (!candidates_.empty()) {
-      const auto best = std::min_element(
-          candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-            return a.cost != b.cost ? a.cost < b.cost : a.node < b.node;
-          });
+      const auto best = std::min_element(candidates_.begin(), candidates_.end(),
+                                         [](const Candidate& a, const Candidate& b) {
+                                           return a.cost != b.cost     ? a.cost < b.cost
+                                                  : a.exact != b.exact ? a.exact
+                                                                       : a.node < b.node;
+                                         });
       if (!best->exact) {
-        make_exact(*best, x_new);
+        refine(*best, x_new, known);
         continue;
       }
+      known = kInfinity;
       const Candidate candidate = *best;
       *best = candidates_.back();
       candidates_.pop_back();
@@ -191,13 +195,18 @@ class StarGrowth {
     return std::nullopt;
   }
 
-  /// An edge beyond the range goes to the end of the list.
-  void make_exact(Candidate& candidate, const State& x_new) const {
+  /// Makes the candidate exact if it costs less than `known`, else its cost becomes that. An edge
+  /// beyond the range goes to the end of the list.
+  void refine(Candidate& candidate, const State& x_new, double& known) const {
     constexpr double kRounding = 1 + 1e-9;
-    const double metres = motion_.metres(candidate.node, x_new);
-    candidate.metres = metres <= settings_.range * kRounding ? metres : kInfinity;
-    candidate.cost = memory_.cost[std::size_t(candidate.node)] + candidate.metres;
-    candidate.exact = true;
+    const double before = memory_.cost[std::size_t(candidate.node)];
+    const double range = settings_.range * kRounding;
+    const double at_most = std::min(range, known - before);
+    candidate.metres = motion_.metres(candidate.node, x_new, at_most);
+    candidate.exact = candidate.metres <= at_most || at_most == range;
+    candidate.metres = candidate.metres <= range ? candidate.metres : kInfinity;
+    candidate.cost = candidate.exact ? before + candidate.metres : known;
+    known = std::min(known, candidate.cost);
   }
 
   /// Rewires the candidates that choose_parent has left: they hold all nodes that may gain.
@@ -213,7 +222,9 @@ class StarGrowth {
           rewire(x_new, x_near);
         }
       } else if (const State state = motion_.state(x_near); gains(motion_.least(x_new, state))) {
-        if (const double metres = motion_.metres(x_new, state);
+        const double at_most = std::min(
+            settings_.range, memory_.cost[std::size_t(x_near)] - memory_.cost[std::size_t(x_new)]);
+        if (const double metres = motion_.metres(x_new, state, at_most);
             metres <= settings_.range && gains(metres)) {
           rewire(x_new, x_near);
         }

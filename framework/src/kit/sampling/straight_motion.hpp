@@ -44,7 +44,7 @@ class StraightMotion {
   double least(Node from, const State& to) const {
     return (memory_.points.point(std::size_t(from)) - to).norm();
   }
-  double metres(Node from, const State& to) const { return (to - state(from)).norm(); }
+  double metres(Node from, const State& to, double = 0) const { return (to - state(from)).norm(); }
   double metres_to(Node node) const {
     return (state(node) - state(memory_.legs.parent(node))).norm();
   }

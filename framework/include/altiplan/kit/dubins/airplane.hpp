@@ -45,8 +45,10 @@ struct ALTIPLAN_API AirplanePath {
 /// The path; none if the height must change and that limit is 0.
 ALTIPLAN_API std::optional<AirplanePath> airplane_path(const Pose& from, const Pose& to,
                                                        const AirplaneLimits& limits);
-/// Its horizontal length, which takes less time; infinite if there is none.
-ALTIPLAN_API double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits);
+/// Its horizontal length, which takes less time; infinite if there is none, or if it is more than
+/// `at_most`, which takes less still.
+ALTIPLAN_API double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits,
+                                    double at_most = kInfinity);
 
 /// The shortest path of the above kinds that is at least that long, horizontally.
 ALTIPLAN_API AirplanePath path_of_length(const PosePair& pair, double radius, double least_length);

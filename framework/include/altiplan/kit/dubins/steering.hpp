@@ -34,8 +34,8 @@ class ALTIPLAN_API Steering {
 
   /// The shortest path through the air to a pose; none if there is none.
   std::optional<PosePath> path(const Pose& from, const Pose& to) const;
-  /// Its length, which takes less time; infinite if there is none.
-  double length(const Pose& from, const Pose& to) const;
+  /// Its length; infinite if there is none, or if it is more than `at_most`, which takes less time.
+  double length(const Pose& from, const Pose& to, double at_most = kInfinity) const;
   /// A lower bound of that, which takes far less.
   double least_length(const Pose& from, const Pose& to) const;
   /// A lower bound on the length to the goal, of which the ground covered takes at least

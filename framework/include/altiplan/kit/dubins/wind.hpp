@@ -39,7 +39,8 @@ struct ALTIPLAN_API WindPath {
 ALTIPLAN_API std::optional<WindPath> wind_path(const Pose& from, const Pose& to, double radius,
                                                const Air& air);
 /// Climbing and sinking within the limits, which are angles in the air mass; nor a path where there
-/// is none without wind.
+/// is none without wind, nor if it is longer through the air than `at_most`, which takes less time.
 ALTIPLAN_API std::optional<WindPath> wind_path(const Pose& from, const Pose& to,
-                                               const AirplaneLimits& limits, const Air& air);
+                                               const AirplaneLimits& limits, const Air& air,
+                                               double at_most = kInfinity);
 }  // namespace altiplan::kit
