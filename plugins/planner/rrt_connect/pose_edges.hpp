@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "altiplan/kit/dubins/path_rules.hpp"
+#include "altiplan/kit/sampling/path_rules.hpp"
 #include "trees.hpp"
 
 namespace altiplan::rrt_connect {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/kit/dubins/path_rules.hpp"
+#include "altiplan/kit/sampling/path_rules.hpp"
 #include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/kit/sampling/star_search.hpp"
 #include "straight_motion.hpp"

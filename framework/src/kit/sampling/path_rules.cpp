@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/dubins/path_rules.hpp"
+#include "altiplan/kit/sampling/path_rules.hpp"
 
 #include <algorithm>
 
