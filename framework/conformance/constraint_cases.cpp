@@ -11,9 +11,11 @@ constexpr const char* kPure =
     "Constraint contract 1: pure and const, callable from any number of threads";
 constexpr const char* kTightens = "Constraint contract 2: tighten only ever makes a limit stricter";
 constexpr const char* kLegAlone =
-    "Constraint contract 3: admits depends on the leg alone, and is monotone under the parameter";
+    "Constraint contract 3: admits depends on the leg alone, and a stricter parameter admits less";
+constexpr const char* kThrough =
+    "Constraint contract 3: a leg through a part that is refused for its place is refused";
 constexpr const char* kViolations =
-    "Constraint contract 4: violations is empty if and only if the route satisfies the constraint";
+    "Constraint contract 5: violations is empty if and only if the route satisfies the constraint";
 constexpr const char* kNothing = "Suite: there must be something to judge";
 
 struct Bench {
@@ -284,6 +286,37 @@ void legs_and_routes(const Bench& bench, Report& report) {
   });
 }
 
+/// True if the same leg is admitted somewhere else.
+bool depends_on_place(const Constraint& constraint, const Motion& leg, RandomStream& random) {
+  for (int n = 0; n < 20; ++n) {
+    const Vec3 by = 3000 * direction(random);
+    if (constraint.admits({std::nullopt, leg.from + by, leg.to + by})) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Legs through refused ones: a constraint that looks at a leg's ends alone admits them.
+void legs_through_refused_ones(const Bench& bench, Report& report) {
+  const auto constraint = bench.make();
+  for (int n = 0; n < 400 * bench.options.rounds; ++n) {
+    RandomStream random = RandomStream(bench.options.seed).sub("through", std::uint64_t(n));
+    Motion part = random_leg(random);
+    part.before.reset();
+    if (constraint->admits(part) || part.from == part.to) {
+      continue;
+    }
+    for (const double longer : {1.0, 10.0, 100.0}) {
+      const Vec3 by = longer * (part.to - part.from);
+      const Motion whole{std::nullopt, part.from - by, part.to + by};
+      report.expect(
+          !constraint->admits(whole) || !depends_on_place(*constraint, part, random), kThrough,
+          [&] { return text(whole) + " is admitted, and its part, " + text(part) + ", refused"; });
+    }
+  }
+}
+
 /// The judge's result with the constraint agrees with the constraint's own: a route within the
 /// limits, whose legs are admitted, is violated exactly where violations reports it.
 void agrees_with_the_judge(const Bench& bench, Report& report) {
@@ -343,7 +376,9 @@ Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint
     return make_case(name, kPure, [bench, body](Report& report) { body(bench, report); });
   };
   return {made("answers_do_not_depend_on_history_or_threads", pure),
-          made("tighten_never_loosens", tightens), made("legs_and_routes", legs_and_routes),
+          made("tighten_never_loosens", tightens),
+          made("legs_and_routes", legs_and_routes),
+          made("legs_through_refused_ones", legs_through_refused_ones),
           made("agrees_with_the_judge", agrees_with_the_judge),
           made("odd_questions", odd_questions)};
 }

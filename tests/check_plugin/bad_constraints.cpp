@@ -90,6 +90,11 @@ bool divides(const Motion& leg, double limit) {
   return short_leg(leg, limit);
 }
 
+/// Keeps away from a place, as far as the leg's ends tell.
+bool only_ends(const Motion& leg, double limit) {
+  return leg.from.norm() >= 5 * limit && leg.to.norm() >= 5 * limit;
+}
+
 using Violations = std::vector<Violation>;
 
 Violations impure(const Polyline&, double limit) { return {{"", 0, limit + ++calls, limit, "so"}}; }
@@ -132,6 +137,8 @@ ALTIPLAN_PLUGIN(Constraint, "remembers", Told<admitting<remembers>>, Params,
                 "what it admits depends on the leg asked for before")
 ALTIPLAN_PLUGIN(Constraint, "long_leg", Told<admitting<long_leg>>, Params,
                 "admits more with the stricter parameter")
+ALTIPLAN_PLUGIN(Constraint, "only_ends", Told<admitting<only_ends>>, Params,
+                "keeps away from a place with the ends of legs alone")
 ALTIPLAN_PLUGIN(Constraint, "divides", Told<admitting<divides>>, Params,
                 "throws at a leg without a direction")
 ALTIPLAN_PLUGIN(Constraint, "impure", Told<violating<impure>>, Params,

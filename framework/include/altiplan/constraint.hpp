@@ -40,7 +40,8 @@ enum class AppliesTo { route, track, both };
 /// Contract:
 ///  1. Pure and const: callable from any number of threads.
 ///  2. tighten only ever makes a limit stricter.
-///  3. admits depends on the leg alone, and is monotone under the constraint's own parameter.
+///  3. admits depends on the leg, and the point before it, alone. A stricter parameter admits less.
+///     A leg through a part that is refused for its place is refused.
 ///  4. Legs are straight: a turn is given as chords at most kChordTolerance from it.
 ///  5. violations is empty if and only if the route satisfies the constraint; it covers what
 ///     tighten and admits cannot express (path-dependent constraints).

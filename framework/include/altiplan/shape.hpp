@@ -29,10 +29,10 @@ struct BoxShape {
 };
 
 /// Vertical prism over a simple polygon (either orientation, not closed by a repeated point) with
-/// optional holes, between two altitudes.
+/// optional holes, between two altitudes. Two points are a wall without thickness.
 struct Prism {
-  std::vector<std::array<double, 2>> outline;
-  std::vector<std::vector<std::array<double, 2>>> holes;
+  std::vector<std::array<double, 2>> outline{};
+  std::vector<std::vector<std::array<double, 2>>> holes{};
   double floor = -kInfinity;
   double ceiling = kInfinity;
 };

@@ -250,7 +250,7 @@ void apply_constraints(Request& request, std::vector<NamedConstraint> constraint
       if (!no_looser(request.limits, before)) {
         throw PluginError(
             "the constraint '" + named.name +
-            "' violated the contract of its interface: it loosened a limit, or made it no number");
+            "' violated the contract of its interface: it loosened a limit or set it to NaN");
       }
       named.admits_all =
           answer_of(named, [](const Constraint& asked) { return asked.admits_all(); });

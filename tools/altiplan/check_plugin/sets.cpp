@@ -35,11 +35,22 @@ void VolumeParams::describe(Fields& f) {
 void ParameterSet::describe(Fields& f) {
   f("plugin", plugin).doc("plugin that the set is for, in a library of several");
   f("with", with).doc("the plugin's parameters");
-  f("tighter", tighter).doc("stricter parameters of a constraint");
+  f("tighter", tighter).doc("stricter parameters of a constraint; default: those of with");
   f("unit_m", unit_m).greater_than(0).doc("length that a planner or smoother resolves well");
   f("iterations", iterations).at_least(1).doc("maximum number of iterations of one plan");
   f("volume", volume).doc("volume in which an environment is sampled");
   f("before", before).doc("layers before an environment, as in a scenario");
+}
+
+void ParameterSet::inherit() {
+  if (!tighter || tighter->kind != Value::Kind::map) {
+    return;
+  }
+  for (const Value::Entry& entry : with.entries) {
+    if (tighter->find(entry.key) == nullptr) {
+      tighter->entries.push_back(entry);
+    }
+  }
 }
 
 std::string ParameterSet::missing_layer(const host::Registry& registry) const {
@@ -76,6 +87,7 @@ std::vector<ParameterSet> parameter_sets(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const ParamReport report = bind(sets[i], &list.items[i], std::to_string(i));
     problems.insert(problems.end(), report.problems.begin(), report.problems.end());
+    sets[i].inherit();
     for (const Value& layer : sets[i].before) {
       if (layer.kind != Value::Kind::map || layer.entries.size() != 1) {
         problems.push_back({layer.where, std::to_string(i) + ".before",

@@ -30,6 +30,8 @@ struct ParameterSet {
   ParameterSet() { with.kind = Value::Kind::map; }
   void describe(Fields& f);
 
+  /// Adds to `tighter` the parameters of `with` that it lacks.
+  void inherit();
   /// The first layer of `before` that no library provides; "" if all are found.
   std::string missing_layer(const host::Registry& registry) const;
   /// The setup refers to this set's values. The layers before it come from the registry's

@@ -23,7 +23,8 @@ class QuietPlace final : public Constraint {
  private:
   // Called leg by leg by planners, pilots, smoothers and the judge.
   bool do_admits(const Motion& leg) const override {
-    const Cylinder place{params_.at_m[0], params_.at_m[1]};  // of radius 0, at all altitudes
+    // At all altitudes; a line between two points would be Prism{{from_m, to_m}}.
+    const Cylinder place{params_.at_m[0], params_.at_m[1]};
     const double distance = leg_distance(place, leg.from, leg.to);
     return distance >= params_.min_m - kLengthTolerance;  // touching is allowed
   }
