@@ -12,7 +12,7 @@ namespace {
 std::map<std::string, double> values_of_flight(const std::string& replans) {
   Json result = Json::parse(R"({"metrics": {"length_m": 5}, "setup_time_s": 0.5, "steps": []})");
   result["flight"] = Json::parse(R"({"collisions": 0, "min_separation_m": null, "reached": true,
-    "handovers": [], "counters": {"steps": 7}, "metrics": {"length_m": 6}})");
+    "cross_track_p999_m": 1.5, "height_error_max_m": null, "handovers": [], "counters": {"steps": 7}, "metrics": {"length_m": 6}})");
   result["flight"]["replans"] = Json::parse(replans);
   const auto values = values_of(result);
   return {values.begin(), values.end()};
@@ -32,7 +32,7 @@ TEST(RunValues, WithoutReplansTheirSumsHaveNoValue) {
   const std::map<std::string, double> expected = {
       {"length_m", 5},        {"setup_time_s", 0.5},        {"flight.collisions", 0},
       {"flight.reached", 1},  {"flight.handovers", 0},      {"flight.replans", 0},
-      {"flight.length_m", 6}, {"flight.counters.steps", 7},
+      {"flight.length_m", 6}, {"flight.counters.steps", 7}, {"flight.cross_track_p999_m", 1.5},
   };
   EXPECT_EQ(values_of_flight("[]"), expected);
 }
@@ -40,6 +40,7 @@ TEST(RunValues, WithoutReplansTheirSumsHaveNoValue) {
 TEST(RunValues, NamesOfReplansAreKnown) {
   EXPECT_EQ(why_no_value("flight.replan_time_s"), "");
   EXPECT_EQ(why_no_value("flight.replan_counters.nodes_added"), "");
+  EXPECT_EQ(why_no_value("flight.cross_track_max_m"), "");
   EXPECT_EQ(why_no_value("flight.replan_times"),
             "no run has a value 'flight.replan_times'; did you mean 'flight.replan_time_s'?");
   EXPECT_EQ(

@@ -56,6 +56,12 @@ void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_s
                flight.collisions == 1 ? "" : "s", is_inside ? "" : "nearest ",
                fixed(is_inside ? -*separation : separation, 1).c_str(), is_inside ? " inside" : "",
                flight.replans.size(), flight.replans.size() == 1 ? "" : "s");
+  if (flight.cross_track_p999_m) {
+    std::fprintf(
+        to, "  cross-track error: %s m, for 99.9 %% of the time %s m; height error: %s m\n",
+        fixed(flight.cross_track_max_m, 1).c_str(), fixed(flight.cross_track_p999_m, 1).c_str(),
+        fixed(flight.height_error_max_m, 1).c_str());
+  }
   for (const host::Handover& handover : flight.handovers) {
     std::fprintf(to, "  %7s s  command to %s: %s\n", fixed(handover.at_s, 0).c_str(),
                  handover.to.c_str(), handover.why.c_str());

@@ -79,6 +79,10 @@ void WingEntry::describe(Fields& f) {
       .doc("maximum bank angle: the turn radius is airspeed² / (g tan bank)");
   f("climb_deg", climb_deg).unit("deg").range(0, 89).doc("maximum climb angle through the air");
   f("sink_deg", sink_deg).unit("deg").range(0, 89).doc("maximum descent angle through the air");
+  f("roll_rate_dps", roll_rate_dps)
+      .unit("deg/s")
+      .range(1, 1000)
+      .doc("maximum rate of the bank angle in flight");
 }
 
 namespace {

@@ -70,6 +70,7 @@ struct WingEntry {
   double bank_deg = 30;
   double climb_deg = 10;
   double sink_deg = 10;
+  double roll_rate_dps = 60;
   void describe(Fields& f);
 };
 

@@ -8,6 +8,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
 #include "host/flight/flight_run.hpp"
+#include "host/flight/track_judge.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -29,7 +30,7 @@ Flight::Flight(const FlightSetup& setup)
   // Non-owning: the true world is owned, and changed, by world_.
   truth_request_.world =
       std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
-  truth_request_.limits.min_turn_radius = 0;  // checked for the whole track
+  truth_request_.limits = limits_of_legs(request_);
   result_.track.emplace_back(state_.time_s, state_.position);
 }
 
@@ -58,12 +59,15 @@ void Flight::fly_to_the_end() {
     reach_ = pilot_->reach_m();
   }
   const double end = state_.time_s + max_time();
+  if (request_.vehicle.wing) {
+    take_off_wing();
+  }
   if (setup_.always && pilot_ != nullptr) {
     hand_over(true, "the pilot flies all the way");
   }
   end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
   meet_events();
-  while (!ended_ && !request_.goal.reached_at(state_.position)) {
+  while (!ended_ && !passes_goal_ && !request_.goal.reached_at(state_.position)) {
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMaxSteps) {
       end_flight(RunStatus::not_reached, late ? Reason::deadline : Reason::iterations,

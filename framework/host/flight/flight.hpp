@@ -91,6 +91,11 @@ struct FlightResult {
   int collisions = 0;                      ///< the first contact ends the flight
   std::optional<double> min_separation_m;  ///< from anything in the true world, negative inside
   bool reached = false;
+  /// Of an aeroplane that follows the route: horizontal distance to its nearest point, the largest
+  /// and that exceeded for 0.1 % of the time; and the largest difference in height to that point.
+  std::optional<double> cross_track_max_m;
+  std::optional<double> cross_track_p999_m;
+  std::optional<double> height_error_max_m;
   Counters counters;  ///< the pilot's, and "steps" of the simulation
   Measures measures;  ///< of the track, in the world at the end of the flight
   CheckResult check;  ///< each leg against the true world at the time it was flown
@@ -104,6 +109,8 @@ struct FlightResult {
 /// reach, comes closer than 1/20 of that reach to something the route was not planned around: a new
 /// or changed layer, or a moving obstacle at the time of passing. It hands back once a straight leg
 /// to the route ahead, and the route after it, keep 1.5 times that distance, without a sharp turn.
+/// An aeroplane flies by WingGuidance, along the route and in the direction of a pilot's steps; its
+/// flight ends at the goal, or as it passes abeam of the route's end.
 /// Contacts are judged against the true world, exactly along every leg flown.
 FlightResult fly(const FlightSetup& setup);
 }  // namespace altiplan::host

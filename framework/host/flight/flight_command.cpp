@@ -15,11 +15,20 @@ constexpr double kClearMargin = 0.075;   ///< above this the route is clear agai
 constexpr double kMinWay = 1e-3;         ///< metres: a shorter rest of a leg is flown with the step
 constexpr double kMinShare = 1e-9;       ///< of a step: a shorter rest is rounding error, not flown
 const double kGentleTurn = radians(30);  ///< of a hand-back, at both ends of its leg
+constexpr double kMinSpeed = 0.1;        ///< m/s: an aeroplane may stand against the wind
 constexpr int kMaxStuck = 3;
 }  // namespace
 
 double Flight::speed() const {
+  if (wing_) {
+    return std::max(state_.velocity.head<2>().norm(), kMinSpeed);
+  }
   return request_.vehicle.speed_at(request_.world->clearance(state_.position));
+}
+
+void Flight::restart_path() {
+  progress_ = 0;
+  reference_ = 0;
 }
 
 void Flight::fly_route() {
@@ -30,6 +39,10 @@ void Flight::fly_route() {
       fly_pilot();
       return;
     }
+  }
+  if (wing_) {
+    fly_wing_on_route();
+    return;
   }
   double left = setup_.step_s;
   while (!ended_ && left > kMinShare * setup_.step_s) {
@@ -90,7 +103,7 @@ void Flight::fly_pilot() {
     throw PluginError("violated the contract of its interface: a step faster than the vehicle",
                       Reason::contract);
   }
-  fly_leg(step.next);
+  wing_ ? fly_wing_toward(step.next) : fly_leg(step.next);
 }
 
 void Flight::stuck(const std::string& why) {
@@ -128,7 +141,7 @@ bool Flight::hand_back() {
         danger_on(state_.position, state_.time_s, q, t1, room) == nullptr &&
         danger_ahead(s, t1, speed(), room) == nullptr) {
       path_.rejoin(state_.position, s);
-      progress_ = 0;
+      restart_path();
       hand_over(false, "clear: a straight leg leads back to the route");
       return true;
     }

@@ -39,22 +39,22 @@ void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) 
 }
 
 void Flight::finish() {
-  result_.reached = !ended_ && request_.goal.reached_at(state_.position);
-  Polyline track;
-  for (const auto& [t, p] : result_.track) {
-    track.push_back(p);
-  }
+  result_.reached = !ended_ && at_goal(state_.position, request_);
+  const Polyline track = places_of(result_.track);
   result_.measures = measure(track, truth_request_);
   result_.measures.min_radius_m = track_radius(track, request_.vehicle).radius_m;
   result_.measures.duration_s = state_.time_s - setup_.request.start.time_s;
   if (const double separation = world_.separation().distance; std::isfinite(separation)) {
     result_.min_separation_m = separation;
   }
+  result_.cross_track_max_m = follow_error_.across_quantile(1);
+  result_.cross_track_p999_m = follow_error_.across_quantile(0.999);
+  result_.height_error_max_m = follow_error_.height_max();
   if (pilot_ != nullptr) {
     result_.counters = pilot_->counters();
   }
   result_.counters.insert(result_.counters.begin(), {"steps", steps_});
-  judge_whole(track);
+  judge_whole();
   if (!ended_) {
     const CheckResult& check = result_.check;
     result_.status = check.ok() ? RunStatus::solved : RunStatus::rejected;
@@ -74,16 +74,15 @@ std::string Flight::attribute_to() const {
   return std::string(when) + ", near " + place(at) + " m: " + first.message;
 }
 
-void Flight::judge_whole(const Polyline& track) {
+void Flight::judge_whole() {
   const Request& request = truth_request_;
   std::vector<Violation>& found = result_.check.violations;
-  const Goal& goal = request_.goal;  // as it is now
-  if (!goal.reached_at(track.back())) {
-    found.push_back({"goal", track.size() - 1, (track.back() - goal.position).norm(),
-                     goal.tolerance_m, "the flight ended " + away() + " from the goal"});
+  const Vec3& end = state_.position;
+  if (!at_goal(end, request_)) {  // the goal as it is now
+    found.push_back({"goal", result_.track.size() - 1, (end - request_.goal.position).norm(),
+                     arrival_distance(request_), "the flight ended " + away() + " from the goal"});
   }
-  for (Violation& violation :
-       whole_track_violations(track, request, request_.limits.min_turn_radius)) {
+  for (Violation& violation : whole_track_violations(result_.track, request, request_.limits)) {
     found.push_back(std::move(violation));
   }
 }

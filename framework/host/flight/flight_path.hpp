@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "altiplan/route.hpp"
+#include "altiplan/wind.hpp"
 
 namespace altiplan::host {
 
@@ -14,6 +15,11 @@ class FlightPath {
   explicit FlightPath(const Polyline& route) : points_(without_repeats(route)) { measure(); }
 
   double length() const { return along_.back(); }
+  /// Horizontal distance along the path to position s.
+  double level(double s) const {
+    const std::size_t i = leg(s);
+    return level_[i] + (at(s) - points_[i]).head<2>().norm();
+  }
   Vec3 at(double s) const {
     const std::size_t i = leg(s);
     if (i + 1 == points_.size()) {
@@ -59,6 +65,72 @@ class FlightPath {
     return std::min(best, length());
   }
 
+  /// The same in plan view.
+  double nearest_level(Vec3 p, double s0, double s1) const {
+    double best = s0;
+    double least = kInfinity;
+    double s = s0;
+    for_each_leg(s0, s1, [&](const Vec3& a, const Vec3& b) {
+      const Vec3 way = b - a;
+      const double run = way.head<2>().squaredNorm();
+      const double share =
+          run > 0 ? std::clamp((p - a).head<2>().dot(way.head<2>()) / run, 0.0, 1.0) : 0;
+      const double distance = (a + share * way - p).head<2>().norm();
+      if (distance < least) {
+        least = distance;
+        best = s + share * way.norm();
+      }
+      s += way.norm();
+    });
+    return std::min(best, length());
+  }
+
+  /// The first position from s on that lies at that horizontal distance from p, or farther; the end
+  /// if there is none.
+  double first_beyond(double distance, const Vec3& p, double s) const {
+    const auto is_beyond = [&](double at_s) { return (at(at_s) - p).head<2>().norm() >= distance; };
+    while (s < length() && !is_beyond(s)) {
+      double near = s;
+      s = end_of_leg(s);
+      if (!is_beyond(s)) {
+        continue;
+      }
+      while (s - near > kLengthTolerance) {
+        const double middle = (near + s) / 2;
+        (is_beyond(middle) ? s : near) = middle;
+      }
+      break;
+    }
+    return s;
+  }
+
+  /// Direction of the first leg from s on that has a heading; east if there is none.
+  Vec3 course_at(double s) const {
+    Vec3 course(1, 0, 0);
+    bool found = false;
+    for_each_leg(s, length(), [&](const Vec3& a, const Vec3& b) {
+      if (!found && has_heading(b - a)) {
+        course = b - a;
+        found = true;
+      }
+    });
+    return course;
+  }
+  /// Direction of the last leg with a heading, of horizontal length 1.
+  const Vec3& end_direction() const { return end_direction_; }
+  /// Heights of the path, one for each layer of the wind that it crosses.
+  std::vector<double> heights_across(const Wind& wind) const {
+    const auto [low, high] = std::minmax_element(
+        points_.begin(), points_.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+    std::vector<double> heights{low->z(), high->z()};
+    for (const Wind::Layer& layer : wind.layers) {
+      if (layer.above_m > low->z() && layer.above_m < high->z()) {
+        heights.push_back(layer.above_m);
+      }
+    }
+    return heights;
+  }
+
   /// Goes from p straight to position s, then along the path.
   void rejoin(const Vec3& p, double s) {
     Polyline route{p, at(s)};
@@ -80,8 +152,14 @@ class FlightPath {
  private:
   void measure() {
     along_.assign(1, 0);
+    level_.assign(1, 0);
+    end_direction_ = {1, 0, 0};
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-      along_.push_back(along_.back() + (points_[i + 1] - points_[i]).norm());
+      const Vec3 way = points_[i + 1] - points_[i];
+      const double run = way.head<2>().norm();
+      along_.push_back(along_.back() + way.norm());
+      level_.push_back(level_.back() + run);
+      end_direction_ = has_heading(way) ? Vec3(way / run) : end_direction_;
     }
   }
   std::size_t next(double s) const {
@@ -96,5 +174,7 @@ class FlightPath {
 
   Polyline points_;
   std::vector<double> along_;
+  std::vector<double> level_;  ///< the same in plan view
+  Vec3 end_direction_{1, 0, 0};
 };
 }  // namespace altiplan::host

@@ -83,7 +83,7 @@ void Flight::take_route(Route route, const Request& request) {
     }
   }
   path_ = FlightPath(route.chords(kChordTolerance));
-  progress_ = 0;
+  restart_path();
   stuck_ = 0;
   end_moved_ = false;
   world_.route_is_new();

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/flight/flight.hpp"
 #include "host/flight/flight_path.hpp"
 #include "host/flight/flight_world.hpp"
+#include "host/flight/follow_error.hpp"
+#include "host/flight/wing_guidance.hpp"
 
 namespace altiplan::host {
 
@@ -42,6 +46,8 @@ class Flight {
 
   // Route following, pilot and hand-over: flight_command.cpp.
   double speed() const;
+  /// The path has changed, and begins anew.
+  void restart_path();
   void fly_route();
   void fly_pilot();
   void stuck(const std::string& why);
@@ -49,6 +55,25 @@ class Flight {
   Vec3 local_target() const;
   /// Takes the nearest clear leg back to the path; false if there is none.
   bool hand_back();
+
+  // An aeroplane: flight_wing.cpp.
+  /// What the guidance flies toward: a point, and the horizontal distance to it along the route.
+  struct Reference {
+    Vec3 point{0, 0, 0};
+    double ahead = 0;
+  };
+  using ReferenceFor = std::function<Reference(const State&)>;
+  /// Ends the flight in wind that is not below the airspeed.
+  void take_off_wing();
+  void fly_wing_on_route();
+  /// In the direction in which a pilot's step leads.
+  void fly_wing_toward(const State& command);
+  /// Adds points to the track where it bends, and where the wind changes.
+  void fly_wing(double duration, bool on_route, const ReferenceFor& reference_for);
+  Reference reference_on_route(const State& now);
+  void note_errors(const State& now, double dt);
+  /// At the goal, or abeam of the route's end: an aeroplane cannot stop there.
+  bool passes_goal(const State& now, bool on_route) const;
 
   // Replanning from the vehicle's position: flight_replanning.cpp.
   void ask_replan();
@@ -66,7 +91,7 @@ class Flight {
   /// The first violated constraint, with time and position.
   std::string attribute_to() const;
   /// The checks of a whole route, as in check(); legs were judged in the world of their time.
-  void judge_whole(const Polyline& track);
+  void judge_whole();
 
   const FlightSetup& setup_;
   FlightWorld world_;
@@ -83,6 +108,10 @@ class Flight {
   bool ended_ = false;
   bool end_moved_ = false;  ///< the last leg was never judged
   double progress_ = 0;     ///< metres along the path
+  double reference_ = 0;    ///< the same of the guidance's reference point
+  std::optional<WingGuidance> wing_;
+  bool passes_goal_ = false;  ///< an aeroplane's flight ends
+  FollowError follow_error_;
   int steps_ = 0;
   int stuck_ = 0;
   std::optional<double> replan_due_;

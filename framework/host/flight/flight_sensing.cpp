@@ -14,9 +14,9 @@ void Flight::meet_events() {
     }
     if (event->kind == FlightEvent::Kind::move_goal) {
       request_.goal.position = event->vector;
-      path_.move_end(pilot_commands_ ? path_.at(progress_) : state_.position, progress_,
+      path_.move_end(pilot_commands_ || wing_ ? path_.at(progress_) : state_.position, progress_,
                      event->vector);
-      progress_ = 0;
+      restart_path();
       end_moved_ = true;
       ask_replan();
     } else {

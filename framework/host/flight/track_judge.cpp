@@ -17,9 +17,9 @@ class Replay {
   explicit Replay(const FlightSetup& setup)
       : world_(setup),
         events_(setup.events),
-        min_turn_radius_(setup.request.limits.min_turn_radius),
+        limits_(setup.request.limits),
         request_(setup.request) {
-    request_.limits.min_turn_radius = 0;  // checked for the whole track
+    request_.limits = limits_of_legs(request_);
   }
 
   TrackVerdict operator()(const Track& track) {
@@ -38,12 +38,8 @@ class Replay {
       }
     }
     meet_events(track.back(), track.size() - 1, touching);
-    Polyline places;
-    for (const auto& [t, p] : track) {
-      places.push_back(p);
-    }
-    finish(places);
-    take_measures(track, places);
+    finish(track);
+    take_measures(track, places_of(track));
     return std::move(verdict_);
   }
 
@@ -76,7 +72,7 @@ class Replay {
     const auto& [t0, a] = from;
     const auto& [t1, b] = to;
     const double run = (b - a).norm();
-    const double fastest = top_speed(request_.vehicle);
+    const double fastest = request_.vehicle.wing ? kInfinity : top_speed(request_.vehicle);
     if (!(t1 > t0) || run > fastest * (t1 - t0) * (1 + 1e-6) + kLengthTolerance) {
       found().push_back({"speed", at, t1 > t0 ? run / (t1 - t0) : kInfinity, fastest,
                          "the track is faster than the vehicle there"});
@@ -103,14 +99,15 @@ class Replay {
     touching = met != nullptr;
   }
 
-  void finish(const Polyline& track) {
+  void finish(const Track& track) {
+    const Vec3& end = track.back().second;
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
-    verdict_.reached = verdict_.collisions == 0 && request_.goal.reached_at(track.back());
-    if (!request_.goal.reached_at(track.back())) {
-      found().push_back({"goal", track.size() - 1, (track.back() - request_.goal.position).norm(),
-                         request_.goal.tolerance_m, "the track does not end at the goal"});
+    verdict_.reached = verdict_.collisions == 0 && at_goal(end, request_);
+    if (!at_goal(end, request_)) {
+      found().push_back({"goal", track.size() - 1, (end - request_.goal.position).norm(),
+                         arrival_distance(request_), "the track does not end at the goal"});
     }
-    for (Violation& violation : whole_track_violations(track, request_, min_turn_radius_)) {
+    for (Violation& violation : whole_track_violations(track, request_, limits_)) {
       found().push_back(std::move(violation));
     }
   }
@@ -126,7 +123,7 @@ class Replay {
 
   FlightWorld world_;
   std::vector<FlightEvent> events_;  ///< still to come
-  double min_turn_radius_;
+  Limits limits_;
   Request request_;  ///< in the true world at that time
   TrackVerdict verdict_;
 };
@@ -152,6 +149,14 @@ Polyline stretches(const Polyline& track, std::vector<std::size_t>& index) {
 }
 }  // namespace
 
+Polyline places_of(const Track& track) {
+  Polyline places;
+  for (const auto& [t, p] : track) {
+    places.push_back(p);
+  }
+  return places;
+}
+
 TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
   TrackRadius least;
   std::vector<std::size_t> index;
@@ -171,24 +176,28 @@ TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
   return least;
 }
 
-std::vector<Violation> whole_track_violations(const Polyline& track, const Request& request,
-                                              double min_turn_radius) {
+std::vector<Violation> whole_track_violations(const Track& track, const Request& request,
+                                              const Limits& limits) {
+  const Polyline places = places_of(track);
   std::vector<Violation> found;
-  const TrackRadius tightest = track_radius(track, request.vehicle);
-  if (tightest.radius_m && *tightest.radius_m < min_turn_radius - kLengthTolerance) {
+  if (request.vehicle.wing) {
+    found = wing_violations(track, request, limits);
+  } else if (const TrackRadius tightest = track_radius(places, request.vehicle);
+             tightest.radius_m && *tightest.radius_m < limits.min_turn_radius - kLengthTolerance) {
     char message[96];
     std::snprintf(message, sizeof message,
                   "the track turns on a radius of %.9g m, below the limit of %.9g m",
-                  *tightest.radius_m, min_turn_radius);
-    found.push_back({"turn_radius", tightest.at, *tightest.radius_m, min_turn_radius, message});
+                  *tightest.radius_m, limits.min_turn_radius);
+    found.push_back(
+        {"turn_radius", tightest.at, *tightest.radius_m, limits.min_turn_radius, message});
   }
-  const double total = length(track);
+  const double total = length(places);
   if (total > request.limits.max_route_length + kLengthTolerance) {
     found.push_back({"route_length", 0, total, request.limits.max_route_length,
                      "the flight is longer than the maximum route length"});
   }
   for (const NamedConstraint& named : request.constraints) {
-    for (Violation& violation : named.constraint->violations(track, request)) {
+    for (Violation& violation : named.constraint->violations(places, request)) {
       violation.constraint = named.name;
       found.push_back(std::move(violation));
     }

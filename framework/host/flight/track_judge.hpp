@@ -22,9 +22,13 @@ struct TrackVerdict {
 
 /// Judges a track against the true world over time, without flying it: every leg against layers and
 /// constraints, as exactly as in fly(), moving obstacles by their times, and the vehicle's maximum
-/// speed. Uses only the request, the true world and the events of `setup`. An event happens at the
-/// first point of the track at or after its time, or within its distance.
+/// speed; an aeroplane's airspeed, climb and turns by wing_violations(). Uses only the request, the
+/// true world and the events of `setup`. An event happens at the first point of the track at or
+/// after its time, or within its distance.
 TrackVerdict judge_track(const Track& track, const FlightSetup& setup);
+
+/// The positions of a track.
+Polyline places_of(const Track& track);
 
 /// The tightest turn of a track; none if it is straight.
 struct TrackRadius {
@@ -36,10 +40,28 @@ struct TrackRadius {
 /// fillets between them (fillet_radius). One sampling cannot distinguish the two.
 TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle);
 
-/// Violations of a whole track, beyond its legs: its minimum turn radius, its length, and the
-/// constraints on whole tracks.
-std::vector<Violation> whole_track_violations(const Polyline& track, const Request& request,
-                                              double min_turn_radius);
+/// The limits that straight legs between the points of a track are judged by: without those on the
+/// turn radius, and on an aeroplane's climb, which are judged for the whole track.
+Limits limits_of_legs(const Request& request);
+
+/// Violations of a whole track, beyond its legs: its turns (minimum turn radius in `limits`), an
+/// aeroplane's motion, its length, and the constraints on whole tracks.
+std::vector<Violation> whole_track_violations(const Track& track, const Request& request,
+                                              const Limits& limits);
+
+/// The first violation of each of an aeroplane's limits, judged by the times of the track in the
+/// air mass, which moves with the wind at the beginning of each step: airspeed; climb and sink; and
+/// turn rate: two successive steps may differ in heading by what a turn of the minimum radius
+/// allows in the time from the middle of one to the middle of the other. No flight within the
+/// limits violates them, however it is sampled.
+std::vector<Violation> wing_violations(const Track& track, const Request& request,
+                                       const Limits& limits);
+
+/// True if the position is at the goal: within its tolerance, of an aeroplane also within a tenth
+/// of its turn radius, since it passes abeam of a point that it cannot stop at.
+bool at_goal(const Vec3& p, const Request& request);
+/// That distance, metres.
+double arrival_distance(const Request& request);
 
 /// The maximum of the vehicle's speed profile.
 double top_speed(const Vehicle& vehicle);

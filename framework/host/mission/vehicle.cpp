@@ -15,7 +15,7 @@ Vehicle vehicle_of(const VehicleEntry& entry) {
   if (const auto& wing = entry.wing) {
     vehicle.speed_mps = wing->airspeed_mps;
     vehicle.wing = {vehicle.speed_mps, radians(wing->bank_deg), radians(wing->climb_deg),
-                    radians(wing->sink_deg)};
+                    radians(wing->sink_deg), radians(wing->roll_rate_dps)};
   }
   return vehicle;
 }

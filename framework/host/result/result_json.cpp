@@ -96,6 +96,9 @@ Json flight_json(const FlightResult& flight) {
   json["collisions"] = flight.collisions;
   json["min_separation_m"] = number(flight.min_separation_m);
   json["reached"] = flight.reached;
+  json["cross_track_max_m"] = number(flight.cross_track_max_m);
+  json["cross_track_p999_m"] = number(flight.cross_track_p999_m);
+  json["height_error_max_m"] = number(flight.height_error_max_m);
   json["handovers"] = Json::array();
   for (const Handover& handover : flight.handovers) {
     json["handovers"].push_back(

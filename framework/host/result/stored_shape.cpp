@@ -49,10 +49,19 @@ constexpr Key kStep[] = {
     {"check", kObject | kNull},
 };
 constexpr Key kFlight[] = {
-    {"status", kStatus}, {"message", kText},      {"metrics", kObject},
-    {"check", kObject},  {"collisions", kNumber}, {"min_separation_m", kNumber | kNull},
-    {"reached", kTruth}, {"handovers", kList},    {"replans", kList},
+    {"status", kStatus},
+    {"message", kText},
+    {"metrics", kObject},
+    {"check", kObject},
+    {"collisions", kNumber},
+    {"min_separation_m", kNumber | kNull},
+    {"reached", kTruth},
+    {"handovers", kList},
+    {"replans", kList},
     {"track", kList},
+    {"cross_track_max_m", kNumber | kNull},
+    {"cross_track_p999_m", kNumber | kNull},
+    {"height_error_max_m", kNumber | kNull},
 };
 
 std::string status_words() {

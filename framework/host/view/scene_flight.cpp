@@ -299,6 +299,11 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   const std::string whose = stored.file + ": the flight";
   set_status(json, stored.file, status_of(now), first_found(now, track));
   json["metrics"] = metrics_now(flight.at("metrics"), to_json(now.measures));
+  for (const char* name : {"cross_track_max_m", "cross_track_p999_m", "height_error_max_m"}) {
+    if (const auto error = flight.find(name); error != flight.end() && !error->is_null()) {
+      json["metrics"][name] = *error;  // of an aeroplane
+    }
+  }
   json["collisions"] = now.collisions;
   json["min_separation_m"] = now.min_separation_m ? Json(*now.min_separation_m) : Json(nullptr);
   json["reached"] = now.reached;

@@ -16,10 +16,11 @@ struct SpeedNear {
 
 /// An aeroplane: it flies at a constant airspeed and turns by banking.
 struct ALTIPLAN_API Wing {
-  double airspeed_mps = 15;    ///< horizontal component
-  double bank = radians(30);   ///< maximum bank angle, radians, in (0, pi/2)
-  double climb = radians(10);  ///< maximum climb angle through the air
-  double sink = radians(10);   ///< maximum descent angle through the air
+  double airspeed_mps = 15;        ///< horizontal component
+  double bank = radians(30);       ///< maximum bank angle, radians, in (0, pi/2)
+  double climb = radians(10);      ///< maximum climb angle through the air
+  double sink = radians(10);       ///< maximum descent angle through the air
+  double roll_rate = radians(60);  ///< maximum rate of the bank angle, radians/s; of flights alone
 
   /// Radius of a coordinated turn at the maximum bank angle: airspeed² / (g tan bank).
   double turn_radius() const;

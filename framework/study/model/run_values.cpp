@@ -7,6 +7,10 @@
 namespace altiplan::study {
 namespace {
 
+constexpr std::initializer_list<const char*> kOfFlightAlone = {
+    "collisions",        "min_separation_m",   "reached",
+    "cross_track_max_m", "cross_track_p999_m", "height_error_max_m"};
+
 class Values {
  public:
   void add(const std::string& name, const host::Json& value) {
@@ -65,8 +69,10 @@ RunValues values_of(const host::Json& result) {
     values.add_each(prefix, step.at("metrics"));
   }
   if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
-    for (const char* name : {"collisions", "min_separation_m", "reached"}) {
-      values.add(std::string("flight.") + name, flight.at(name));
+    for (const char* name : kOfFlightAlone) {
+      if (const auto value = flight.find(name); value != flight.end()) {
+        values.add(std::string("flight.") + name, *value);
+      }
     }
     values.add_replans(flight.at("replans"));
     values.add("flight.handovers", flight.at("handovers").size());
@@ -83,9 +89,8 @@ std::string why_no_value(const std::string& name) {
                         "wall_time_s", "cpu_time_s", "peak_memory_mb"});
   static const std::vector<std::string> kOfStep =
       joined(kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit"});
-  static const std::vector<std::string> kOfFlight = joined(
-      kOfRoute,
-      {"collisions", "min_separation_m", "reached", "replans", "replan_time_s", "handovers"});
+  static const std::vector<std::string> kOfFlight =
+      joined(joined(kOfRoute, kOfFlightAlone), {"replans", "replan_time_s", "handovers"});
   const std::size_t last = name.rfind('.');
   const std::string end = name.substr(last == std::string::npos ? 0 : last + 1);
   const std::string before = last == std::string::npos ? "" : name.substr(0, last);

@@ -51,6 +51,7 @@ TEST(Altitude, TheJudgeMeasuresAgainstTheDatum) {
 
 TEST(Altitude, HoldsForTracksToo) {
   EXPECT_EQ(problem("{max_m: 160}", AppliesTo::track).limits.altitude.size(), 1u);
+  EXPECT_TRUE(problem("{max_m: 160, applies_to: route}", AppliesTo::track).limits.altitude.empty());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ using namespace altiplan;
 
 struct Params {
   double min_m = 0;
+  AppliesTo applies_to = AppliesTo::both;
 
   void describe(Fields& f) {
     f("min_m", min_m)
@@ -16,6 +17,11 @@ struct Params {
         .range(0, 100000)
         .required()
         .doc("minimum distance from the path of the vehicle's centre to any obstacle");
+    f("applies_to", applies_to,
+      {{"both", AppliesTo::both}, {"route", AppliesTo::route}, {"track", AppliesTo::track}})
+        .doc(
+            "what it restricts: a larger value for the route than for the track leaves a margin "
+            "for the flight");
   }
 };
 
@@ -24,6 +30,7 @@ class Clearance final : public Constraint {
   explicit Clearance(const Params& params) : params_(params) {}
 
  private:
+  AppliesTo do_applies_to() const override { return params_.applies_to; }
   void do_tighten(Limits& limits, const Request&) const override {
     limits.min_clearance = std::max(limits.min_clearance, params_.min_m);
   }

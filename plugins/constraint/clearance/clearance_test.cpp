@@ -43,5 +43,12 @@ TEST(Clearance, HoldsForTracksToo) {
   EXPECT_EQ(problem("{min_m: 61}", AppliesTo::track).limits.min_clearance, 61);
 }
 
+TEST(Clearance, MayHoldForRoutesAlone) {
+  const std::string yaml = "{min_m: 61, applies_to: route}";
+  EXPECT_EQ(problem(yaml).limits.min_clearance, 61);
+  EXPECT_EQ(problem(yaml, AppliesTo::track).limits.min_clearance, 0);
+  EXPECT_EQ(problem("{min_m: 61, applies_to: track}").limits.min_clearance, 0);
+}
+
 }  // namespace
 }  // namespace altiplan::testing

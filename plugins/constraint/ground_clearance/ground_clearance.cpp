@@ -9,6 +9,7 @@ using namespace altiplan;
 
 struct Params {
   double min_m = 0;
+  AppliesTo applies_to = AppliesTo::both;
 
   void describe(Fields& f) {
     f("min_m", min_m)
@@ -16,6 +17,11 @@ struct Params {
         .range(0, 100000)
         .required()
         .doc("minimum height of the route above the ground below it");
+    f("applies_to", applies_to,
+      {{"both", AppliesTo::both}, {"route", AppliesTo::route}, {"track", AppliesTo::track}})
+        .doc(
+            "what it restricts: a larger value for the route than for the track leaves a margin "
+            "for the flight");
   }
 };
 
@@ -24,6 +30,7 @@ class GroundClearance final : public Constraint {
   explicit GroundClearance(const Params& params) : params_(params) {}
 
  private:
+  AppliesTo do_applies_to() const override { return params_.applies_to; }
   void do_tighten(Limits& limits, const Request&) const override {
     limits.min_ground_clearance =
         std::max(params_.min_m, limits.min_ground_clearance.value_or(-kInfinity));

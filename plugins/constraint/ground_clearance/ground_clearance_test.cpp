@@ -57,5 +57,11 @@ TEST(GroundClearance, HoldsForTracksToo) {
   EXPECT_EQ(problem("{min_m: 61}", AppliesTo::track).limits.min_ground_clearance, 61);
 }
 
+TEST(GroundClearance, MayHoldForRoutesAlone) {
+  const std::string yaml = "{min_m: 61, applies_to: route}";
+  EXPECT_EQ(problem(yaml).limits.min_ground_clearance, 61);
+  EXPECT_FALSE(problem(yaml, AppliesTo::track).limits.min_ground_clearance);
+}
+
 }  // namespace
 }  // namespace altiplan::testing
