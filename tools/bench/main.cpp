@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   for (const auto add :
        {bench::add_grid, bench::add_any_angle, bench::add_search, bench::add_replan,
         bench::add_sampling, bench::add_ants, bench::add_pilot, bench::add_field,
-        bench::add_queries, bench::add_dubins, bench::add_hybrid_astar}) {
+        bench::add_queries, bench::add_dubins, bench::add_hybrid_astar, bench::add_wing_flights}) {
     add(all);
   }
   try {
