@@ -48,5 +48,18 @@ TEST_F(Wing, AResultWhoseRouteAndLegsDisagreeIsRefused) {
   forged["legs"][1]["kind"] = "spiral";
   EXPECT_THROW(host::route_of(forged, "forged.json"), Error);
 }
+
+TEST(WingStar, LeavesOneLoiterCircleAndJoinsTheOther) {
+  const testing::Ran ran = testing::run_file(testing::configs() / "pipelines/wing_ridge_star.yaml");
+  ASSERT_EQ(ran.json["status"], "solved") << ran.json["message"];
+  const Route route = host::route_of(ran.json, "result.json");
+  const auto on_circle = [](const Vec3& p, double x, double y) {
+    return std::hypot(p.x() - x, p.y() - y);
+  };
+  EXPECT_NEAR(on_circle(route.front(), 4000, 5000), 250, 1e-6);
+  EXPECT_NEAR(on_circle(route.back(), 23000, 23500), 250, 1e-6);
+  // The quickest route that has been found takes 890 s.
+  EXPECT_LT(ran.json["metrics"]["duration_s"], 1000);
+}
 }  // namespace
 }  // namespace altiplan

@@ -88,8 +88,10 @@ class TwoTrees {
           pairs.push_back({edges_.metres(kStart, from, edges_.state(kGoal, to)), {from, to}});
         }
       }
-      std::sort(pairs.begin(), pairs.end());
-      return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+      constexpr std::size_t kMaxShots = 64;
+      const auto end = pairs.begin() + std::ptrdiff_t(std::min(pairs.size(), kMaxShots));
+      std::partial_sort(pairs.begin(), end, pairs.end());
+      return std::any_of(pairs.begin(), end, [&](const auto& pair) {
         return join(kStart, pair.second.first, pair.second.second);
       });
     }

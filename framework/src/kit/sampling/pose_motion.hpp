@@ -32,9 +32,7 @@ class PoseMotion {
         paths_(request, settings.turn_radius),
         axes_(std::max(1, free_axes(sampled_box(request)))),
         starts_(paths_.starts()),
-        goals_(paths_.goals()) {
-    memory_.arrivals.clear();
-  }
+        goals_(paths_.goals()) {}
 
   static const Vec3& place(const State& state) { return state.position; }
   State state(Node node) const {
@@ -77,25 +75,19 @@ class PoseMotion {
       const double ground = (request_.goal.position - from.position).head<2>().norm();
       return std::max(0.0, ground - request_.goal.tolerance_m) / steering().ground_per_air();
     }
+    if (request_.goal.loiter) {
+      const double ground = (request_.goal.position - from.position).head<2>().norm();
+      return std::abs(ground - request_.goal.loiter->radius) / steering().ground_per_air();
+    }
     double least_of_all = kInfinity;
     for (const State& goal : goals_) {
       least_of_all = std::min(least_of_all, least(from, goal));
     }
     return least_of_all;
   }
-  /// Of a route from any start to any goal, without obstacles.
-  double least_route() const {
-    if (ends_anywhere() || request_.wind.layers.size() > 1) {
-      return 0;
-    }
-    double best = kInfinity;
-    for (const State& start : starts_) {
-      for (const State& goal : goals_) {
-        best = std::min(best, metres(start, goal));
-      }
-    }
-    return best;
-  }
+  static double least_route() { return 0; }
+  /// True if no route is shorter than the shortest path from any start to any goal.
+  bool ends_are_poses() const { return !ends_anywhere() && request_.wind.layers.size() <= 1; }
   /// Beyond this, a node is of no use while the best route costs `best`.
   double max_cost(double best) const {
     const double most = steering().is_calm() ? request_.limits.max_route_length : kInfinity;

@@ -34,18 +34,17 @@ class StarGrowth {
         least_route_(motion_.least_route()),
         max_nodes_(std::min<std::size_t>(request.budget.max_memory_bytes / Motion::kBytesPerNode,
                                          1U << 30)) {
-    memory_.legs.clear();
-    memory_.points.clear();
-    memory_.cost.clear();
-    memory_.ends.clear();
+    memory_.clear();
     for (const State& start : motion_.starts()) {
       add_root(start);
     }
   }
 
   PlanResult run() {
-    if (!Motion::kExact && may_go_on()) {
-      join_directly();
+    if constexpr (!Motion::kExact) {
+      if (may_go_on()) {
+        join_directly();
+      }
     }
     while (may_go_on()) {
       ++expanded_;
@@ -59,6 +58,7 @@ class StarGrowth {
   static constexpr double kShorter = 1 - 1e-12;
   /// Of the last length: triggers the removal of useless nodes.
   static constexpr double kForgetBelow = 0.99;
+  static constexpr std::size_t kMaxShots = 64;
 
   using State = typename Motion::State;
   using Node = LegTree::Node;
@@ -85,7 +85,7 @@ class StarGrowth {
     return motion_.sampled(p, random_);
   }
 
-  /// Tries the paths from starts to goals, from the shortest on, until one is free.
+  /// Tries some paths from starts to goals, from the shortest on, until one is free.
   void join_directly() {
     std::vector<std::pair<double, std::pair<Node, std::size_t>>> paths;
     for (Node root = 0; root < Node(memory_.legs.size()); ++root) {
@@ -93,13 +93,14 @@ class StarGrowth {
         paths.push_back({motion_.metres(root, goals_[g]), {root, g}});
       }
     }
-    std::sort(paths.begin(), paths.end());
-    for (const auto& [metres, ends] : paths) {
-      const auto& [root, g] = ends;
-      if (metres <= motion_.max_cost(best_) && motion_.joins(root, goals_[g])) {
-        add(goals_[g], {root, metres, metres, true});
-        learn_length();
-        return;
+    const auto end = paths.begin() + std::ptrdiff_t(std::min(paths.size(), kMaxShots));
+    std::partial_sort(paths.begin(), end, paths.end());
+    least_route_ = motion_.ends_are_poses() && !paths.empty() ? paths.front().first : 0;
+    for (auto path = paths.begin(); path != end; ++path) {
+      const auto& [metres, ends] = *path;
+      if (metres <= motion_.max_cost(best_) && motion_.joins(ends.first, goals_[ends.second])) {
+        add(goals_[ends.second], {ends.first, metres, metres, true});
+        return learn_length();
       }
     }
   }
@@ -145,8 +146,8 @@ class StarGrowth {
     return set_.contains(place(state)) && motion_.rules().point_ok(place(state));
   }
 
-  /// Puts the nodes within the radius of p into memory_.near, including the nearest one whatever
-  /// its distance, and returns that.
+  /// Puts the nodes within the radius of p into memory_.near, at least the nearest, and returns
+  /// that.
   Node find_near(const Vec3& p) {
     memory_.points.within(p, near_radius(), memory_.near);
     if (memory_.near.empty()) {
@@ -195,8 +196,8 @@ class StarGrowth {
     return std::nullopt;
   }
 
-  /// Makes the candidate exact if it costs less than `known`, else its cost becomes that. An edge
-  /// beyond the range goes to the end of the list.
+  /// Makes the candidate exact if it costs less than `known`, else that is its cost; infinite
+  /// beyond the range.
   void refine(Candidate& candidate, const State& x_new, double& known) const {
     constexpr double kRounding = 1 + 1e-9;
     const double before = memory_.cost[std::size_t(candidate.node)];
@@ -255,16 +256,16 @@ class StarGrowth {
 
   /// Adds goals as children of a new node in range of them, until they are in the tree.
   void reach_goals(Node node) {
+    const double before = memory_.cost[std::size_t(node)];
     for (std::size_t g = 0; g < goals_.size(); ++g) {
-      const State& goal = goals_[g];
-      if (reached_[g] || motion_.least(node, goal) > settings_.range) {
+      const double at_most = std::min(settings_.range, motion_.max_cost(best_) - before);
+      if (reached_[g] || motion_.least(node, goals_[g]) > at_most) {
         continue;
       }
-      const double metres = motion_.metres(node, goal);
-      const double cost = memory_.cost[std::size_t(node)] + metres;
-      if (metres <= settings_.range && cost <= motion_.max_cost(best_) &&
-          motion_.joins(node, goal)) {
-        add(goal, {node, metres, cost, true});
+      const double metres = motion_.metres(node, goals_[g], at_most);
+      if (metres <= settings_.range && before + metres <= motion_.max_cost(best_) &&
+          motion_.joins(node, goals_[g])) {
+        add(goals_[g], {node, metres, before + metres, true});
       }
     }
   }

@@ -39,6 +39,14 @@ struct StarMemory {
   std::vector<Arrival> arrivals;   ///< one entry per node, or empty
   std::vector<std::uint32_t> near;
   std::vector<LegTree::Node> moved;
+
+  void clear() {
+    legs.clear();
+    points.clear();
+    cost.clear();
+    ends.clear();
+    arrivals.clear();
+  }
 };
 
 /// RRT* and Informed RRT* (see planners rrt_star and informed_rrt_star): one search, which samples
