@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "altiplan/error.hpp"
 #include "altiplan/kit/dubins/airplane.hpp"
 #include "altiplan/kit/dubins/wind.hpp"
 #include "host/import_export/export.hpp"
@@ -250,6 +251,44 @@ TEST(ExportTurns, InWindEveryTurnIsPoints) {
   EXPECT_LT(apart(route, read_back(mission, *result.text, Format::qgc_plan)), kArcTolerance);
 }
 
+TEST(ExportTurns, LoitersOfStartAndGoalAreCirclesThatARouteLeavesAndJoins) {
+  // From a circle to the left, past a corner, to a circle to the right.
+  Route route{Vec3(0, -100, 500)};
+  const Route turn = corner(radians(60));
+  for (std::size_t i = 0; i < 3; ++i) {
+    Leg leg = turn.leg(i);
+    const Vec3 shift(500, -100, 0);
+    leg.from += shift;
+    leg.to += shift;
+    route.push_back(leg);
+  }
+  Mission mission = mission_for(route);
+  Request& request = mission.request;
+  request.start = {};
+  request.start.position = {0, 0, 500};
+  request.start.loiter = Loiter{100, 1};
+  request.goal = {route.back() + 120 * unit_heading(radians(60 - 90)), 0, {}, Loiter{120, -1}};
+  ASSERT_TRUE(judge(route, request, {}).ok());
+  for (const Format format : {Format::qgc_plan, Format::waypoints}) {
+    const Exported result = exported(mission, route, options_of(format, true));
+    ASSERT_TRUE(result.text) << all_of(result);
+    EXPECT_NE(all_of(result).find("valid with 7 decimals"), std::string::npos) << all_of(result);
+    const kit::MissionFile file = kit::read_mission(file_of(format), *result.text);
+    EXPECT_EQ(file.items.front().circle, (kit::MissionCircle{Until::altitude, 100, 1, 0}));
+    EXPECT_EQ(file.items.back().circle, (kit::MissionCircle{Until::forever, 120, -1, 0}));
+    EXPECT_LT(apart(route, read_back(mission, *result.text, format)), 0.05);
+  }
+  for (const auto format : {std::optional(Format::kml), std::optional<Format>()}) {
+    const Exported points = exported(mission, route, options_of(format));
+    ASSERT_TRUE(points.text) << all_of(points);
+    EXPECT_LT(apart(route, read_back(mission, *points.text, format)), kArcTolerance);
+  }
+  ExportOptions takeoff = options_of(Format::qgc_plan, true);
+  takeoff.takeoff = true;
+  takeoff.home_altitude_m = 0;
+  EXPECT_THROW(exported(mission, route, takeoff), Error);
+}
+
 TEST(ExportTurns, FewerItemsDropNoTurn) {
   Route route{Vec3(-500, 0, 500)};
   for (int i = 4; i >= 0; --i) {
@@ -307,7 +346,7 @@ TEST(ExportTurns, RandomRoutesComeBackInBothForms) {
   std::mt19937 random(25);
   std::size_t loiters = 0;
   std::size_t turns = 0;
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < 100; ++n) {
     const Route route = random_route(random);
     const Mission mission = mission_for(route);
     ASSERT_TRUE(judge(route, mission.request, {}).ok()) << n;

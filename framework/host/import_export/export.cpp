@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "altiplan/error.hpp"
 #include "host/import_export/export_notes.hpp"
 #include "host/import_export/fence.hpp"
 #include "host/import_export/imported_route.hpp"
@@ -72,6 +73,9 @@ std::vector<MissionItem> items_of(const std::vector<MissionPlace>& places, const
     items.push_back({kind, place(at), 0, "", circle});
   }
   if (options.takeoff) {
+    if (items.front().circle) {
+      throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
+    }
     items.front().kind = MissionItem::Kind::takeoff;
   }
   if (options.land) {
@@ -144,7 +148,7 @@ std::string problem_of(const Mission& mission, const ExportSource& source, const
 
 WrittenRoute places_of(const Mission& mission, const Route& route, const ExportOptions& options,
                        double tolerance = kArcTolerance) {
-  return written_route(route, {options.loiters, tolerance}, mission.via, mission.request.limits);
+  return written_route(route, {options.loiters, tolerance}, mission.via, mission.request);
 }
 
 std::size_t item_count(const WrittenRoute& written, const ExportOptions& options) {

@@ -33,6 +33,16 @@ void undo_rounding(Vec3& first, const Vec3& start) {
   }
 }
 
+/// The same of the circle of a start or goal.
+void undo_rounding(MissionPlace& place, const Vec3& centre, const std::optional<Loiter>& loiter) {
+  if (loiter && place.circle && place.circle->sense == loiter->sense &&
+      std::abs(place.circle->radius_m - loiter->radius) <= kRoundingReach &&
+      (place.at - centre).norm() <= kRoundingReach) {
+    place.at = centre;
+    place.circle->radius_m = loiter->radius;
+  }
+}
+
 /// The route past the items; reports those whose circle cannot be flown tangentially.
 Route join(const std::vector<MissionPlace>& places, const Request& request,
            std::vector<std::string>& notes) {
@@ -114,6 +124,8 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
   if (!places.front().circle) {
     undo_rounding(places.front().at, request.start.position);
   }
+  undo_rounding(places.front(), request.start.position, request.start.loiter);
+  undo_rounding(places.back(), request.goal.position, request.goal.loiter);
   result.route = join(places, request, result.notes);
   return result;
 }

@@ -10,6 +10,8 @@ using Until = kit::MissionCircle::Until;
 
 /// Difference of two headings this small is a rounding error of the file.
 constexpr double kSameHeading = radians(1);
+/// A waypoint this near to the tangent point of a circle stands for it, metres.
+constexpr double kSameEntry = 0.1;
 /// A circle that would need more is left as soon as its heading allows: the judge refuses it.
 constexpr double kMaxTurn = 200 * kPi;
 
@@ -41,11 +43,18 @@ Vec3 point_at(const Vec3& centre, double radius, double heading) {
   return centre + radius * Vec3(std::sin(heading), -std::cos(heading), 0);
 }
 
+bool lies_on(const Vec3& point, const MissionPlace& circle) {
+  const double off = (point - circle.at).head<2>().norm() - circle.circle->radius_m;
+  return std::abs(off) < kOnCircle;
+}
+
 class Joining {
  public:
   Joining(const std::vector<MissionPlace>& places, std::optional<double> heading,
           const Limits& limits)
-      : places_(places), heading_(heading), limits_(limits) {}
+      : places_(places), heading_(heading), limits_(limits) {
+    drop_rounded_entry();
+  }
 
   JoinedRoute joined() {
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -60,6 +69,24 @@ class Joining {
   }
 
  private:
+  /// A waypoint where the route enters its last circle is rounded: its tangent is exact.
+  void drop_rounded_entry() {
+    const std::size_t count = places_.size();
+    if (count < 3 || !places_.back().circle || places_[count - 2].circle) {
+      return;
+    }
+    const MissionPlace& before = places_[count - 3];
+    const MissionPlace& last = places_.back();
+    if (!before.circle && lies_on(before.at, last)) {
+      return;
+    }
+    const double radius = signed_radius(last);
+    const auto entry = tangent(before.at, signed_radius(before), last.at, radius);
+    if (entry && (point_at(last.at, radius, *entry) - places_[count - 2].at).norm() < kSameEntry) {
+      places_.erase(places_.end() - 2);
+    }
+  }
+
   void straight_to(const Vec3& to) {
     Route& route = result_.route;
     if (!route.empty() && has_heading(to - route.back())) {
@@ -77,8 +104,7 @@ class Joining {
     }
     const Vec3 before = result_.route.back();
     const double radius = signed_radius(place);
-    const bool is_on =
-        std::abs((before - place.at).head<2>().norm() - std::abs(radius)) < kOnCircle;
+    const bool is_on = lies_on(before, place);
     const auto entry = is_on ? heading_on(before, place) : tangent(before, 0, place.at, radius);
     const bool ends = i + 1 == places_.size() || place.circle->until == Until::forever;
     // The centre moves with the rounding of the entry, so that all joints are tangential.
@@ -151,7 +177,7 @@ class Joining {
     return needed > 0 && needed < kMaxTurn ? needed : 0;
   }
 
-  const std::vector<MissionPlace>& places_;
+  std::vector<MissionPlace> places_;
   std::optional<double> heading_;  ///< on reaching the end of the route so far
   const Limits& limits_;
   JoinedRoute result_;

@@ -73,8 +73,8 @@ Polyline corners_of(const Leg& turn, double tolerance) {
 class Writing {
  public:
   Writing(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
-          const Limits& limits)
-      : route_(route), form_(form), limits_(limits), via_(via_indices(route, via)) {}
+          const Request& request)
+      : route_(route), form_(form), request_(request), via_(via_indices(route, via)) {}
 
   WrittenRoute written() {
     add(route_.front(), false);
@@ -92,6 +92,9 @@ class Writing {
       }
     }
     drop_joints();
+    if (form_.loiters) {
+      add_loiters_of_ends();
+    }
     return std::move(result_);
   }
 
@@ -140,11 +143,11 @@ class Writing {
     const MissionPlace circle = circle_of(arc);
     const Vec3 next = route_[i + 2];
     if ((fraction < kExitTolerance && circle.circle->until == Until::altitude) ||
-        fraction > 2 * kPi - kExitTolerance ||
-        (next - circle.at).head<2>().norm() < kNextBeyond * arc.radius) {
+        fraction > 2 * kPi - kExitTolerance || !is_beyond(next, circle)) {
       return false;
     }
-    const Route read = joined_route({{arc.from}, circle, {next}}, arc.heading, limits_).route;
+    const Route read =
+        joined_route({{arc.from}, circle, {next}}, arc.heading, request_.limits).route;
     return read.leg_count() == 2 && read.leg(0).turns() &&
            std::abs(read.leg(0).turn - arc.turn) * arc.radius < kSameTurn &&
            (read.leg(0).to - arc.to).norm() < kSameTurn;
@@ -171,9 +174,34 @@ class Writing {
     }
   }
 
+  /// The start's circle is left along a straight leg; the goal's may be joined in any way.
+  void add_loiters_of_ends() {
+    std::vector<MissionPlace>& places = result_.places;
+    if (const auto& goal = request_.goal.loiter) {
+      places.push_back(loiter_of(*goal, request_.goal.position, Until::forever));
+      ++result_.loiters;
+    }
+    if (const auto& start = request_.start.loiter) {
+      const MissionPlace circle = loiter_of(*start, request_.start.position, Until::altitude);
+      if (places.size() > 1 && !route_.leg(0).turns() && !places[1].circle &&
+          is_beyond(places[1].at, circle)) {
+        places.front() = circle;
+        ++result_.loiters;
+      }
+    }
+  }
+
+  static MissionPlace loiter_of(const Loiter& loiter, const Vec3& centre, Until until) {
+    return {centre, kit::MissionCircle{until, loiter.radius, loiter.sense, 0}};
+  }
+
+  static bool is_beyond(const Vec3& next, const MissionPlace& circle) {
+    return (next - circle.at).head<2>().norm() >= kNextBeyond * circle.circle->radius_m;
+  }
+
   const Route& route_;
   const ArcForm& form_;
-  const Limits& limits_;
+  const Request& request_;
   std::vector<std::size_t> via_;  ///< waypoints at via points
   WrittenRoute result_;
   std::vector<bool> kept_;  ///< one for each place; false: a joint
@@ -181,7 +209,7 @@ class Writing {
 }  // namespace
 
 WrittenRoute written_route(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
-                           const Limits& limits) {
-  return Writing(route, form, via, limits).written();
+                           const Request& request) {
+  return Writing(route, form, via, request).written();
 }
 }  // namespace altiplan::host
