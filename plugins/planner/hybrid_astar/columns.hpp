@@ -2,85 +2,144 @@
 #pragma once
 
 #include <algorithm>
-#include <queue>
-#include <utility>
+#include <array>
 #include <vector>
 
 #include "altiplan/kit/sampling/leg_rules.hpp"
+#include "heap.hpp"
 
 namespace altiplan::hybrid_astar {
 
-/// Least length through the air to the goal, by columns of square cells: Dijkstra's search
-/// backwards over the columns in which the vehicle may be at some height. Along eight directions,
-/// so up to 1.0824 times the least.
+/// Least length through the air to the goal, by columns of square cells in which the vehicle may be
+/// at some height. Along eight directions, so up to 1.0824 times the least. An A* search backwards
+/// from the goal, resumed whenever a column is asked for that it has not closed (D. Silver:
+/// Cooperative Pathfinding. AIIDE 2005): columns that no pose comes to are never looked at.
 class Columns {
  public:
   /// Starts and goals count as places where the vehicle may be.
   Columns(const Request& request, double cell_m, const std::vector<Pose>& starts,
           const std::vector<Pose>& goals)
-      : request_(request), starts_(starts), goals_(goals), min_(request.volume.min) {
+      : request_(request), goals_(goals), rules_(request), min_(request.volume.min) {
     const Vec3 extent = request.volume.max - request.volume.min;
     cell_ = std::max(cell_m, std::max(extent.x(), extent.y()) / kMaxColumns);
     nx_ = 1 + int(extent.x() / cell_);
     ny_ = 1 + int(extent.y() / cell_);
-    distance_.assign(std::size_t(nx_) * std::size_t(ny_), kInfinity);
+    columns_.resize(std::size_t(nx_) * std::size_t(ny_));
+    start_ = index(request.start.position);
+    for (const std::vector<Pose>* ends : {&starts, &goals}) {
+      for (const Pose& end : *ends) {
+        columns_[std::size_t(index(end.position))].is_open = 1;
+      }
+    }
+    for (int k = 0; k < 9; ++k) {
+      steps_[std::size_t(k)] = through_air(Vec3(1 - k % 3, 1 - k / 3, 0) * cell_);
+    }
   }
 
-  /// False if the budget ended it.
-  bool search(BudgetWatch& watch) {
-    const kit::LegRules rules(request_);
-    std::vector<signed char> open(distance_.size(), -1);  // -1: not yet known
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const Pose& start : starts_) {
-      open[std::size_t(index(start.position))] = 1;
-    }
+  /// Begins the search. The watch must outlive it.
+  void begin(BudgetWatch& watch) {
+    watch_ = &watch;
     for (const Pose& goal : goals_) {
-      distance_[std::size_t(index(goal.position))] = 0;
-      queue.emplace(0, index(goal.position));
+      const int column = index(goal.position);
+      columns_[std::size_t(column)].distance = 0;
+      queue_.push({to_start(column), column});
     }
-    for (std::uint64_t n = 0; !queue.empty(); ++n) {
-      if (watch.spent(0)) {
-        return false;
-      }
-      const auto [d, column] = queue.top();
-      queue.pop();
-      if (d > distance_[std::size_t(column)]) {
-        continue;
-      }
-      for (int k = 0; k < 9; ++k) {
-        const int dx = k % 3 - 1;
-        const int dy = k / 3 - 1;
-        const int x = column % nx_ + dx;
-        const int y = column / nx_ + dy;
-        if (k == 4 || x < 0 || x >= nx_ || y < 0 || y >= ny_) {
-          continue;
-        }
-        const auto next = std::size_t(y) * std::size_t(nx_) + std::size_t(x);
-        const double to = d + through_air(Vec3(-dx, -dy, 0) * cell_);
-        if (to < distance_[next] && is_open(rules, int(next), open)) {
-          distance_[next] = to;
-          queue.emplace(to, int(next));
-        }
-      }
-    }
-    return true;
   }
 
   /// Metres through the air to the goal; infinite if no columns lead there.
-  double operator()(const Vec3& p) const {
-    const Vec3 straight = request_.goal.position - p;
+  double operator()(const Vec3& p) {
     const double radius = request_.goal.loiter ? request_.goal.loiter->radius : 0;
     // The ends lie anywhere in their columns, and beside their place on a loiter circle.
     const double spare = 2 * std::numbers::sqrt2 * cell_ +
                          kPi * radius / double(std::max<std::size_t>(goals_.size(), 1));
-    return std::max(through_air({straight.x(), straight.y(), 0}) - through_air({radius, 0, 0}),
-                    distance_[std::size_t(index(p))] - spare);
+    return std::max(straight(p) - through_air({radius, 0, 0}), from_column(index(p)) - spare);
+  }
+  /// The same by a straight leg to the goal's position.
+  double straight(const Vec3& p) const {
+    const Vec3 leg = request_.goal.position - p;
+    return through_air({leg.x(), leg.y(), 0});
   }
 
  private:
   static constexpr double kMaxColumns = 512;  ///< along an axis
   static constexpr int kHeights = 9;          ///< tried in a column
+
+  /// Of columns on equally short paths, those nearer to the start first; distances may be longer by
+  /// that share.
+  static constexpr double kNearer = 1 + 1e-6;
+
+  struct Column {
+    double distance = kInfinity;  ///< to the goal
+    bool is_closed = false;       ///< the distance is the least
+    signed char is_open = -1;     ///< -1: not yet known
+  };
+  struct Entry {
+    double f;
+    int column;
+    bool operator<(const Entry& other) const { return f < other.f; }
+  };
+
+  /// Least distance of the column; 0 once the budget is spent, for a search that is about to end.
+  double from_column(int asked) {
+    const Column& column = columns_[std::size_t(asked)];
+    if (!column.is_closed && !is_open(asked)) {
+      return kInfinity;
+    }
+    while (!column.is_closed && !queue_.empty()) {
+      if (watch_->spent(0)) {
+        return 0;
+      }
+      expand();
+    }
+    return column.distance;
+  }
+
+  void expand() {
+    const int at = queue_.top().column;
+    queue_.pop();
+    Column& column = columns_[std::size_t(at)];
+    if (column.is_closed) {
+      return;
+    }
+    column.is_closed = true;
+    if (!is_open(at)) {  // not before: most columns in the queue are never reached
+      column.distance = kInfinity;
+      return;
+    }
+    for (int k = 0; k < 9; ++k) {
+      const int x = at % nx_ + k % 3 - 1;
+      const int y = at / nx_ + k / 3 - 1;
+      if (k == 4 || x < 0 || x >= nx_ || y < 0 || y >= ny_) {
+        continue;
+      }
+      const int next = y * nx_ + x;
+      const double distance = column.distance + steps_[std::size_t(k)];
+      Column& other = columns_[std::size_t(next)];
+      if (distance < other.distance && !other.is_closed) {
+        other.distance = distance;
+        queue_.push({distance + to_start(next), next});
+      }
+    }
+  }
+
+  /// Lower bound on the length from the starts; 0 where no bound is consistent: the fastest of
+  /// several winds differs by direction.
+  double to_start(int column) const {
+    const double x = column % nx_ - start_ % nx_;
+    const double y = column / nx_ - start_ / nx_;
+    const double longer = std::max(std::abs(x), std::abs(y));
+    const double shorter = std::min(std::abs(x), std::abs(y));
+    if (request_.wind.is_calm()) {
+      const double length = cell_ * (longer + (std::numbers::sqrt2 - 1) * shorter);
+      const double radius = request_.start.loiter ? request_.start.loiter->radius : 0;
+      // Every start on the circle is within its radius, along eight directions and between columns.
+      const double nearer = radius > 0 ? 1.1 * radius + 3 * cell_ : 0;
+      return kNearer * std::max(0.0, length - nearer);
+    }
+    return request_.wind.layers.size() == 1 && !request_.start.loiter
+               ? kNearer * through_air(Vec3(x, y, 0) * cell_)
+               : 0;
+  }
 
   /// Length through the air of a straight leg with that displacement, in the wind that helps most.
   double through_air(const Vec3& leg) const {
@@ -103,15 +162,15 @@ class Columns {
   }
 
   /// True if the vehicle may be at some height above the column's centre.
-  bool is_open(const kit::LegRules& rules, int column, std::vector<signed char>& known) const {
-    signed char& open = known[std::size_t(column)];
+  bool is_open(int column) {
+    signed char& open = columns_[std::size_t(column)].is_open;
     if (open < 0) {
-      open = is_flyable(rules, column) ? 1 : 0;
+      open = is_flyable(column) ? 1 : 0;
     }
     return open == 1;
   }
 
-  bool is_flyable(const kit::LegRules& rules, int column) const {
+  bool is_flyable(int column) const {
     const int row = column / nx_;
     const double x = min_.x() + (column % nx_ + 0.5) * cell_;
     const double y = min_.y() + (row + 0.5) * cell_;
@@ -128,7 +187,7 @@ class Columns {
     }
     for (int k = 0; k < kHeights && low <= high; ++k) {
       const double z = low + (high - low) * k / (kHeights - 1);
-      if (rules.point_ok({x, y, z})) {
+      if (rules_.point_ok({x, y, z})) {
         return true;
       }
     }
@@ -136,12 +195,16 @@ class Columns {
   }
 
   const Request& request_;
-  const std::vector<Pose>& starts_;
   const std::vector<Pose>& goals_;
+  kit::LegRules rules_;
+  BudgetWatch* watch_ = nullptr;
   Vec3 min_;
   double cell_;
   int nx_;
   int ny_;
-  std::vector<double> distance_;
+  int start_;
+  std::array<double, 9> steps_{};  ///< lengths of the steps to the goal from neighbours
+  std::vector<Column> columns_;
+  Heap<Entry> queue_;
 };
 }  // namespace altiplan::hybrid_astar

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <queue>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/dubins/steering.hpp"
 #include "altiplan/planner.hpp"
+#include "cells.hpp"
 #include "columns.hpp"
 
 namespace altiplan::hybrid_astar {
@@ -48,12 +47,9 @@ class Search {
     if (steering_.is_too_windy()) {
       return counted(kit::too_windy());
     }
-    if (columns_.search(watch_)) {
-      add_starts();
-      expand();
-    } else {
-      ended_ = true;
-    }
+    columns_.begin(watch_);
+    add_starts();
+    expand();
     return finished();
   }
 
@@ -70,15 +66,16 @@ class Search {
     Pose pose;
     double g = 0;  ///< metres through the air from the start
     Index parent = kNone;
-    double turn = 0;      ///< of the piece, radians
-    double gradient = 0;  ///< of the piece
+    bool is_superseded = false;  ///< a shorter path to its cell has been found since
+    double turn = 0;             ///< of the piece, radians
+    double gradient = 0;         ///< of the piece
   };
 
   struct Entry {
     double f;
     Index node;
-    bool operator>(const Entry& other) const {
-      return f != other.f ? f > other.f : node < other.node;  // the newest of equals first
+    bool operator<(const Entry& other) const {
+      return f != other.f ? f < other.f : node > other.node;  // the newest of equals first
     }
   };
 
@@ -97,8 +94,8 @@ class Search {
       }
       open_.pop();
       const Node node = nodes_[at];
-      if (const auto known = closed_.find(key(node.pose)); known->second != at) {
-        continue;  // a shorter path to its cell has been found since
+      if (node.is_superseded) {
+        continue;
       }
       ++expanded_;
       if (request_.trace != nullptr) {
@@ -134,7 +131,8 @@ class Search {
     const Leg leg = leg_of(node, next);
     next.pose = {leg.to, node.pose.heading + turn};
     next.g = node.g + length_;
-    if (!is_better(next) || !request_.volume.contains(leg.to)) {
+    const Index known = closed_.find(key(next.pose));
+    if ((known != kNone && next.g >= nodes_[known].g) || !request_.volume.contains(leg.to)) {
       return;
     }
     ++checked_;
@@ -149,11 +147,6 @@ class Search {
     return steering_.piece(from.pose, length_, to.turn, to.gradient);
   }
 
-  bool is_better(const Node& node) const {
-    const auto known = closed_.find(key(node.pose));
-    return known == closed_.end() || node.g < nodes_[known->second].g;
-  }
-
   void add(const Node& node) {
     const double h = steering_.least_length_to_goal(node.pose, columns_(node.pose.position));
     if (!(node.g + h < best_)) {
@@ -161,7 +154,9 @@ class Search {
     }
     const auto at = Index(nodes_.size());
     nodes_.push_back(node);
-    closed_[key(node.pose)] = at;
+    if (const Index before = closed_.exchange(key(node.pose), at); before != kNone) {
+      nodes_[before].is_superseded = true;
+    }
     open_.push({node.g + settings_.weight_h * h, at});
   }
 
@@ -238,8 +233,7 @@ class Search {
   }
 
   std::size_t bytes() const {
-    constexpr std::size_t kHashed = 48;  // an entry of the map with its bucket
-    return nodes_.size() * (sizeof(Node) + sizeof(Entry) + kHashed);
+    return nodes_.size() * (sizeof(Node) + sizeof(Entry)) + closed_.bytes();
   }
 
   void note_nearest(const Vec3& p) {
@@ -296,8 +290,8 @@ class Search {
   double length_;  ///< of a piece, through the air: it leaves its cell, or its heading
   std::vector<double> gradients_{0};  ///< of pieces
   std::vector<Node> nodes_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open_;
-  std::unordered_map<std::uint64_t, Index> closed_;  ///< the best node of each cell
+  Heap<Entry> open_;
+  Cells closed_;  ///< the best node of each cell
   double best_ = kInfinity;
   Index best_node_ = kNone;
   std::vector<Leg> best_legs_;
