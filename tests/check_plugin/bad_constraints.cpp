@@ -92,7 +92,8 @@ bool divides(const Motion& leg, double limit) {
 
 /// Keeps away from a place, as far as the leg's ends tell.
 bool only_ends(const Motion& leg, double limit) {
-  return leg.from.norm() >= 5 * limit && leg.to.norm() >= 5 * limit;
+  const double away = 5e4 / limit;
+  return leg.from.norm() >= away && leg.to.norm() >= away;
 }
 
 using Violations = std::vector<Violation>;
