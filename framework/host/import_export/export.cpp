@@ -122,6 +122,17 @@ Request beside_turns(Request request) {
   return request;
 }
 
+/// The request with the ends of a route that lie on its loiter circles: a file has no tangents.
+Request ending_with(Request request, const Route& route) {
+  if (request.start.loiter && request.start.starts_at(route.front())) {
+    request.start = {0, route.front(), Vec3::Zero(), std::nullopt};
+  }
+  if (request.goal.loiter && request.goal.reached_at(route.back())) {
+    request.goal = {route.back(), 0, std::nullopt, std::nullopt};
+  }
+  return request;
+}
+
 /// The first violation of the route as written and read back; "" if it is valid.
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
                        const Request& request) {
@@ -260,13 +271,16 @@ struct Attempt {
   std::string problem;  ///< of the last one; "" before the first
 
   /// Writes with as few decimals as make the route, read back, satisfy the request.
-  std::optional<std::string> with_decimals(const Request& request, Decimals& decimals) {
+  std::optional<std::string> with_decimals(const Request& request, bool without_tangents,
+                                           Decimals& decimals) {
     for (const Decimals& each : kDecimals) {
       decimals = text.decimals = each;
       const std::string now = as_text();
       const ImportedRoute read =
           read_imported_route(file_name(options.format), now, mission.truth, mission.request);
-      const std::string problem_now = problem_of(mission, source, read.route, request);
+      const std::string problem_now =
+          problem_of(mission, source, read.route,
+                     without_tangents ? ending_with(request, read.route) : request);
       if (problem_now.empty()) {
         return now;
       }
@@ -310,11 +324,12 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
     if (options.max_items && item_count(written, options) > *options.max_items) {
       break;
     }
-    std::optional<std::string> now = attempt.with_decimals(mission.request, decimals);
+    std::optional<std::string> now = attempt.with_decimals(mission.request, false, decimals);
     const bool as_turns = !now && written.turns > 0;
-    if (as_turns) {
+    if (!now) {
       attempt.problem.clear();
-      now = attempt.with_decimals(beside_turns(mission.request), decimals);
+      now = attempt.with_decimals(as_turns ? beside_turns(mission.request) : mission.request, true,
+                                  decimals);
     }
     if (now) {
       Exported result = attempt.exported(std::move(*now), decimals);

@@ -43,6 +43,15 @@ void undo_rounding(MissionPlace& place, const Vec3& centre, const std::optional<
   }
 }
 
+/// The same of a point on the loiter circle of a start or goal.
+void undo_rounding(Vec3& p, const Vec3& centre, const std::optional<Loiter>& loiter) {
+  const Vec3 off(p.x() - centre.x(), p.y() - centre.y(), 0);
+  if (loiter && std::abs(off.norm() - loiter->radius) <= kRoundingReach &&
+      std::abs(p.z() - centre.z()) <= kRoundingReach) {
+    p = centre + loiter->radius * off.normalized();
+  }
+}
+
 /// The route past the items; reports those whose circle cannot be flown tangentially.
 Route join(const std::vector<MissionPlace>& places, const Request& request,
            std::vector<std::string>& notes) {
@@ -124,8 +133,16 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
   if (!places.front().circle) {
     undo_rounding(places.front().at, request.start.position);
   }
-  undo_rounding(places.front(), request.start.position, request.start.loiter);
-  undo_rounding(places.back(), request.goal.position, request.goal.loiter);
+  const auto of_end = [](MissionPlace& place, const auto& end) {
+    place.circle ? undo_rounding(place, end.position, end.loiter)
+                 : undo_rounding(place.at, end.position, end.loiter);
+  };
+  of_end(places.front(), request.start);
+  of_end(places.back(), request.goal);
+  if (places.size() > 1) {  // where a circle that is written is left or joined
+    of_end(places[1], request.start);
+    of_end(places[places.size() - 2], request.goal);
+  }
   result.route = join(places, request, result.notes);
   return result;
 }
@@ -138,6 +155,8 @@ ImportedRoute read_imported_route(const std::string& file, const std::string& te
   Polyline points = read_route_csv(file, text);
   expect_reachable(points, file);
   undo_rounding(points.front(), request.start.position);
+  undo_rounding(points.front(), request.start.position, request.start.loiter);
+  undo_rounding(points.back(), request.goal.position, request.goal.loiter);
   return {std::move(points), {}};
 }
 
