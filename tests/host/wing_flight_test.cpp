@@ -141,6 +141,23 @@ TEST(WingFlight, PassesTheGoalWithinATenthOfItsTurnRadius) {
   EXPECT_EQ(fly(all).status, RunStatus::solved);
 }
 
+TEST(WingFlight, FliesFromLoiterToLoiter) {
+  const double radius = 1.5 * turn_radius();
+  for (const int sense : {1, -1}) {
+    for (const Vec3& wind : {Vec3(0, 0, 0), Vec3(5, 6, 0)}) {
+      // Tangents of two circles of one sense.
+      const Vec3 side(0, -sense * radius, 0);
+      FlightSetup all = setup({Vec3(0, 0, 500) + side, Vec3(3000, 0, 500) + side}, wind);
+      all.request.start = {0, {0, 0, 500}, {0, 0, 0}, Loiter{radius, sense}};
+      all.request.goal = {{3000, 0, 500}, 0, std::nullopt, Loiter{radius, sense}};
+      const FlightResult result = flown_well(all);
+      EXPECT_LT(*result.cross_track_max_m, 12);
+      EXPECT_EQ(result.track.front().second, all.route.front());
+      EXPECT_NEAR(distance_from(all.request.goal, result.track.back().second), 0, 1);
+    }
+  }
+}
+
 TEST(WingFlight, FliesTowardAPilotsSteps) {
   Scene scene;
   scene.setup.request.vehicle.wing = Wing{30, radians(35), radians(12), radians(12)};

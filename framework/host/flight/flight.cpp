@@ -15,6 +15,20 @@ namespace {
 
 constexpr int kMaxSteps = 1'000'000;
 constexpr double kTimesDuration = 10;
+
+/// The state in which the route begins: on a loiter circle, at a point that it leaves.
+State first_state(const FlightSetup& setup) {
+  State start = setup.request.start;
+  if (start.loiter) {
+    const Vec3& first = setup.route.front();
+    const Vec3 course = start.loiter->course(start.position, first);
+    const auto heading = setup.request.heading_on(course, first.z());
+    start.velocity = heading ? setup.request.ground_velocity({first, *heading}) : course;
+    start.position = first;
+    start.loiter.reset();
+  }
+  return start;
+}
 }  // namespace
 
 Flight::Flight(const FlightSetup& setup)
@@ -24,8 +38,8 @@ Flight::Flight(const FlightSetup& setup)
       truth_request_(setup.request),
       path_(setup.route.chords(kChordTolerance)),
       events_(setup.events),
-      state_(setup.request.start),
-      before_(setup.request.before_start()),
+      state_(first_state(setup)),
+      before_(setup.request.before_start(state_.position)),
       required_(std::max(request_.limits.min_clearance, request_.vehicle.radius_m)) {
   // Non-owning: the true world is owned, and changed, by world_.
   truth_request_.world =
@@ -55,7 +69,10 @@ FlightResult Flight::run() {
 
 void Flight::fly_to_the_end() {
   if (setup_.pilot != nullptr) {
-    pilot_ = setup_.pilot->begin(setup_.request);
+    Request request = setup_.request;
+    request.start = state_;
+    request.goal = goal_of_pilot();
+    pilot_ = setup_.pilot->begin(request);
     reach_ = pilot_->reach_m();
   }
   const double end = state_.time_s + max_time();
@@ -105,7 +122,7 @@ std::string Flight::time_out() const {
 
 std::string Flight::away() const {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f m", (request_.goal.position - state_.position).norm());
+  std::snprintf(text, sizeof text, "%.1f m", distance_from(request_.goal, state_.position));
   return text;
 }
 
@@ -136,7 +153,7 @@ void Flight::hand_over(bool to_pilot, std::string why) {
 }
 
 FlightResult fly(const FlightSetup& setup) {
-  if (setup.route.empty() || setup.route.front() != setup.request.start.position) {
+  if (setup.route.empty() || !setup.request.start.starts_at(setup.route.front())) {
     throw Error("expected a route that begins at the start");
   }
   if (!(setup.step_s > 0)) {

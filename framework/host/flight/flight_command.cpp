@@ -85,7 +85,7 @@ void Flight::fly_pilot() {
   Observation seen;
   seen.state = state_;
   seen.local_target = local_target();
-  seen.goal = request_.goal;
+  seen.goal = goal_of_pilot();
   seen.rest = rest_;
   seen.world = request_.world.get();
   seen.changes = changes_;
@@ -121,7 +121,16 @@ Vec3 Flight::local_target() const {
   while (s < path_.length() && !is_free(path_.at(s), room)) {
     s += reach_ / 20;
   }
-  return s < path_.length() ? path_.at(s) : request_.goal.position;
+  return s < path_.length() ? path_.at(s) : goal_of_pilot().position;
+}
+
+Goal Flight::goal_of_pilot() const {
+  Goal goal = request_.goal;
+  if (goal.loiter) {
+    goal.position = path_.at(path_.length());
+    goal.loiter.reset();
+  }
+  return goal;
 }
 
 bool Flight::hand_back() {

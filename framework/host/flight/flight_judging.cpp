@@ -79,7 +79,7 @@ void Flight::judge_whole() {
   std::vector<Violation>& found = result_.check.violations;
   const Vec3& end = state_.position;
   if (!at_goal(end, request_)) {  // the goal as it is now
-    found.push_back({"goal", result_.track.size() - 1, (end - request_.goal.position).norm(),
+    found.push_back({"goal", result_.track.size() - 1, distance_from(request_.goal, end),
                      arrival_distance(request_), "the flight ended " + away() + " from the goal"});
   }
   for (Violation& violation : whole_track_violations(result_.track, request, request_.limits)) {

@@ -51,6 +51,8 @@ class Flight {
   void fly_route();
   void fly_pilot();
   void stuck(const std::string& why);
+  /// The goal, or the point at which the path joins its loiter circle.
+  Goal goal_of_pilot() const;
   /// A point of the path half the pilot's reach ahead, or farther if that point is blocked.
   Vec3 local_target() const;
   /// Takes the nearest clear leg back to the path; false if there is none.
@@ -71,6 +73,8 @@ class Flight {
   /// Adds points to the track where it bends, and where the wind changes.
   void fly_wing(double duration, bool on_route, const ReferenceFor& reference_for);
   Reference reference_on_route(const State& now);
+  /// Where the last leg goes on in its direction, or along the goal's loiter circle.
+  Vec3 beyond_the_end(double distance) const;
   void note_errors(const State& now, double dt);
   /// At the goal, or abeam of the route's end: an aeroplane cannot stop there.
   bool passes_goal(const State& now, bool on_route) const;

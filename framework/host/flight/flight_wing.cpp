@@ -37,7 +37,8 @@ void Flight::take_off_wing() {
       return;
     }
   }
-  wing_->take_over(state_, path_.course_at(0));
+  const auto& loiter = setup_.request.start.loiter;
+  wing_->take_over(state_, path_.course_at(0), loiter ? loiter->sense / loiter->radius : 0);
   state_.velocity = wing_->velocity(state_.position.z(), state_.velocity.z());
 }
 
@@ -92,12 +93,24 @@ Flight::Reference Flight::reference_on_route(const State& now) {
   reference_ = path_.first_beyond(distance, now.position, progress_);
   Vec3 point = path_.at(reference_);
   double ahead = path_.level(reference_) - path_.level(progress_);
-  if (reference_ >= path_.length()) {  // the last leg goes on in its direction
+  if (reference_ >= path_.length()) {
     const double beyond = std::max(0.0, distance - (point - now.position).head<2>().norm());
-    point += beyond * path_.end_direction();
+    point = beyond_the_end(beyond);
     ahead += beyond;
   }
   return {point, std::max(ahead, kMinAhead)};
+}
+
+Vec3 Flight::beyond_the_end(double distance) const {
+  const Vec3 end = path_.at(path_.length());
+  const Goal& goal = request_.goal;
+  if (!goal.loiter || !goal.loiter->passes(goal.position, end)) {
+    return end + distance * path_.end_direction();
+  }
+  const Vec3 arm = end - goal.position;
+  const double angle =
+      std::atan2(arm.y(), arm.x()) + goal.loiter->sense * distance / goal.loiter->radius;
+  return goal.position + goal.loiter->radius * unit_heading(angle);
 }
 
 void Flight::note_errors(const State& now, double dt) {
@@ -107,11 +120,12 @@ void Flight::note_errors(const State& now, double dt) {
 }
 
 bool Flight::passes_goal(const State& now, bool on_route) const {
-  if (request_.goal.reached_at(now.position)) {
+  const Goal& goal = request_.goal;
+  if (!goal.loiter && goal.reached_at(now.position)) {
     return true;
   }
   if (!on_route) {
-    const Vec3 way = request_.goal.position - now.position;
+    const Vec3 way = goal_of_pilot().position - now.position;
     return at_goal(now.position, request_) && way.dot(now.velocity) <= 0;
   }
   const Vec3 beyond = now.position - path_.at(path_.length());

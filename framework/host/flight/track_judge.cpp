@@ -23,11 +23,11 @@ class Replay {
   }
 
   TrackVerdict operator()(const Track& track) {
-    if (track.empty() || track.front().second != request_.start.position) {
+    if (track.empty() || !request_.start.starts_at(track.front().second)) {
       found().push_back({"start", 0, 0, 0, "the track does not begin at the start"});
       return std::move(verdict_);
     }
-    std::optional<Approach> before = request_.before_start();
+    std::optional<Approach> before = request_.before_start(track.front().second);
     bool touching = false;
     note_contact(track.front(), track.front(), 0, touching);
     for (std::size_t i = 0; i + 1 < track.size(); ++i) {
@@ -104,7 +104,7 @@ class Replay {
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
     verdict_.reached = verdict_.collisions == 0 && at_goal(end, request_);
     if (!at_goal(end, request_)) {
-      found().push_back({"goal", track.size() - 1, (end - request_.goal.position).norm(),
+      found().push_back({"goal", track.size() - 1, distance_from(request_.goal, end),
                          arrival_distance(request_), "the track does not end at the goal"});
     }
     for (Violation& violation : whole_track_violations(track, request_, limits_)) {

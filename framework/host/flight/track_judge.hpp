@@ -57,6 +57,8 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
 std::vector<Violation> wing_violations(const Track& track, const Request& request,
                                        const Limits& limits);
 
+/// Distance of a position from the goal, or from its loiter circle.
+double distance_from(const Goal& goal, const Vec3& p);
 /// True if the position is at the goal: within its tolerance, of an aeroplane also within a tenth
 /// of its turn radius, since it passes abeam of a point that it cannot stop at.
 bool at_goal(const Vec3& p, const Request& request);

@@ -26,7 +26,7 @@ WingGuidance::WingGuidance(const Request& request)
       max_sink_(wing_.airspeed_mps * std::tan(std::min(wing_.sink, request.limits.max_descent()))) {
 }
 
-void WingGuidance::take_over(const State& state, const Vec3& course) {
+void WingGuidance::take_over(const State& state, const Vec3& course, double curvature) {
   const Vec3 wind = wind_.at(state.position.z());
   Vec3 air = state.velocity - wind;
   if (!has_heading(state.velocity)) {
@@ -34,7 +34,8 @@ void WingGuidance::take_over(const State& state, const Vec3& course) {
     air = speed * Vec3(course.x(), course.y(), 0).normalized() - wind;
   }
   heading_ = std::atan2(air.y(), air.x());
-  bank_ = 0;
+  const Vec3 over_ground = velocity(state.position.z(), 0);
+  bank_ = bank_for(curvature * over_ground.squaredNorm(), over_ground);
 }
 
 double WingGuidance::lookahead(const Vec3& velocity) const {
@@ -75,6 +76,10 @@ double WingGuidance::bank_command(const State& from, const Vec3& reference) cons
   const double length =
       std::max((reference - from.position).head<2>().norm(), lookahead(over_ground));
   const double across = 2 * speed * speed / length * std::sin(eta);
+  return bank_for(across, over_ground);
+}
+
+double WingGuidance::bank_for(double across, const Vec3& over_ground) const {
   const double drift = angle_between(over_ground, unit_heading(heading_));
   // In wind close to the airspeed a course across it leaves no acceleration across the course.
   const double share = std::max(std::cos(drift), 0.1);

@@ -29,8 +29,9 @@ class WingGuidance {
   /// Limits of the vehicle's wing, and of the request if they are tighter.
   explicit WingGuidance(const Request& request);
 
-  /// Continues from that velocity over the ground, or if it is zero, along a course; level wings.
-  void take_over(const State& state, const Vec3& course);
+  /// Continues from that velocity over the ground, or if it is zero, along a course; with the bank
+  /// of a turn of that curvature (1/m, positive to the left).
+  void take_over(const State& state, const Vec3& course, double curvature = 0);
   /// L1 on the route, at a velocity over the ground.
   double lookahead(const Vec3& velocity) const;
   /// Flies dt seconds toward a point that is `ahead` metres along the route. The wind is that at
@@ -43,6 +44,8 @@ class WingGuidance {
   Vec3 velocity(double z, double climb_rate) const;                      ///< over the ground
 
  private:
+  /// Bank angle for an acceleration across the ground velocity.
+  double bank_for(double across, const Vec3& over_ground) const;
   double bank_command(const State& from, const Vec3& reference) const;
   double climb_command(const State& from, const Vec3& reference, double ahead) const;
 

@@ -129,7 +129,12 @@ double arrival_distance(const Request& request) {
   return std::max(request.goal.tolerance_m, wing ? kShare * wing->turn_radius() : 0);
 }
 
+double distance_from(const Goal& goal, const Vec3& p) {
+  const Vec3 way = p - goal.position;
+  return goal.loiter ? std::hypot(way.head<2>().norm() - goal.loiter->radius, way.z()) : way.norm();
+}
+
 bool at_goal(const Vec3& p, const Request& request) {
-  return (p - request.goal.position).norm() <= arrival_distance(request) + kLengthTolerance;
+  return distance_from(request.goal, p) <= arrival_distance(request) + kLengthTolerance;
 }
 }  // namespace altiplan::host
