@@ -13,14 +13,17 @@
 //   the goal once, and rests after max_failures; when all nodes have rested, extensions are bent to
 //   satisfy the limits on turn and climb. The last leg is up to two steps long. With cut_off:
 //   reconnect the tree grows along a path past the threat (rrt_repair.hpp) and reconnects what was
-//   cut off.
+//   cut off. With turns, nodes are poses, legs steps along Dubins paths to a pose
+//   (pose_growth.hpp).
 // Symbols: q_rand a random position, q_near the chosen node, w_1 weight_random, w_2 weight_goal, p
 //   random_share, L step_m.
 #include <memory>
 
+#include "altiplan/kit/dubins/steering_params.hpp"
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
+#include "pose_growth.hpp"
 #include "rrt_session.hpp"
 
 namespace {
@@ -29,7 +32,7 @@ using namespace altiplan;
 using rrt::CutOff;
 using rrt::Settings;
 
-struct Params {
+struct Params : kit::SteeringParams {
   AutoNumber step_m;
   double weight_random = 1;
   double weight_goal = 1;
@@ -68,6 +71,7 @@ struct Params {
         .doc(
             "branches that a change cuts off are removed (drop), or reconnected when the tree "
             "grows near them (reconnect); afresh removes the whole tree, for comparison");
+    SteeringParams::describe(f);
     f.check(weight_random > 0 || weight_goal > 0, "one of weight_random, weight_goal must be > 0");
   }
 
@@ -87,6 +91,30 @@ struct Params {
   }
 };
 
+/// Replans from scratch: trees of poses do not persist.
+class PoseSession final : public Session {
+ public:
+  PoseSession(const Planner& planner, const Request& request)
+      : planner_(planner), request_(request), result_(planner.plan(request)) {}
+
+ private:
+  const PlanResult& do_result() const override { return result_; }
+  const PlanResult& do_update(const State& state, const Goal& goal,
+                              std::shared_ptr<const World> world, std::span<const Change>,
+                              const Budget& budget) override {
+    request_.start = state;
+    request_.goal = goal;
+    request_.world = std::move(world);
+    request_.budget = budget;
+    result_ = planner_.plan(request_);
+    return result_;
+  }
+
+  const Planner& planner_;
+  Request request_;
+  PlanResult result_;
+};
+
 class Rrt final : public Planner {
  public:
   explicit Rrt(const Params& params) : params_(params) {}
@@ -95,20 +123,34 @@ class Rrt final : public Planner {
   PlanResult do_plan(const Request& request) const override {
     const auto tree = trees_.take();
     tree->clear(request.trace);
-    rrt::Growth growth(params_.settings(request), request, *tree);
+    RandomStream random = request.random.sub("growth");
+    const double turn_radius = params_.turn_radius(request);
+    if (auto refused = kit::unsolvable(request, turn_radius)) {
+      return *refused;
+    }
+    Settings settings = params_.settings(request);
+    if (turn_radius > 0) {
+      settings.step = params_.step_m.value.value_or(std::max(settings.step, turn_radius));
+      return rrt::PoseGrowth(settings, turn_radius, request, *tree).run(random);
+    }
+    rrt::Growth growth(settings, request, *tree);
     growth.set_root(tree->add(request.start.position, rrt::kNone));
     growth.start();
-    RandomStream random = request.random.sub("growth");
     return growth.run({}, random);
   }
 
   std::unique_ptr<Session> do_begin(const Request& request) const override {
+    if (params_.turn_radius(request) > 0) {
+      return std::make_unique<PoseSession>(*this, request);
+    }
     return std::make_unique<rrt::TreeSession>(params_.settings(request), params_.cut_off, request);
   }
 
   Traits do_traits() const override {
     Traits traits;
-    traits.incremental = params_.cut_off != CutOff::afresh;
+    traits.incremental =
+        params_.cut_off != CutOff::afresh && params_.steering != kit::SteeringParams::Kind::dubins;
+    traits.loiters = params_.loiters();
     return traits;
   }
 

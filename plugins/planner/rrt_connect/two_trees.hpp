@@ -145,7 +145,8 @@ class TwoTrees {
       return false;
     }
     Route route = edges_.route(from, to);
-    if (length(route) > request_.limits.max_route_length + kLengthTolerance) {
+    const double most = request_.limits.max_route_length;
+    if (most < kInfinity && length(route) > most + kLengthTolerance) {
       return false;
     }
     route_ = std::move(route);

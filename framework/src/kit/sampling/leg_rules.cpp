@@ -60,7 +60,7 @@ bool LegRules::ok(const std::optional<Approach>& before, const Vec3& a, const Ve
   if (leg_kept(before, a, b)) {
     return true;
   }
-  refused_[refused_count_++ % kRemembered] = {before, Leg::straight(a, b)};
+  refused_[refused_count_++ % kRemembered] = {before, a, b};
   return false;
 }
 
@@ -72,7 +72,8 @@ bool LegRules::ok(const std::optional<Approach>& before, const Leg& leg) {
   if (leg_ok(before, leg, request_)) {
     return true;
   }
-  refused_[refused_count_++ % kRemembered] = {before, leg};
+  refused_turns_.resize(kRemembered);
+  refused_turns_[refused_turn_count_++ % kRemembered] = {before, leg};
   return false;
 }
 
@@ -103,7 +104,7 @@ bool LegRules::follows(const Approach& before, const Vec3& a, const Vec3& b) {
                   })) {
     return true;
   }
-  refused_[refused_count_++ % kRemembered] = {before, Leg::straight(a, b)};
+  refused_[refused_count_++ % kRemembered] = {before, a, b};
   return false;
 }
 
@@ -242,7 +243,7 @@ LegRules::Answer LegRules::walk(const CellLeg& leg) const {
 }
 
 /// The constraint or the layer that refuses the leg, by few queries of the world.
-std::string LegRules::refused_by(const Refused& leg, const Request& open) const {
+std::string LegRules::refused_by(const RefusedTurn& leg, const Request& open) const {
   const auto first = [&](const Request& request) {
     const auto found = leg_violations(leg.before, leg.leg, request, 0);
     return found.empty() ? std::string() : found.front().constraint;
@@ -266,7 +267,11 @@ std::string LegRules::refusals() const {
   open.world = open_world();
   std::map<std::string, int> counts;
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(refused_count_, kRemembered); ++i) {
-    ++counts[refused_by(refused_[i], open)];
+    const Refused& leg = refused_[i];
+    ++counts[refused_by({leg.before, Leg::straight(leg.a, leg.b)}, open)];
+  }
+  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(refused_turn_count_, kRemembered); ++i) {
+    ++counts[refused_by(refused_turns_[i], open)];
   }
   std::vector<std::pair<std::string, int>> rules(counts.begin(), counts.end());
   std::stable_sort(rules.begin(), rules.end(),

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "altiplan/request.hpp"
 
@@ -40,6 +41,11 @@ class ALTIPLAN_API LegRules {
   enum class Answer { free, blocked, unsure };
   struct Refused {
     std::optional<Approach> before;
+    Vec3 a;
+    Vec3 b;
+  };
+  struct RefusedTurn {
+    std::optional<Approach> before;
     Leg leg;
   };
   struct CellLeg;
@@ -52,7 +58,7 @@ class ALTIPLAN_API LegRules {
   bool surely_blocked(const Vec3& p) const;
   Answer by_layers(const CellLeg& leg) const;
   Answer walk(const CellLeg& leg) const;
-  std::string refused_by(const Refused& leg, const Request& open) const;
+  std::string refused_by(const RefusedTurn& leg, const Request& open) const;
   std::optional<GridSpec> cells_that_decide() const;
 
   const Request& request_;
@@ -64,6 +70,8 @@ class ALTIPLAN_API LegRules {
                   ///< can satisfy
   std::int64_t checked_ = 0;
   std::uint64_t refused_count_ = 0;
-  std::array<Refused, kRemembered> refused_;
+  std::array<Refused, kRemembered> refused_;  ///< straight legs
+  std::vector<RefusedTurn> refused_turns_;
+  std::uint64_t refused_turn_count_ = 0;
 };
 }  // namespace altiplan::kit
