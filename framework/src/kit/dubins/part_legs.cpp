@@ -2,6 +2,26 @@
 #include "part_legs.hpp"
 
 namespace altiplan::kit {
+namespace {
+
+/// Makes the legs end at `to`. Rounding takes them past it, by 1e-4 m after 500 km: the last
+/// straight leg takes that up, as a turn that ends elsewhere than its circle would be no turn.
+void end_at(std::vector<Leg>& legs, const Vec3& to) {
+  const Vec3 off = to - legs.back().to;
+  std::size_t last = legs.size() - 1;
+  while (last > 0 && legs[last].turns()) {
+    --last;
+  }
+  if (!legs[last].turns()) {
+    legs[last].to += off;
+    for (std::size_t i = last + 1; i < legs.size(); ++i) {
+      legs[i].from += off;
+      legs[i].to += off;
+    }
+  }
+  legs.back().to = to;
+}
+}  // namespace
 
 std::vector<Leg> part_legs(std::span<const PathPart> parts, double radius, const Pose& from,
                            const Vec3& to, const Vec3& wind) {
@@ -30,7 +50,7 @@ std::vector<Leg> part_legs(std::span<const PathPart> parts, double radius, const
     legs.push_back(Leg::straight(from.position, to));
   }
   if (!legs.empty()) {
-    legs.back().to = to;
+    end_at(legs, to);
   }
   return legs;
 }
