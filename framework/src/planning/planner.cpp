@@ -33,7 +33,11 @@ thread_local bool is_inherited = false;  ///< set where do_admits is not overrid
 bool Constraint::do_admits(const Motion&) const { return is_inherited = true; }
 bool Constraint::admits_all() const {
   is_inherited = false;
-  (void)admits({std::nullopt, Vec3::Zero(), Vec3::Zero()});
+  try {
+    (void)admits({std::nullopt, Vec3::Zero(), Vec3::Zero()});
+  } catch (...) {  // overridden; what it throws is told where a leg is judged
+    return false;
+  }
   return is_inherited;
 }
 std::vector<Violation> Constraint::do_violations(const Polyline&, const Request&) const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "altiplan/kit/sampling/leg_rules.hpp"
@@ -58,6 +60,19 @@ class Columns {
   double straight(const Vec3& p) const {
     const Vec3 leg = request_.goal.position - p;
     return through_air({leg.x(), leg.y(), 0});
+  }
+
+  /// Middle of the heights between limits above ground; none without such a limit from above.
+  std::optional<double> middle_above_ground(double x, double y) const {
+    const auto is_ceiling = [](const AltitudeBand& band) {
+      return band.datum == AltitudeBand::Datum::ground && band.max < kInfinity;
+    };
+    const std::vector<AltitudeBand>& bands = request_.limits.altitude;
+    if (request_.level_m || std::none_of(bands.begin(), bands.end(), is_ceiling)) {
+      return std::nullopt;
+    }
+    const auto [low, high] = heights(x, y);
+    return (low + high) / 2;
   }
 
  private:
@@ -170,10 +185,8 @@ class Columns {
     return open == 1;
   }
 
-  bool is_flyable(int column) const {
-    const int row = column / nx_;
-    const double x = min_.x() + (column % nx_ + 0.5) * cell_;
-    const double y = min_.y() + (row + 0.5) * cell_;
+  /// The heights between the limits at a place.
+  std::pair<double, double> heights(double x, double y) const {
     double low = request_.level_m.value_or(request_.volume.min.z());
     double high = request_.level_m.value_or(request_.volume.max.z());
     if (const auto ground = request_.world->ground(x, y); ground && !request_.level_m) {
@@ -185,6 +198,14 @@ class Columns {
       }
       low = std::max(low, *ground + request_.limits.min_ground_clearance.value_or(0));
     }
+    return {low, high};
+  }
+
+  bool is_flyable(int column) const {
+    const int row = column / nx_;
+    const double x = min_.x() + (column % nx_ + 0.5) * cell_;
+    const double y = min_.y() + (row + 0.5) * cell_;
+    const auto [low, high] = heights(x, y);
     for (int k = 0; k < kHeights && low <= high; ++k) {
       const double z = low + (high - low) * k / (kHeights - 1);
       if (rules_.point_ok({x, y, z})) {

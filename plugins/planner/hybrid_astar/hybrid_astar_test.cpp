@@ -39,6 +39,15 @@ TEST(HybridAstar, ReportsAWindThatItCannotFlyIn) {
   testing::expect_a_wind_too_strong_reported("hybrid_astar");
 }
 
+TEST(HybridAstar, SaysSoonThatAGoalsHeadingCannotBeMet) {
+  // Ten metres inside the western border, heading east.
+  const Request request = between({{0, 0, 100}, 0}, {{-1990, 500, 200}, 0});
+  const PlanResult result = make_planner("hybrid_astar")->plan(request);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
+  EXPECT_NE(result.message.find("1 poses lead to the goal"), std::string::npos) << result.message;
+  EXPECT_LT(testing::counter(result, "expanded"), 10'000);
+}
+
 TEST(HybridAstar, EqualRequestsGiveEqualRoutes) {
   RandomStream random(9);
   Request request =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -60,6 +61,9 @@ class Search {
   static constexpr double kTie = 1e-9;
   /// Places where a loiter circle may be left or joined.
   static constexpr int kLoiterPoses = 64;
+  /// Poses that lead to the goal, if there are so many, do so from anywhere.
+  static constexpr std::size_t kManyApproaches = 2048;
+  static constexpr std::uint64_t kManyExpanded = 5000;  ///< for a search that finds nothing
 
   /// A continuous pose, reached by one piece from its parent.
   struct Node {
@@ -85,8 +89,35 @@ class Search {
     }
   }
 
+  /// Poses from which pieces lead to a goal, flown backwards from there; at most kManyApproaches.
+  std::size_t count_approaches() {
+    std::vector<Pose> poses = goals_;
+    Cells known;
+    for (std::size_t i = 0; i < poses.size() && poses.size() < kManyApproaches; ++i) {
+      const Pose to = poses[i];
+      for (const double turn : turns()) {
+        for (const double gradient : gradients_) {
+          const Leg leg = steering_.piece_to(to, length_, turn, gradient);
+          const Pose from{leg.from, to.heading - turn};
+          if (request_.volume.contains(leg.from) && known.find(key(from)) == Cells::kNone &&
+              leg_ok(std::nullopt, leg, request_)) {
+            known.exchange(key(from), Cells::Node(i));
+            poses.push_back(from);
+          }
+        }
+      }
+    }
+    return std::min(poses.size(), kManyApproaches);
+  }
+
+  /// True if the search goes on although few poses lead to the goal, which shots seldom hit.
+  bool is_hopeless() const {
+    return best_ == kInfinity && approach_count_ < kManyApproaches &&
+           expanded_ > kManyExpanded + 10 * approach_count_;
+  }
+
   void expand() {
-    while (!open_.empty() && open_.top().f < best_ * (1 - kTie)) {
+    while (!open_.empty() && open_.top().f < best_ * (1 - kTie) && !is_hopeless()) {
       const auto [f, at] = open_.top();
       if (watch_.spent(expanded_) || bytes() > settings_.max_bytes) {
         ended_ = true;
@@ -97,7 +128,9 @@ class Search {
       if (node.is_superseded) {
         continue;
       }
-      ++expanded_;
+      if (++expanded_ == kManyExpanded && best_ == kInfinity) {
+        approach_count_ = count_approaches();
+      }
       if (request_.trace != nullptr) {
         request_.trace->add({TraceEvent::Kind::expanded, at,
                              node.parent == kNone ? -1 : std::int64_t(node.parent),
@@ -111,13 +144,25 @@ class Search {
     }
   }
 
-  /// Pieces straight on and on both sides, level and at the limits of climb and descent.
+  std::array<double, 5> turns() const {
+    const double sharpest = length_ / settings_.radius;
+    return {0, sharpest, -sharpest, sharpest / 2, -sharpest / 2};
+  }
+
+  /// Pieces straight on and on both sides: level, at the limits of climb and descent, and toward
+  /// the middle of the heights that limits above ground leave.
   void grow(Index at, const Node& node) {
     const std::optional<Approach> before = approach(at);
-    const double sharpest = length_ / settings_.radius;
-    for (const double turn : {0.0, sharpest, -sharpest, sharpest / 2, -sharpest / 2}) {
+    for (const double turn : turns()) {
       for (const double gradient : gradients_) {
         step(at, node, before, turn, gradient);
+      }
+      const Vec3 end = steering_.piece(node.pose, length_, turn, 0).to;
+      if (const auto middle = columns_.middle_above_ground(end.x(), end.y())) {
+        const double wanted = (*middle - node.pose.position.z()) / length_;
+        step(at, node, before, turn,
+             std::clamp(wanted, *std::min_element(gradients_.begin(), gradients_.end()),
+                        *std::max_element(gradients_.begin(), gradients_.end())));
       }
     }
   }
@@ -276,6 +321,9 @@ class Search {
     return std::to_string(expanded_) + " poses expanded, the nearest " + metres(nearest_) +
            " from the goal; " + std::to_string(refused_) + " of " + std::to_string(checked_) +
            " legs refused, with turns of " + metres(settings_.radius) +
+           (is_hopeless() ? "; " + std::to_string(approach_count_) +
+                                " poses lead to the goal: check its heading, volume and obstacles"
+                          : "") +
            (by_memory ? "; max_memory_mb is used up" : "");
   }
 
@@ -297,6 +345,7 @@ class Search {
   std::vector<Leg> best_legs_;
   bool ended_ = false;
   std::uint64_t expanded_ = 0;
+  std::size_t approach_count_ = kManyApproaches;  ///< unless they are counted
   std::int64_t checked_ = 0;
   std::int64_t refused_ = 0;
   double nearest_ = kInfinity;

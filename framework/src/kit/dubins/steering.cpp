@@ -79,6 +79,17 @@ Leg Steering::piece(const Pose& from, double length, double turn, double gradien
                                           Vec3(0, 0, climb));
 }
 
+Leg Steering::piece_to(const Pose& to, double length, double turn, double gradient) const {
+  const Vec3 drift = length / speed_ * wind_.at(to.position.z());
+  const double climb = gradient * length;
+  if (turn != 0) {  // flown backwards, in the reversed wind
+    const Pose back{to.position, to.heading + kPi};
+    return Leg::turning(back, -turn, length / std::abs(turn), -climb, -drift).reversed();
+  }
+  return Leg::straight(to.position - length * unit_heading(to.heading) - drift - Vec3(0, 0, climb),
+                       to.position);
+}
+
 std::optional<PosePath> Steering::path(const Pose& from, const Pose& to) const {
   const Vec3 wind = wind_between(from, to);
   if (wind.isZero(0)) {

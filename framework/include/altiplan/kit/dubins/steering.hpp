@@ -31,6 +31,8 @@ class ALTIPLAN_API Steering {
 
   /// A piece of a given length through the air: with a turn (radians, 0: straight) and a gradient.
   Leg piece(const Pose& from, double length, double turn, double gradient) const;
+  /// The same that ends in a pose.
+  Leg piece_to(const Pose& to, double length, double turn, double gradient) const;
 
   /// The shortest path through the air to a pose; none if there is none.
   std::optional<PosePath> path(const Pose& from, const Pose& to) const;
