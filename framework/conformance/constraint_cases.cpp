@@ -114,10 +114,12 @@ Vec3 direction(RandomStream& random) {
   return Vec3(random.normal(), random.normal(), 0.3 * random.normal());
 }
 
-Motion random_leg(RandomStream& random) {
+/// Begins in a volume that the user names, by default around the origin.
+Motion random_leg(RandomStream& random, const Options& options) {
+  static const Box kAround{{-3000, -3000, 0}, {3000, 3000, 3000}};
   Motion leg;
   const double scale = std::pow(10, random.uniform(-1, 4));
-  leg.from = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)) * 3000;
+  leg.from = random.in(options.volume.value_or(kAround));
   leg.to = leg.from + scale * direction(random);
   if (random.uniform() < 0.6) {
     leg.before = leg.from + scale * direction(random);
@@ -168,7 +170,7 @@ Answers ask(const Constraint& constraint, const Bench& bench, bool backward = fa
     constraint.tighten(limits, scene.request);
     answers.limits.push_back(figures(limits));
     std::vector<Motion> legs(50);
-    std::generate(legs.begin(), legs.end(), [&] { return random_leg(random); });
+    std::generate(legs.begin(), legs.end(), [&] { return random_leg(random, bench.options); });
     std::vector<bool> admitted(legs.size());
     for (std::size_t i = 0; i < legs.size(); ++i) {
       const std::size_t at = backward ? legs.size() - 1 - i : i;
@@ -243,7 +245,7 @@ void legs_and_routes(const Bench& bench, Report& report) {
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("legs", std::uint64_t(n));
     for (int k = 0; k < 20; ++k) {
-      const Motion leg = random_leg(random);
+      const Motion leg = random_leg(random, bench.options);
       const bool admitted = constraint->admits(leg);
       says_anything |= !admitted;
       if (stricter != nullptr) {
@@ -282,7 +284,8 @@ void legs_and_routes(const Bench& bench, Report& report) {
     says_anything |= figures(limits) != figures(Limits{});
   }
   report.expect(says_anything, kNothing, [] {
-    return "the constraint tightened nothing, refused no leg and found no violation";
+    return "the constraint tightened nothing, refused no leg and found no violation: give the "
+           "parameter set a `volume` in which it does";
   });
 }
 
@@ -302,7 +305,7 @@ void legs_through_refused_ones(const Bench& bench, Report& report) {
   const auto constraint = bench.make();
   for (int n = 0; n < 400 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("through", std::uint64_t(n));
-    Motion part = random_leg(random);
+    Motion part = random_leg(random, bench.options);
     part.before.reset();
     if (constraint->admits(part) || part.from == part.to) {
       continue;

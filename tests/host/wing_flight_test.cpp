@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "altiplan/kit/dubins/airplane.hpp"
 #include "flight_scene.hpp"
 #include "host/flight/follow_error.hpp"
 #include "host/flight/track_judge.hpp"
@@ -91,6 +92,28 @@ TEST(WingFlight, CutsTheCornersOfAPolyline) {
   const FlightSetup all = setup({{0, 0, 500}, {2000, 0, 500}, {2000, 2000, 500}});
   const FlightResult result = flown_well(all);
   EXPECT_GT(*result.cross_track_max_m, 20);
+}
+
+TEST(WingFlight, ArrivesAtTheEndOfEveryRoute) {
+  RandomStream random(4);
+  const kit::AirplaneLimits limits{1.25 * turn_radius(), radians(7), radians(7)};
+  for (int n = 0; n < 600; ++n) {
+    const auto pose = [&] {
+      return Pose{random.in({{-2000, -2000, 400}, {2000, 2000, 500}}), random.uniform(-kPi, kPi)};
+    };
+    const Pose from = pose();
+    const Pose to = pose();
+    Route route{from.position};
+    for (const Leg& leg : kit::airplane_path(from, to, limits)->legs(from, to.position)) {
+      route.push_back(leg);
+    }
+    FlightSetup all = setup(route);
+    // The circle that the last turn would go on with.
+    const Vec3 across(-std::sin(to.heading), std::cos(to.heading), 0);
+    all.request.goal = {to.position + 150 * across, 0, std::nullopt, Loiter{150, 1}};
+    const FlightResult result = fly(all);
+    EXPECT_TRUE(result.reached) << n << ": " << result.message;
+  }
 }
 
 TEST(WingFlight, RepeatsExactly) {

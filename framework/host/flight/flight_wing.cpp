@@ -129,6 +129,7 @@ bool Flight::passes_goal(const State& now, bool on_route) const {
     return at_goal(now.position, request_) && way.dot(now.velocity) <= 0;
   }
   const Vec3 beyond = now.position - path_.at(path_.length());
-  return progress_ >= path_.length() && beyond.head<2>().dot(path_.end_direction().head<2>()) >= 0;
+  const bool is_at_end = progress_ >= path_.length() - kLengthTolerance;  // a sum of legs
+  return is_at_end && beyond.head<2>().dot(path_.end_direction().head<2>()) >= 0;
 }
 }  // namespace altiplan::host

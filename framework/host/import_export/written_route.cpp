@@ -39,18 +39,6 @@ MissionPlace circle_of(const Leg& arc) {
   return {centre_of(arc), circle};
 }
 
-/// The intersection of the tangents at both ends of a piece of less than half a turn.
-Vec3 corner_of(const Leg& piece) {
-  const Vec3 in = piece.rate(0);
-  const Vec3 out = piece.rate(1);
-  const Vec3 chord = piece.to - piece.from;
-  const double sine = in.x() * out.y() - in.y() * out.x();
-  const double share = sine == 0 ? 0.5 : (chord.x() * out.y() - chord.y() * out.x()) / sine;
-  Vec3 corner = piece.from + share * in;
-  corner.z() = (piece.from.z() + piece.to.z()) / 2;
-  return corner;
-}
-
 /// The corners of equal pieces of a turn, all within `tolerance` of it.
 Polyline corners_of(const Leg& turn, double tolerance) {
   constexpr double kMaxPiece = kPi / 6;
@@ -207,6 +195,17 @@ class Writing {
   std::vector<bool> kept_;  ///< one for each place; false: a joint
 };
 }  // namespace
+
+Vec3 corner_of(const Leg& piece) {
+  const Vec3 in = piece.rate(0);
+  const Vec3 out = piece.rate(1);
+  const Vec3 chord = piece.to - piece.from;
+  const double sine = in.x() * out.y() - in.y() * out.x();
+  const double share = sine == 0 ? 0.5 : (chord.x() * out.y() - chord.y() * out.x()) / sine;
+  Vec3 corner = piece.from + share * in;
+  corner.z() = (piece.from.z() + piece.to.z()) / 2;
+  return corner;
+}
 
 WrittenRoute written_route(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
                            const Request& request) {

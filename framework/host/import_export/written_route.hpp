@@ -25,6 +25,9 @@ struct ArcForm {
   double tolerance = kArcTolerance;  ///< of the points of all others
 };
 
+/// The intersection of the tangents at both ends of a piece of less than half a turn.
+Vec3 corner_of(const Leg& piece);
+
 /// Points stand outside a turn, so that the legs between them touch it: they have its headings, and
 /// corners of its radius fit into them. Waypoints of a turn are left out where the legs on both
 /// sides pass through them, unless they are at a via point. Where turns may be circles, so are the

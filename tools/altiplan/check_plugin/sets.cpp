@@ -38,7 +38,7 @@ void ParameterSet::describe(Fields& f) {
   f("tighter", tighter).doc("stricter parameters of a constraint; default: those of with");
   f("unit_m", unit_m).greater_than(0).doc("length that a planner or smoother resolves well");
   f("iterations", iterations).at_least(1).doc("maximum number of iterations of one plan");
-  f("volume", volume).doc("volume in which an environment is sampled");
+  f("volume", volume).doc("volume in which an environment, or legs of a constraint, are sampled");
   f("before", before).doc("layers before an environment, as in a scenario");
 }
 

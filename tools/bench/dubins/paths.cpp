@@ -3,13 +3,13 @@
 
 #include "altiplan/kit/dubins/wind.hpp"
 #include "altiplan/random.hpp"
+#include "cyclic_rows.hpp"
 #include "ompl_dubins.hpp"
 #include "rows.hpp"
 
 namespace altiplan::bench {
 namespace {
 
-constexpr std::size_t kPairs = 4096;
 constexpr double kRadius = 50;
 /// At these limits nearly half of the paths between easy pairs must be longer than the shortest.
 constexpr double kHeight = 2 * kRadius;
@@ -25,24 +25,11 @@ Pairs random_pairs(double edge) {
     return Pose{position, random.uniform(-kPi, kPi)};
   };
   Pairs pairs;
-  while (pairs.size() < kPairs) {
+  while (pairs.size() < kQueries) {
     const Pose from = pose();
     pairs.emplace_back(from, pose());
   }
   return pairs;
-}
-
-/// A row that asks for each pair in turn.
-template <class Ask>
-void add_row(const std::string& name, const Ask& ask) {
-  benchmark::RegisterBenchmark(name.c_str(), [ask](benchmark::State& state) {
-    std::size_t n = 0;
-    for (auto _ : state) {
-      benchmark::DoNotOptimize(ask(n));
-      n = (n + 1) % kPairs;
-    }
-    state.SetItemsProcessed(state.iterations());
-  });
 }
 }  // namespace
 
@@ -52,7 +39,7 @@ void add_length_rows(const PosePairs& set) {
   const auto ours = [pairs](std::size_t n) {
     return kit::dubins_length((*pairs)[n].first, (*pairs)[n].second, kRadius);
   };
-  for (std::size_t n = 0; n < kPairs; ++n) {
+  for (std::size_t n = 0; n < kQueries; ++n) {
     if (std::abs(ours(n) - ompl->length(n)) > 1e-9 * ours(n)) {
       throw WrongAnswer("length/" + set.name + ": pair " + std::to_string(n) + " differs");
     }

@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <benchmark/benchmark.h>
-
 #include <string>
 
+#include "cyclic_rows.hpp"
 #include "measuring.hpp"
 
 namespace altiplan::bench {
-
-/// Queries of a row, in cyclic order.
-inline constexpr std::size_t kQueries = 4096;
-
-/// A row of the table: the time of one call of ask(n), n below kQueries.
-template <class Ask>
-void add_row(const std::string& name, const Ask& ask) {
-  benchmark::RegisterBenchmark(name.c_str(), [ask](benchmark::State& state) {
-    std::size_t n = 0;
-    for (auto _ : state) {
-      benchmark::DoNotOptimize(ask(n));
-      n = (n + 1) % kQueries;
-    }
-  });
-}
 
 /// Throws WrongAnswer naming the row and the first query whose answers differ.
 template <class Agrees>

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/flight/flight.hpp"
+#include "host/import_export/written_route.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
 #include "measuring.hpp"
@@ -13,25 +14,13 @@
 namespace altiplan::bench {
 namespace {
 
-/// The intersection of the tangents at both ends of a turn of less than half a circle.
-Vec3 corner_of(const Leg& turn) {
-  const Vec3 in = turn.rate(0);
-  const Vec3 out = turn.rate(1);
-  const Vec3 chord = turn.to - turn.from;
-  const double sine = in.x() * out.y() - in.y() * out.x();
-  const double share = (chord.x() * out.y() - chord.y() * out.x()) / sine;
-  Vec3 corner = turn.from + share * in;
-  corner.z() = (turn.from.z() + turn.to.z()) / 2;
-  return corner;
-}
-
 /// Corners for turns of up to 120 degrees; the ends of others.
 Polyline with_corners(const Route& route) {
   Polyline points{route.front()};
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     const bool is_corner = leg.turns() && std::abs(leg.turn) < radians(120);
-    points.push_back(is_corner ? corner_of(leg) : leg.to);
+    points.push_back(is_corner ? host::corner_of(leg) : leg.to);
   }
   if (points.back() != route.back()) {
     points.push_back(route.back());
