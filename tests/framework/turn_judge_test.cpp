@@ -127,6 +127,32 @@ TEST(TurnJudge, ALoiterCircleThatDoesNotFitIsNamed) {
             PlanStatus::invalid_problem);
 }
 
+TEST(TurnJudge, ABorderOfWindAtTheGoalsHeightBelongsToBothLayers) {
+  const Vec3 goal(5000, 2000, 400);
+  Request request = open_request(goal);
+  request.vehicle.wing = Wing{20, radians(27), radians(8), radians(8)};
+  request.vehicle.speed_mps = 20;
+  apply_constraints(request, {}, AppliesTo::route);
+  request.wind.layers = {{0, {5, 0, 0}}, {400, {0, -5, 0}}};
+  request.start.velocity = request.ground_velocity({kStart, 0});
+  request.goal.heading = 1;
+  for (const char* planner : {"hybrid_astar", "rrt_connect"}) {
+    const PlanResult result = testing::make_planner(planner)->plan(request);
+    ASSERT_EQ(result.status, PlanStatus::solved) << planner << ": " << result.message;
+    EXPECT_EQ(violated(result.route, request), Rules{}) << planner;
+  }
+}
+
+TEST(TurnJudge, AStartOnTheWrongCourseIsNotAtTheGoal) {
+  Request request = open_request(kStart);
+  request.start.velocity = {20, 0, 0};
+  request.goal.heading = kPi;
+  const PlanResult result = testing::make_planner("hybrid_astar")->plan(request);
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
+  EXPECT_GT(result.route.size(), 1U);
+  EXPECT_EQ(violated(result.route, request), Rules{});
+}
+
 /// Admits no leg within 300 m of the origin.
 class Quiet final : public Constraint {
   bool do_admits(const Motion& leg) const override {

@@ -56,5 +56,16 @@ TEST(JoinedRoute, EndsWhereItEntersTheLastCircleAndBeginsWhereItLeavesTheFirst) 
   EXPECT_LT((from.front() - Vec3(0, -100, 50)).norm(), 1e-9);
 }
 
+TEST(JoinedRoute, TheLastCircleKeepsItsHeightAndItsSense) {
+  const std::vector<MissionPlace> way = {{{-900, -100, 50}}, {{0, -100, 50}}};
+  const auto ending_on = [&](double z, int sense) {
+    std::vector<MissionPlace> places = way;
+    places.push_back({{0, 0, z}, kit::MissionCircle{Until::forever, 100, sense, 0}});
+    return joined(places);
+  };
+  EXPECT_EQ(ending_on(50, 1).route.size(), 2U);
+  EXPECT_EQ(ending_on(99, 1).route.back(), Vec3(0, -100, 99)) << "for the judge to refuse";
+  EXPECT_EQ(ending_on(50, -1).unjoined, 1U) << "the circle is flown the other way";
+}
 }  // namespace
 }  // namespace altiplan::host

@@ -50,9 +50,36 @@ std::vector<std::size_t> via_indices(const Route& route, const std::vector<Goal>
   return indices;
 }
 
+namespace {
+/// The course at a via point with a heading or a loiter circle, at any of the waypoints in a row
+/// that reach it.
+void check_via_course(const Route& route, const Request& request, const Goal& via,
+                      std::size_t first, std::vector<Violation>& found) {
+  Request to = request;
+  to.goal = via;
+  double least = kInfinity;
+  for (std::size_t i = std::max<std::size_t>(first, 1);
+       i < route.size() && via.reached_at(route[i]); ++i) {
+    const Vec3 arrival = route.leg(i - 1).rate(1);
+    const auto course = to.arrival_course(route[i]);
+    const double off = course ? turn_angle_horizontal(arrival, *course) : 0;
+    least = std::min(least, off * arrival.norm() > kLengthTolerance ? off : 0);
+  }
+  if (std::isfinite(least) && least > kAngleTolerance) {
+    found.push_back({"via_heading", first, degrees(least), 0,
+                     "the angle between the course at the via point and the one asked for is " +
+                         std::to_string(degrees(least)) + " degrees"});
+  }
+}
+}  // namespace
+
 CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via) {
   CheckResult result = check(route, request);
-  const std::size_t passed = via_indices(route, via).size();
+  const std::vector<std::size_t> indices = via_indices(route, via);
+  const std::size_t passed = indices.size();
+  for (std::size_t i = 0; i < passed; ++i) {
+    check_via_course(route, request, via[i], indices[i], result.violations);
+  }
   if (passed < via.size()) {
     result.violations.push_back({"via", 0, double(passed), double(via.size()),
                                  "the route does not pass via point " + std::to_string(passed)});

@@ -38,6 +38,15 @@ PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
   if (auto impossible = impossible_ends(request)) {
     return *std::move(impossible);
   }
+  if (request.start.loiter || request.goal.loiter) {
+    PlanResult refused;
+    refused.status = PlanStatus::invalid_problem;
+    refused.reason = request.start.loiter ? Reason::start : Reason::goal;
+    refused.message = std::string("the ") + name(refused.reason) +
+                      " is a loiter circle, which local planners do not support";
+    refused.counters = {{"expanded", 0}};
+    return refused;
+  }
   const std::unique_ptr<Pilot> pilot = planner.begin(request);
   BudgetWatch watch(request.budget);
   const Vec3 rest[] = {request.goal.position};

@@ -138,12 +138,18 @@ PlanResult held_to_contract(PlanResult result, const State& start, const Goal& g
   return result;
 }
 
-/// True if the start lies within the goal's tolerance, or both are one loiter circle.
+/// True if the start lies within the goal's tolerance, on its course if both have one, or if both
+/// are one loiter circle.
 bool is_at_goal(const Request& request) {
   const State& start = request.start;
   const Goal& goal = request.goal;
-  return start.loiter ? start.loiter == goal.loiter && start.position == goal.position
-                      : goal.reached_at(start.position);
+  if (start.loiter) {
+    return start.loiter == goal.loiter && start.position == goal.position;
+  }
+  const std::optional<Vec3> course = request.arrival_course(start.position);
+  const bool is_on_course = !course || !has_heading(start.velocity) ||
+                            turn_angle_horizontal(start.velocity, *course) <= kAngleTolerance;
+  return goal.reached_at(start.position) && is_on_course;
 }
 
 /// Results that need no planner: infeasible ends, ends that the planner does not know, and a start

@@ -64,8 +64,12 @@ Steering::Steering(const Request& request, double radius)
   limits_.radius = radius;
   limits_.climb = request.level_m ? 0 : std::min(limits.max_climb, kSteepest);
   limits_.sink = request.level_m ? 0 : std::min(limits.max_descent(), kSteepest);
-  for (const Wind::Layer& layer : wind_.layers) {
-    strongest_ = std::max(strongest_, layer.velocity.norm());
+  for (std::size_t i = 0; i < wind_.layers.size(); ++i) {
+    const bool is_below =
+        i + 1 < wind_.layers.size() && wind_.layers[i + 1].above_m < request.volume.min.z();
+    if (!is_below && wind_.layers[i].above_m <= request.volume.max.z()) {
+      strongest_ = std::max(strongest_, wind_.layers[i].velocity.norm());
+    }
   }
 }
 
