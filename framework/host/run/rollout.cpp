@@ -32,20 +32,25 @@ void expect_lawful(const PilotStep& step, const Observation& seen, const Request
                       Reason::contract);
   }
 }
+
+/// The result for ends that are impossible, or that no local planner knows.
+std::optional<PlanResult> refused_ends(const Request& request) {
+  std::optional<PlanResult> refused = impossible_ends(request);
+  if (!refused && (request.start.loiter || request.goal.loiter)) {
+    refused.emplace();
+    refused->status = PlanStatus::invalid_problem;
+    refused->reason = request.start.loiter ? Reason::start : Reason::goal;
+    refused->message = std::string("the ") + name(refused->reason) +
+                       " is a loiter circle, which local planners do not support";
+    refused->counters = {{"expanded", 0}};
+  }
+  return refused;
+}
 }  // namespace
 
 PlanResult roll_out(const LocalPlanner& planner, const Request& request) {
-  if (auto impossible = impossible_ends(request)) {
-    return *std::move(impossible);
-  }
-  if (request.start.loiter || request.goal.loiter) {
-    PlanResult refused;
-    refused.status = PlanStatus::invalid_problem;
-    refused.reason = request.start.loiter ? Reason::start : Reason::goal;
-    refused.message = std::string("the ") + name(refused.reason) +
-                      " is a loiter circle, which local planners do not support";
-    refused.counters = {{"expanded", 0}};
-    return refused;
+  if (auto refused = refused_ends(request)) {
+    return *std::move(refused);
   }
   const std::unique_ptr<Pilot> pilot = planner.begin(request);
   BudgetWatch watch(request.budget);

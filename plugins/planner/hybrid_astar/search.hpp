@@ -321,9 +321,10 @@ class Search {
     return std::to_string(expanded_) + " poses expanded, the nearest " + metres(nearest_) +
            " from the goal; " + std::to_string(refused_) + " of " + std::to_string(checked_) +
            " legs refused, with turns of " + metres(settings_.radius) +
-           (is_hopeless() ? "; " + std::to_string(approach_count_) +
-                                " poses lead to the goal: check its heading, volume and obstacles"
-                          : "") +
+           (is_hopeless()
+                ? "; poses from which the goal can be reached: " + std::to_string(approach_count_) +
+                      ": check its heading, the volume and obstacles"
+                : "") +
            (by_memory ? "; max_memory_mb is used up" : "");
   }
 
