@@ -52,7 +52,12 @@ class ALTIPLAN_API Planner {
 
  private:
   virtual PlanResult do_plan(const Request& request) const = 0;
+
+ protected:
+  /// Default: replans from scratch at every update.
   virtual std::unique_ptr<Session> do_begin(const Request& request) const;
+
+ private:
   virtual Traits do_traits() const = 0;
 };
 }  // namespace altiplan

@@ -91,30 +91,6 @@ struct Params : kit::SteeringParams {
   }
 };
 
-/// Replans from scratch: trees of poses do not persist.
-class PoseSession final : public Session {
- public:
-  PoseSession(const Planner& planner, const Request& request)
-      : planner_(planner), request_(request), result_(planner.plan(request)) {}
-
- private:
-  const PlanResult& do_result() const override { return result_; }
-  const PlanResult& do_update(const State& state, const Goal& goal,
-                              std::shared_ptr<const World> world, std::span<const Change>,
-                              const Budget& budget) override {
-    request_.start = state;
-    request_.goal = goal;
-    request_.world = std::move(world);
-    request_.budget = budget;
-    result_ = planner_.plan(request_);
-    return result_;
-  }
-
-  const Planner& planner_;
-  Request request_;
-  PlanResult result_;
-};
-
 class Rrt final : public Planner {
  public:
   explicit Rrt(const Params& params) : params_(params) {}
@@ -141,7 +117,7 @@ class Rrt final : public Planner {
 
   std::unique_ptr<Session> do_begin(const Request& request) const override {
     if (params_.turn_radius(request) > 0) {
-      return std::make_unique<PoseSession>(*this, request);
+      return Planner::do_begin(request);  // trees of poses do not persist
     }
     return std::make_unique<rrt::TreeSession>(params_.settings(request), params_.cut_off, request);
   }
