@@ -43,7 +43,7 @@ class PoseGrowth {
       const Pose sample = is_goal ? goal : Pose{random.in(sampled_), random.uniform(-kPi, kPi)};
       const Node near =
           tree_.choose(sample.position, settings_.w_random, goal.position, settings_.w_goal);
-      extend(near, grows_to_goal(near, random) ? goal : sample);
+      extend(near, grows_to_goal(settings_, tree_, near, random) ? goal : sample);
     }
     return result();
   }
@@ -64,16 +64,6 @@ class PoseGrowth {
 
   const Pose& any_goal(RandomStream& random) const {
     return goals_[std::size_t(random.integer(0, std::int64_t(goals_.size()) - 1))];
-  }
-
-  /// Eq. (5).
-  bool grows_to_goal(Node near, RandomStream& random) {
-    if (random.uniform() < settings_.random_share ||
-        (settings_.goal_once && tree_.has_grown_to_goal(near))) {
-      return false;
-    }
-    tree_.set_grown_to_goal(near);
-    return true;
   }
 
   Pose pose(Node node) const { return {tree_.point(node), arrivals_[std::size_t(node)].first}; }

@@ -27,6 +27,16 @@ struct Settings {
   std::uint64_t max_iterations = 0;
 };
 
+/// Eq. (5): true if the node grows toward the goal, which is then noted.
+inline bool grows_to_goal(const Settings& settings, Tree& tree, Node near, RandomStream& random) {
+  if (random.uniform() < settings.random_share ||
+      (settings.goal_once && tree.has_grown_to_goal(near))) {
+    return false;
+  }
+  tree.set_grown_to_goal(near);
+  return true;
+}
+
 /// Region to sample and nodes to grow to, after a change has cut the tree.
 struct Damage {
   Box box = Box::empty();  ///< empty: there is none
@@ -80,7 +90,7 @@ class Growth {
       const Vec3 goal = aim(damage, random);
       const Vec3 sample = draw(damage, random);
       const Node near = tree_.choose(sample, settings_.w_random, goal, settings_.w_goal);
-      const Vec3 toward = grows_to_goal(near, random) ? goal : sample;
+      const Vec3 toward = grows_to_goal(settings_, tree_, near, random) ? goal : sample;
       tree_.has_woken() ? steer(near, toward) : extend(near, toward - tree_.point(near));
     }
     return is_done() ? with_route() : without_route(*stopped_);
@@ -166,16 +176,6 @@ class Growth {
     }
     const bool near_damage = !damage.box.is_empty() && random.uniform() < 0.5;
     return random.in(near_damage ? damage.box : sampled_);
-  }
-
-  /// Eq. (5).
-  bool grows_to_goal(Node near, RandomStream& random) {
-    if (random.uniform() < settings_.random_share ||
-        (settings_.goal_once && tree_.has_grown_to_goal(near))) {
-      return false;
-    }
-    tree_.set_grown_to_goal(near);
-    return true;
   }
 
   std::optional<Approach> before(Node node) const {
