@@ -34,6 +34,10 @@ ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Leg& leg,
 ALTIPLAN_API bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b,
                           const Request& request);
 
+/// True if the vehicle's body, if it has one, keeps off the world's layers on the leg.
+ALTIPLAN_API bool body_ok(const std::optional<Approach>& before, const Leg& leg,
+                          const Request& request);
+
 /// Violations of the leg, one sentence each; empty if and only if leg_ok. `index` becomes `at`.
 ALTIPLAN_API std::vector<Violation> leg_violations(const std::optional<Approach>& before,
                                                    const Leg& leg, const Request& request,

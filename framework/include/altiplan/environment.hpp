@@ -15,6 +15,7 @@
 namespace altiplan {
 
 class Ground;
+class SweptVolume;
 class World;
 
 /// A disc that a 2-D planner avoids.
@@ -73,6 +74,8 @@ struct ALTIPLAN_API Site {
 ///  5. Its ground, if any, fulfils the contract of Ground. The layer blocks nothing beyond it: the
 ///     judge rejects a leg with no ground below part of it.
 ///  6. rasterize never leaves a cell free that the grid's blocking rule blocks.
+///  7. meets(volume) is true whenever the layer and the volume overlap by more than kBodyTolerance;
+///     it may be true while they are up to kBodyTolerance, or over_approximation(), apart.
 class ALTIPLAN_API Environment {
  public:
   virtual ~Environment();
@@ -81,6 +84,8 @@ class ALTIPLAN_API Environment {
   Box bounds() const { return do_bounds(); }
   double clearance(const Vec3& p) const;
   bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  /// True if the layer shares a point with what a vehicle's body sweeps.
+  bool meets(const SweptVolume& volume) const { return do_meets(volume); }
   /// Calls the sink once for each obstacle whose distance from p is at most `reach`.
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const { do_rasterize(grid); }
@@ -112,5 +117,9 @@ class ALTIPLAN_API Environment {
   virtual const LayerInfo& do_info() const;
   virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;
   virtual std::optional<Drawing> do_drawing() const;
+
+ protected:
+  /// Default: meets_by_clearance.
+  virtual bool do_meets(const SweptVolume& volume) const;
 };
 }  // namespace altiplan

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "altiplan/leg.hpp"
 
 namespace altiplan {
+
+struct Body;
 
 /// Speed of the vehicle within `within_m` of an obstacle's surface.
 struct SpeedNear {
@@ -26,15 +29,19 @@ struct ALTIPLAN_API Wing {
   double turn_radius() const;
 };
 
-/// A sphere whose speed depends on its distance to the nearest obstacle.
+/// A sphere, or a body that contains it, whose speed depends on its distance to the nearest
+/// obstacle.
 struct ALTIPLAN_API Vehicle {
-  double radius_m = 0;
+  double radius_m = 0;  ///< of the sphere about the reference point: with a body, its inner_m()
   double speed_mps = 10;
   double sensing_m = kInfinity;
-  std::vector<SpeedNear> speed_near;  ///< by ascending within_m
-  bool turns_on_the_spot = false;     ///< to any heading, when climbing or descending vertically
-  std::optional<Wing> wing{};         ///< of an aeroplane; speed_mps is then its airspeed
+  std::vector<SpeedNear> speed_near;   ///< by ascending within_m
+  bool turns_on_the_spot = false;      ///< to any heading, when climbing or descending vertically
+  std::optional<Wing> wing{};          ///< of an aeroplane; speed_mps is then its airspeed
+  std::shared_ptr<const Body> body{};  ///< null: the sphere is all
 
+  /// No part of the vehicle is farther from its reference point, metres.
+  double reach_m() const;
   /// Speed at a distance to the nearest obstacle (for example paper 002, eq. 6).
   double speed_at(double distance_m) const;
 };

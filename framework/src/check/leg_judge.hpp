@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "altiplan/nearest_place.hpp"
 #include "altiplan/request.hpp"
-#include "altiplan/what_blocks.hpp"
+#include "body_judge.hpp"
 #include "leg_parts.hpp"
 #include "pieces.hpp"
 #include "words.hpp"
@@ -51,7 +50,7 @@ class LegJudge {
       return;
     }
     (void)(keeps_place(a_, at_) && keeps_place(b_, at_ + 1) && keeps_turn() && keeps_size() &&
-           keeps_bend() && keeps_heights() && keeps_constraints() && keeps_off());
+           keeps_bend() && keeps_heights() && keeps_constraints() && keeps_off() && keeps_body());
   }
   void judge_bend() const { (void)keeps_bend(); }
 
@@ -347,40 +346,24 @@ class LegJudge {
     const double needed = required_clearance(request_);
     const Layer* layer =
         turn_ == nullptr ? request_.world->blocked_by(a_, b_, needed) : turn_blocked_by(needed);
-    return layer == nullptr || report_([&] { return too_near(layer, needed); });
+    return layer == nullptr || report_([&] {
+             return too_near(layer, turn_ != nullptr ? *turn_ : Leg::straight(a_, b_), request_,
+                             at_);
+           });
+  }
+
+  bool keeps_body() const {
+    if (request_.vehicle.body == nullptr) {
+      return true;
+    }
+    const Leg leg = turn_ != nullptr ? *turn_ : Leg::straight(a_, b_);
+    const Layer* layer = body_meets(before_, leg, request_);
+    return layer == nullptr || report_([&] { return body_violation(*layer, leg, request_, at_); });
   }
 
   const Layer* turn_blocked_by(double needed) const {
     const double slope = height_kept_ > -kInfinity ? slope_of_turn() : kInfinity;
     return blocked_by(*request_.world, *turn_, box_, needed, {height_kept_, slope});
-  }
-
-  /// The violation of a leg that `layer` blocks: of all blocking layers, by the one nearest to it.
-  Violation too_near(const Layer* layer, double needed) const {
-    const Polyline points =
-        turn_ != nullptr ? turn_->chords(kChordTolerance / 10) : Polyline{a_, b_};
-    NearestLeg nearest{0, kInfinity};
-    for (const Layer& other : request_.world->layers()) {
-      const auto its = nearest_leg(*other.environment, points, nearest.distance);
-      if (its && (&other == layer ||
-                  other.environment->blocked(points[its->leg], points[its->leg + 1], needed))) {
-        nearest = *its;
-        layer = &other;
-      }
-    }
-    const double clearance = nearest.distance;
-    // The layer may block from around: outside a keep-in zone.
-    std::string where =
-        clearance < 0
-            ? "lies up to " + fixed(-clearance) + " m inside what '" + layer->id + "' blocks"
-            : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
-    if (const auto* says = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
-      const std::string what =
-          says->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
-      where += what.empty() ? "" : " (" + what + ")";
-    }
-    return {"clearance", at_, clearance, needed,
-            where + ", where " + fixed(needed) + " m of clearance are needed"};
   }
 
   const std::optional<Approach>& before_;

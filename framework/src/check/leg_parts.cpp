@@ -4,6 +4,8 @@
 #include "altiplan/attributed.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/leg_limits.hpp"
+#include "altiplan/nearest_place.hpp"
+#include "altiplan/what_blocks.hpp"
 #include "pieces.hpp"
 #include "words.hpp"
 
@@ -20,6 +22,43 @@ std::string turn_problem(const Leg& turn) {
   return off <= kLengthTolerance ? ""
                                  : "the turn leads to " + place(end) + ", " + distance_text(off) +
                                        " m from the end of its leg";
+}
+
+Violation too_near(const Layer* layer, const Leg& leg, const Request& request, std::size_t at) {
+  const double needed = required_clearance(request);
+  const Polyline points = leg.chords(kChordTolerance / 10);
+  NearestLeg nearest{0, kInfinity};
+  for (const Layer& other : request.world->layers()) {
+    const auto its = nearest_leg(*other.environment, points, nearest.distance);
+    if (its && (&other == layer ||
+                other.environment->blocked(points[its->leg], points[its->leg + 1], needed))) {
+      nearest = *its;
+      layer = &other;
+    }
+  }
+  const double clearance = nearest.distance;
+  // The layer may block from around: outside a keep-in zone.
+  std::string where = clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
+                                          layer->id + "' blocks"
+                                    : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
+  if (const auto* says = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
+    const std::string what =
+        says->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
+    where += what.empty() ? "" : " (" + what + ")";
+  }
+  return {"clearance", at, clearance, needed,
+          where + ", where " + fixed(needed) + " m of clearance are needed"};
+}
+
+Violation body_violation(const Layer& layer, const Leg& leg, const Request& request,
+                         std::size_t at) {
+  const auto nearest = nearest_leg(*layer.environment, leg.chords(kChordTolerance / 10), kInfinity);
+  const double clearance = nearest ? nearest->distance : kInfinity;
+  const double reach = request.vehicle.reach_m();
+  return {"body", at, clearance, reach,
+          "the vehicle's body meets '" + layer.id + "', which its reference point passes at " +
+              fixed(clearance) + " m; no part of it is farther from that point than " +
+              fixed(reach) + " m"};
 }
 
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {

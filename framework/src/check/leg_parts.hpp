@@ -15,6 +15,12 @@ inline double required_clearance(const Request& request) {
 /// Why the figures of a turn describe none, or not the one to its end; "" if they do.
 std::string turn_problem(const Leg& turn);
 
+/// The violation of a leg that `layer` blocks: of all blocking layers, by the one nearest to it.
+Violation too_near(const Layer* layer, const Leg& leg, const Request& request, std::size_t at);
+/// The violation of a leg on which the body meets the layer.
+Violation body_violation(const Layer& layer, const Leg& leg, const Request& request,
+                         std::size_t at);
+
 /// Start of the first part of a leg that has no ground below it.
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b);
 

@@ -7,6 +7,10 @@
 
 #include "edge_tree.hpp"
 
+namespace altiplan {
+class SweptVolume;
+}
+
 /// Common parts of the shape sources: visiting, height intervals, and the plan view of a prism.
 namespace altiplan::shape_parts {
 
@@ -186,4 +190,6 @@ bool comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double lim
 double leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b);
 Vec3 nearest_surface_point(const Indexed& solid, const Vec3& p);
 bool overlaps(const Indexed& solid, const Box& box, double by);
+/// True if the volume shares a point with the solid.
+bool meets(const Indexed& solid, const SweptVolume& volume);
 }  // namespace altiplan::shape_parts

@@ -5,6 +5,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
+#include "altiplan/swept_volume.hpp"
 #include "altiplan/what_blocks.hpp"
 #include "altiplan/world.hpp"
 
@@ -160,6 +161,11 @@ std::optional<Vec3> Environment::do_cell_centre(const std::array<double, 3>&) co
   return std::nullopt;
 }
 std::optional<Drawing> Environment::do_drawing() const { return std::nullopt; }
+
+bool Environment::do_meets(const SweptVolume& volume) const {
+  return meets_by_clearance(
+      volume, [this](const Vec3& p) { return do_clearance(p); }, do_over_approximation());
+}
 
 double Ground::do_gap_max(const Vec3&, const Vec3&) const { return kInfinity; }
 std::optional<double> Ground::do_distance(const Vec3&, const Vec3&) const { return std::nullopt; }

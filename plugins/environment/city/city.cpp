@@ -155,6 +155,7 @@ class City final : public Environment {
     return layer_->cell_centre(cell);
   }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
+  bool do_meets(const SweptVolume& volume) const override { return layer_->meets(volume); }
 
   std::unique_ptr<Environment> layer_;
   LayerInfo info_;

@@ -189,6 +189,11 @@ class Mesh final : public Environment {
     sink({nearest.point, distance, length > 0 ? Vec3(normal / length) : Vec3(0, 0, 1), 0});
   }
 
+  /// A volume that meets no triangle is wholly inside or wholly outside.
+  bool do_meets(const SweptVolume& volume) const override {
+    return surface_.meets(volume) || surface_.winding(volume.centre()) != 0;
+  }
+
   void do_rasterize(VoxelGrid& grid) const override {
     kit::rasterize(
         grid, surface_.bounds(), [&](const Vec3& p) { return do_clearance(p); },

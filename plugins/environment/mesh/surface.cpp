@@ -150,6 +150,16 @@ bool Surface::box_is_nearer(const Box& box, double distance) const {
       [&](const Triangle& t) { return box_distance(t, box) < distance; });
 }
 
+bool Surface::meets(const SweptVolume& volume) const {
+  return any(
+      nodes_.front(),
+      [&](const Box& box) {
+        return box.overlaps(volume.box()) &&
+               kit::may_reach(box, volume.from(), volume.to(), volume.reach());
+      },
+      [&](const Triangle& t) { return volume.meets(t); });
+}
+
 std::vector<double> Surface::meetings(const Vec3& a, const Vec3& b, double distance) const {
   std::vector<double> places;
   any(

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "altiplan/swept_volume.hpp"
 #include "triangles.hpp"
 
 namespace altiplan::mesh {
@@ -24,6 +25,8 @@ class Surface {
   /// True if some triangle is nearer to the leg, or the box, than that.
   bool leg_is_nearer(const Vec3& a, const Vec3& b, double distance) const;
   bool box_is_nearer(const Box& box, double distance) const;
+  /// True if some triangle shares a point with the volume.
+  bool meets(const SweptVolume& volume) const;
   /// The results of `add_meetings` for all triangles, ascending.
   std::vector<double> meetings(const Vec3& a, const Vec3& b, double distance) const;
   /// Winding number of the surface around p: 0 outside a closed one.

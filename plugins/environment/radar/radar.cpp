@@ -182,6 +182,9 @@ class Radar final : public Environment {
     }
   }
 
+  bool do_meets(const SweptVolume& volume) const override {
+    return ball_.meets(volume) && (ground_ == nullptr || Environment::do_meets(volume));
+  }
   double do_over_approximation() const override { return ground_ != nullptr ? kMaskedSlack : 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override {

@@ -15,6 +15,7 @@
 #include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/ground.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/swept_volume.hpp"
 #include "ground_search.hpp"
 #include "model.hpp"
 
@@ -112,6 +113,11 @@ class Terrain final : public Environment, public Ground {
       }
     }
     return false;
+  }
+
+  bool do_meets(const SweptVolume& volume) const override {
+    const Box box = volume.box().intersected(bounds_);
+    return !box.is_empty() && model_.over(box).meets(volume);
   }
 
   /// True if a leg over the posts is too near to the ground below it.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/swept_volume.hpp"
 
 namespace altiplan::zones {
 
@@ -17,6 +18,11 @@ class KeepIn {
   double clearance(const Vec3& p) const { return -zones_.clearance(p); }
   /// Exact: true if some point of the leg is less than r - 1e-6 m deep in every zone.
   bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  /// True unless all of the volume is known to lie in zones.
+  bool meets(const SweptVolume& volume) const {
+    return meets_by_clearance(
+        volume, [this](const Vec3& p) { return clearance(p); }, kBodyTolerance);
+  }
   Nearby nearest(const Vec3& p) const;
   /// Frees no cell that is not allowed; exact for convex zones.
   void rasterize(VoxelGrid& grid) const;

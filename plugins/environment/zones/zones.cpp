@@ -304,6 +304,9 @@ class Zones final : public Environment {
   double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
+  bool do_meets(const SweptVolume& volume) const override {
+    return keep_out_.meets(volume) || (!keep_in_.empty() && keep_in_.meets(volume));
+  }
 
   kit::ObstacleSet keep_out_;
   KeepIn keep_in_;

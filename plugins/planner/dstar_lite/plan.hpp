@@ -107,8 +107,7 @@ class Plan {
   PlanResult run() {
     BudgetWatch watch(problem_.request.budget);
     const kit::SearchState state = problem_.settings.state;
-    const bool looks_back =
-        problem_.request.limits.turns() || !problem_.request.constraints.empty();
+    const bool looks_back = problem_.request.limits.turns() || problem_.request.judges_pairs();
     if (state == kit::SearchState::cell_and_heading && looks_back) {
       return run_by_heading({});
     }
@@ -225,7 +224,7 @@ class Plan {
   /// The cells at both ends of the legs that the contents of the box may block.
   CellRange cells_near(const Box& box) const {
     const Request& request = problem_.request;
-    const double near = std::max(request.limits.min_clearance, request.vehicle.radius_m) + slack_ +
+    const double near = std::max(request.limits.min_clearance, request.vehicle.reach_m()) + slack_ +
                         kLengthTolerance;
     Box grown = box.grown(near);
     if (has_ground_) {  // cells above have another ground below them

@@ -75,6 +75,9 @@ std::string beyond_cells(const Request& request) {
   if (over_ground) {
     return "constraints on the ground below";
   }
+  if (request.vehicle.body != nullptr) {
+    return "the vehicle's body";
+  }
   return request.constraints.empty() ? ""
                                      : "the constraint '" + request.constraints.front().name + "'";
 }

@@ -146,7 +146,7 @@ class TreeSession final : public Session {
   /// Region of the nodes whose legs the box touches; ground affects everything above it.
   Box reach_of(const Box& box, bool ground) const {
     const double reach =
-        tree_.longest_leg() + std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
+        tree_.longest_leg() + std::max(request_.limits.min_clearance, request_.vehicle.reach_m());
     Box wide{box.min - Vec3::Constant(reach), box.max + Vec3::Constant(reach)};
     if (ground) {
       wide.min.z() = -kInfinity;
@@ -248,7 +248,7 @@ class TreeSession final : public Session {
       return Box::empty();
     }
     const double room =
-        2 * growth_.step() + std::max(request_.limits.min_clearance, request_.vehicle.radius_m);
+        2 * growth_.step() + std::max(request_.limits.min_clearance, request_.vehicle.reach_m());
     const Vec3 half = ((damage_.max - damage_.min) / 2).cwiseMax(room);
     return Box{damage_.min - half, damage_.max + half}.intersected(kit::sampled_box(request_));
   }

@@ -177,7 +177,8 @@ class Pruning {
            std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
                          return named.admits({before->from, route_[j], route_[k]});
-                       });
+                       }) &&
+           body_ok(before, Leg::straight(route_[j], route_[k]), request_);
   }
 
   double distance(std::size_t j, std::size_t k) const { return (route_[k] - route_[j]).norm(); }

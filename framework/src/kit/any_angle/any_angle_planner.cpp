@@ -13,7 +13,7 @@ namespace {
 /// it: then a cell may be unreachable from one parent alone.
 bool legs_differ(const Request& request) {
   const Limits& limits = request.limits;
-  return limits.turns() || !request.constraints.empty() || limits.max_slope() < kPi / 2 ||
+  return limits.turns() || request.judges_pairs() || limits.max_slope() < kPi / 2 ||
          limits.min_leg > 0 || limits.max_leg < kInfinity || limits.max_route_length < kInfinity;
 }
 

@@ -52,6 +52,7 @@ std::string MoveRules::refusals() const {
       "ground_clearance",
       "altitude",
       refused_constraint_,
+      "the vehicle's body",
       refused_link_ + " where start or goal join the lattice"};
   std::vector<int> order;
   for (int rule = 0; rule < rule_count; ++rule) {

@@ -36,7 +36,7 @@ bool has_ground_rules(const Request& request) {
 }  // namespace
 
 bool MoveRules::cells_decide(const Request& request) {
-  return !has_ground_rules(request) && request.constraints.empty() && !request.limits.turns() &&
+  return !has_ground_rules(request) && !request.judges_pairs() && !request.limits.turns() &&
          request.limits.max_route_length == kInfinity;
 }
 
@@ -68,6 +68,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
     grid_ = occupancy(request, lattice);
   }
   has_ground_rules_ = has_ground_rules(request);
+  judges_pairs_ = request.judges_pairs();
   if (asks_world_) {
     sort_layers();
     wants_clearance_ = !obstacles_.layers().empty();
@@ -227,6 +228,12 @@ bool MoveRules::admitted(const std::optional<Approach>& before, const Vec3& a, c
       return false;
     }
   }
+  if (!body_ok(before, Leg::straight(a, b), request_)) {
+    ++refused_[by_body];
+    admit_needed_parent_ =
+        admit_needed_parent_ || (before && body_ok(std::nullopt, Leg::straight(a, b), request_));
+    return false;
+  }
   return true;
 }
 
@@ -316,8 +323,7 @@ bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const
 
 bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
   return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
-         (constraints_.empty() || admitted(before, a, b)) &&
-         (!asks_world_ || keeps_off(*request_.world, a, b));
+         admits(before, a, b) && (!asks_world_ || keeps_off(*request_.world, a, b));
 }
 
 bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,

@@ -9,6 +9,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/layers/solid.hpp"
+#include "altiplan/swept_volume.hpp"
 
 #include "../../multiversion.hpp"
 #include "../../shape/shape_parts.hpp"
@@ -116,23 +117,29 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
   }
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a, const Vec3& b,
-                               double r) {
+/// True if `meets`(n) for one of the shapes whose boxes the leg may reach.
+template <class Meets>
+[[gnu::always_inline]] inline bool any_on(const BoxNode* nodes, const TreeLeg& leg,
+                                          const Meets& meets) {
   std::array<std::int32_t, kMaxOpen> open{0};
   std::size_t waiting = 1;
-  const TreeLeg leg(a, b, r);
   while (waiting > 0) {
     const BoxNode& node = nodes[open[--waiting]];
     for (std::uint32_t lanes = lanes_reached(node, leg); lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       if (!node.is_leaf()) {
         open[waiting++] = node.first + lane;
-      } else if (meets(shapes[std::size_t(node.box[lane])], a, b, r)) {
+      } else if (meets(std::size_t(node.box[lane]))) {
         return true;
       }
     }
   }
   return false;
+}
+
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a, const Vec3& b,
+                               double r) {
+  return any_on(nodes, TreeLeg(a, b, r), [&](std::size_t n) { return meets(shapes[n], a, b, r); });
 }
 
 // The shapes that may be that near, in order.
@@ -263,9 +270,23 @@ bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
   }
   bool meet = false;
   for (std::size_t n = 0; n < impl_->count && !meet; ++n) {
-    meet = meets(solids[n], a, b, r);
+    meet = kit::meets(solids[n], a, b, r);
   }
   return meet;
+}
+
+bool ObstacleSet::meets(const SweptVolume& volume) const {
+  Solids solids = impl_->solids(shapes_);
+  const auto meets = [&](std::size_t n) { return shape_parts::meets(solids[n], volume); };
+  if (impl_->count > 0 && is_in_reach(volume.from()) && is_in_reach(volume.to())) {
+    return any_on(impl_->nodes.data(), TreeLeg(volume.from(), volume.to(), volume.reach()), meets);
+  }
+  for (std::size_t n = 0; n < impl_->count; ++n) {
+    if (meets(n)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void ObstacleSet::near(const Vec3& p, double reach, const NearSink& sink) const {

@@ -23,7 +23,7 @@ std::shared_ptr<const World> open_world() {
 
 LegRules::LegRules(const Request& request)
     : request_(request),
-      looks_back_(request.limits.turns() || !request.constraints.empty()),
+      looks_back_(request.limits.turns() || request.judges_pairs()),
       rest_(request) {
   if (const auto spec = cells_that_decide()) {
     grid_ = request.world->voxels(*spec, request.budget);
@@ -42,7 +42,7 @@ LegRules::LegRules(const Request& request)
 /// The grid whose cells make up all layers, if nothing but its cells blocks.
 std::optional<GridSpec> LegRules::cells_that_decide() const {
   const World& world = *request_.world;
-  if (world.layers().empty() || world.has_ground() ||
+  if (world.layers().empty() || world.has_ground() || request_.vehicle.body != nullptr ||
       std::max(request_.limits.min_clearance, request_.vehicle.radius_m) > 0) {
     return std::nullopt;
   }
@@ -101,7 +101,8 @@ bool LegRules::follows(const Approach& before, const Vec3& a, const Vec3& b) {
       std::all_of(request_.constraints.begin(), request_.constraints.end(),
                   [&](const NamedConstraint& named) {
                     return named.admits({before.from, a, b});
-                  })) {
+                  }) &&
+      body_ok(before, Leg::straight(a, b), request_)) {
     return true;
   }
   refused_[refused_count_++ % kRemembered] = {before, a, b};

@@ -14,7 +14,7 @@ PathRules::PathRules(const Request& request, double turn_radius)
     : request_(request),
       rules_(request),
       steering_(request, turn_radius),
-      looks_back_(request.limits.max_turn_space < kPi || !request.constraints.empty() ||
+      looks_back_(request.limits.max_turn_space < kPi || request.judges_pairs() ||
                   request.wind.layers.size() > 1) {}
 
 std::vector<Pose> PathRules::starts() const {

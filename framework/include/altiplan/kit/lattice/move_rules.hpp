@@ -81,7 +81,7 @@ class ALTIPLAN_API MoveRules {
   /// or (`at_start`) the approach to the start itself.
   std::optional<Approach> approach(int step, const Vec3& here, bool at_start) const;
   /// True if a step may be refused because of the path to its first cell, apart from the turn.
-  bool looks_beyond_turns() const { return !constraints_.empty(); }
+  bool looks_beyond_turns() const { return judges_pairs_; }
   /// Counts moves that blocked cells ruled out.
   void count_blocked(std::int64_t refused) { refused_[by_cells] += refused; }
   /// Counts the remaining steps that turn limits ruled out.
@@ -106,9 +106,9 @@ class ALTIPLAN_API MoveRules {
   /// position alone.
   bool place_free(const Cell& c, int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
                   KnownClearance& near_b);
-  /// True if the constraints admit the leg after its approach.
+  /// True if the constraints, and the vehicle's body, admit the leg after its approach.
   bool admits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
-    return constraints_.empty() || admitted(before, a, b);
+    return !judges_pairs_ || admitted(before, a, b);
   }
   bool leg_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
@@ -166,6 +166,7 @@ class ALTIPLAN_API MoveRules {
     by_ground,
     by_altitude,
     by_constraint,
+    by_body,
     by_link,
     rule_count
   };
@@ -198,6 +199,7 @@ class ALTIPLAN_API MoveRules {
   } cosines_;  ///< of the limits on angles
   bool wants_clearance_ = false;
   bool has_ground_rules_ = false;
+  bool judges_pairs_ = false;  ///< by constraints, or by the vehicle's body
   std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;
   World obstacles_;    ///< the layers that contain more than their ground

@@ -152,7 +152,7 @@ struct SearchParams {
 /// True if a search has to distinguish states by their heading from the start.
 inline bool begins_by_heading(const SearchSettings& settings, const Request& request) {
   return settings.state == SearchState::cell_and_heading &&
-         (request.limits.turns() || !request.constraints.empty());
+         (request.limits.turns() || request.judges_pairs());
 }
 
 /// True if a search by (cell, heading), with that memory per cell, may find a route where one with

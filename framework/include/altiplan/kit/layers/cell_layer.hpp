@@ -29,6 +29,7 @@ class ALTIPLAN_API CellLayer : public Environment {
   double do_over_approximation() const override { return 0; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(boxes_of(cells_)); }
   const LayerInfo& do_info() const override { return info_; }
+  bool do_meets(const SweptVolume& volume) const override { return solid_.meets(volume); }
   std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const override;
 
  private:

@@ -31,6 +31,8 @@ class ALTIPLAN_API ObstacleSet {
   double clearance(const Vec3& p) const;
   /// True if the leg comes nearer than r - 1e-6 m to a shape; touching is free.
   bool blocked(const Vec3& a, const Vec3& b, double r) const;
+  /// True if a shape shares a point with the volume.
+  bool meets(const SweptVolume& volume) const;
   void near(const Vec3& p, double reach, const NearSink& sink) const;
   void rasterize(VoxelGrid& grid) const;
 
@@ -70,6 +72,7 @@ class ALTIPLAN_API ShapeLayer : public Environment {
   double do_over_approximation() const override { return 0; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_of(set_.shapes()); }
+  bool do_meets(const SweptVolume& volume) const override { return set_.meets(volume); }
 
   ObstacleSet set_;
   LayerInfo info_;
