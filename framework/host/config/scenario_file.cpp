@@ -119,6 +119,69 @@ void WindEntry::describe(Fields& f) {
   }
 }
 
+void CylinderEntry::describe(Fields& f) {
+  f("radius_m", radius_m).unit("m").range(1e-3, 1000).required().doc("radius");
+  f("height_m", height_m).unit("m").range(1e-3, 1000).required().doc("height; it stands upright");
+}
+
+void CapsuleEntry::describe(Fields& f) {
+  f("radius_m", radius_m).unit("m").range(1e-3, 1000).required().doc("radius");
+  f("length_m", length_m)
+      .unit("m")
+      .range(2e-3, 1000)
+      .required()
+      .doc("length with both caps; it lies along the nose");
+  f.check(length_m >= 2 * radius_m, "expected length_m of at least twice radius_m");
+}
+
+int BodyPartEntry::kinds() const {
+  return int(box_m.has_value()) + int(cylinder.has_value()) + int(capsule.has_value()) +
+         int(mesh.has_value());
+}
+
+namespace {
+void describe_part(Fields& f, BodyPartEntry& part) {
+  f("box_m", part.box_m)
+      .unit("m")
+      .range(1e-3, 1000)
+      .doc("a box: length (along the nose), width, height");
+  f("cylinder", part.cylinder).doc("alternatively: an upright cylinder");
+  f("capsule", part.capsule).doc("alternatively: a cylinder along the nose with round caps");
+  f("mesh", part.mesh)
+      .doc(
+          "alternatively: a closed mesh (.stl, .obj; x forward, y left, z up), of which the convex "
+          "hull counts");
+  f("scale", part.scale).range(1e-6, 1e6).doc("metres per unit of the mesh's file");
+  f("offset_m", part.offset_m)
+      .unit("m")
+      .range(-1000, 1000)
+      .doc(
+          "centre of the part (of a mesh: its origin) from the reference point: forward, left, up");
+  f.check(part.mesh || part.scale == 1, "scale is for a mesh");
+}
+}  // namespace
+
+void BodyPartEntry::describe(Fields& f) {
+  describe_part(f, *this);
+  f.check(kinds() == 1, "expected one of box_m, cylinder, capsule, mesh");
+}
+
+void BodyEntry::describe(Fields& f) {
+  describe_part(f, part);
+  f("parts", parts).doc("alternatively: several parts");
+  f("yaw", yaw, {{"along_route", Yaw::along_route}, {"fixed", Yaw::fixed}})
+      .doc("where the nose points; of an aeroplane in wind along_route is into its airflow");
+  f("fixed_deg", fixed_deg)
+      .unit("deg")
+      .range(0, 360)
+      .doc("with yaw fixed: heading of the nose, clockwise from north");
+  f("pitch", pitch, {{"level", Pitch::level}, {"along_route", Pitch::along_route}})
+      .doc("level, or by the climb angle of each leg");
+  f.check(part.kinds() + int(!parts.empty()) == 1,
+          "expected one of box_m, cylinder, capsule, mesh, parts");
+  f.check((yaw == Yaw::fixed) == fixed_deg.has_value(), "expected fixed_deg with yaw: fixed");
+}
+
 void VehicleEntry::describe(Fields& f) {
   f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the vehicle's safety sphere");
   f("speed_mps", speed_mps).unit("m/s").greater_than(0).doc("speed away from obstacles");
@@ -130,6 +193,8 @@ void VehicleEntry::describe(Fields& f) {
       .doc(
           "true: may turn to any heading while it climbs or descends vertically; false: keeps its "
           "heading");
+  f("body", body).doc("a body instead of the sphere: it is checked in its attitude along all legs");
+  f.check(!body || radius_m == 0, "expected radius_m or body, not both");
   f("wing", wing).doc("an aeroplane: it turns by banking at a constant airspeed");
   f.check(!wing || !turns_on_the_spot, "an aeroplane cannot turn on the spot");
   f.check(!wing || speed_near.empty(), "an aeroplane has one airspeed: remove speed_near");

@@ -90,6 +90,43 @@ struct WindEntry {
   void describe(Fields& f);
 };
 
+struct CylinderEntry {
+  double radius_m = 0;
+  double height_m = 0;
+  void describe(Fields& f);
+};
+
+struct CapsuleEntry {
+  double radius_m = 0;
+  double length_m = 0;
+  void describe(Fields& f);
+};
+
+/// One of four kinds of part.
+struct BodyPartEntry {
+  std::optional<Vec3> box_m;
+  std::optional<CylinderEntry> cylinder;
+  std::optional<CapsuleEntry> capsule;
+  std::optional<Path> mesh;
+  double scale = 1;
+  Vec3 offset_m{0, 0, 0};
+  void describe(Fields& f);
+  /// The number of kinds that are given.
+  int kinds() const;
+};
+
+/// A part, or several, with its attitude.
+struct BodyEntry {
+  enum class Yaw { along_route, fixed };
+  enum class Pitch { level, along_route };
+  BodyPartEntry part;
+  std::vector<BodyPartEntry> parts;
+  Yaw yaw = Yaw::along_route;
+  std::optional<double> fixed_deg;
+  Pitch pitch = Pitch::level;
+  void describe(Fields& f);
+};
+
 struct VehicleEntry {
   double radius_m = 0;
   double speed_mps = 15;
@@ -97,6 +134,7 @@ struct VehicleEntry {
   std::vector<SpeedNearEntry> speed_near;
   bool turns_on_the_spot = false;
   std::optional<WingEntry> wing;
+  std::optional<BodyEntry> body;
   void describe(Fields& f);
 };
 

@@ -288,7 +288,7 @@ World known_part(const World& truth) {
 Site site_of(const Config& config) {
   const ScenarioFile& file = config.scenario;
   Site site;
-  site.vehicle = vehicle_of(file.vehicle);
+  site.vehicle = vehicle_of(file.vehicle, config.scenario_tree.find("vehicle"), *config.registry);
   site.frame_crs = file.frame.crs;
   site.random = RandomStream(std::uint64_t(config.seed));
   if (file.start_time) {

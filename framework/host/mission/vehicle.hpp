@@ -2,10 +2,12 @@
 #pragma once
 
 #include "altiplan/request.hpp"
-#include "host/config/scenario_file.hpp"
+#include "host/config/config.hpp"
 
 namespace altiplan::host {
 
-Vehicle vehicle_of(const VehicleEntry& entry);
+/// `where` locates the key `vehicle`; the registry's plugin `mesh` reads meshes of a body. Throws
+/// ConfigError.
+Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& registry);
 Wind wind_of(const WindEntry& entry);
 }  // namespace altiplan::host
