@@ -359,7 +359,8 @@ Cases environment_cases(const EnvironmentFactory& make, const Options& options,
             made("bounds_hold_what_is_seen_from_outside", bounds_from_outside),
             made("odd_places_do_no_harm", odd_places),
             made("kin", kin)};
-  for (const auto& more : {environment_ground_cases(bench), environment_grid_cases(bench)}) {
+  for (const auto& more : {environment_ground_cases(bench), environment_grid_cases(bench),
+                           environment_body_cases(bench)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;

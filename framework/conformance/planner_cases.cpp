@@ -112,6 +112,11 @@ void limits_honoured(const PlannerBench& bench, Report& report) {
       {"turn radius 1 unit", [&](Request& r) { r.limits.min_turn_radius = unit; }},
       {"clearance half a unit", [&](Request& r) { r.limits.min_clearance = unit / 2; }},
       {"vehicle's radius half a unit", [&](Request& r) { r.vehicle.radius_m = unit / 2; }},
+      {"the body of a flat wing",
+       [&](Request& r) {
+         r.vehicle.body = flat_wing(unit);
+         r.vehicle.radius_m = r.limits.min_clearance = r.vehicle.body->inner_m();
+       }},
       {"longest leg 4 units", [&](Request& r) { r.limits.max_leg = 4 * unit; }},
       {"shortest leg half a unit", [&](Request& r) { r.limits.min_leg = unit / 2; }},
       {"altitude",

@@ -30,6 +30,8 @@ inline constexpr const char* kEnvironmentGround =
     "nothing is blocked";
 inline constexpr const char* kEnvironmentRaster =
     "Environment contract 6: rasterize never leaves a cell free that the grid's rule blocks";
+inline constexpr const char* kEnvironmentBody =
+    "Environment contract 7: meets where layer and body overlap, free beyond the tolerance";
 inline constexpr const char* kEnvironmentNear =
     "Environment::near: each obstacle in reach, once, in agreement with clearance";
 inline constexpr const char* kEnvironmentBounds =
@@ -83,4 +85,5 @@ using conformance::text;
 
 Cases environment_ground_cases(const EnvironmentBench& bench);
 Cases environment_grid_cases(const EnvironmentBench& bench);
+Cases environment_body_cases(const EnvironmentBench& bench);
 }  // namespace altiplan::conformance

@@ -120,22 +120,30 @@ Polyline any_walk(const Scene& scene, RandomStream random) {
 }
 
 /// The constraints under which routes are smoothed: none, each, and all together.
-std::vector<std::pair<const char*, std::function<void(Limits&)>>> rules(double unit) {
-  std::vector<std::pair<const char*, std::function<void(Limits&)>>> all{
-      {"no limit", [](Limits&) {}},
-      {"climb", [](Limits& l) { l.max_climb = radians(20); }},
-      {"turn", [](Limits& l) { l.max_turn_horizontal = radians(80); }},
-      {"turn in space", [](Limits& l) { l.max_turn_space = radians(100); }},
-      {"turn radius", [unit](Limits& l) { l.min_turn_radius = unit; }},
-      {"clearance", [unit](Limits& l) { l.min_clearance = unit / 2; }},
-      {"leg length", [unit](Limits& l) { l.min_leg = unit / 2, l.max_leg = 9 * unit; }},
-      {"altitude", [unit](Limits& l) {
-         l.altitude.push_back({AltitudeBand::Datum::sea, unit, 4 * unit});
+std::vector<std::pair<const char*, std::function<void(Request&)>>> rules(double unit) {
+  std::vector<std::pair<const char*, std::function<void(Request&)>>> all{
+      {"no limit", [](Request&) {}},
+      {"climb", [](Request& r) { r.limits.max_climb = radians(20); }},
+      {"turn", [](Request& r) { r.limits.max_turn_horizontal = radians(80); }},
+      {"turn in space", [](Request& r) { r.limits.max_turn_space = radians(100); }},
+      {"turn radius", [unit](Request& r) { r.limits.min_turn_radius = unit; }},
+      {"clearance", [unit](Request& r) { r.limits.min_clearance = unit / 2; }},
+      {"leg length",
+       [unit](Request& r) { r.limits.min_leg = unit / 2, r.limits.max_leg = 9 * unit; }},
+      {"altitude",
+       [unit](Request& r) {
+         r.limits.altitude.push_back({AltitudeBand::Datum::sea, unit, 4 * unit});
+       }},
+      {"the body of a flat wing", [unit](Request& r) {
+         r.vehicle.body = flat_wing(unit);
+         r.vehicle.radius_m = r.vehicle.body->inner_m();
+         r.limits.min_clearance = std::max(r.limits.min_clearance, r.vehicle.radius_m);
        }}};
-  all.emplace_back("all of them", [some = all](Limits& limits) {
+  all.emplace_back("all of them", [some = all](Request& request) {
     for (const auto& [name, set] : some) {
-      set(limits);
+      set(request);
     }
+    Limits& limits = request.limits;
     limits.max_turn_horizontal = limits.max_turn_space = radians(120);
     limits.max_climb = radians(40);
   });
@@ -148,7 +156,7 @@ void laws_under_every_limit(const Bench& bench, Report& report) {
     for (int n = 0; n < bench.options.rounds; ++n) {
       Scene scene = bench.world(n);
       scene.name += std::string(", limits: ") + name;
-      set(scene.request.limits);
+      set(scene.request);
       const RandomStream random = RandomStream(bench.options.seed).sub(name, std::uint64_t(n));
       for (const Polyline& route : {sound_walk(scene, random), any_walk(scene, random)}) {
         if (route.size() < 3) {

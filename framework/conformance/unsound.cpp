@@ -105,6 +105,32 @@ std::string leg_fault(const Leg& leg, const Scene& scene) {
   }
   return "";
 }
+
+/// Of a level body that points along the route: its corners, and points between them.
+std::string body_fault(const Vec3& heading, const Leg& leg, const Scene& scene) {
+  const Body* body = scene.request.vehicle.body.get();
+  if (body == nullptr || heading.isZero(0)) {
+    return "";
+  }
+  const Vec3 forward = Vec3(heading.x(), heading.y(), 0).normalized();
+  const Vec3 left(-forward.y(), forward.x(), 0);
+  const int samples = int(std::clamp(leg.length() / scene.unit * 10, 2.0, 400.0));
+  for (const BodyPart& part : body->parts) {
+    for (const Vec3& corner : part.corners) {
+      for (const Vec3& other : part.corners) {
+        const Vec3 at = (corner + other) / 2;
+        const Vec3 off = at.x() * forward + at.y() * left + Vec3(0, 0, at.z());
+        for (int i = 0; i <= samples; ++i) {
+          const Vec3 p = leg.at(double(i) / samples) + off;
+          if (own_clearance(scene, p) < -kMetres) {
+            return "has its body in a solid at " + text(p);
+          }
+        }
+      }
+    }
+  }
+  return "";
+}
 }  // namespace
 
 std::string unsound(const Route& route, const Scene& scene) {
@@ -141,6 +167,10 @@ std::string unsound(const Route& route, const Scene& scene) {
     }
     if (fault.empty() && before && (turning || leg.turns()) && !is_upright(leg.rate(0))) {
       fault = kink_problem(heading, leg, request);
+    }
+    if (fault.empty() && !leg.turns()) {
+      fault =
+          body_fault(is_upright(leg.to - leg.from) ? heading : Vec3(leg.to - leg.from), leg, scene);
     }
     turning = leg.turns();
     if (!fault.empty()) {

@@ -329,4 +329,10 @@ double shortest(const Scene& cells, const Lanes& lanes) {
   }
   return kInfinity;
 }
+
+std::shared_ptr<const Body> flat_wing(double unit) {
+  auto body = std::make_shared<Body>();
+  body->parts.push_back(box_part(unit * Vec3(0.4, 1.6, 0.1), Vec3::Zero()));
+  return body;
+}
 }  // namespace altiplan::conformance

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/body.hpp"
 #include "altiplan/check.hpp"
 #include "report.hpp"
 
@@ -123,6 +124,9 @@ std::shared_ptr<const World> with_solid(Scene& scene, const Shape& solid, const 
                                         std::vector<Change>& changes);
 /// The scene, translated.
 Scene moved_scene(const Scene& scene, const Vec3& by);
+
+/// A body of 0.4 x 1.6 x 0.1 units.
+std::shared_ptr<const Body> flat_wing(double unit);
 
 /// Distance to the nearest solid of the scene, by this library's own formulas.
 double own_clearance(const Scene& scene, const Vec3& p);

@@ -55,7 +55,7 @@ Violation body_violation(const Layer& layer, const Leg& leg, const Request& requ
   const auto nearest = nearest_leg(*layer.environment, leg.chords(kChordTolerance / 10), kInfinity);
   const double clearance = nearest ? nearest->distance : kInfinity;
   const double reach = request.vehicle.reach_m();
-  return {"body", at, clearance, reach,
+  return {"body", at, 0, 0,
           "the vehicle's body meets '" + layer.id + "', which its reference point passes at " +
               fixed(clearance) + " m; no part of it is farther from that point than " +
               fixed(reach) + " m"};

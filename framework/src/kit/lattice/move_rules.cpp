@@ -6,6 +6,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/line_of_sight.hpp"
+#include "altiplan/swept_volume.hpp"
 
 namespace altiplan::kit {
 
@@ -58,6 +59,7 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       lattice_(lattice),
       corner_(corner),
       needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
+      reach_(request.vehicle.reach_m() + kBodyTolerance),
       spare_(needed_ + request.world->over_approximation() + kLengthTolerance),
       asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
@@ -217,7 +219,8 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
   return true;
 }
 
-bool MoveRules::admitted(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+bool MoveRules::constraints_admit(const std::optional<Approach>& before, const Vec3& a,
+                                  const Vec3& b) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     const auto from = before ? std::optional(before->from) : std::nullopt;
     if (!constraints_[i].admits({from, a, b})) {
@@ -227,12 +230,6 @@ bool MoveRules::admitted(const std::optional<Approach>& before, const Vec3& a, c
           admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b}));
       return false;
     }
-  }
-  if (!body_ok(before, Leg::straight(a, b), request_)) {
-    ++refused_[by_body];
-    admit_needed_parent_ =
-        admit_needed_parent_ || (before && body_ok(std::nullopt, Leg::straight(a, b), request_));
-    return false;
   }
   return true;
 }

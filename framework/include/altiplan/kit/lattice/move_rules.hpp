@@ -108,11 +108,14 @@ class ALTIPLAN_API MoveRules {
                   KnownClearance& near_b);
   /// True if the constraints, and the vehicle's body, admit the leg after its approach.
   bool admits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
-    return !judges_pairs_ || admitted(before, a, b);
+    return !judges_pairs_ || (constraints_admit(before, a, b) && body_fits(before, a, b));
   }
   bool leg_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
-    return place_free(c, d, a, b, near_a, near_b) && admits(before, a, b);
+    return place_free(c, d, a, b, near_a, near_b) &&
+           (!judges_pairs_ ||
+            (constraints_admit(before, a, b) &&
+             (is_clear_of_body(near_a, a, lattice_.step_length(d)) || body_fits(before, a, b))));
   }
 
   /// True if the straight leg between the centres of two cells, for a vehicle that comes from
@@ -184,12 +187,15 @@ class ALTIPLAN_API MoveRules {
   void ask(KnownClearance& known, const Vec3& at) const;
   void sort_layers();
   void find_gaps();
-  bool admitted(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  bool constraints_admit(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  bool body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  bool is_clear_of_body(KnownClearance& near_a, const Vec3& a, double length) const;
 
   const Request& request_;
   const Lattice& lattice_;
   CornerRule corner_;
   double needed_;
+  double reach_;  ///< of the vehicle's body
   double spare_;  ///< clearance beyond half a leg that proves the leg free
   bool asks_world_;
   struct {

@@ -144,8 +144,10 @@ struct SearchParams {
         request.world->layers().begin(), request.world->layers().end(),
         [](const Layer& layer) { return layer.environment->info().native_grid.has_value(); });
     const bool no_clearance = request.limits.min_clearance <= 0 && request.vehicle.radius_m <= 0;
-    return all_cells && no_clearance && !request.world->layers().empty() ? MoveCheck::cells
-                                                                         : MoveCheck::exact;
+    return all_cells && no_clearance && request.vehicle.body == nullptr &&
+                   !request.world->layers().empty()
+               ? MoveCheck::cells
+               : MoveCheck::exact;
   }
 };
 

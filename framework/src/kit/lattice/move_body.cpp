@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vehicle's body in MoveRules.
+#include "altiplan/check.hpp"
+#include "altiplan/kit/lattice/move_rules.hpp"
+
+namespace altiplan::kit {
+
+/// True if the step is so far from all obstacles that the body's attitude does not matter.
+bool MoveRules::is_clear_of_body(KnownClearance& near_a, const Vec3& a, double length) const {
+  if (request_.vehicle.body == nullptr) {
+    return true;
+  }
+  if (!wants_clearance_ || !bare_ground_.layers().empty()) {
+    return false;
+  }
+  ask(near_a, a);
+  return near_a.least > reach_ + length;
+}
+
+bool MoveRules::body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+  if (!body_ok(before, Leg::straight(a, b), request_)) {
+    ++refused_[by_body];
+    admit_needed_parent_ =
+        admit_needed_parent_ || (before && body_ok(std::nullopt, Leg::straight(a, b), request_));
+    return false;
+  }
+  return true;
+}
+}  // namespace altiplan::kit
