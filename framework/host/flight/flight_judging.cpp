@@ -28,7 +28,7 @@ void Flight::fly_leg(const State& next) {
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
   world_.flown(a, t0, b, t1);
-  const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle.radius_m);
+  const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle);
   if (met == nullptr || ended_) {  // events after the end of the flight do not count
     return;
   }

@@ -258,12 +258,12 @@ const std::vector<SensedObstacle>& FlightWorld::sensed(const Vec3& p, double tim
 }
 
 const std::string* FlightWorld::contact(const Vec3& a, double t0, const Vec3& b, double t1,
-                                        double radius) const {
-  if (const Layer* layer = truth_.blocked_by(a, b, radius)) {
+                                        const Vehicle& vehicle) const {
+  if (const Layer* layer = truth_.blocked_by(a, b, vehicle.radius_m)) {
     return &layer->id;
   }
   for (const MovingObstacle& obstacle : truth_.moving()) {
-    if (hits(obstacle, a, t0, b, t1, radius)) {
+    if (hits(obstacle, a, t0, b, t1, vehicle.reach_m())) {
       return &obstacle.id;
     }
   }

@@ -90,7 +90,7 @@ class Replay {
   void note_contact(const std::pair<double, Vec3>& from, const std::pair<double, Vec3>& to,
                     std::size_t at, bool& touching) {
     const std::string* met =
-        world_.contact(from.second, from.first, to.second, to.first, request_.vehicle.radius_m);
+        world_.contact(from.second, from.first, to.second, to.first, request_.vehicle);
     world_.flown(from.second, from.first, to.second, to.first);
     if (met != nullptr && !touching) {
       ++verdict_.collisions;

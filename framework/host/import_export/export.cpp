@@ -44,7 +44,7 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
   for (const Layer& layer : mission.truth.layers()) {
     const auto blocked = [&](const Vec3& foot, const Vec3& top) {
       return layer.environment->ground() == nullptr &&
-             layer.environment->blocked(foot, top, mission.request.vehicle.radius_m);
+             layer.environment->blocked(foot, top, mission.request.vehicle.reach_m());
     };
     if (options.takeoff && blocked(home, route.front())) {
       return "the climb from home to the start passes too close to '" + layer.id + "'";

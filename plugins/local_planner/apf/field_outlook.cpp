@@ -26,7 +26,7 @@ void Outlook::see_movers(const Observation& seen, double speed) {
     const double pace = velocity.norm();
     const Mover mover{moving.position,
                       velocity,
-                      moving.radius + required_,
+                      moving.radius + std::max(required_, reach_),
                       id,
                       pace,
                       pace > 0 ? Vec3(velocity / pace) : velocity};

@@ -28,7 +28,11 @@ class Outlook {
 
   /// `margin`: distance in metres from movers, beyond the required clearance.
   Outlook(const Request& request, double required, double margin, double reaction_s)
-      : request_(request), required_(required), margin_(margin), reaction_s_(reaction_s) {}
+      : request_(request),
+        required_(required),
+        reach_(request.vehicle.reach_m()),
+        margin_(margin),
+        reaction_s_(reaction_s) {}
 
   /// First the static world, then, at the speed that follows from it, the movers.
   void see_world(const World& world, const Vec3& here);
@@ -75,6 +79,7 @@ class Outlook {
 
   const Request& request_;
   double required_;
+  double reach_;  ///< of the vehicle's body, for moving obstacles
   double margin_;
   double reaction_s_;
   /// A layer, and the distance from here within which it blocks nothing.

@@ -58,7 +58,7 @@ TerrainFlight::TerrainFlight(const Params& params, const Request& request)
   rules_.box = volume_;
   rules_.cell = params.section_cell_m.value.value_or(std::max({size.x(), size.y(), 1.0}) / kCells);
   rules_.above = min_above_ground(request.limits);
-  rules_.radius = std::max(request.limits.min_clearance, request.vehicle.radius_m);
+  rules_.radius = std::max(request.limits.min_clearance, request.vehicle.reach_m());
   rules_.reserve = climbs() ? lag(-max_climb_, min_radius_) : 0;
   rules_.bay = kTurns * min_radius_;
   rules_.slope = slope_;

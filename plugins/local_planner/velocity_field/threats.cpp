@@ -103,7 +103,7 @@ std::span<const std::uint32_t> Threats::near(const Vec2& p) const {
 }
 
 ThreatFeed::ThreatFeed(const Request& request, double reach)
-    : room_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
+    : room_(std::max(request.limits.min_clearance, request.vehicle.reach_m())),
       reach_(reach),
       goal_(request.goal.position) {
   load(*request.world);
