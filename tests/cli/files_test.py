@@ -257,6 +257,7 @@ class Output(Folder):
         self.assertEqual(sorted(os.listdir(self.path("page"))),
                          [".partial", "figures", "index.html", "runs.csv", "tables"])
 
+    @unittest.skipUnless(FAULTS, "a sanitizer ends the process at the crash")
     def test_a_crash_keeps_the_trace_and_writes_the_result(self):
         self.write("out.json.partial", "mine")
         self.write("crashes.yaml", PIPELINE + "  - plan: rogue\n    with: {does: segfaults}\n")

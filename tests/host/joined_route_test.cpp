@@ -8,7 +8,6 @@ namespace altiplan::host {
 namespace {
 
 using Until = kit::MissionCircle::Until;
-constexpr double kRadius = 80;
 
 /// The route past places that no other part of the program wrote.
 JoinedRoute joined(const std::vector<MissionPlace>& places) {
