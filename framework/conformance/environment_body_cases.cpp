@@ -32,7 +32,9 @@ void bodies(const Bench& bench, Report& report) {
     const auto body = [&] {
       return "a box of " + text(edges) + " m from " + text(a) + " to " + text(b);
     };
-    if (!layer.blocked(a, b, outer + layer.over_approximation() + 2 * kBodyTolerance)) {
+    if (!layer.blocked(a, b,
+                       outer + layer.over_approximation() + 2 * kBodyTolerance +
+                           ((b - a).norm() + size) / 16)) {
       report.expect(!meets, kEnvironmentBody,
                     [&] { return body() + " meets the layer, and the sphere around it is free"; });
     }

@@ -53,7 +53,7 @@ TEST(Body, TheViolationNamesTheLayer) {
   ASSERT_EQ(found.size(), 1);
   EXPECT_EQ(found[0].constraint, "body");
   EXPECT_EQ(found[0].at, 3);
-  EXPECT_NE(found[0].message.find("meets 'layer'"), std::string::npos) << found[0].message;
+  EXPECT_NE(found[0].message.find("meets 'shapes'"), std::string::npos) << found[0].message;
 }
 
 TEST(Body, ClimbingItStaysLevelOrPitches) {
@@ -77,20 +77,25 @@ TEST(Body, ClimbingItStaysLevelOrPitches) {
 }
 
 TEST(Body, TurningAtAWaypointNeedsRoom) {
-  // A corridor 2 m wide to the east, then one to the north: the pole of 3 m fits into both.
-  const BodyPart pole = box_part({3, 0.2, 0.2}, {0, 0, 0});
-  const std::vector<Shape> corner{BoxShape{{{-20, -2, -5}, {20, -1, 5}}},
-                                  BoxShape{{{1, -20, -5}, {2, 20, 5}}},
-                                  BoxShape{{{-20, 1, -5}, {-1, 20, 5}}}};
-  const Request request = with_body(corner, pole);
+  // A post beside both legs, in the way of the turn between them.
+  const auto beside = [](double x, double y) {
+    return with_body({Sphere{{x, y, 0}, 0.1}}, box_part({3, 0.2, 0.2}, {0, 0, 0}));
+  };
   const Vec3 west(-10, 0, 0);
-  const Vec3 here(-0.6, 0.6, 0);
-  const Vec3 north(-0.6, 10, 0);
-  EXPECT_TRUE(leg_ok(std::nullopt, west + Vec3(0, 0.6, 0), here, request));
-  // Not from the inner corner's side: its tail sweeps over it.
-  EXPECT_FALSE(leg_ok(Approach(west + Vec3(0, 0.6, 0)), here, north, request));
-  // The same leg without a turn.
-  EXPECT_TRUE(leg_ok(std::nullopt, {-0.6, 1.5, 0}, north, with_body({}, pole)));
+  const Vec3 here(0, 0, 0);
+  const Vec3 north(0, 10, 0);
+  const Vec3 south(0, -10, 0);
+  const Request request = beside(0.9, 0.9);
+  EXPECT_TRUE(leg_ok(std::nullopt, west, here, request));
+  EXPECT_TRUE(leg_ok(std::nullopt, here, north, request));
+  EXPECT_FALSE(leg_ok(Approach(west), here, north, request));
+  // Turning the other way its tail passes elsewhere.
+  EXPECT_TRUE(leg_ok(Approach(west), here, south, request));
+  EXPECT_FALSE(leg_ok(Approach(west), here, south, beside(-0.9, 0.9)));
+  EXPECT_TRUE(leg_ok(Approach(west), here, north, beside(-0.9, 0.9)));
+  // A reversal may go either way round.
+  EXPECT_FALSE(leg_ok(Approach(west), here, west, request));
+  EXPECT_FALSE(leg_ok(Approach(west), here, west, beside(0.9, -0.9)));
 }
 
 TEST(Body, AnUnknownHeadingMustFitAtAny) {

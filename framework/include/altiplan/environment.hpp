@@ -75,7 +75,8 @@ struct ALTIPLAN_API Site {
 ///     judge rejects a leg with no ground below part of it.
 ///  6. rasterize never leaves a cell free that the grid's blocking rule blocks.
 ///  7. meets(volume) is true whenever the layer and the volume overlap by more than kBodyTolerance;
-///     it may be true while they are up to kBodyTolerance, or over_approximation(), apart.
+///     it may be true while they are up to kBodyTolerance apart, or as far as meets_by_clearance
+///     does not tell.
 class ALTIPLAN_API Environment {
  public:
   virtual ~Environment();

@@ -8,8 +8,6 @@
 
 namespace altiplan {
 
-class SweptVolume;
-
 /// Ground heights at the posts of a regular grid, bilinear between them. Heights are metres above
 /// sea level; a void is NaN, and the four cells around it have no ground.
 class ALTIPLAN_API HeightField {
@@ -62,9 +60,6 @@ class ALTIPLAN_API HeightField {
   /// is a quadratic); -infinity where part of the leg has no ground below. May return any value of
   /// at least `enough` once the leg is known to be that high everywhere.
   double gap(const Vec3& a, const Vec3& b, double enough = kInfinity) const;
-
-  /// True if the volume shares a point with the ground or reaches below it.
-  bool meets(const SweptVolume& volume) const;
 
   /// Maximum height of the leg above the ground, likewise exact; +infinity where there is none.
   double gap_max(const Vec3& a, const Vec3& b) const;

@@ -66,7 +66,7 @@ class ALTIPLAN_API SweptVolume {
 
 /// True unless the volume is known to be free of a layer with that clearance, which is 1-Lipschitz
 /// and never more than the distance: by halving boxes around the volume, down to `tolerance`
-/// metres.
+/// metres or a 64th of its longest edge.
 ALTIPLAN_API bool meets_by_clearance(const SweptVolume& volume,
                                      const std::function<double(const Vec3&)>& clearance,
                                      double tolerance);

@@ -244,6 +244,9 @@ bool shape_parts::meets(const Indexed& solid, const SweptVolume& volume) {
 
 bool meets_by_clearance(const SweptVolume& volume,
                         const std::function<double(const Vec3&)>& clearance, double tolerance) {
+  // Finer boxes would not pay: there are as many as the square of their number along an edge.
+  constexpr double kFinest = 1.0 / 64;
+  tolerance = std::max(tolerance, kFinest * (volume.box().max - volume.box().min).maxCoeff());
   std::vector<Box> open{volume.box()};
   while (!open.empty()) {
     const Box box = open.back();

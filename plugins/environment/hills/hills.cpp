@@ -11,6 +11,7 @@
 #include "altiplan/environment.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/ground.hpp"
+#include "altiplan/kit/layers/ground_body.hpp"
 #include "altiplan/kit/layers/ground_within.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
@@ -175,6 +176,15 @@ class Hills final : public Environment, public Ground {
     };
     const double enough = kit::height_for(r - kLengthTolerance, surface_.max_slope());
     return kit::too_near_ground(a, b, r, {surface_.top(), enough}, kShortest, gap, slope, meets);
+  }
+
+  bool do_meets(const SweptVolume& volume) const override {
+    const Box& box = volume.box();
+    return box.min.z() <= surface_.top() &&
+           kit::meets_ground(volume, box.min.x(), box.min.y(), box.max.x(), box.max.y(),
+                             [this](double x0, double y0, double x1, double y1) {
+                               return surface_.piece(x0, y0, x1, y1);
+                             });
   }
 
   std::optional<double> do_distance(const Vec3& a, const Vec3& b) const override {

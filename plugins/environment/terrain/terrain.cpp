@@ -14,8 +14,8 @@
 #include "altiplan/environment.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/ground.hpp"
+#include "altiplan/kit/layers/ground_body.hpp"
 #include "altiplan/plugin.hpp"
-#include "altiplan/swept_volume.hpp"
 #include "ground_search.hpp"
 #include "model.hpp"
 
@@ -117,7 +117,7 @@ class Terrain final : public Environment, public Ground {
 
   bool do_meets(const SweptVolume& volume) const override {
     const Box box = volume.box().intersected(bounds_);
-    return !box.is_empty() && model_.over(box).meets(volume);
+    return !box.is_empty() && kit::meets_ground(volume, model_.over(box));
   }
 
   /// True if a leg over the posts is too near to the ground below it.
