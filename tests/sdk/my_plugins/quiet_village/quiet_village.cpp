@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <altiplan/constraint.hpp>
 #include <altiplan/plugin.hpp>
+#include <altiplan/shape.hpp>
 
 namespace {
 using namespace altiplan;
@@ -12,7 +13,7 @@ struct Params {
 
   void describe(Fields& f) {
     f("at_m", at_m).unit("m").required().doc("centre of the village, east and north");
-    f("radius_m", radius_m).unit("m").greater_than(0).doc("radius of the quiet area");
+    f("radius_m", radius_m).unit("m").at_least(1).doc("radius of the quiet area");
     f("min_m", min_m).unit("m").doc("minimum height above sea level over the village");
   }
 };
@@ -22,33 +23,11 @@ class QuietVillage final : public Constraint {
   explicit QuietVillage(const Params& params) : params_(params) {}
 
  private:
-  /// Minimum height of the leg over the village: at an end of the part inside the circle, since the
-  /// leg is straight. Infinite if no part is inside.
-  double lowest_over(const Vec3& from, const Vec3& to) const {
-    const Vec3 flat(to.x() - from.x(), to.y() - from.y(), 0);
-    const Vec3 away(from.x() - params_.at_m[0], from.y() - params_.at_m[1], 0);
-    const double radius = params_.radius_m - kLengthTolerance;  // touching is free
-    // |away + t flat|² < radius²
-    const double a = flat.squaredNorm();
-    const double b = away.dot(flat);
-    const double c = away.squaredNorm() - radius * radius;
-    double t0 = 0;
-    double t1 = 1;
-    if (a > 0) {
-      const double root = std::sqrt(std::max(0.0, b * b - a * c));
-      t0 = std::max(t0, (-b - root) / a);
-      t1 = std::min(t1, (-b + root) / a);
-    }
-    if ((a == 0 && c >= 0) || t0 >= t1) {
-      return kInfinity;
-    }
-    const double climb = to.z() - from.z();
-    return from.z() + climb * (climb > 0 ? t0 : t1);
-  }
-
   // Called leg by leg by planners, pilots, smoothers and the judge.
   bool do_admits(const Motion& leg) const override {
-    return lowest_over(leg.from, leg.to) >= params_.min_m - kLengthTolerance;
+    const Cylinder quiet{params_.at_m[0], params_.at_m[1], params_.radius_m - kLengthTolerance,
+                         -kInfinity, params_.min_m - kLengthTolerance};
+    return leg_distance(quiet, leg.from, leg.to) > 0;  // touching the limit is allowed
   }
 
   Params params_;
