@@ -49,6 +49,7 @@ class Subcommands {
 // Each adds its subcommand.
 void add_ants(Subcommands& all);
 void add_any_angle(Subcommands& all);
+void add_bodies(Subcommands& all);
 void add_dubins(Subcommands& all);
 void add_field(Subcommands& all);
 void add_grid(Subcommands& all);
