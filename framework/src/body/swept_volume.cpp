@@ -31,28 +31,29 @@ struct Obstacle {
 };
 
 Vec3 vector_of(const ccd_vec3_t* v) { return {v->v[0], v->v[1], v->v[2]}; }
+void set(ccd_vec3_t* v, const Vec3& p) { ccdVec3Set(v, p.x(), p.y(), p.z()); }
 
 template <class Support>
 bool fcl_meets(const SweptVolume& volume, const Obstacle<Support>& obstacle) {
-  const auto set = [](ccd_vec3_t* v, const Vec3& p) { ccdVec3Set(v, p.x(), p.y(), p.z()); };
-  // Captureless, as the library is in C.
-  static const auto kSet = set;
   constexpr unsigned kMaxIterations = 500;
   constexpr double kTolerance = 1e-7;  // metres
+  // The library's own functions do not change the objects.
+  auto* ours = const_cast<SweptVolume*>(&volume);           // NOLINT(*-const-cast)
+  auto* other = const_cast<Obstacle<Support>*>(&obstacle);  // NOLINT(*-const-cast)
   return fcl::detail::GJKCollide<double>(
-      const_cast<SweptVolume*>(&volume),  // NOLINT(*-const-cast)
+      ours,
       [](const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result) {
-        kSet(result, static_cast<const SweptVolume*>(object)->support(vector_of(direction)));
+        set(result, static_cast<const SweptVolume*>(object)->support(vector_of(direction)));
       },
       [](const void* object, ccd_vec3_t* result) {
-        kSet(result, static_cast<const SweptVolume*>(object)->support_centre());
+        set(result, static_cast<const SweptVolume*>(object)->support_centre());
       },
-      const_cast<Obstacle<Support>*>(&obstacle),  // NOLINT(*-const-cast)
+      other,
       [](const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result) {
-        kSet(result, static_cast<const Obstacle<Support>*>(object)->support(vector_of(direction)));
+        set(result, static_cast<const Obstacle<Support>*>(object)->support(vector_of(direction)));
       },
       [](const void* object, ccd_vec3_t* result) {
-        kSet(result, static_cast<const Obstacle<Support>*>(object)->centre);
+        set(result, static_cast<const Obstacle<Support>*>(object)->centre);
       },
       kMaxIterations, kTolerance, nullptr, nullptr, nullptr);
 }
