@@ -9,6 +9,7 @@
 #include "altiplan/drawing.hpp"
 #include "altiplan/frame.hpp"
 #include "altiplan/random.hpp"
+#include "altiplan/threat.hpp"
 #include "altiplan/vehicle.hpp"
 #include "altiplan/voxel_grid.hpp"
 
@@ -17,14 +18,6 @@ namespace altiplan {
 class Ground;
 class SweptVolume;
 class World;
-
-/// A disc that a 2-D planner avoids.
-struct Threat {
-  Vec3 centre{0, 0, 0};
-  double radius = 0;
-  std::string kind;  ///< "radar", "zone", …
-  std::string id;
-};
 
 /// An obstacle of a layer near a query point.
 struct Nearby {
