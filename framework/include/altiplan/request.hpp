@@ -109,8 +109,7 @@ struct ALTIPLAN_API Request {
   }
   /// Airspeed, m/s: of an aeroplane its own, else the vehicle's speed.
   double air_speed() const { return vehicle.wing ? vehicle.wing->airspeed_mps : vehicle.speed_mps; }
-  /// True if a leg may be refused for what precedes it, apart from its turn: by a constraint, or
-  /// for the vehicle's body.
+  /// True if what precedes a leg may refuse it by more than a limit on turns.
   bool judges_pairs() const { return !constraints.empty() || vehicle.body != nullptr; }
   /// True if headings persist through legs that have none, and some limit depends on that.
   bool headings_last() const {
