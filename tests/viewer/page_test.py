@@ -20,6 +20,7 @@ if MISSING:
     sys.exit(SKIPPED)
 
 import scenes
+from bodies import Bodies
 from both import Both
 from case import TEMPLATE, Case, own_scene
 from colony import Colony
@@ -44,7 +45,7 @@ class File(unittest.TestCase):
             self.assertIn(holder, TEMPLATE)
 
 
-class Page(Both, Colony, Cut, CutIn3, Signs, Case):
+class Page(Both, Bodies, Colony, Cut, CutIn3, Signs, Case):
     def test_camera_of_the_still(self):
         self.run_js("altiplan.still()")
         eye = self.run_js("return altiplan.camera()")
@@ -195,7 +196,7 @@ class Page(Both, Colony, Cut, CutIn3, Signs, Case):
         self.assertLessEqual(min(times), 6000)
 
 
-class Flat(Both, Colony, Cut, Signs, Case):
+class Flat(Both, Bodies, Colony, Cut, Signs, Case):
     """Without WebGL: the same from above."""
     webgl = False
     view = "2d"

@@ -75,6 +75,11 @@ class Legend {
             number(metrics.value("min_clearance_m", Json()), 1, " m clearance") +
             number(metrics.value("duration_s", Json()), 1, " s"));
     }
+    if (result.contains("body") && !result.at("body").at("nearest").is_null()) {
+      const Json& nearest = result.at("body").at("nearest");
+      small("body" + number(nearest.at("body_clearance_m"), 1, " m from ") +
+            nearest.at("layer").get<std::string>());
+    }
     if (!has_metrics || !result.at("judged").is_null()) {
       small(result.at("message").get<std::string>());
     }

@@ -194,6 +194,7 @@ std::string routes(const Json& scene, const Map& map) {
     if (const Json& route = results[i].at("route"); !route.is_null()) {
       svg += polyline(map, route, 0, route_color(i), "stroke-width=\"3\"");
     }
+    svg += closest_body(scene, results[i], route_color(i), map);
   }
   return svg + ends(scene, map);
 }

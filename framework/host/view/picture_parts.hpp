@@ -99,6 +99,9 @@ std::optional<std::array<double, 2>> heights_of(const Json& scene);
 std::string relief(const Json& scene, const Map& map);
 std::string solids(const Json& scene, const Map& map);
 std::string routes(const Json& scene, const Map& map);
+/// The body of a result at its closest place; "" if there is none.
+std::string closest_body(const Json& scene, const Json& result, std::string_view color,
+                         const Map& map);
 std::string scale_and_north(const Map& map);
 std::string legend(const Json& scene, const Area& area);
 std::string profiles(const Json& scene, const Area& area);

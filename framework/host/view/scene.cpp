@@ -95,6 +95,9 @@ Json world_scene(const Config& config, const Mission& mission, const Box& box, S
     scene[key] = Json::array();
   }
   add_solids(scene, mission, events, box, notes);
+  if (const auto& body = mission.request.vehicle.body) {
+    scene["body"] = body_json(*body);
+  }
   scene["box"] = {rounded(box.min), rounded(box.max)};
   return scene;
 }

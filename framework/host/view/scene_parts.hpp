@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/body.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/measures.hpp"
 #include "host/mission/mission.hpp"
@@ -45,6 +46,12 @@ Box scene_box(const Mission& mission, const std::vector<StoredResult>& results);
 /// static or moving, and its changes.
 void add_solids(Json& scene, const Mission& mission, const std::vector<FlightEvent>& events,
                 const Box& box, SceneNotes& notes);
+
+/// The parts of a body, each the triangles of its surface.
+Json body_json(const Body& body);
+/// Where the body is along the route, and where it comes nearest to obstacles.
+Json body_places_json(const Route& route, const Request& request, const std::string& whose,
+                      SceneNotes& notes);
 
 /// A layer without a drawing, cut into cells: the space that it blocks within the box, slightly too
 /// large rather than missing thin parts.

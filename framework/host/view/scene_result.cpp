@@ -176,6 +176,9 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
   json["limits"] = limits_json(mission.request);
   json["profile"] =
       accepted ? route_profile(accepted->route, mission.request, samples) : Json(nullptr);
+  if (accepted && mission.request.vehicle.body != nullptr) {
+    json["body"] = body_places_json(accepted->route, mission.request, stored.file, notes);
+  }
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
   conclude(json, stored, accepted, notes);
   json["trace"] = trace_scene(stored, notes);

@@ -3,11 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <functional>
 #include <vector>
 
 #include "altiplan/attributed.hpp"
-#include "altiplan/swept_volume.hpp"
 
 #include "pieces.hpp"
 
@@ -52,15 +50,6 @@ Attitude attitude_on(const Vec3& way, double z, const Request& request) {
   return attitude;
 }
 
-/// A motion of the body over t in [0, 1]. At equal t, no point of the body is farther than
-/// bend * dt² from the straight line between its places at the ends of a piece dt.
-struct Sweep {
-  /// Adds the placements of a moment: one, or those at many headings if any is possible.
-  std::function<void(double t, std::vector<Placement>& all)> place;
-  double bend;
-  double between;  ///< what lies between the headings is no farther than that from their hull
-};
-
 class BodyOnLeg {
  public:
   BodyOnLeg(const std::optional<Approach>& before, const Leg& leg, const Request& request)
@@ -79,6 +68,7 @@ class BodyOnLeg {
       });
     });
   }
+  const std::vector<Sweep>& sweeps() const { return sweeps_; }
 
  private:
   /// By halving: a piece may be met where its volume is, and surely if the body at its middle is.
@@ -229,6 +219,11 @@ bool is_near(const Environment& layer, const Leg& leg, double reach) {
              : layer.blocked(leg.from, leg.to, reach);
 }
 }  // namespace
+
+std::vector<Sweep> body_sweeps(const std::optional<Approach>& before, const Leg& leg,
+                               const Request& request) {
+  return BodyOnLeg(before, leg, request).sweeps();
+}
 
 const Layer* body_meets(const std::optional<Approach>& before, const Leg& leg,
                         const Request& request) {

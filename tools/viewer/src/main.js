@@ -35,7 +35,7 @@ function first_state(scene, lines) {
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
   return {shown, hidden: hidden_at_first(scene), selected, source: 'route', time: 0, playing: false, speed: 1,
-    cursor: null, exaggeration, cut, grid: true, everything: false, theme: 'light', tab: 'profiles',
+    cursor: null, exaggeration, cut, grid: true, bodies: true, everything: false, theme: 'light', tab: 'profiles',
     search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
 }
 

@@ -12,6 +12,13 @@ function floats(text, count, what) {
   return new Float32Array(raw.buffer);
 }
 
+function triangle_corners(text) {
+  const raw = bytes(text);
+  return new Float32Array(raw.buffer, 0, Math.floor(raw.length / 36) * 9);
+}
+
+const joined = (lists) => new Float32Array(lists.flatMap((list) => [...list]));
+
 /** The scene of the page with its binary parts decoded; throws a one-sentence error if invalid. */
 export function read_scene(text) {
   if (text.trim() === '' || text.trimStart().startsWith('/*')) {
@@ -31,9 +38,9 @@ export function read_scene(text) {
     boxes.data = floats(boxes.data, 6 * boxes.count, 'boxes');
   }
   for (const mesh of scene.meshes) {
-    const raw = bytes(mesh.triangles);
-    mesh.triangles = new Float32Array(raw.buffer, 0, Math.floor(raw.length / 36) * 9);
+    mesh.triangles = triangle_corners(mesh.triangles);
   }
+  if (scene.body) scene.body = joined(scene.body.map(({triangles}) => triangle_corners(triangles)));
   for (const moving of scene.moving) {
     Object.assign(moving, {layer: 'moving', role: 'obstacle', name: moving.id, ...moving});
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {bodies_of} from '../body.js';
 import {kRoleNames, role_color, route_color} from '../colors.js';
 import {by_id, element, swatch} from '../dom.js';
 import {thinning} from '../playback.js';
@@ -11,8 +12,8 @@ import {violations_of} from './violations.js';
 export function build_legend(world, store) {
   const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
     ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
-    grid(world.frame, store.state), ...search(store.state));
-  store.on(['theme', 'shown', 'hidden', 'grid', 'exaggeration', 'cut', 'search'], reflect);
+    ...body(world.scene, store.state), grid(world.frame, store.state), ...search(store.state));
+  store.on(['theme', 'shown', 'hidden', 'grid', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
   reflect();
   const fold = () => {
     by_id('legend').hidden = !store.state.legend;
@@ -47,6 +48,12 @@ function roles(scene, {hidden}) {
 function violations(world, {shown}) {
   if (!violations_of(world).some(({line, place}) => place && shown.has(line))) return [];
   return [element('div', {}, element('span', {className: 'swatch violation'}), 'Violation')];
+}
+
+function body(scene, {bodies, shown, theme}) {
+  const seen = bodies && bodies_of(scene).find(({key}) => shown.has(key));
+  return seen ? [element('div', {}, swatch(route_color(seen.result, theme), 'fill body'),
+    'Body, to scale; opaque at its closest place')] : [];
 }
 
 /** While a search is shown, reports how much of it is left out, whichever pane is open. */

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {bodies_of, closeness} from '../body.js';
 import {route_color} from '../colors.js';
 import {by_id, element} from '../dom.js';
 import {between, place_at} from '../world.js';
@@ -26,6 +27,10 @@ export function build_marks(view, world, store) {
   for (const line of world.lines.filter(({kind}) => kind === 'track')) {
     add_vehicle(line, add, view, store);
   }
+  for (const {key, nearest} of bodies_of(scene).filter((body) => body.nearest)) {
+    add('body', closeness(nearest), () =>
+      store.state.bodies && store.state.shown.has(key) ? nearest.at : null);
+  }
   add('cursor', '', () => store.state.cursor?.at ?? null);
 
   const north = by_id('north');
@@ -40,7 +45,7 @@ export function build_marks(view, world, store) {
     north.style.transform = `rotate(${view.north_deg()}deg)`;
   };
   view.on_frame(place_all);
-  store.on(['cursor', 'time', 'shown', 'theme'], place_all);
+  store.on(['cursor', 'time', 'shown', 'bodies', 'theme'], place_all);
 }
 
 function add_vehicle(line, add, view, store) {

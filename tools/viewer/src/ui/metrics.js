@@ -29,7 +29,8 @@ export function build_metrics({scene: {results}}, store) {
     row('Message', results.map(({message}) => message)),
     row('Judged', results.map(({check}) => verdict(check))),
     row('Seed', results.map(({seed}) => String(seed ?? '–'))),
-    ...number_rows(results.map(({metrics}) => metrics)),
+    ...number_rows(results.map(({metrics, body}) => body ?
+      {...metrics, body_clearance_m: body.nearest?.body_clearance_m} : metrics)),
   ];
   if (results.some(({flight}) => flight)) {
     const flights = results.map(({flight}) => flight);

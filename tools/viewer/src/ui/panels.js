@@ -24,7 +24,7 @@ export function build_panels(view, world, store) {
     menu: () => document.body.classList.toggle('side_open'),
   };
   build_bar(world, actions);
-  build_side(world, store);
+  build_side(view, world, store);
   build_clock(world, store);
   build_dock(view, world, store);
   build_legend(world, store);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+import {outer_of} from '../body.js';
 import {kRoleNames, role_color, route_color} from '../colors.js';
 import {by_id, checkbox, element, swatch} from '../dom.js';
 import {layers_of} from '../world.js';
 import {cut_slider} from './cut.js';
+
+// Distance of the eye from a body, in radii.
+const kBodiesAway = 9;
 
 const kStatusClass = (status) => status === 'solved' ? 'good' : 'bad';
 
@@ -12,11 +16,11 @@ export function pill(status) {
 }
 
 /** The left panel: the results with their lines, and the world's layers. */
-export function build_side(world, store) {
+export function build_side(view, world, store) {
   by_id('side').append(
     element('h2', {}, 'Results'),
     ...world.scene.results.map((result, index) => result_card(result, index, world, store)),
-    element('h2', {}, 'World'), ...world_controls(world, store), ...notes(world.scene));
+    element('h2', {}, 'World'), ...world_controls(view, world, store), ...notes(world.scene));
 }
 
 function result_card(result, index, world, store) {
@@ -63,7 +67,7 @@ function attempt_label(step) {
   return `${step.id}: ${step.verb} ${step.plugin}${stand_in}${fate}`;
 }
 
-function world_controls(world, store) {
+function world_controls(view, world, store) {
   const {scene} = world;
   const rows = [exaggeration_slider(store), cut_slider(world.frame, store)];
   for (const layer of layers_of(scene)) rows.push(layer_row(layer, scene, store));
@@ -72,11 +76,32 @@ function world_controls(world, store) {
   const legend = checkbox('Legend', store.state.legend, (on) => store.set({legend: on}));
   store.on(['legend'], () => { legend.input.checked = store.state.legend; });
   rows.push(grid.row, legend.row);
+  if (scene.body) rows.push(body_row(view, scene, store));
   if (layers_of(scene).some(({events}) => events.size > 0)) {
     rows.push(checkbox('Shapes of all events, at any time', false,
       (on) => store.set({everything: on})).row);
   }
   return rows;
+}
+
+/** Shows the bodies; the button flies to the closest place of the selected result. */
+function body_row(view, scene, store) {
+  const {input, row} = checkbox('Body', store.state.bodies, (on) => store.set({bodies: on}));
+  input.id = 'show_bodies';
+  const button = element('button', {textContent: 'Closest place', title: 'Fly there',
+    onclick: () => {
+      store.set({bodies: true});
+      store.toggle('shown', `${store.state.selected}`, true);
+      view.fly_to(scene.results[store.state.selected].body.nearest.at,
+        kBodiesAway * outer_of(scene.body));
+    }});
+  const reflect = () => {
+    input.checked = store.state.bodies;
+    button.disabled = !scene.results[store.state.selected]?.body?.nearest;
+  };
+  reflect();
+  store.on(['bodies', 'selected'], reflect);
+  return element('div', {className: 'bodies'}, row, button);
 }
 
 function layer_row(layer, scene, store) {

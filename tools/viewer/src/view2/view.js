@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {bodies_of, from_above} from '../body.js';
 import {casing, kKinds, mix, role_color, route_color, style_of} from '../colors.js';
 import {outline} from '../shapes.js';
 import {drift, event_times, grid_lines, layer_key, present,
@@ -25,7 +26,7 @@ export class View2 {
     new ResizeObserver(() => this.resize()).observe(stage);
     this.resize();
     this.look('fit');
-    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'theme',
+    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'bodies', 'theme',
       'search', 'searched'], () => this.draw());
   }
 
@@ -79,10 +80,10 @@ export class View2 {
     this.draw();
   }
 
-  fly_to([x, y]) {
+  fly_to([x, y], away = this.world.frame.diagonal / 4) {
     this.middle = [x, y];
-    this.scale = Math.max(this.scale, 4 * Math.min(this.stage.clientWidth,
-      this.stage.clientHeight) / this.world.frame.diagonal);
+    this.scale = Math.max(this.scale, Math.min(this.stage.clientWidth,
+      this.stage.clientHeight) / away);
     this.draw();
   }
 
@@ -138,6 +139,8 @@ export class View2 {
         id: moving.id,
         at: drift(moving, this.store.state.time)
           .map((by, axis) => by + (moving.at?.[axis] ?? 0))})),
+      bodies: this.#bodies().map(({result, at, nearest}) => ({result, at, nearest: nearest ?
+        from_above(this.world.scene.body, nearest.at, nearest.turned).flat() : []})),
       solids: this.#present().reduce((sum, thing) => sum + this.#count(thing), 0),
       ground: ground && {nx: ground.nx, ny: ground.ny, min: ground.min, max: ground.max},
       searched: this.store.state.search ? this.store.state.searched : null};
@@ -172,6 +175,7 @@ export class View2 {
     for (const line of this.world.lines.toSorted((a, b) => under(a) - under(b))) {
       this.#paint_line(line);
     }
+    for (const body of this.#bodies()) this.#paint_body(body);
     for (const listener of this.listeners) listener();
   }
 
@@ -281,6 +285,31 @@ export class View2 {
       this.context.stroke(edges[kind]);
       this.context.fill(points[kind]);
     });
+  }
+
+  #bodies() {
+    const {bodies, shown} = this.store.state;
+    return bodies ? bodies_of(this.world.scene).filter(({key}) => shown.has(key)) : [];
+  }
+
+  #paint_body({result, at, turned, nearest}) {
+    const color = route_color(result, this.store.state.theme);
+    const {context} = this;
+    context.globalAlpha = 0.3;
+    at.forEach((place, n) => this.#fill_body(place, turned[n], color));
+    context.globalAlpha = 1;
+    if (nearest) this.#fill_body(nearest.at, nearest.turned, color);
+  }
+
+  #fill_body(at, turned, color) {
+    const path = new Path2D();
+    for (const corners of from_above(this.world.scene.body, at, turned)) {
+      const [first, ...others] = corners.map((corner) => this.project(corner));
+      path.moveTo(first.x, first.y);
+      for (const {x, y} of others) path.lineTo(x, y);
+    }
+    this.context.fillStyle = color;
+    this.context.fill(path);
   }
 
   #paint_line({key, kind, result, points}) {

@@ -75,9 +75,9 @@ export class Camera {
   }
 
   /** Flies to `target`, seen from the same side and close enough to see its surroundings. */
-  fly_to(target) {
+  fly_to(target, away = this.frame.diagonal * 0.22) {
     const back = this.eye.position.clone().sub(this.controls.target);
-    back.setLength(Math.min(back.length(), this.frame.diagonal * 0.22));
+    back.setLength(Math.min(back.length(), away));
     this.fly({target, position: target.clone().add(back)});
   }
 

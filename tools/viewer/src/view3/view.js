@@ -3,6 +3,7 @@ import {AmbientLight, Color, DirectionalLight, Group, Raycaster, Scene, Vector2,
   WebGLRenderer} from 'three';
 import {style_of} from '../colors.js';
 import {event_times} from '../world.js';
+import {Bodies} from './bodies.js';
 import {Camera} from './camera.js';
 import {Goals} from './goals.js';
 import {Grid} from './grid.js';
@@ -41,8 +42,9 @@ export class View3 {
     this.lines = new Lines(lines, scene.ground, frame);
     this.grid = new Grid(frame, scene.ground, this.cut);
     this.goals = new Goals(scene, frame);
+    this.bodies = new Bodies(scene, frame);
     this.root.add(...(this.terrain ? [this.terrain.object] : []), this.grid.object,
-      this.goals.object, this.solids.object, this.lines.object);
+      this.goals.object, this.solids.object, this.lines.object, this.bodies.object);
     this.full_frame_ms = 0;
     this.#rest_after_motion();
     new ResizeObserver(() => this.resize()).observe(stage);
@@ -51,8 +53,8 @@ export class View3 {
     this.look('fit');
     // Shaders compile while the panels are built.
     this.renderer.compile(this.picture, this.camera.eye);
-    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'theme', 'exaggeration',
-      'cut', 'search', 'searched'], (state, changed) => this.update(state, changed));
+    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'bodies', 'theme',
+      'exaggeration', 'cut', 'search', 'searched'], (state, changed) => this.update(state, changed));
   }
 
   on_frame(listener) {
@@ -80,6 +82,7 @@ export class View3 {
     this.solids.update(state, event_times(this.world.scene, state.selected));
     this.grid.update(state);
     this.goals.update(state);
+    this.bodies.update(state);
     this.terrain?.paint(state);
     if (changed.has('theme')) this.picture.background = new Color(style_of('--sky'));
     if (changed.has('exaggeration')) this.#stretched(state.exaggeration);
@@ -211,9 +214,10 @@ export class View3 {
     }
   }
 
-  fly_to(point) {
+  /** `away` limits the distance from the eye. */
+  fly_to(point, away) {
     this.overview = false;
-    this.camera.fly_to(this.#place(point));
+    this.camera.fly_to(this.#place(point), away);
   }
 
   /** Clockwise rotation of the north arrow. */
@@ -229,7 +233,7 @@ export class View3 {
 
   drawn() {
     return {view: '3d', ...this.lines.drawn(), ...this.solids.drawn(),
-      moving: this.solids.moved(),
+      moving: this.solids.moved(), bodies: this.bodies.drawn(),
       ground: this.terrain?.drawn() ?? null, searched: this.search ?
         this.search.points.material.uniforms.now.value : null};
   }
