@@ -79,7 +79,8 @@ struct GroundPatch {
 };
 
 inline Gap ground_gap(const Convex& set, const HeightField& field) {
-  constexpr Real kEnough = 1e-7L;  // metres
+  constexpr Real kEnough = 1e-7L;    // metres
+  constexpr Real kTouching = 1e-9L;  // more than what separation() leaves of no gap
   const Range own = range(set);
   const auto further = [](const GroundPatch& a, const GroundPatch& b) {
     return a.gap.low > b.gap.low;
@@ -107,7 +108,7 @@ inline Gap ground_gap(const Convex& set, const HeightField& field) {
   }
   // The set shares a point with the ground if it does with what the ground contains.
   Gap gap = open.top().gap;
-  while (!open.empty() && high > 0 && open.top().gap.low < high - kEnough) {
+  while (!open.empty() && high > kTouching && open.top().gap.low < high - kEnough) {
     const GroundPatch patch = open.top();
     gap = patch.gap;
     if (patch.twist() <= kEnough) {
