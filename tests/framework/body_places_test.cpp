@@ -92,11 +92,15 @@ TEST(BodyPlaces, TheNearestPlaceMayBeWithinATurnOnTheSpot) {
 }
 
 TEST(BodyPlaces, WhereItMeetsAnObstacleTheDistanceIsZero) {
-  const Request request = request_of({box_part({2, 1, 0.4}, {0, 0, 0})},
-                                     testing::world_of({Sphere{{50, 0.7, 10}, 0.5}}));
-  const auto nearest = nearest_body({kStart, {100, 0, 10}}, request);
-  ASSERT_TRUE(nearest);
-  EXPECT_EQ(nearest->distance, 0);
+  for (const double radius : {0.5, 500.0}) {  // the larger ball has all of it inside
+    const Request request = request_of({box_part({2, 1, 0.4}, {0, 0, 0})},
+                                       testing::world_of({Sphere{{50, 0.2 + radius, 10}, radius}}));
+    for (const Route& route : {Route{kStart, {100, 0, 10}}, Route{{50, 9, 10}, {52, 9, 10}}}) {
+      const auto nearest = nearest_body(route, request);
+      ASSERT_TRUE(nearest) << radius;
+      EXPECT_EQ(nearest->distance == 0, route[0] == kStart || radius > 9) << radius;
+    }
+  }
 }
 
 // On a straight leg a capsule sweeps a longer capsule: its distance to a ball is known.

@@ -80,7 +80,7 @@ class NearestSearch {
 
  private:
   /// In microseconds, roughly; no clock, so that a picture is always the same.
-  static constexpr double kMaxEffort = 3e5;
+  static constexpr double kMaxEffort = 1e5;
 
   struct Piece {
     double least;  ///< no part of the body is nearer
@@ -167,8 +167,15 @@ class NearestSearch {
     };
     const double fine = tolerance() / 4;
     double near = std::max(0.0, environment.clearance(place.at) - outer_);
-    double far = nearest_ ? best() : place_clearance(environment, place.at) + outer_;
-    if (!std::isfinite(far) || near >= far || (nearest_ && !is_within(std::max(0.0, far - fine)))) {
+    double far = best();
+    if (!nearest_) {
+      // Less than 0 where the whole body is inside.
+      far = std::max(0.0, place_clearance(environment, place.at) + outer_);
+      effort_ += 20;
+    } else if (near >= far || !is_within(std::max(0.0, far - fine))) {
+      return;
+    }
+    if (!std::isfinite(far)) {
       return;
     }
     if (near == 0 && is_within(0)) {
