@@ -14,6 +14,7 @@ struct BodyPart {
   std::vector<Vec3> corners{};
   double rounding = 0;
   double inner_m = 0;  ///< a sphere of that radius about the reference point lies in the part
+  double outer_m = 0;  ///< and one of that radius contains it
 };
 
 /// Sizes along x, y and z; centred at the offset.

@@ -66,6 +66,7 @@ BodyPart box_part(const Vec3& size_m, const Vec3& offset_m) {
     part.corners.emplace_back(offset_m + size_m.cwiseProduct(side));
   }
   part.inner_m = std::max(0.0, (size_m / 2 - offset_m.cwiseAbs()).minCoeff());
+  part.outer_m = outer_of(part.corners);
   return part;
 }
 
@@ -81,6 +82,7 @@ BodyPart cylinder_part(double radius_m, double height_m, const Vec3& offset_m) {
   }
   part.inner_m = std::max(
       0.0, std::min(radius_m - offset_m.head<2>().norm(), height_m / 2 - std::abs(offset_m.z())));
+  part.outer_m = outer_of(part.corners);
   return part;
 }
 
@@ -90,9 +92,10 @@ BodyPart capsule_part(double radius_m, double length_m, const Vec3& offset_m) {
                 std::to_string(2 * radius_m) + ", found " + std::to_string(length_m));
   }
   const Vec3 half(length_m / 2 - radius_m, 0, 0);
-  BodyPart part{{offset_m - half, offset_m + half}, radius_m, 0};
+  BodyPart part{{offset_m - half, offset_m + half}, radius_m, 0, 0};
   part.inner_m =
       std::max(0.0, radius_m - point_leg_distance(Vec3::Zero(), part.corners[0], part.corners[1]));
+  part.outer_m = outer_of(part.corners) + radius_m;
   return part;
 }
 
@@ -131,6 +134,7 @@ BodyPart hull_part(const std::vector<Vec3>& points) {
                 " corners: simplify it");
   }
   part.inner_m = std::max(0.0, least_support - kBetween * outer);
+  part.outer_m = outer;
   return part;
 }
 
@@ -149,7 +153,7 @@ double Body::inner_m() const {
 double Body::outer_m() const {
   double most = 0;
   for (const BodyPart& part : parts) {
-    most = std::max(most, outer_of(part.corners) + part.rounding);
+    most = std::max(most, part.outer_m);
   }
   return most;
 }

@@ -77,17 +77,20 @@ class BodyOnLeg {
     std::vector<Placement> ends;
     sweep.place(begin, ends);
     sweep.place(end, ends);
+    const double outer = part.outer_m;
     const double bend = sweep.bend * (end - begin) * (end - begin);
     const double grown = bend + sweep.between;
     const double length = (ends.back().at - ends.front().at).norm();
-    // Long volumes have many obstacles about them: spheres tell most.
-    if (!layer.blocked(ends.front().at, ends.back().at, outer_ + grown + kBodyTolerance)) {
+    const double middle = (begin + end) / 2;
+    const bool is_short = length <= std::max(16 * outer, 1.0) || middle <= begin || middle >= end;
+    // Long volumes have many obstacles about them, and rotations take several: the sphere around
+    // the part tells most.
+    if ((!is_short || sweep.bend > 0) &&
+        !layer.blocked(ends.front().at, ends.back().at, outer + grown + kBodyTolerance)) {
       return false;
     }
-    const double middle = (begin + end) / 2;
-    const bool is_short = length <= std::max(16 * outer_, 1.0) || middle <= begin || middle >= end;
     if (is_short) {
-      if (!layer.meets({part, outer_, ends, grown})) {
+      if (!layer.meets({part, outer, ends, grown})) {
         return false;
       }
       if (bend <= kBodyTolerance / 2) {
@@ -95,7 +98,7 @@ class BodyOnLeg {
       }
       std::vector<Placement> half;
       sweep.place(middle, half);
-      if (layer.meets({part, outer_, half, sweep.between})) {
+      if (layer.meets({part, outer, half, sweep.between})) {
         return true;
       }
     }

@@ -344,6 +344,13 @@ class LegJudge {
 
   bool keeps_off() const {
     const double needed = required_clearance(request_);
+    if (request_.vehicle.body != nullptr && turn_ == nullptr) {
+      const double reach = request_.vehicle.reach_m() + kBodyTolerance;
+      is_clear_ = needed <= reach && request_.world->blocked_by(a_, b_, reach) == nullptr;
+      if (is_clear_) {
+        return true;
+      }
+    }
     const Layer* layer =
         turn_ == nullptr ? request_.world->blocked_by(a_, b_, needed) : turn_blocked_by(needed);
     return layer == nullptr || report_([&] {
@@ -353,7 +360,7 @@ class LegJudge {
   }
 
   bool keeps_body() const {
-    if (request_.vehicle.body == nullptr) {
+    if (request_.vehicle.body == nullptr || is_clear_) {
       return true;
     }
     const Leg leg = turn_ != nullptr ? *turn_ : Leg::straight(a_, b_);
@@ -374,6 +381,7 @@ class LegJudge {
   mutable Box box_;            ///< of the turn
   /// Of the ground within the required clearance of it; NaN: not yet asked.
   mutable double slope_ = std::nan("");
+  mutable bool is_clear_ = false;            ///< of obstacles, in any attitude of the body
   mutable double height_kept_ = -kInfinity;  ///< above ground, that a turn is known to have
   const Request& request_;
   const Limits& limits_;

@@ -13,8 +13,11 @@ bool MoveRules::is_clear_of_body(KnownClearance& near_a, const Vec3& a, double l
   if (!wants_clearance_ || !bare_ground_.layers().empty()) {
     return false;
   }
-  ask(near_a, a);
-  return near_a.least > reach_ + length;
+  const double enough = reach_ + length;
+  if (near_a.least <= enough) {
+    ask(near_a, a);
+  }
+  return near_a.least > enough;
 }
 
 bool MoveRules::body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
