@@ -54,6 +54,7 @@ class BodyOnLeg {
  public:
   BodyOnLeg(const std::optional<Approach>& before, const Leg& leg, const Request& request)
       : request_(request), body_(*request.vehicle.body), outer_(body_.outer_m()) {
+    sweeps_.reserve(4);
     if (leg.turns()) {
       add_turn(before, leg);
     } else {
@@ -75,6 +76,7 @@ class BodyOnLeg {
   bool part_meets(const Environment& layer, const BodyPart& part, const Sweep& sweep, double begin,
                   double end) const {
     std::vector<Placement> ends;
+    ends.reserve(2);
     sweep.place(begin, ends);
     sweep.place(end, ends);
     const double outer = part.outer_m;
@@ -234,8 +236,13 @@ const Layer* body_meets(const std::optional<Approach>& before, const Leg& leg,
     return nullptr;
   }
   const double reach = request.vehicle.body->outer_m() + kBodyTolerance;
+  Box about = (leg.turns() ? leg.box() : leg_box(leg.from, leg.to)).grown(reach);
+  about.min.z() = -kInfinity;  // a ground reaches further down than its bounds
   std::optional<BodyOnLeg> body;
   for (const Layer& layer : request.world->layers()) {
+    if (!layer.environment->bounds().overlaps(about)) {
+      continue;
+    }
     const bool meets =
         attributed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
                    [&] {

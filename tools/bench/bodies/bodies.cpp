@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of plans with a body, compared with those of the sphere around it: through a city, where its
 // attitude matters, and high above it. Both plan each problem, one after the other.
+#include <algorithm>
 #include <utility>
 
 #include "altiplan/body.hpp"
@@ -68,10 +69,15 @@ Json compare(const Planner& planner, const std::string& name, double low, double
       request.vehicle.body = std::move(body);
       request.vehicle.radius_m = radius;
       apply_constraints(request, {}, AppliesTo::route);
-      const double before = thread_s();
-      const PlanResult result = planner.plan(request);
-      const double ms = 1e3 * (thread_s() - before);
-      return std::pair(ms, std::isfinite(judged_length(result, request, name)));
+      double ms = kInfinity;
+      bool has_route = false;
+      for (int pass = 0; pass < 3; ++pass) {  // the first one touches memory
+        const double before = thread_s();
+        const PlanResult result = planner.plan(request);
+        ms = std::min(ms, 1e3 * (thread_s() - before));
+        has_route = std::isfinite(judged_length(result, request, name));
+      }
+      return std::pair<double, bool>(ms, has_route);
     };
     const auto body = timed(wing(), wing()->inner_m());
     const auto sphere = timed(nullptr, wing()->outer_m());
@@ -97,9 +103,9 @@ void add_bodies(Subcommands& all) {
       "bodies", "time plans with a body against those of the sphere around it",
       [=](const Given& given) {
         Json rows = Json::array();
-        for (const auto& [low, high] : {std::pair(2.0, 15.0), std::pair(100.0, 200.0)}) {
+        for (const auto& [low, high] : {std::pair(2.0, 45.0), std::pair(100.0, 200.0)}) {
           for (const std::string name :
-               {"astar {cell_m: [4, 4, 4], moves: exact}", "theta_star {cell_m: [4, 4, 4]}",
+               {"astar {cell_m: [4, 4, 4], moves: exact}", "theta_star {cell_m: [2, 2, 2]}",
                 "rrt_connect", "rrt_star {max_iterations: 5000}"}) {
             rows.push_back(compare(*planner(*given.registry, name), name, low, high, *problems));
           }

@@ -6,18 +6,29 @@
 namespace altiplan::kit {
 
 /// True if the step is so far from all obstacles that the body's attitude does not matter.
-bool MoveRules::is_clear_of_body(KnownClearance& near_a, const Vec3& a, double length) const {
+bool MoveRules::is_clear_of_body(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                                 KnownClearance& near_b) const {
   if (request_.vehicle.body == nullptr) {
     return true;
   }
   if (!wants_clearance_ || !bare_ground_.layers().empty()) {
     return false;
   }
-  const double enough = reach_ + length;
+  if (near_a.least > reach_ + lattice_.step_length(d)) {
+    return true;
+  }
+  // Two balls of half the step around its ends contain all of it.
+  const double enough = reach_ + lattice_.step_length(d) / 2;
   if (near_a.least <= enough) {
     ask(near_a, a);
   }
-  return near_a.least > enough;
+  if (near_a.least > enough && near_b.least <= enough) {
+    near_b.learn(near_a.least - lattice_.step_length(d));
+    if (near_b.least <= enough) {
+      ask(near_b, b);
+    }
+  }
+  return near_a.least > enough && near_b.least > enough;
 }
 
 bool MoveRules::body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {

@@ -142,6 +142,11 @@ ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3&
   return any_on(nodes, TreeLeg(a, b, r), [&](std::size_t n) { return meets(shapes[n], a, b, r); });
 }
 
+ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const SweptVolume& volume) {
+  return any_on(nodes, TreeLeg(volume.from(), volume.to(), volume.reach()),
+                [&](std::size_t n) { return shape_parts::meets(shapes[n], volume); });
+}
+
 // The shapes that may be that near, in order.
 std::vector<int> shapes_within(const BoxNode* nodes, const Vec3& p, double reach) {
   std::vector<int> found;
@@ -277,12 +282,11 @@ bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
 
 bool ObstacleSet::meets(const SweptVolume& volume) const {
   Solids solids = impl_->solids(shapes_);
-  const auto meets = [&](std::size_t n) { return shape_parts::meets(solids[n], volume); };
   if (impl_->count > 0 && is_in_reach(volume.from()) && is_in_reach(volume.to())) {
-    return any_on(impl_->nodes.data(), TreeLeg(volume.from(), volume.to(), volume.reach()), meets);
+    return any_meets(impl_->nodes.data(), solids, volume);
   }
   for (std::size_t n = 0; n < impl_->count; ++n) {
-    if (meets(n)) {
+    if (shape_parts::meets(solids[n], volume)) {
       return true;
     }
   }

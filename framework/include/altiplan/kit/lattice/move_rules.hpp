@@ -115,7 +115,7 @@ class ALTIPLAN_API MoveRules {
     return place_free(c, d, a, b, near_a, near_b) &&
            (!judges_pairs_ ||
             (constraints_admit(before, a, b) &&
-             (is_clear_of_body(near_a, a, lattice_.step_length(d)) || body_fits(before, a, b))));
+             (is_clear_of_body(d, a, b, near_a, near_b) || body_fits(before, a, b))));
   }
 
   /// True if the straight leg between the centres of two cells, for a vehicle that comes from
@@ -189,7 +189,8 @@ class ALTIPLAN_API MoveRules {
   void find_gaps();
   bool constraints_admit(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   bool body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
-  bool is_clear_of_body(KnownClearance& near_a, const Vec3& a, double length) const;
+  bool is_clear_of_body(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+                        KnownClearance& near_b) const;
 
   const Request& request_;
   const Lattice& lattice_;
