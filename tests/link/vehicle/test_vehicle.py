@@ -1,0 +1,9 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""All tests of the test vehicle: its codec, its transfers, its flights and its process."""
+import unittest
+
+from test_codec import *  # noqa: F401,F403
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,174 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""A small autopilot for tests that speaks MAVLink 2 over UDP on this machine.
+
+It prints `listening PORT` on standard output when it can be spoken to. With --lockstep time stands
+still but for lines `step SECONDS` on standard input: each is done for all packets that had arrived,
+and answered by `time SECONDS`."""
+import argparse
+import json
+import math
+import select
+import socket
+import sys
+import time
+
+import faults
+import flavours
+from node import Node
+
+STEP = 0.02  # s
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+def coordinates(text):
+    lat, lon, alt = (float(part) for part in text.split(","))
+    return lat, lon, alt
+
+
+def wind(text):
+    come_from, speed = (float(part) for part in text.split(","))
+    return come_from, speed
+
+
+def key_of_file(path):
+    """32 bytes, or 64 hexadecimal digits."""
+    with open(path, "rb") as file:
+        data = file.read()
+    return data if len(data) == 32 else bytes.fromhex(data.decode().strip())
+
+
+def address(text):
+    """HOST:PORT of loopback."""
+    host, _, port = text.rpartition(":")
+    if host not in LOOPBACK:
+        raise argparse.ArgumentTypeError(f"{host!r} is not an address of this machine; "
+                                         "expected 127.0.0.1:PORT")
+    return "127.0.0.1", int(port)
+
+
+class Options(argparse.Namespace):
+    def wind_vector(self):
+        """Where the wind blows to: north, east."""
+        come_from, speed = self.wind
+        angle = math.radians(come_from)
+        return -speed * math.cos(angle), -speed * math.sin(angle)
+
+
+def parser():
+    result = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = result.add_argument
+    add("--listen", nargs="+", default=["udpin", "127.0.0.1:0"], metavar="udpin HOST:PORT",
+        help="port 0: any free one (default); loopback only")
+    add("--peer", type=address, metavar="HOST:PORT",
+        help="sends here from the beginning; otherwise only to those that have spoken")
+    add("--type", choices=("copter", "plane"), default="copter")
+    add("--autopilot", choices=sorted(flavours.FLAVOURS), default="generic")
+    add("--storage", choices=("atomic", "overwrite"),
+        help="of uploads (default: as the autopilot does it)")
+    add("--capacity", type=int, default=2000, help="items of a plan")
+    add("--home", type=coordinates, default=(47.397742, 8.545594, 488.0), metavar="LAT,LON,ALT")
+    add("--heading", type=float, default=0.0, help="degrees")
+    add("--wind", type=wind, default=(0.0, 0.0), metavar="FROM_DEG,SPEED")
+    add("--system", type=int, default=1, help="system id")
+    add("--key", type=key_of_file, metavar="FILE",
+        help="signs everything and accepts only what is signed")
+    add("--ready-after", type=float, default=0.0, metavar="S", help="until then it does not arm")
+    add("--terrain", action="store_true", help="asks for terrain")
+    add("--terrain-spacing", type=int, default=100, metavar="M")
+    add("--seed", type=int, default=0)
+    add("--faults", metavar="FILE|JSON", help="see faults.py")
+    add("--speedup", type=float, default=1.0, help="of the flight; links keep their time")
+    add("--lockstep", action="store_true")
+    add("--log", metavar="FILE", help="JSON lines")
+    return result
+
+
+def options_of(arguments):
+    options = parser().parse_args(arguments, Options())
+    options.faults = faults.of_text(options.faults, options.seed) if options.faults else None
+    kind, _, rest = ":".join(options.listen).partition(":")
+    if kind != "udpin":
+        raise SystemExit(f"--listen begins with {kind!r}; expected udpin HOST:PORT")
+    options.listen = address(rest)
+    return options
+
+
+def strict(value):
+    """JSON has no NaN."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, dict):
+        return {key: strict(each) for key, each in value.items()}
+    return [strict(each) for each in value] if isinstance(value, (list, tuple)) else value
+
+
+def log_to(file):
+    return lambda entry: file.write(json.dumps(strict(entry)) + "\n")
+
+
+class Server:
+    def __init__(self, options):
+        self.options = options
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(options.listen)
+        self.socket.setblocking(False)
+        # Lines at once, for whoever follows the log.
+        self.file = open(options.log, "w", buffering=1, encoding="utf-8") if options.log else None
+        log = log_to(self.file) if self.file else None
+        self.node = Node(options, flavours.FLAVOURS[options.autopilot], log)
+        if options.peer:
+            self.node.peer(options.peer)
+        print("listening", self.socket.getsockname()[1], flush=True)
+
+    def receive(self):
+        while True:
+            try:
+                packet, sender = self.socket.recvfrom(65535)
+            except (BlockingIOError, ConnectionRefusedError):
+                return
+            self.node.receive(packet, sender)
+
+    def send(self):
+        for packet, receiver in self.node.take_outbox():
+            try:
+                self.socket.sendto(packet, receiver)
+            except OSError:
+                pass  # nobody listens there any more, as on a radio
+
+    def run(self):
+        before = time.monotonic()
+        while True:
+            select.select([self.socket], [], [], STEP)
+            self.receive()
+            now = time.monotonic()
+            if now - before >= STEP:
+                self.node.step(now - before, self.options.speedup)
+                before = now
+            self.send()
+
+    def run_in_lockstep(self):
+        for line in sys.stdin:
+            words = line.split()
+            if len(words) != 2 or words[0] != "step":
+                raise SystemExit(f"standard input has {line.strip()!r}; expected step SECONDS")
+            self.receive()
+            left = float(words[1])
+            while left > 1e-9:
+                self.node.step(min(STEP, left), self.options.speedup)
+                left -= STEP
+            self.send()
+            print(f"time {self.node.now:.4f}", flush=True)
+
+
+def main():
+    server = Server(options_of(sys.argv[1:]))
+    try:
+        server.run_in_lockstep() if server.options.lockstep else server.run()
+    except KeyboardInterrupt:
+        pass
+
+
+if __name__ == "__main__":
+    main()
