@@ -101,6 +101,7 @@ class Auto:
         self.since = None  # arrived, s of flight
         self.turned, self.bearing = 0.0, None
         if item.command == Command.NAV_RETURN_TO_LAUNCH:
+            self.pilot.begin_return()
             self.goal = self.pilot.go_home()
             return
         target = plans.target_of(item, self.pilot.home, self.pilot.body.position,
@@ -146,10 +147,11 @@ class Auto:
 
     def complete(self, dt):
         item, body = self.item, self.pilot.body
-        if item.command in (Command.NAV_LOITER_UNLIM, Command.NAV_RETURN_TO_LAUNCH):
-            self.goal = self.pilot.go_home() if item.command != Command.NAV_LOITER_UNLIM \
-                else self.goal
+        if item.command == Command.NAV_LOITER_UNLIM:
             return False
+        if item.command == Command.NAV_RETURN_TO_LAUNCH:
+            self.goal = self.pilot.go_home()
+            return self.goal.kind == "land" and body.arrived(self.goal)
         if self.since is None and body.arrived(self.goal):
             self.since = 0.0
             if item.command == Command.NAV_WAYPOINT and item.params[0] > 0:

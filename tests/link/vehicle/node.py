@@ -39,6 +39,7 @@ class Node:
         self.terrain = Terrain(options.terrain, options.terrain_spacing, self)
         self.pending = 0.0  # flight time that is less than a step
         self.position_due = 0.0
+        self.booted_at = 0.0  # after a reboot; until then nothing is sent
 
     def log(self, event, **fields):
         if self.write:
@@ -155,6 +156,8 @@ class Node:
     # Packets out.
 
     def send(self, name, fields):
+        if self.now < self.booted_at:
+            return
         self.log("sent", message=name, fields=fields)
         for address, (encoder, _, _) in list(self.peers.items()):
             packet = encoder.frame(name, fields)
@@ -224,4 +227,5 @@ class Node:
             heard = self.peers.pop(address)[2]
             self.peer(address)[2] = heard
         self.pilot.reboot()
-        self.faults.silent_until = max(self.faults.silent_until, self.now + seconds)
+        self.booted_at = self.now + seconds
+        self.faults.silent_until = max(self.faults.silent_until, self.booted_at)

@@ -247,7 +247,7 @@ class Pilot:
             self.landed_for = 0.0
             return
         self.landed_for += dt
-        if self.goal.kind == "land" and self.body.arrived(self.goal):
+        if self.goal.kind == "land" and self.mode != AUTO and self.body.arrived(self.goal):
             self.disarm()
         elif self.kind == "copter" and self.landed_for > self.parameters["DISARM_DELAY"] > 0:
             self.disarm()

@@ -11,6 +11,7 @@ ROLL_RATE = math.radians(60)
 SPEED_CHANGE = 1.5  # m/s2
 GROUND_RUN = 4.0  # m/s2
 CLIMB_CHANGE = 2.0  # m/s2
+TOUCHDOWN = 2.0  # m, how far below its point a landing aims
 
 
 class Plane(Airframe):
@@ -68,7 +69,9 @@ class Plane(Airframe):
             length = math.hypot(leg[0], leg[1])
             if length > 1.0:
                 along, _ = self.track(goal)
-                return goal.start.alt + leg[2] * limited(along / length, 0.0, 1.0)
+                # Flown at the ground itself, the last metre would take for ever.
+                below = TOUCHDOWN if goal.kind == "land" else 0.0
+                return goal.start.alt - below + leg[2] * limited(along / length, 0.0, 1.0)
         return goal.target.alt
 
     def track(self, goal):

@@ -93,13 +93,12 @@ class Station:
     def upload(self, items, kind=MISSION, seconds=60.0):
         """The vehicle's result, or None if it did not come to an end."""
         end = self.node.now + seconds
-        seen, counted_at = len(self.received), -math.inf
-        heard_at = self.node.now
+        seen, heard_at = len(self.received), -math.inf
         while self.node.now < end:
-            if self.node.now - max(counted_at, heard_at) > 1.5:
+            if self.node.now - heard_at > 1.5:
                 self.send("MISSION_COUNT", target_system=1, target_component=1, count=len(items),
                           mission_type=kind)
-                counted_at = self.node.now
+                heard_at = self.node.now
             self.step()
             for message in self.received[seen:]:
                 heard_at = self.node.now if message.name.startswith("MISSION_") and \

@@ -4,6 +4,9 @@
 import unittest
 
 from test_codec import *  # noqa: F401,F403
+from test_flights import *  # noqa: F401,F403
+from test_node import *  # noqa: F401,F403
+from test_transfers import *  # noqa: F401,F403
 
 if __name__ == "__main__":
     unittest.main()

@@ -35,7 +35,10 @@ def key_of_file(path):
     """32 bytes, or 64 hexadecimal digits."""
     with open(path, "rb") as file:
         data = file.read()
-    return data if len(data) == 32 else bytes.fromhex(data.decode().strip())
+    key = data if len(data) == 32 else bytes.fromhex(data.decode().strip())
+    if len(key) != 32:
+        raise argparse.ArgumentTypeError(f"{path} has a key of {len(key)} bytes, expected 32")
+    return key
 
 
 def address(text):
@@ -86,13 +89,22 @@ def parser():
 
 
 def options_of(arguments):
-    options = parser().parse_args(arguments, Options())
-    options.faults = faults.of_text(options.faults, options.seed) if options.faults else None
-    kind, _, rest = ":".join(options.listen).partition(":")
-    if kind != "udpin":
-        raise SystemExit(f"--listen begins with {kind!r}; expected udpin HOST:PORT")
-    options.listen = address(rest)
+    known = parser()
+    options = known.parse_args(arguments, Options())
+    try:
+        script = options.faults
+        options.faults = faults.of_text(script, options.seed) if script else None
+        options.listen = listen_address(":".join(options.listen))
+    except (argparse.ArgumentTypeError, ValueError, KeyError, OSError) as error:
+        known.error(str(error))
     return options
+
+
+def listen_address(text):
+    kind, _, rest = text.partition(":")
+    if kind != "udpin":
+        raise ValueError(f"--listen begins with {kind!r}; expected udpin HOST:PORT")
+    return address(rest)
 
 
 def strict(value):
