@@ -216,8 +216,35 @@ class Faults:
                          "message": message.name if message else None})
 
 
+def random_script(seed):
+    """One to four rules of any kind, such as a bad link and a bad vehicle have."""
+    rng = random.Random(seed)
+    transfer = ["MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_REQUEST_LIST", "MISSION_REQUEST_INT"]
+
+    def chance(fault, **more):
+        return {"fault": fault, "direction": rng.choice(["in", "out", "both"]),
+                "probability": round(rng.uniform(0.02, 0.3), 3), **more}
+
+    menu = [
+        lambda: chance("lose"), lambda: chance("double"), lambda: chance("reorder"),
+        lambda: chance("damage"), lambda: chance("delay", seconds=[0.01, rng.uniform(0.1, 2.0)]),
+        lambda: {"fault": "lose", "message": "MISSION_ACK", "count": rng.randint(1, 4)},
+        lambda: {"fault": "nak", "message": rng.choice(transfer), "skip": rng.randint(0, 20),
+                 "count": 1, "result": rng.choice(list(MissionResult)[1:]).name},
+        lambda: {"fault": "silence", "message": rng.choice(transfer), "count": 1,
+                 "skip": rng.randint(0, 20), "seconds": round(rng.uniform(0.5, 20.0), 2)},
+        lambda: {"fault": "silence", "message": rng.choice(transfer), "skip": rng.randint(0, 20)},
+        lambda: {"fault": "reboot", "message": rng.choice(transfer), "skip": rng.randint(0, 20),
+                 "count": 1, "loses_plans": rng.random() < 0.5},
+        lambda: {"fault": "change", "round_altitude": rng.choice([0.1, 1.0])}]
+    return [rng.choice(menu)() for _ in range(rng.randint(1, 4))]
+
+
 def of_text(text, seed):
-    """Of JSON, or of a file that holds it: a list of rules, or an object with `rules`."""
+    """Of JSON, or of a file that holds it: a list of rules, or an object with `rules`; `random`
+    makes one of the seed."""
+    if text == "random":
+        return Faults(random_script(seed), seed)
     if not text.lstrip().startswith(("[", "{")):
         with open(text, encoding="utf-8") as file:
             text = file.read()

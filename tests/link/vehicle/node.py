@@ -225,7 +225,7 @@ class Node:
                 self.missions.plans[kind] = []
         for address in list(self.peers):
             heard = self.peers.pop(address)[2]
-            self.peer(address)[2] = heard
+            self.peer(address)[2] = heard  # a new encoder counts from 0
         self.pilot.reboot()
         self.booted_at = self.now + seconds
         self.faults.silent_until = max(self.faults.silent_until, self.booted_at)

@@ -13,9 +13,9 @@ RATES = {"SYS_STATUS": 1, "GLOBAL_POSITION_INT": 5, "LOCAL_POSITION_NED": 5, "AT
          "HOME_POSITION": 0.2, "SYSTEM_TIME": 1, "NAV_CONTROLLER_OUTPUT": 2}
 SENSORS = 0x2F  # gyroscope, accelerometer, magnetometer, absolute pressure, GPS
 FIX_3D = 3
-# Capabilities: MISSION_INT, COMMAND_INT, set-points in both frames, MISSION_FENCE, MISSION_RALLY,
+# Capabilities: PARAM_FLOAT, MISSION_INT, COMMAND_INT, set-points in both frames, MISSION_FENCE, MISSION_RALLY,
 # MAVLINK2; TERRAIN where it is asked for.
-CAPABILITIES = 0x4 | 0x8 | 0x80 | 0x100 | 0x4000 | 0x8000 | 0x2000
+CAPABILITIES = 0x2 | 0x4 | 0x8 | 0x80 | 0x100 | 0x4000 | 0x8000 | 0x2000
 CAPABILITY_TERRAIN = 0x200
 # Groups of REQUEST_DATA_STREAM.
 STREAMS = {1: ("GPS_RAW_INT",), 2: ("SYS_STATUS", "MISSION_CURRENT", "NAV_CONTROLLER_OUTPUT"),
@@ -151,7 +151,9 @@ class Telemetry:
 
     def mission_current(self):
         pilot, stored = self.node.pilot, self.node.missions.plans
-        fields = {"seq": pilot.current_item(), "total": max(0, len(stored[MISSION])),
+        # Home is not counted where it is an item; without a mission the count is unknown.
+        total = len(stored[MISSION]) - (1 if self.flavour.home_is_item_0 else 0)
+        fields = {"seq": pilot.current_item(), "total": total if stored[MISSION] else 65535,
                   "mission_state": MISSION_STATES[self.mission_state()],
                   "mission_mode": 1 if pilot.mode == AUTO else 2}
         if self.flavour.opaque_ids:

@@ -304,6 +304,8 @@ class Plane(Flight):
         wait = at(600, 0, 150, Command.NAV_LOITER_UNLIM, params=(0.0, 0, 120.0, 0))
         self.fly("--type plane", [takeoff(60), circle, climb, wait])
         self.begin()
+        self.assertTrue(self.station.run(300, lambda: self.reached() == [0, 1]))
+        self.assertLess(self.pilot.body.roll, -0.1, "a negative radius is flown to the left")
         self.assertTrue(self.station.run(300, lambda: self.reached() == [0, 1, 2]))
         self.assertAlmostEqual(self.height(), 150, delta=4)
         self.station.run(40)
@@ -345,7 +347,8 @@ class Arming(Flight):
         self.assertIn("Arm: Need Position Estimate", self.station.texts())
         self.station.run(5)
         self.assertEqual(self.station.arm(), 0)
-        self.assertTrue(self.station.last("HEARTBEAT").base_mode | 128)
+        self.station.run(1.1)
+        self.assertTrue(self.station.last("HEARTBEAT").base_mode & 128)
 
     def test_arducopter_does_not_arm_in_auto(self):
         self.fly("--autopilot ardupilot", [HOME_ITEM, takeoff(10)])

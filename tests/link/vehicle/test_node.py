@@ -2,6 +2,7 @@
 """Telemetry, parameters, time and terrain of the vehicle, and the program itself over UDP."""
 import collections
 import json
+import os
 import pathlib
 import socket
 import subprocess
@@ -50,6 +51,16 @@ class Telemetry(unittest.TestCase):
         self.assertAlmostEqual(wind.speed, 6, places=5)
         station, _ = self.rates("--wind 270,6 --autopilot px4", 2)
         self.assertAlmostEqual(station.last("WIND_COV").wind_y, 6, places=5)
+
+    def test_mission_current(self):
+        for flavour, total in (("generic", 6), ("ardupilot", 5)):
+            station, _ = self.rates(f"--autopilot {flavour}", 2)
+            self.assertEqual(station.last("MISSION_CURRENT").total, 65535)
+            self.assertEqual(station.last("MISSION_CURRENT").mission_state, 1)
+            station.upload(square())
+            station.run(1.1)
+            self.assertEqual(station.last("MISSION_CURRENT").total, total)
+            self.assertEqual(station.last("MISSION_CURRENT").mission_state, 2)
 
     def test_message_intervals(self):
         station = Station(make_node())
@@ -158,7 +169,7 @@ class Client:
         self.process = subprocess.Popen(
             [sys.executable, VEHICLE, "--home", "47,8,500", *arguments], stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, text=True)
-        self.port = int(self.process.stdout.readline().split()[1])
+        self.port = self.process.stdout.readline().split()[1]
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.settimeout(0.2)
         self.encoder = codec.Encoder(255, 190, signer)
@@ -166,7 +177,7 @@ class Client:
         self.received = []
 
     def send(self, name, **fields):
-        self.socket.sendto(self.encoder.frame(name, fields), ("127.0.0.1", self.port))
+        self.socket.sendto(self.encoder.frame(name, fields), ("127.0.0.1", int(self.port)))
 
     def receive(self):
         try:
@@ -224,12 +235,38 @@ class Program(unittest.TestCase):
                     return
 
     def test_speaks_when_spoken_to(self):
-        with Client("--autopilot", "px4", "--listen", "udpin", "127.0.0.1:0") as client:
+        listen = ("--listen", "udpin", "127.0.0.1:0")
+        with Client("--autopilot", "px4", *listen) as client:
             self.assertEqual(client.receive(), [])
             client.send("HEARTBEAT", type=6)
             self.assertEqual(client.wait("HEARTBEAT").autopilot, 12)
             client.send("MISSION_REQUEST_LIST", target_system=1, target_component=1)
             self.assertEqual(client.wait("MISSION_COUNT").count, 0)
+
+    def answered(self, send, receive):
+        """A question cut in two, noise before it, is answered."""
+        frame = b"noise" + codec.Encoder(255, 190).frame("PING", {"seq": 5})
+        parser, seen = codec.Parser(), []
+        for part in (frame[:12], frame[12:]):
+            send(part)
+            time.sleep(0.1)
+        end = time.monotonic() + 30
+        while "PING" not in seen and time.monotonic() < end:
+            seen += [message.name for message in parser.feed(receive())]
+        self.assertIn("PING", seen)
+
+    def test_tcp(self):
+        with Client("--listen", "tcpin", "127.0.0.1:0") as client:
+            with socket.create_connection(("127.0.0.1", int(client.port))) as connection:
+                self.answered(connection.sendall, lambda: connection.recv(4096))
+
+    def test_pseudo_terminal(self):
+        with Client("--listen", "pty") as client:
+            line = os.open(client.port, os.O_RDWR | os.O_NOCTTY)
+            try:
+                self.answered(lambda data: os.write(line, data), lambda: os.read(line, 4096))
+            finally:
+                os.close(line)
 
     def test_speedup_is_of_the_flight(self):
         with Client("--speedup", "20") as client:
@@ -272,7 +309,7 @@ class Program(unittest.TestCase):
 
     def test_other_machines_are_refused(self):
         for arguments in (("--listen", "udpin", "0.0.0.0:0"), ("--peer", "192.0.2.1:14550"),
-                          ("--listen", "tcp", "127.0.0.1:0")):
+                          ("--listen", "tcp:127.0.0.1:0")):
             ended = subprocess.run([sys.executable, VEHICLE, *arguments], capture_output=True,
                                    text=True, check=False, stdin=subprocess.DEVNULL, timeout=60)
             self.assertNotEqual(ended.returncode, 0)

@@ -4,6 +4,7 @@ import math
 import unittest
 
 import codec
+import faults
 import plans
 from constants import ALL_PLANS, FENCE, MISSION, RALLY, Command, Frame, MissionResult
 from station import HOME, STEP, Station, item, make_node, square, waypoint
@@ -306,13 +307,26 @@ class Faulty(unittest.TestCase):
             station.run(2.0)
             self.assertEqual(station.upload(square()), MissionResult.ACCEPTED)
             self.assertIsNone(station.upload(square(8), seconds=1.0))
-            station.run(3.0)
             self.assertIsNone(station.node.missions.upload)
+            station.run(3.0)
             self.assertEqual(station.download(), [] if loses else square())
             since_boot = station.last("GLOBAL_POSITION_INT").time_boot_ms
             self.assertLess(since_boot, (station.node.now - 2.0) * 1000)
             sequences = [message.sequence for message in station.received]
             self.assertEqual(sequences.count(0), 2, "counted from the beginning again")
+
+    def test_random_scripts(self):
+        """Whatever happens, an atomic vehicle has the old plan, the new one, or lost both."""
+        new = square(12)
+        for seed in range(60):
+            rules = [rule for rule in faults.random_script(seed) if rule["fault"] != "change"]
+            station = start(f"--seed {seed}")
+            self.assertEqual(station.upload(square()), MissionResult.ACCEPTED)
+            station.node.faults = faults.Faults(rules, seed)
+            station.upload(new, seconds=10.0)
+            stored = [plans.fields_of(item) for item in station.node.missions.plans[MISSION]]
+            wiped = any(rule.get("loses_plans") for rule in rules)
+            self.assertIn(stored, [square(), new] + [[]] * wiped, rules)
 
     def test_bad_scripts(self):
         for script in ({"fault": "lost"}, {"fault": "lose", "chance": 1}):

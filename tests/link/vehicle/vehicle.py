@@ -1,20 +1,21 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""A small autopilot for tests that speaks MAVLink 2 over UDP on this machine.
+"""A small autopilot for tests that speaks MAVLink 2 on this machine, over UDP, TCP or a
+pseudo-terminal.
 
-It prints `listening PORT` on standard output when it can be spoken to. With --lockstep time stands
+It prints `listening PORT` (or the terminal) on standard output when it can be spoken to. With --lockstep time stands
 still but for lines `step SECONDS` on standard input: each is done for all packets that had arrived,
 and answered by `time SECONDS`."""
 import argparse
 import json
 import math
 import select
-import socket
 import sys
 import time
 
 import faults
 import flavours
+import transports
 from node import Node
 
 STEP = 0.02  # s
@@ -62,8 +63,9 @@ def parser():
     result = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     add = result.add_argument
-    add("--listen", nargs="+", default=["udpin", "127.0.0.1:0"], metavar="udpin HOST:PORT",
-        help="port 0: any free one (default); loopback only")
+    add("--listen", nargs="+", default=["udpin", "127.0.0.1:0"], metavar="KIND",
+        help="udpin HOST:PORT (default, port 0: any free one), tcpin HOST:PORT, or pty; "
+        "loopback only")
     add("--peer", type=address, metavar="HOST:PORT",
         help="sends here from the beginning; otherwise only to those that have spoken")
     add("--type", choices=("copter", "plane"), default="copter")
@@ -81,7 +83,7 @@ def parser():
     add("--terrain", action="store_true", help="asks for terrain")
     add("--terrain-spacing", type=int, default=100, metavar="M")
     add("--seed", type=int, default=0)
-    add("--faults", metavar="FILE|JSON", help="see faults.py")
+    add("--faults", metavar="FILE|JSON|random", help="see faults.py")
     add("--speedup", type=float, default=1.0, help="of the flight; links keep their time")
     add("--lockstep", action="store_true")
     add("--log", metavar="FILE", help="JSON lines")
@@ -94,17 +96,21 @@ def options_of(arguments):
     try:
         script = options.faults
         options.faults = faults.of_text(script, options.seed) if script else None
-        options.listen = listen_address(":".join(options.listen))
+        options.transport = transport(":".join(options.listen))
     except (argparse.ArgumentTypeError, ValueError, KeyError, OSError) as error:
         known.error(str(error))
     return options
 
 
-def listen_address(text):
+def transport(text):
+    """What opens the transport when the vehicle starts."""
     kind, _, rest = text.partition(":")
-    if kind != "udpin":
-        raise ValueError(f"--listen begins with {kind!r}; expected udpin HOST:PORT")
-    return address(rest)
+    if kind == "pty":
+        return transports.Pty
+    if kind not in ("udpin", "tcpin"):
+        raise ValueError(f"--listen begins with {kind!r}; expected udpin, tcpin or pty")
+    place = address(rest)
+    return lambda: (transports.UdpIn if kind == "udpin" else transports.TcpIn)(place)
 
 
 def strict(value):
@@ -123,36 +129,27 @@ def log_to(file):
 class Server:
     def __init__(self, options):
         self.options = options
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(options.listen)
-        self.socket.setblocking(False)
+        self.transport = options.transport()
         # Lines at once, for whoever follows the log.
         self.file = open(options.log, "w", buffering=1, encoding="utf-8") if options.log else None
         log = log_to(self.file) if self.file else None
         self.node = Node(options, flavours.FLAVOURS[options.autopilot], log)
         if options.peer:
             self.node.peer(options.peer)
-        print("listening", self.socket.getsockname()[1], flush=True)
+        print("listening", self.transport.name, flush=True)
 
     def receive(self):
-        while True:
-            try:
-                packet, sender = self.socket.recvfrom(65535)
-            except (BlockingIOError, ConnectionRefusedError):
-                return
+        for packet, sender in self.transport.receive():
             self.node.receive(packet, sender)
 
     def send(self):
         for packet, receiver in self.node.take_outbox():
-            try:
-                self.socket.sendto(packet, receiver)
-            except OSError:
-                pass  # nobody listens there any more, as on a radio
+            self.transport.send(packet, receiver)
 
     def run(self):
         before = time.monotonic()
         while True:
-            select.select([self.socket], [], [], STEP)
+            select.select(self.transport.files, [], [], STEP)
             self.receive()
             now = time.monotonic()
             if now - before >= STEP:
