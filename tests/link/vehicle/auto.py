@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""AUTO: the mission is flown item by item. NAV items give goals, DO items act when their turn comes."""
+"""AUTO: the mission is flown item by item. NAV items give goals, DO items act when their turn
+comes."""
 import math
 
 import geodesy

@@ -16,7 +16,7 @@ ONE_MINUTE = 6_000_000
 
 
 class Received:
-    """A message that came whole: `name` is of the table, or None for an id that it does not have."""
+    """A message that came whole: `name` is of the table, or None for an id that is not in it."""
 
     def __init__(self, number, system, component, sequence, payload):
         self.number, self.system, self.component = number, system, component

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Positions on WGS 84 and the plane tangent to it: over the legs of a mission, metres north and east
-follow from degrees by the two radii of curvature at the middle latitude."""
+"""Positions on WGS 84 and the plane tangent to it: over the legs of a mission, metres north and
+east follow from degrees by the two radii of curvature at the middle latitude."""
 import math
 from dataclasses import dataclass
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages that the vehicle knows, each declared once as the MAVLink 2 specification declares it
-(minimal.xml, common.xml; WIND of ardupilotmega.xml). Layout and CRC_EXTRA follow from the fields."""
+"""The messages that the vehicle knows, each declared once as the MAVLink 2 specification declares
+it (minimal.xml, common.xml; WIND of ardupilotmega.xml). Layout and CRC_EXTRA follow from the
+fields."""
 import struct
 
 import checksum

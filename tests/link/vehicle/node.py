@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The whole vehicle without a socket: packets and steps of time in, packets out.
 
-Two times: `now` is of the link (heartbeats, transfers, faults), pilot.time of the flight; a speed-up
-makes the second one faster. A packet has an address of any kind; what the vehicle sends goes to every
-address that it has heard lately."""
+Two times: `now` is of the link (heartbeats, transfers, faults), pilot.time of the flight; a
+speed-up makes the second one faster. A packet has an address of any kind; what the vehicle sends
+goes to every address that it has heard lately."""
 import codec
 import messages
 from commands import Commands

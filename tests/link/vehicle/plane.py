@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fixed wing: airspeed, a bank angle that the roll rate limits, coordinated turns, and wind that
-carries it. Legs and circles are followed by the law of Park, Deyst and How, "A New Nonlinear Guidance
-Logic for Trajectory Tracking", AIAA 2004-4900 (L1), as autopilots use it: L1 grows with ground speed."""
+carries it. Legs and circles are followed by the law of Park, Deyst and How, "A New Nonlinear
+Guidance Logic for Trajectory Tracking", AIAA 2004-4900 (L1), as autopilots use it: L1 grows with
+ground speed."""
 import math
 
 import geodesy
@@ -38,7 +39,8 @@ class Plane(Airframe):
         wanted = self.cruise_speed() if goal.kind in ("takeoff", "leg", "loiter") else 0.0
         self.airspeed = toward(self.airspeed, wanted, GROUND_RUN * dt)
         self.pitch = 0.0
-        self.velocity = [self.airspeed * math.cos(self.yaw), self.airspeed * math.sin(self.yaw), 0.0]
+        speed, yaw = self.airspeed, self.yaw
+        self.velocity = [speed * math.cos(yaw), speed * math.sin(yaw), 0.0]
         if wanted and self.airspeed >= self.parameters["AIRSPEED_MIN"]:
             self.on_ground = False
             self.velocity[2] = 0.5
@@ -152,7 +154,7 @@ class Plane(Airframe):
         return self.finish_line(goal)
 
     def turn_distance(self, goal):
-        """Turns begin early by at most the acceptance radius, the less the straighter on it goes."""
+        """Turns begin early by at most the acceptance radius, and less where the angle is small."""
         if goal.following is None:
             return self.acceptance(goal)
         leg = geodesy.vector(goal.start or self.position, goal.target)

@@ -13,8 +13,8 @@ RATES = {"SYS_STATUS": 1, "GLOBAL_POSITION_INT": 5, "LOCAL_POSITION_NED": 5, "AT
          "HOME_POSITION": 0.2, "SYSTEM_TIME": 1, "NAV_CONTROLLER_OUTPUT": 2}
 SENSORS = 0x2F  # gyroscope, accelerometer, magnetometer, absolute pressure, GPS
 FIX_3D = 3
-# Capabilities: PARAM_FLOAT, MISSION_INT, COMMAND_INT, set-points in both frames, MISSION_FENCE, MISSION_RALLY,
-# MAVLINK2; TERRAIN where it is asked for.
+# Capabilities: PARAM_FLOAT, MISSION_INT, COMMAND_INT, set-points in both frames, MISSION_FENCE,
+# MISSION_RALLY, MAVLINK2; TERRAIN where it is asked for.
 CAPABILITIES = 0x2 | 0x4 | 0x8 | 0x80 | 0x100 | 0x4000 | 0x8000 | 0x2000
 CAPABILITY_TERRAIN = 0x200
 # Groups of REQUEST_DATA_STREAM.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Terrain by https://mavlink.io/en/services/terrain.html: the vehicle asks for blocks of 7 x 8 tiles
-of 4 x 4 heights around it and its mission, again for what did not come, and keeps them.
+"""Terrain by https://mavlink.io/en/services/terrain.html: the vehicle asks for blocks of 7 x 8
+tiles of 4 x 4 heights around it and its mission, again for what did not come, and keeps them.
 
 Bit b of the mask is the tile b // 8 tiles north and b % 8 tiles east of the block's south-west
 corner; in a tile four heights go east, then the next four further north."""
@@ -22,7 +22,7 @@ class Block:
 
 
 class Terrain:
-    """Blocks lie on a lattice about home and overlap by a tile, so that every point is inside one."""
+    """Blocks lie on a lattice about home and overlap by a tile, so that a point is inside one."""
 
     def __init__(self, enabled, spacing, node):
         self.enabled, self.spacing, self.node = enabled, spacing, node

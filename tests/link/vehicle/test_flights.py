@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flights in lock-step: missions are flown through their waypoints, set-points are followed and their
-loss ends in hold, modes and arming are as the autopilots have them."""
+"""Flights in lock-step: missions are flown through their waypoints, set-points are followed and
+their loss ends in hold, modes and arming are as the autopilots have them."""
 import math
 import unittest
 
 import geodesy
 from constants import Command, Frame, Result
 from flavours import AUTO, GUIDED, HOLD, RTL
-from station import HOME, Station, item, make_node, waypoint
+from station import HOME, Station, item, make_node
 
 ORIGIN = geodesy.Position(*HOME)
 VELOCITY_ONLY = 0xDC7
@@ -157,7 +157,8 @@ class Copter(Flight):
 
     def test_takeover_and_hand_back(self):
         """GUIDED leaves the mission, AUTO goes on with the item that was flown."""
-        self.fly("--autopilot ardupilot", [HOME_ITEM, takeoff(20), at(100, 0, 20), at(100, 100, 20)])
+        mission = [HOME_ITEM, takeoff(20), at(100, 0, 20), at(100, 100, 20)]
+        self.fly("--autopilot ardupilot", mission)
         self.begin()
         self.station.run(60, lambda: self.pilot.body.position.lat > place(40, 0).lat)
         self.station.set_mode(GUIDED)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mission protocol of the vehicle, by its text and as autopilots do it, whole and under faults."""
+"""The mission protocol of the vehicle, by its text and as autopilots do it, whole and under
+faults."""
 import math
 import unittest
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where packets come from and go to: UDP, TCP, or a pseudo-terminal in place of a serial line. Each
-has `name` to print, `files` to wait for, `receive` and `send`; a stream is cut into packets, so that
-faults of packets are the same on each."""
+has `name` to print, `files` to wait for, `receive` and `send`; a stream is cut into packets, so
+that faults of packets are the same on each."""
 import os
 import pty
 import socket

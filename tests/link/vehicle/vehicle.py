@@ -3,9 +3,9 @@
 """A small autopilot for tests that speaks MAVLink 2 on this machine, over UDP, TCP or a
 pseudo-terminal.
 
-It prints `listening PORT` (or the terminal) on standard output when it can be spoken to. With --lockstep time stands
-still but for lines `step SECONDS` on standard input: each is done for all packets that had arrived,
-and answered by `time SECONDS`."""
+It prints `listening PORT` (or the terminal) on standard output when it can be spoken to. With
+--lockstep time stands still but for lines `step SECONDS` on standard input: each is done for all
+packets that had arrived, and answered by `time SECONDS`."""
 import argparse
 import json
 import math
