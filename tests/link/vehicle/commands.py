@@ -137,6 +137,7 @@ class Commands:
     def do_do_set_home(self, message):
         here = self.pilot.body.position
         self.pilot.home = here if message.param1 == 1 else self.place(message)
+        self.pilot.home_was_set = True
         self.node.telemetry.send("HOME_POSITION")
         return Result.ACCEPTED
 

@@ -19,6 +19,7 @@ class Pilot:
     def __init__(self, options, flavour, node):
         self.flavour, self.kind, self.node = flavour, options.type, node
         self.home = geodesy.Position(*options.home)
+        self.ground = self.home.alt  # level everywhere, wherever home is moved
         self.parameters = flavours.parameters(self.kind)
         airframe = Copter if self.kind == "copter" else Plane
         self.body = airframe(self.home, math.radians(options.heading), options.wind_vector(),
@@ -32,6 +33,7 @@ class Pilot:
         self.goal = IDLE
         self.landed_for = 0.0
         self.takeoff_target = self.returning = None
+        self.home_was_set = False  # by a command; otherwise it is where the vehicle arms
 
     # What other parts ask and report.
 
@@ -85,7 +87,7 @@ class Pilot:
             self.text(Severity.CRITICAL, f"Arm: {problem}")
             return False
         self.armed, self.started, self.landed_for = True, False, 0.0
-        if self.flavour.name == "ardupilot" or self.body.on_ground:
+        if self.body.on_ground and not self.home_was_set:
             self.home = self.body.position
             self.node.telemetry.send("HOME_POSITION")
         self.node.log("armed")
@@ -168,7 +170,7 @@ class Pilot:
         self.guided.watch()
         goal = self.goal_of_mode(dt) if self.armed else IDLE
         self.goal = goal
-        self.body.step(dt, goal, self.home.alt)
+        self.body.step(dt, goal, self.ground)
         self.after_landing(dt)
 
     def goal_of_mode(self, dt):

@@ -82,6 +82,15 @@ class Telemetry(unittest.TestCase):
         self.assertEqual((home.latitude, home.longitude, home.altitude),
                          (470000000, 80000000, 500000))
 
+    def test_home_is_where_it_arms_unless_it_was_set(self):
+        station = Station(make_node())
+        where = {"x": 471000000, "y": 80000000, "z": 400.0, "frame": int(Frame.GLOBAL)}
+        self.assertEqual(station.command(Command.DO_SET_HOME, 0, **where), 0)
+        station.command(Command.COMPONENT_ARM_DISARM, 1)
+        station.command(Command.GET_HOME_POSITION)
+        self.assertEqual(station.last("HOME_POSITION").latitude, 471000000)
+        self.assertEqual(station.last("HOME_POSITION").altitude, 400000)
+
     def test_unknown_commands(self):
         self.assertEqual(Station(make_node()).command(31000), 3)
         self.assertEqual(Station(make_node()).command(Command.NAV_WAYPOINT), 3)

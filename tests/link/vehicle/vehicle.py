@@ -19,6 +19,9 @@ import transports
 from node import Node
 
 STEP = 0.02  # s
+# A process that gets no processor for longer does not see that as time: nothing would time out but
+# for packets that wait to be read.
+LONGEST_STEP = 0.1
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
@@ -153,7 +156,7 @@ class Server:
             self.receive()
             now = time.monotonic()
             if now - before >= STEP:
-                self.node.step(now - before, self.options.speedup)
+                self.node.step(min(now - before, LONGEST_STEP), self.options.speedup)
                 before = now
             self.send()
 
