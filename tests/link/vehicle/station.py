@@ -17,7 +17,7 @@ def make_node(arguments="", rules=(), log=None):
     home = ",".join(str(value) for value in HOME)
     options = vehicle.options_of(["--home", home, *arguments.split()])
     options.faults = faults.Faults(rules, options.seed)
-    return Node(options, flavours.FLAVOURS[options.autopilot], log)
+    return Node(options, options.flavour(), log)
 
 
 def item(command, lat=0.0, lon=0.0, z=0.0, params=(0.0, 0.0, 0.0, 0.0),

@@ -256,6 +256,15 @@ class Faulty(unittest.TestCase):
                 self.assertEqual(result, MissionResult.ACCEPTED, (flavour, seed))
                 self.assertEqual(station.download(), kept(station, mission), (flavour, seed))
 
+    def test_800_items(self):
+        """The text's five retries are too few for so many items; a patient vehicle gets them."""
+        rules = [{"fault": "lose", "probability": 0.2}]
+        station = start("--give-up 10", rules)
+        mission = square(800)
+        self.assertEqual(station.upload(mission, seconds=600.0), MissionResult.ACCEPTED)
+        stored = [plans.fields_of(each) for each in station.node.missions.plans[MISSION]]
+        self.assertEqual(stored, mission)
+
     def test_every_nak(self):
         for result in MissionResult:
             if result in (MissionResult.ACCEPTED, MissionResult.INVALID_SEQUENCE):

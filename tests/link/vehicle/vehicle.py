@@ -7,6 +7,7 @@ It prints `listening PORT` (or the terminal) on standard output when it can be s
 --lockstep time stands still but for lines `step SECONDS` on standard input: each is done for all
 packets that had arrived, and answered by `time SECONDS`."""
 import argparse
+import dataclasses
 import json
 import math
 import select
@@ -55,6 +56,12 @@ def address(text):
 
 
 class Options(argparse.Namespace):
+    def flavour(self):
+        flavour = flavours.FLAVOURS[self.autopilot]
+        if self.give_up is not None:
+            flavour = dataclasses.replace(flavour, give_up_after=self.give_up)
+        return flavour
+
     def wind_vector(self):
         """Where the wind blows to: north, east."""
         come_from, speed = self.wind
@@ -75,6 +82,8 @@ def parser():
     add("--autopilot", choices=sorted(flavours.FLAVOURS), default="generic")
     add("--storage", choices=("atomic", "overwrite"),
         help="of uploads (default: as the autopilot does it)")
+    add("--give-up", type=float, metavar="S",
+        help="of an upload, after the last item (default: as the autopilot does it)")
     add("--capacity", type=int, default=2000, help="items of a plan")
     add("--home", type=coordinates, default=(47.397742, 8.545594, 488.0), metavar="LAT,LON,ALT")
     add("--heading", type=float, default=0.0, help="degrees")
@@ -136,7 +145,7 @@ class Server:
         # Lines at once, for whoever follows the log.
         self.file = open(options.log, "w", buffering=1, encoding="utf-8") if options.log else None
         log = log_to(self.file) if self.file else None
-        self.node = Node(options, flavours.FLAVOURS[options.autopilot], log)
+        self.node = Node(options, options.flavour(), log)
         if options.peer:
             self.node.peer(options.peer)
         print("listening", self.transport.name, flush=True)
