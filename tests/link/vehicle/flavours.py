@@ -4,7 +4,7 @@ failsafes. Sources: the developer guide's page of the mission protocol with its 
 implementations, MissionItemProtocol.cpp of ArduPilot and mavlink_mission.cpp of PX4."""
 from dataclasses import dataclass
 
-from constants import FLAG_AUTO, FLAG_GUIDED, FLAG_STABILIZE
+from constants import FLAG_AUTO, FLAG_CUSTOM, FLAG_GUIDED, FLAG_STABILIZE
 
 # Modes inside the vehicle; each flavour has numbers for them.
 MANUAL, AUTO, GUIDED, HOLD, RTL, LAND, TAKEOFF = (
@@ -74,7 +74,7 @@ def mode_of(flavour, kind, base_mode, custom_mode):
             return AUTO
         return GUIDED if wanted & FLAG_GUIDED else HOLD if wanted else MANUAL
     for mode, number in numbers.items():
-        if number == custom_mode:
+        if number == custom_mode and base_mode & FLAG_CUSTOM:
             return mode
     return None
 

@@ -72,7 +72,7 @@ class Missions:
             self.plans[kind] = []
             self.finish(sender, kind, [])
             return
-        if self.storage == "overwrite":
+        if self.overwrites(kind):
             del self.plans[kind][message.count:]
         self.begin(sender, kind, 0, message.count - 1, [])
 
@@ -86,6 +86,11 @@ class Missions:
             self.acknowledge(sender, kind, MissionResult.ERROR)
         else:
             self.begin(sender, kind, first, last, list(self.plans[kind]))
+
+    def overwrites(self, kind):
+        """Whether items replace those of the old plan as they come; ArduPilot's fences wait."""
+        waits = kind == FENCE and self.flavour.name == "ardupilot"
+        return self.storage == "overwrite" and not waits
 
     def busy(self, sender, kind):
         """Answers a second partner while the first one's upload is under way."""
@@ -140,16 +145,17 @@ class Missions:
 
     def store(self, item, sender):
         upload = self.upload
-        result = plans.refusal(item, upload.kind)
+        ardupilot = self.flavour.name == "ardupilot"
+        result = plans.refusal(item, upload.kind, ardupilot)
         if result == MissionResult.ACCEPTED and self.node.faults.refuses(item):
             result = MissionResult.UNSUPPORTED_FRAME
         if result != MissionResult.ACCEPTED:
             self.refuse(sender, result)
             return
-        if self.flavour.name == "ardupilot":
-            item = plans.as_ardupilot_keeps(item, self.airframe)
+        if ardupilot:
+            item = plans.as_ardupilot_keeps(item, self.airframe, upload.kind)
         item = self.node.faults.changed(item)
-        target = self.plans[upload.kind] if self.storage == "overwrite" else upload.items
+        target = self.plans[upload.kind] if self.overwrites(upload.kind) else upload.items
         target[upload.expected:upload.expected + 1] = [item]
         upload.received_at = self.node.now
         upload.expected += 1
@@ -171,6 +177,8 @@ class Missions:
         if result == MissionResult.ACCEPTED:
             self.plans[kind] = [item for item in items if not self.node.faults.drops(item)]
             self.pilot.plan_changed(kind)
+        elif self.flavour.name == "ardupilot":
+            result = MissionResult.ERROR
         self.acknowledged = (sender, kind, last, result)
         self.acknowledge(sender, kind, result)
 

@@ -15,6 +15,7 @@ NO_POSITION = (Command.DO_JUMP, Command.DO_CHANGE_SPEED, Command.CONDITION_DELAY
 NAN_YAW = (Command.NAV_WAYPOINT, Command.NAV_LOITER_UNLIM, Command.NAV_LOITER_TURNS,
            Command.NAV_LOITER_TIME, Command.NAV_LAND, Command.NAV_TAKEOFF,
            Command.NAV_LOITER_TO_ALT)
+ARDUPILOT_NAN_YAW = (Command.NAV_WAYPOINT, Command.NAV_LAND, Command.NAV_TAKEOFF)
 # Parameters that ArduPilot has room for, of the commands where others come back as zero.
 ARDUPILOT_KEEPS = {
     "copter": {Command.NAV_WAYPOINT: (1,), Command.NAV_LOITER_TURNS: (1, 3),
@@ -55,15 +56,18 @@ def fields_of(item):
             **{f"param{i + 1}": value for i, value in enumerate(item.params)}}
 
 
-def refusal(item, kind):
+def refusal(item, kind, ardupilot=False):
     """MissionResult.ACCEPTED, or why the item is refused."""
     if item.command not in OF_PLAN[kind]:
         return MissionResult.UNSUPPORTED
     positioned = item.command not in NO_POSITION
     if positioned and item.frame not in GLOBAL_FRAMES:
         return MissionResult.UNSUPPORTED_FRAME
+    if ardupilot and kind == RALLY and item.frame not in RELATIVE:
+        return MissionResult.UNSUPPORTED_FRAME
+    may_be_nan = ARDUPILOT_NAN_YAW if ardupilot else NAN_YAW
     for i, value in enumerate(item.params):
-        allowed = i == 3 and item.command in NAN_YAW
+        allowed = i == 3 and item.command in may_be_nan
         if not math.isfinite(value) and not (allowed and math.isnan(value)):
             return MissionResult(MissionResult.INVALID_PARAM1 + i)
     if positioned and abs(item.x) > 900_000_000:
@@ -102,8 +106,16 @@ def polygons(items):
     return MissionResult.ACCEPTED
 
 
-def as_ardupilot_keeps(item, airframe):
-    """Altitudes in whole centimetres, frames without _INT, yaw and others lost."""
+def as_ardupilot_keeps(item, airframe, kind):
+    """Altitudes in whole centimetres, frames without _INT, yaw and others lost; of fences no
+    altitude and no frame, of rally points whole metres."""
+    if kind == FENCE:
+        first = (item.params[0], 0.0, 0.0, 0.0)
+        return dataclasses.replace(item, params=first, frame=int(Frame.GLOBAL), z=0.0,
+                                   autocontinue=0)
+    if kind == RALLY:
+        return dataclasses.replace(item, params=(0.0,) * 4, z=float(int(item.z)), autocontinue=0,
+                                   frame=int(Frame.GLOBAL_RELATIVE_ALT))
     keeps = ARDUPILOT_KEEPS[airframe].get(item.command)
     params = item.params
     if keeps is not None:
@@ -115,7 +127,8 @@ def as_ardupilot_keeps(item, airframe):
     for group, plain in ((ABSOLUTE, Frame.GLOBAL), (RELATIVE, Frame.GLOBAL_RELATIVE_ALT),
                          (TERRAIN, Frame.GLOBAL_TERRAIN_ALT)):
         frame = plain if frame in group else frame
-    return dataclasses.replace(item, params=params, frame=int(frame), z=round(item.z * 100) / 100)
+    return dataclasses.replace(item, params=params, frame=int(frame), autocontinue=1,
+                               z=round(item.z * 100) / 100)
 
 
 def home_item(home):

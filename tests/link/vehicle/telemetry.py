@@ -5,12 +5,16 @@ import math
 
 import geodesy
 import plans
-from constants import (FENCE, FLAG_ARMED, FLAG_CUSTOM, MISSION, RALLY, STATE_ACTIVE, STATE_STANDBY)
-from flavours import AUTO, BASE_FLAGS, mode_numbers
+from constants import (FENCE, FLAG_ARMED, FLAG_CUSTOM, MISSION, RALLY, STATE_ACTIVE, STATE_STANDBY,
+                       Frame)
+from flavours import AUTO, BASE_FLAGS, GUIDED, mode_numbers
 
 RATES = {"SYS_STATUS": 1, "GLOBAL_POSITION_INT": 5, "LOCAL_POSITION_NED": 5, "ATTITUDE": 5,
          "VFR_HUD": 4, "MISSION_CURRENT": 1, "GPS_RAW_INT": 1, "EXTENDED_SYS_STATE": 1,
-         "HOME_POSITION": 0.2, "SYSTEM_TIME": 1, "NAV_CONTROLLER_OUTPUT": 2}
+         "HOME_POSITION": 0.2, "SYSTEM_TIME": 1, "NAV_CONTROLLER_OUTPUT": 2,
+         "POSITION_TARGET_GLOBAL_INT": 2}
+ONLY_GUIDED = ("POSITION_TARGET_GLOBAL_INT",)
+POSITION_ONLY, VELOCITY_ONLY = 0xFF8, 0xFC7  # type masks
 SENSORS = 0x2F  # gyroscope, accelerometer, magnetometer, absolute pressure, GPS
 FIX_3D = 3
 # Capabilities: PARAM_FLOAT, MISSION_INT, COMMAND_INT, set-points in both frames, MISSION_FENCE,
@@ -39,7 +43,8 @@ class Telemetry:
         for name, rate in self.rates.items():
             if rate > 0 and time >= self.due.get(name, 0.0) - 1e-9:
                 self.due[name] = max(self.due.get(name, 0.0) + 1 / rate, time)
-                self.send(name)
+                if name not in ONLY_GUIDED or self.node.pilot.mode == GUIDED:
+                    self.send(name)
 
     def send(self, name):
         self.node.send(name, getattr(self, name.lower())())
@@ -148,6 +153,16 @@ class Telemetry:
             fields.update(target_bearing=round(math.degrees(math.atan2(east, north))), alt_error=up,
                           wp_dist=min(65535, round(math.hypot(north, east))))
         return fields
+
+    def position_target_global_int(self):
+        """What GUIDED flies to."""
+        goal = self.node.pilot.goal
+        frame = {"coordinate_frame": int(Frame.GLOBAL_INT)}
+        if goal.target is None:
+            north, east, up = goal.velocity
+            return self.stamped(type_mask=VELOCITY_ONLY, vx=north, vy=east, vz=-up, **frame)
+        return self.stamped(type_mask=POSITION_ONLY, lat_int=round(goal.target.lat * 1e7),
+                            lon_int=round(goal.target.lon * 1e7), alt=goal.target.alt, **frame)
 
     def mission_current(self):
         pilot, stored = self.node.pilot, self.node.missions.plans

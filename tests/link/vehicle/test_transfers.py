@@ -36,8 +36,11 @@ class Whole(unittest.TestCase):
             for kind, items in ((MISSION, square()), (FENCE, FENCES), (RALLY, RALLIES)):
                 self.assertEqual(station.upload(items, kind), MissionResult.ACCEPTED)
             self.assertEqual(station.download(MISSION), kept(station, square()))
-            self.assertEqual(station.download(FENCE), FENCES)
-            self.assertEqual(station.download(RALLY), RALLIES)
+            for kind, items in ((FENCE, FENCES), (RALLY, RALLIES)):
+                if flavour == "ardupilot":
+                    items = [{**each, "autocontinue": 0} for each in items]
+                    items = [{**each, "frame": 0} for each in items] if kind == FENCE else items
+                self.assertEqual(station.download(kind), items)
             station.ask("MISSION_CLEAR_ALL", ("MISSION_ACK",), mission_type=FENCE)
             counts = [len(station.download(kind)) for kind in (MISSION, FENCE, RALLY)]
             self.assertEqual(counts, [6, 0, 1])
@@ -56,6 +59,20 @@ class Whole(unittest.TestCase):
         self.assertAlmostEqual(stored["z"], 20.13, places=5)
         self.assertEqual((stored["frame"], stored["param1"], stored["param4"]),
                          (Frame.GLOBAL_RELATIVE_ALT, 2.0, 0.0))
+
+    def test_ardupilot_keeps_less_of_fences_and_rally_points(self):
+        station = start("--autopilot ardupilot")
+        high = [{**corner, "z": 25.5} for corner in FENCES]
+        station.upload(high, FENCE)
+        self.assertEqual({each["z"] for each in station.download(FENCE)}, {0.0})
+        self.assertEqual(station.upload(FENCES[:3], FENCE), MissionResult.ERROR)
+        self.assertEqual(len(station.download(FENCE)), 4, "fences are replaced as a whole")
+        station.upload([{**RALLIES[0], "z": 30.9}], RALLY)
+        self.assertEqual(station.download(RALLY)[0]["z"], 30.0)
+        absolute = [{**RALLIES[0], "frame": int(Frame.GLOBAL)}]
+        self.assertEqual(station.upload(absolute, RALLY), MissionResult.UNSUPPORTED_FRAME)
+        circle = item(Command.NAV_LOITER_UNLIM, 47.0, 8.0, 20.0, params=(0, 0, 0, math.nan))
+        self.assertEqual(station.upload([circle]), MissionResult.INVALID_PARAM4)
 
     def test_empty_plan_clears(self):
         station = start()
