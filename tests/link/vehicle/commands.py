@@ -13,6 +13,14 @@ CHANGE_MODE = 1  # flag of DO_REPOSITION
 LONG_ONLY_INT = (Command.DO_REPOSITION,)  # of ArduPilot: degrees in floats are too coarse
 
 
+HIGHEST = 1e5  # m
+
+
+def whole(value):
+    """Of a parameter that is a number of something; -1 if it cannot be."""
+    return int(value) if abs(value) < 2 ** 31 else -1
+
+
 class Commands:
     def __init__(self, node, pilot, flavour):
         self.node, self.pilot, self.flavour = node, pilot, flavour
@@ -41,7 +49,8 @@ class Commands:
         return Result.ACCEPTED if success else otherwise
 
     def place(self, message):
-        """Position of the command; NaN and the integer for "unknown" are where the vehicle is."""
+        """Position of the command, or None if there is no such place; NaN and the integer for
+        "unknown" are where the vehicle is."""
         pilot, here = self.pilot, self.pilot.body.position
         if message.name == "COMMAND_LONG":
             lat, lon, alt = message.param5, message.param6, message.param7
@@ -52,6 +61,8 @@ class Commands:
             alt, frame = message.z, message.frame
         lat = here.lat if math.isnan(lat) else lat
         lon = here.lon if math.isnan(lon) else lon
+        if abs(lat) > 90 or abs(lon) > 180 or abs(alt) > HIGHEST:
+            return None
         if math.isnan(alt):
             return geodesy.Position(lat, lon, here.alt)
         if frame in RELATIVE:
@@ -67,18 +78,20 @@ class Commands:
         return self.done(self.pilot.disarm(force))
 
     def do_do_set_mode(self, message):
-        base, custom = int(message.param1), int(message.param2)
+        base, custom = whole(message.param1), whole(message.param2)
         if self.flavour.name == "px4":
             # PX4 has main and sub mode in a parameter each.
-            custom = flavours.px4_mode(custom, int(message.param3))
+            custom = flavours.px4_mode(custom, whole(message.param3))
         mode = flavours.mode_of(self.flavour, self.pilot.kind, base, custom)
         return self.done(self.pilot.set_mode(mode))
 
     def do_nav_takeoff(self, message):
         height = message.param7 if message.name == "COMMAND_LONG" else message.z
-        if self.flavour.name == "px4" and math.isfinite(height):
+        if self.flavour.name == "px4":
             height -= self.pilot.home.alt
-        return self.done(self.pilot.take_off(height if math.isfinite(height) else 10.0))
+        if not 0 < height < HIGHEST:
+            height = 10.0
+        return self.done(self.pilot.take_off(height))
 
     def do_nav_land(self, message):
         return self.done(self.pilot.set_mode(flavours.LAND))
@@ -91,7 +104,7 @@ class Commands:
 
     def do_mission_start(self, message):
         pilot = self.pilot
-        first = int(message.param1)
+        first = whole(message.param1)
         if first > 0 and not pilot.auto.set_current(first):
             return Result.FAILED
         if not pilot.armed and self.flavour.name == "ardupilot" and pilot.kind == "copter":
@@ -104,7 +117,7 @@ class Commands:
     def do_do_set_mission_current(self, message):
         if message.param2 == 1:
             self.pilot.auto.restart()
-        if message.param1 >= 0 and not self.node.set_current(int(message.param1)):
+        if message.param1 >= 0 and not self.node.set_current(whole(message.param1)):
             return Result.DENIED
         return Result.ACCEPTED
 
@@ -116,16 +129,17 @@ class Commands:
         """ArduPilot flies to it in GUIDED, PX4 in hold."""
         pilot = self.pilot
         mode = flavours.HOLD if self.flavour.name == "px4" else flavours.GUIDED
-        if not pilot.armed:
+        target = self.place(message)
+        if not pilot.armed or target is None:
             return Result.DENIED
         if pilot.mode != mode:
-            if not int(message.param2) & CHANGE_MODE or not pilot.set_mode(mode):
+            if not whole(message.param2) & CHANGE_MODE or not pilot.set_mode(mode):
                 return Result.DENIED
         if message.param1 > 0:
             pilot.change_speed(message.param1)
         radius = message.param3 if math.isfinite(message.param3) else 0.0
         yaw = math.radians(message.param4) if math.isfinite(message.param4) else None
-        pilot.guided.go_to(self.place(message), radius, yaw if pilot.kind == "copter" else None)
+        pilot.guided.go_to(target, radius, yaw if pilot.kind == "copter" else None)
         if mode == flavours.HOLD:
             pilot.hold = pilot.guided.wanted
         return Result.ACCEPTED
@@ -136,7 +150,10 @@ class Commands:
 
     def do_do_set_home(self, message):
         here = self.pilot.body.position
-        self.pilot.home = here if message.param1 == 1 else self.place(message)
+        home = here if message.param1 == 1 else self.place(message)
+        if home is None:
+            return Result.DENIED
+        self.pilot.home = home
         self.pilot.home_was_set = True
         self.node.telemetry.send("HOME_POSITION")
         return Result.ACCEPTED
@@ -146,7 +163,7 @@ class Commands:
         return Result.ACCEPTED
 
     def do_set_message_interval(self, message):
-        known = messages.BY_NUMBER.get(int(message.param1))
+        known = messages.BY_NUMBER.get(whole(message.param1))
         if known is None or not self.node.telemetry.can_send(known.name):
             return Result.DENIED
         interval = message.param2
@@ -156,7 +173,7 @@ class Commands:
         return Result.ACCEPTED
 
     def do_request_message(self, message):
-        known = messages.BY_NUMBER.get(int(message.param1))
+        known = messages.BY_NUMBER.get(whole(message.param1))
         if known is None or not self.node.telemetry.can_send(known.name):
             return Result.DENIED
         self.node.telemetry.send(known.name)

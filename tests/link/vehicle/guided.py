@@ -10,6 +10,7 @@ from constants import ABSOLUTE, RELATIVE, Frame, Severity
 
 NO_POSITION, NO_VELOCITY, NO_YAW, NO_YAW_RATE = 0x007, 0x038, 0x400, 0x800
 NO_HORIZONTAL = 0x003
+FARTHEST = 1e6  # m, of a set-point from its origin
 
 
 class Guided:
@@ -92,6 +93,8 @@ class Guided:
     def global_target(self, message):
         frame, alt = message.coordinate_frame, message.alt
         lat, lon = message.lat_int / 1e7, message.lon_int / 1e7
+        if abs(lat) > 90 or abs(lon) > 180:
+            lat = lon = alt = math.nan  # ignored where the mask says so, else refused
         if frame in RELATIVE:
             alt += self.pilot.home.alt
         elif frame not in ABSOLUTE:
@@ -104,6 +107,8 @@ class Guided:
         """North, east, down from home; the offset frames from here, the body frames turned."""
         frame = message.coordinate_frame
         place, velocity = (message.x, message.y), (message.vx, message.vy)
+        if not all(abs(value) < FARTHEST for value in (*place, message.z)):
+            place = math.nan, math.nan
         if frame in (Frame.BODY_NED, Frame.BODY_OFFSET_NED):
             place, velocity = self.turned(place), self.turned(velocity)
         if frame == Frame.LOCAL_NED:
@@ -112,7 +117,9 @@ class Guided:
             origin = self.pilot.body.position
         else:
             return
-        target = geodesy.offset(origin, *place, -message.z)
+        target = geodesy.Position(math.nan, math.nan, math.nan)
+        if math.isfinite(place[0]):
+            target = geodesy.offset(origin, *place, -message.z)
         self.set_target(message, target, (*velocity, -message.vz))
 
     def turned(self, ahead_right):
@@ -124,14 +131,15 @@ class Guided:
         pilot, mask = self.pilot, message.type_mask
         if pilot.kind == "plane" and pilot.flavour.name == "ardupilot":
             # Plane takes altitudes by this message and nothing else.
-            if pilot.mode == "GUIDED" and mask & NO_HORIZONTAL == NO_HORIZONTAL and not mask & 4:
+            altitude = mask & NO_HORIZONTAL == NO_HORIZONTAL and not mask & 4
+            if pilot.mode == "GUIDED" and altitude and math.isfinite(target.alt):
                 self.change_altitude(target.alt)
             return
         goal = self.goal_of(mask, target, velocity)
         if goal is None:
             return
-        goal.yaw = None if mask & NO_YAW else message.yaw
-        goal.yaw_rate = None if mask & NO_YAW_RATE else message.yaw_rate
+        goal.yaw = self.given(message.yaw, mask & NO_YAW)
+        goal.yaw_rate = self.given(message.yaw_rate, mask & NO_YAW_RATE)
         if pilot.flavour.stream_needed:
             self.offboard = goal
         if pilot.flavour.stream_needed or pilot.mode == "GUIDED":
@@ -139,10 +147,16 @@ class Guided:
         if pilot.mode == "GUIDED":
             self.accept(goal, target, velocity)
 
+    @staticmethod
+    def given(value, ignored):
+        return value if not ignored and math.isfinite(value) else None
+
     def goal_of(self, mask, target, velocity):
         """A position where there is one, else a velocity; with both the position counts."""
         pilot = self.pilot
         if mask & NO_POSITION == 0:
+            if not all(math.isfinite(value) for value in (target.lat, target.lon, target.alt)):
+                return None
             if pilot.kind == "plane":
                 return Goal("loiter", target, radius=pilot.parameters["WP_LOITER_RAD"])
             return Goal("leg", target, pilot.body.position)

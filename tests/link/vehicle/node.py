@@ -110,7 +110,8 @@ class Node:
         self.terrain.on_data(message)
 
     def on_terrain_check(self, message):
-        self.terrain.report(message.lat / 1e7, message.lon / 1e7)
+        if abs(message.lat) <= 900_000_000 and abs(message.lon) <= 1_800_000_000:
+            self.terrain.report(message.lat / 1e7, message.lon / 1e7)
 
     def on_request_data_stream(self, message):
         rate = message.req_message_rate if message.start_stop else 0
@@ -142,7 +143,9 @@ class Node:
 
     def on_param_set(self, message):
         if message.param_id in self.pilot.parameters:
-            self.pilot.parameters[message.param_id] = message.param_value
+            # All of them are sizes; the answer has the value that counts.
+            if 0 < message.param_value < 1e5:
+                self.pilot.parameters[message.param_id] = message.param_value
             self.send_parameter(message.param_id)
 
     def send_parameter(self, name):

@@ -4,6 +4,7 @@ import math
 
 import flavours
 import geodesy
+import plans
 from airframe import Goal
 from auto import Auto
 from constants import MISSION, Command, Frame, MissionResult, Severity
@@ -63,7 +64,7 @@ class Pilot:
 
     def change_speed(self, speed):
         """-1: as before, -2: the default again."""
-        if speed > 0:
+        if 0 < speed < math.inf:
             self.body.speed = speed
         elif speed == -2:
             self.body.speed = None
@@ -275,6 +276,9 @@ class Pilot:
         """ArduPilot: an item with current = 2 is flown to in GUIDED, with 3 only its altitude."""
         if self.mode != GUIDED or message.command != Command.NAV_WAYPOINT:
             return MissionResult.ERROR
+        refusal = plans.refusal(plans.of_message(message), MISSION, True)
+        if refusal != MissionResult.ACCEPTED:
+            return refusal
         scale = 1e7 if message.name == "MISSION_ITEM_INT" else 1.0
         alt = message.z if message.frame in (Frame.GLOBAL, Frame.GLOBAL_INT) \
             else message.z + self.home.alt

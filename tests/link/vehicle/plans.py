@@ -45,7 +45,8 @@ def of_message(message):
     """Of MISSION_ITEM_INT, or of MISSION_ITEM, whose degrees are floats."""
     x, y = message.x, message.y
     if message.name == "MISSION_ITEM":
-        x, y = (round(v * 1e7) if math.isfinite(v) else 0 for v in (x, y))
+        # What no integer of the message can be becomes the greatest, which is refused.
+        x, y = (round(v * 1e7) if abs(v) < 200 else 2 ** 31 - 1 for v in (x, y))
     params = (message.param1, message.param2, message.param3, message.param4)
     return Item(message.command, message.frame, params, x, y, message.z, message.autocontinue)
 

@@ -81,7 +81,8 @@ class Terrain:
 
     def height(self, lat, lon):
         """Between the four heights around; home's where there are none."""
-        found = self.interpolated(lat, lon) if self.enabled else None
+        known = self.enabled and math.isfinite(lat) and math.isfinite(lon)
+        found = self.interpolated(lat, lon) if known else None
         return self.node.pilot.home.alt if found is None else found
 
     def interpolated(self, lat, lon):

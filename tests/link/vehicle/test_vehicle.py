@@ -3,6 +3,7 @@
 """All tests of the test vehicle: its codec, its transfers, its flights and its process."""
 import unittest
 
+from test_any_message import *  # noqa: F401,F403
 from test_codec import *  # noqa: F401,F403
 from test_flights import *  # noqa: F401,F403
 from test_node import *  # noqa: F401,F403
