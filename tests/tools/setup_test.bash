@@ -59,7 +59,7 @@ try 0 build
 says "2 packages, 2.1 MB to download"
 calls "^install .*--no-install-recommends -q .*cmake" 1
 calls "^update" 0
-for heavy in ompl fcl benchmark clang chromium scipy gtest; do
+for heavy in ompl benchmark clang chromium scipy gtest; do
   calls "$heavy" 0
 done
 sed -n 's/^tools.setup: installing for .build.: \(.*\) (.*/\1/p' "$work/stderr" | tr ' ' '\n' \

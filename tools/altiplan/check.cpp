@@ -103,7 +103,10 @@ int check_route(const Arguments& arguments) {
     info(note);
   }
   if (config.scenario.constraints.empty()) {
-    warn("the scenario has no constraints: only obstacles, ground and volume are checked");
+    warn(
+        "the scenario has no constraints: only obstacles, ground, volume and the vehicle's own "
+        "limits are "
+        "checked");
   }
   return report(mission, imported.route, std::nullopt, {}, arguments.json);
 }

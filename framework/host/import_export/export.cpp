@@ -333,7 +333,8 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
     }
     if (now) {
       Exported result = attempt.exported(std::move(*now), decimals);
-      for (std::string& note : notes_on(written, options, tolerance, as_turns)) {
+      for (std::string& note :
+           notes_on(written, options, tolerance, as_turns, mission.request.vehicle)) {
         result.messages.push_back(std::move(note));
       }
       return result;

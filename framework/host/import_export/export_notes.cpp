@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/export_notes.hpp"
 
+#include "altiplan/body.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +30,19 @@ void note_autopilots(const WrittenRoute& written, std::vector<std::string>& note
                     counted(turns, "loiter"));
   }
 }
+
+/// Height of the lowest part of the body above its reference point.
+double lowest_of(const Vehicle& vehicle) {
+  double lowest = 0;
+  if (vehicle.body != nullptr) {
+    for (const BodyPart& part : vehicle.body->parts) {
+      for (const Vec3& corner : part.corners) {
+        lowest = std::min(lowest, corner.z() - part.rounding);
+      }
+    }
+  }
+  return lowest;
+}
 }  // namespace
 
 std::string counted(std::size_t count, const std::string& what) {
@@ -35,7 +50,7 @@ std::string counted(std::size_t count, const std::string& what) {
 }
 
 std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,
-                                  double tolerance, bool beside_turns) {
+                                  double tolerance, bool beside_turns, const Vehicle& vehicle) {
   std::vector<std::string> notes;
   if (written.turns > 0) {
     notes.push_back(
@@ -48,6 +63,12 @@ std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptio
     notes.emplace_back(
         "turn radius, climb and headings are judged along the turns: the legs between the points "
         "have corners");
+  }
+  const double lowest_m = lowest_of(vehicle);
+  if (lowest_m < 0 && (options.takeoff || options.land)) {
+    notes.push_back("warning: parts of the body are up to " + rounded_text(-lowest_m, 2) +
+                    " m below the point that follows the route, which take-off and landing put on "
+                    "the ground");
   }
   note_autopilots(written, notes);
   return notes;

@@ -15,5 +15,5 @@ std::string counted(std::size_t count, const std::string& what);
 /// How the turns were written and judged, and how autopilots fly them where that differs.
 /// `beside_turns`: the points do not satisfy what the turns do.
 std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,
-                                  double tolerance, bool beside_turns);
+                                  double tolerance, bool beside_turns, const Vehicle& vehicle);
 }  // namespace altiplan::host

@@ -8,6 +8,8 @@
 namespace altiplan::host {
 namespace {
 
+constexpr double kLargest = 1000;  // metres, of a mesh's edges
+
 /// A part, with the location of its keys for messages.
 class PartReader {
  public:
@@ -55,6 +57,17 @@ class PartReader {
       for (const Vec3& corner : triangle) {
         corners.push_back(offset + scale * corner);
       }
+    }
+    Box box = Box::empty();
+    for (const Vec3& corner : corners) {
+      box = box.with(corner);
+    }
+    const Vec3 size = box.max - box.min;
+    if (size.maxCoeff() > kLargest) {
+      const auto metres = [](double value) { return std::to_string(std::llround(value)); };
+      throw Error(file.text + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " +
+                  metres(size.z()) + " m, expected at most " + metres(kLargest) +
+                  " m: check `scale`, metres per unit of the file");
     }
     return corners;
   }

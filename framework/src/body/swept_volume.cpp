@@ -14,6 +14,11 @@
 
 #include "../shape/shape_parts.hpp"
 
+// Compiled here: FCL's library would load OctoMap at every start of the program.
+template bool fcl::detail::GJKCollide<double>(void*, ccd_support_fn, ccd_center_fn, void*,
+                                              ccd_support_fn, ccd_center_fn, unsigned, double,
+                                              fcl::Vector3d*, double*, fcl::Vector3d*);
+
 namespace altiplan {
 namespace {
 

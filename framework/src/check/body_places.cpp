@@ -154,7 +154,8 @@ class NearestSearch {
     return std::any_of(body_->parts.begin(), body_->parts.end(), [&](BodyPart part) {
       part.rounding += distance;
       // Obstacles around a large volume are many.
-      effort_ += 10 + distance * distance + 0.2 * double(part.corners.size() * ends.size());
+      effort_ += 10 + std::min(distance * distance, 1000.0) +
+                 0.2 * double(part.corners.size() * ends.size());
       return layer.meets({part, outer_ + distance, ends, grown});
     });
   }

@@ -56,9 +56,9 @@ Violation body_violation(const Layer& layer, const Leg& leg, const Request& requ
   const double clearance = nearest ? nearest->distance : kInfinity;
   const double reach = request.vehicle.reach_m();
   return {"body", at, 0, 0,
-          "the vehicle's body meets '" + layer.id + "', which its reference point passes at " +
-              fixed(clearance) + " m; no part of it is farther from that point than " +
-              fixed(reach) + " m"};
+          "between " + place(leg.from) + " and " + place(leg.to) + " the vehicle's body meets '" +
+              layer.id + "', which the route itself passes at " + fixed(clearance) +
+              " m (the body reaches " + fixed(reach) + " m from the route)"};
 }
 
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {
