@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/swept_volume.hpp"
 #include "bad_entries.hpp"
 
 namespace {
@@ -30,6 +31,7 @@ struct Spoils {
   std::function<void(VoxelGrid&)> rasterize;
   std::optional<Box> bounds;
   std::optional<double> slack;
+  std::function<bool(const SweptVolume&)> meets;
   LayerInfo info;
 };
 
@@ -64,6 +66,9 @@ class Spoilt final : public Environment {
   }
   double do_over_approximation() const override { return spoils_.slack.value_or(0); }
   const LayerInfo& do_info() const override { return spoils_.info; }
+  bool do_meets(const SweptVolume& volume) const override {
+    return spoils_.meets ? spoils_.meets(volume) : sound().meets(volume);
+  }
 
   Spoils spoils_;
 };
@@ -147,6 +152,12 @@ void wrong_point(Spoils& s) {
   };
 }
 void beyond_reach(Spoils& s) { s.near_twice_as_far = true; }
+
+void body_as_a_point(Spoils& s) {
+  s.meets = [](const SweptVolume& volume) {
+    return sound().blocked(volume.from(), volume.to(), 2 * kLengthTolerance);
+  };
+}
 
 void by_centres(Spoils& s) {
   s.rasterize = [](VoxelGrid& grid) {
@@ -251,6 +262,8 @@ ALTIPLAN_PLUGIN(Environment, "wrong_point", Spoilt<wrong_point>, NoParams,
                 "reports points that are not on a surface")
 ALTIPLAN_PLUGIN(Environment, "beyond_reach", Spoilt<beyond_reach>, NoParams,
                 "reports obstacles beyond the reach")
+ALTIPLAN_PLUGIN(Environment, "body_as_a_point", Spoilt<body_as_a_point>, NoParams,
+                "sees of a body no more than its reference point")
 ALTIPLAN_PLUGIN(Environment, "by_centres", Spoilt<by_centres>, NoParams,
                 "blocks the cells whose centre is solid, whatever the grid's rule")
 ALTIPLAN_PLUGIN(Environment, "without_inflation", Spoilt<without_inflation>, NoParams,

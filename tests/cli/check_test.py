@@ -30,8 +30,8 @@ class Check(CliCase):
     def test_a_scenario_without_constraints_brings_a_warning(self):
         around = self.write("route.json", "[[100,500,100],[200,200,100],[600,300,100],"
                             "[900,500,100]]")
-        note = ("altiplan: warning: the scenario has no constraints: only obstacles, ground and "
-                "volume are checked\n")
+        note = ("altiplan: warning: the scenario has no constraints: only obstacles, ground, "
+                "volume and the vehicle's own limits are checked\n")
         route = ("check", "--route", around, "--scenario", "scenario.yaml")
         self.assertEqual(self.call(*route)[1], note)
         self.assertEqual(self.call("--log-level", "quiet", *route)[1], "")

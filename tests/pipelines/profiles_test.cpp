@@ -58,7 +58,7 @@ class Profiles : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(Profiles, AreLeastWhereTheJudgeMeasured) {
   const Json result = testing::run_file(GetParam()).json;
-  if (result.at("metrics").is_null()) {
+  if (result.at("status") != "solved") {
     GTEST_SKIP() << "shows a refusal: there is no route";
   }
   const Json scene = host::build_scene({host::stored_result("run", result, {})}).json;

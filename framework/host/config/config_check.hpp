@@ -35,10 +35,10 @@ class Checker {
   /// Throws ConfigError if there are problems: the pipeline's first, each file's from top to
   /// bottom.
   void finish();
-
- private:
+  /// Adds a file that results depend on; a problem if it cannot be read.
   void check_file(const std::string& file, const Location& where, const std::string& key);
 
+ private:
   Config& config_;
   std::vector<Problem> problems_;
 };

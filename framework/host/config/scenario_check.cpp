@@ -144,6 +144,28 @@ void check_points(Checker& checker, const ScenarioFile& scenario, const Value& t
     }
   }
 }
+
+/// The files of the body: present, and among those that a result depends on.
+void check_body(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
+  if (!scenario.vehicle.body) {
+    return;
+  }
+  const Value* vehicle = tree.find("vehicle");
+  const Value* body = vehicle != nullptr ? vehicle->find("body") : nullptr;
+  if (body == nullptr || body->kind != Value::Kind::map) {
+    return;
+  }
+  const auto check = [&](const BodyPartEntry& part, const Value& map, const std::string& key) {
+    if (part.mesh && !part.mesh->text.empty()) {
+      checker.check_file(part.mesh->text, place_of(map, "mesh"), key + ".mesh");
+    }
+  };
+  check(scenario.vehicle.body->part, *body, "vehicle.body");
+  const Value* parts = body->find("parts");
+  for (std::size_t i = 0; i < scenario.vehicle.body->parts.size(); ++i) {
+    check(scenario.vehicle.body->parts[i], parts->items[i], item("vehicle.body.parts", i));
+  }
+}
 }  // namespace
 
 void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree) {
@@ -156,6 +178,7 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   check_removed(checker, scenario, tree);
   check_points(checker, scenario, tree);
   check_constraints(checker, scenario.constraints, tree);
+  check_body(checker, scenario, tree);
   if (scenario.start_time && !kit::parse_iso_time(*scenario.start_time)) {
     checker.problem(
         place_of(tree, "start_time"), "start_time",

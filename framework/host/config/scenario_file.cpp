@@ -179,6 +179,8 @@ void BodyEntry::describe(Fields& f) {
       .doc("level, or by the climb angle of each leg");
   f.check(part.kinds() + int(!parts.empty()) == 1,
           "expected one of box_m, cylinder, capsule, mesh, parts");
+  f.check(parts.empty() || part.offset_m == Vec3(0, 0, 0),
+          "offset_m moves a part: give it with each of the parts");
   f.check(yaw != Yaw::fixed || fixed_deg, "expected fixed_deg with yaw: fixed");
   f.check(yaw == Yaw::fixed || !fixed_deg, "expected yaw: fixed with fixed_deg");
 }

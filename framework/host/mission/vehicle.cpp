@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/mission/vehicle.hpp"
 
+#include <algorithm>
+
 #include "altiplan/body.hpp"
 #include "altiplan/environment.hpp"
 #include "host/config/config_check.hpp"
@@ -8,7 +10,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kLargest = 1000;  // metres, of a mesh's edges
+constexpr double kFarthest = 1000;  // metres
 
 /// A part, with the location of its keys for messages.
 class PartReader {
@@ -58,16 +60,22 @@ class PartReader {
         corners.push_back(offset + scale * corner);
       }
     }
+    // Triangles share corners.
+    const auto less = [](const Vec3& a, const Vec3& b) {
+      return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+    };
+    std::sort(corners.begin(), corners.end(), less);
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     Box box = Box::empty();
     for (const Vec3& corner : corners) {
       box = box.with(corner);
     }
-    const Vec3 size = box.max - box.min;
-    if (size.maxCoeff() > kLargest) {
-      const auto metres = [](double value) { return std::to_string(std::llround(value)); };
-      throw Error(file.text + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " +
-                  metres(size.z()) + " m, expected at most " + metres(kLargest) +
-                  " m: check `scale`, metres per unit of the file");
+    const double farthest = std::max(box.max.maxCoeff(), -box.min.minCoeff());
+    if (farthest > kFarthest) {
+      throw Error(file.text + ": reaches " + std::to_string(std::llround(farthest)) +
+                  " m from the vehicle's reference point, expected at most " +
+                  std::to_string(std::llround(kFarthest)) +
+                  " m: check `scale`, metres per unit of the file, and its origin");
     }
     return corners;
   }
