@@ -69,6 +69,10 @@ Messages MissionTransfer::tick(Time now) {
     fail_by_refusal(*broken_off_by_);
     return {};
   }
+  if (!broken_off_by_ && retries_ == kRetries && timeout_ == kItemTimeout) {
+    timeout_ = kAnswerTimeout;  // hundreds of items would begin again too often at 20 % loss
+    retries_ = 0;
+  }
   if (broken_off_by_ || retries_ == kRetries) {
     return begin_again(now);
   }
@@ -111,24 +115,18 @@ void MissionTransfer::advance(Time now, std::size_t count) {
 }
 
 Messages MissionTransfer::begin_again(Time now) {
-  ++beginnings_;
   through_ = 0;
   last_advance_ = now;
   return begin(now);
 }
 
 /// Lost and doubled messages let a vehicle report items out of order, which it asks for again, or
-/// the end of a transfer that is over: if so, nothing more comes.
+/// an error about a transfer that is over; this one then continues.
 Messages MissionTransfer::on_refusal(Time now, MissionResult result) {
-  if (result == MissionResult::invalid_sequence) {
-    return {};
-  }
-  if (result != MissionResult::error && result != MissionResult::cancelled) {
-    fail_by_refusal(result);
-  } else if (through_ > 0) {
+  if (result == MissionResult::error || result == MissionResult::cancelled) {
     broken_off_by_ = result;
     due_ = std::min(due_, now + kRefusalTimeout);
-  } else if (beginnings_ == 1) {  // else it may be about the transfer before
+  } else if (result != MissionResult::invalid_sequence) {
     fail_by_refusal(result);
   }
   return {};

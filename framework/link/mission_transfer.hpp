@@ -90,7 +90,6 @@ class MissionTransfer {
   Time deadline_{0};
   Time last_advance_{0};
   std::size_t most_through_ = 0;
-  int beginnings_ = 0;
   int broken_off_ = 0;  ///< times, by the vehicle
   std::optional<MissionResult> broken_off_by_;
 };

@@ -18,6 +18,7 @@ struct Script {
   bool overwrites = false;       ///< the old items, one by one as new ones come
   bool reports_disorder = true;  ///< with MISSION_ACK, else it asks again at once
   bool asks_by_float = false;    ///< MISSION_REQUEST
+  int retries = kRetries;        ///< to get an item; ArduPilot waits for 8 s
   std::optional<std::size_t> refuses_item;
   MissionResult refusal = MissionResult::invalid;
   std::optional<std::size_t> dies_at_item;
@@ -62,7 +63,7 @@ class ScriptedVehicle {
     if (!is_receiving_ || now < due_) {
       return {};
     }
-    if (++retries_ > kRetries) {
+    if (++retries_ > script_.retries) {
       is_receiving_ = false;
       return {};
     }
