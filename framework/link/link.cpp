@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "link/link.hpp"
 
+#include "host/import_export/mission_text.hpp"
 #include "link/vehicle_words.hpp"
 
 namespace altiplan::link {
@@ -98,7 +99,7 @@ Vehicle await_vehicle(Link& link, std::optional<std::uint8_t> system, Time timeo
   }
   throw LinkError("no heartbeat of " +
                   (system ? "system " + std::to_string(*system) : std::string("a vehicle")) +
-                  " within " + std::to_string(timeout.count() / 1000) +
+                  " within " + host::rounded_text(double(timeout.count()) / 1000, 1) +
                   " s: check the address, and that the vehicle sends there" +
                   refused_in_words(link.counts()));
 }

@@ -10,6 +10,8 @@ namespace altiplan::link {
 namespace {
 
 constexpr Time kAskAgain{1000};
+/// So long a stop may wait.
+constexpr Time kSlice{100};
 
 /// MAV_CMD_REQUEST_MESSAGE
 CommandLong request_for(std::uint32_t message, const Address& vehicle) {
@@ -119,12 +121,26 @@ Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::
       link.send(requests(status));
       ask_at += kAskAgain;
     }
-    const std::optional<Packet> packet = link.receive(Time(100));
+    const std::optional<Packet> packet = link.receive(kSlice);
     if (packet && packet->sender == vehicle.address) {
       take(link, packet->message, status);
     }
   }
   return status;
+}
+
+std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
+                                           const std::stop_token& stop) {
+  link.send(Message(request_for(HomePosition::kDeclared.id, vehicle.address)));
+  const Time end = time_now() + timeout;
+  while (time_now() < end && !stop.stop_requested()) {
+    const std::optional<Packet> packet = link.receive(kSlice);
+    const bool is_ours = packet && packet->sender == vehicle.address;
+    if (const auto* home = is_ours ? std::get_if<HomePosition>(&packet->message) : nullptr) {
+      return kit::MissionPoint{home->longitude / 1e7, home->latitude / 1e7, home->altitude / 1e3};
+    }
+  }
+  return std::nullopt;
 }
 
 std::string in_words(const Status& status) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "link/link.hpp"
 
 namespace altiplan::link {
@@ -19,6 +20,10 @@ struct Status {
 
 /// Asks for it all, once a second, and listens until all has come or the time is over.
 Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::stop_token& stop);
+
+/// Home as the vehicle reports it; none if it does not in time.
+std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
+                                           const std::stop_token& stop);
 
 /// A line each: the vehicle, its mode, position, battery and mission.
 std::string in_words(const Status& status);

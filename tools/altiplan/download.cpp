@@ -15,6 +15,8 @@ struct Arguments {
   std::string out;
 };
 
+constexpr link::Time kHomeTimeout{1500};
+
 bool is_plan(const std::string& file) { return std::filesystem::path(file).extension() == ".plan"; }
 
 std::string out_problem(const std::string& file) {
@@ -51,7 +53,11 @@ int download_plan(const Arguments& arguments) {
       add_others(connection, plan);
     }
     if (!plan.home) {
-      warn("the vehicle's mission has no home: the file has it below the first item, at sea level");
+      plan.home =
+          link::read_home(connection.link, connection.vehicle, kHomeTimeout, connection.stop);
+    }
+    if (!plan.home) {
+      warn("the vehicle reports no home: the file has it below the first item, at sea level");
     }
     host::write_file(arguments.out,
                      is_plan(arguments.out) ? plan_text(plan) : waypoints_text(plan));
