@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "link/plan_transfer.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 
 namespace altiplan::link {
@@ -45,11 +47,21 @@ MissionItemInt wire_item(const PlanItem& item) {
   return wire;
 }
 
+/// The number with the fewest digits that is sent as this float.
+double shortest(float value) {
+  std::array<char, 32> text;
+  const auto [end, failed] = std::to_chars(text.data(), text.data() + text.size(), value);
+  double number = value;
+  std::from_chars(text.data(), end, number);
+  return number;
+}
+
 PlanItem plan_item(const MissionItemInt& wire) {
   PlanItem item{wire.command, plain_frame(wire.frame)};
-  const double unit = wire.frame != kMissionFrame ? 1 / kDegreeUnits : 1;
-  item.params = {wire.param1,   wire.param2,   wire.param3, wire.param4,
-                 wire.x * unit, wire.y * unit, wire.z};
+  const double units = wire.frame != kMissionFrame ? kDegreeUnits : 1;
+  item.params = {shortest(wire.param1), shortest(wire.param2), shortest(wire.param3),
+                 shortest(wire.param4), wire.x / units,        wire.y / units,
+                 shortest(wire.z)};
   item.continues = wire.autocontinue != 0;
   return item;
 }

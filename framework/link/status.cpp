@@ -131,9 +131,13 @@ Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::
 
 std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
                                            const std::stop_token& stop) {
-  link.send(Message(request_for(HomePosition::kDeclared.id, vehicle.address)));
   const Time end = time_now() + timeout;
+  Time ask_at = time_now();
   while (time_now() < end && !stop.stop_requested()) {
+    if (time_now() >= ask_at) {
+      link.send(Message(request_for(HomePosition::kDeclared.id, vehicle.address)));
+      ask_at += kAskAgain;
+    }
     const std::optional<Packet> packet = link.receive(kSlice);
     const bool is_ours = packet && packet->sender == vehicle.address;
     if (const auto* home = is_ours ? std::get_if<HomePosition>(&packet->message) : nullptr) {

@@ -12,7 +12,7 @@ namespace {
 std::vector<Packet> all_of(Parser& parser) {
   std::vector<Packet> packets;
   while (std::optional<Packet> packet = parser.next()) {
-    packets.push_back(std::move(*packet));
+    packets.push_back(*packet);
   }
   return packets;
 }

@@ -20,7 +20,7 @@ std::vector<PlanItem> three_items() {
   std::vector<PlanItem> items(3);
   for (std::size_t n = 0; n < items.size(); ++n) {
     items[n].frame = n == 0 ? 0 : n == 1 ? 3 : 10;
-    items[n].params = {0, 0, 0, std::nan(""), 46.8012345 + 0.001 * double(n), 9.8, 1600.25};
+    items[n].params = {0, 0, 0, std::nan(""), 46.8012345, 9.8, 1600.001};
   }
   return items;
 }
@@ -31,9 +31,9 @@ TEST(LinkPlanTransfer, ItemsComeBackFromTheWire) {
   ASSERT_EQ(back.size(), items.size());
   for (std::size_t n = 0; n < items.size(); ++n) {
     EXPECT_EQ(back[n].frame, items[n].frame);
-    EXPECT_NEAR(back[n].params[4], items[n].params[4], 0.51e-7);
-    EXPECT_NEAR(back[n].params[5], items[n].params[5], 0.51e-7);
-    EXPECT_NEAR(back[n].params[6], items[n].params[6], 1e-3);
+    EXPECT_DOUBLE_EQ(back[n].params[4], items[n].params[4]);
+    EXPECT_DOUBLE_EQ(back[n].params[5], items[n].params[5]);
+    EXPECT_EQ(back[n].params[6], items[n].params[6]);
     EXPECT_TRUE(std::isnan(back[n].params[3]));
   }
 }
@@ -62,7 +62,7 @@ TEST(LinkPlanTransfer, WhatTheVehicleChangedIsNamed) {
   ASSERT_EQ(found.size(), 4U);
   EXPECT_EQ(found[0], "the vehicle holds 4 items instead of 3");
   EXPECT_EQ(found[1], "item 0: frame 0 became 3, latitude 46.8012345 became 46.8012347");
-  EXPECT_EQ(found[2], "item 1: altitude 1600.25 became 1600.75");
+  EXPECT_EQ(found[2], "item 1: altitude 1600.001 became 1600.501");
   EXPECT_EQ(found[3], "item 2: command 16 became 17");
 }
 

@@ -15,7 +15,7 @@ struct Arguments {
   std::string out;
 };
 
-constexpr link::Time kHomeTimeout{1500};
+constexpr link::Time kHomeTimeout{4000};
 
 bool is_plan(const std::string& file) { return std::filesystem::path(file).extension() == ".plan"; }
 
