@@ -108,13 +108,13 @@ std::vector<PluginFolder> plugin_folders() {
 }
 
 TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
-  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|study|tune)");
+  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|link|study|tune)");
   EXPECT_GT(sources("framework/include").size(), 20u);
   EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
 }
 
 TEST(Structure, TheCoreDoesNotKnowTheHost) {
-  const std::regex kHost("(^|/)(host|study|tune)/|^(yaml-cpp|boost|gdal|CLI)");
+  const std::regex kHost("(^|/)(host|link|study|tune)/|^(yaml-cpp|boost|gdal|CLI)");
   EXPECT_GT(sources("framework/src").size(), 5u);
   EXPECT_EQ(list(forbidden(sources("framework/src"), kHost)), "");
 }
@@ -126,7 +126,7 @@ std::vector<std::string> rooms() {
 }
 
 TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
-  const std::regex kInside(R"(^(host|study|tune|src|\.\.)/)");
+  const std::regex kInside(R"(^(host|link|study|tune|src|\.\.)/)");
   std::set<std::string> open;
   std::vector<std::string> found;
   for (const std::string& room : rooms()) {
@@ -144,13 +144,14 @@ TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
 
 TEST(Structure, EveryFolderIsARoomThatTheReadmeShows) {
   std::set<std::string> folders;
-  for (const char* part : {"framework/host", "framework/study", "framework/tune"}) {
+  for (const char* part :
+       {"framework/host", "framework/link", "framework/study", "framework/tune"}) {
     for (const fs::path& file : sources(part)) {
       folders.insert(fs::relative(file.parent_path(), kSource / "framework").string());
     }
   }
   std::vector<std::string> all = rooms();
-  const std::regex kRow("^\\| `((host|study|tune)[a-z_/]*)` \\|");
+  const std::regex kRow("^\\| `((host|link|study|tune)[a-z_/]*)` \\|");
   std::vector<std::string> shown;
   std::istringstream page(text_of(kSource / "framework/README.md"));
   for (std::string line; std::getline(page, line);) {
@@ -227,11 +228,17 @@ TEST(Structure, FoldersDoNotIncludeEachOtherInACircle) {
 
 TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
   const std::map<fs::path, std::string> namespaces{
-      {"framework/include", "altiplan"},    {"framework/include/altiplan/kit", "altiplan::kit"},
-      {"framework/src", "altiplan"},        {"framework/src/kit", "altiplan::kit"},
-      {"framework/host", "altiplan::host"}, {"framework/study", "altiplan::study"},
-      {"framework/tune", "altiplan::tune"}, {"framework/conformance", "altiplan::conformance"},
-      {"tools/altiplan", "altiplan::cli"},  {"tools/bench", "altiplan::bench"}};
+      {"framework/include", "altiplan"},
+      {"framework/include/altiplan/kit", "altiplan::kit"},
+      {"framework/src", "altiplan"},
+      {"framework/src/kit", "altiplan::kit"},
+      {"framework/host", "altiplan::host"},
+      {"framework/link", "altiplan::link"},
+      {"framework/study", "altiplan::study"},
+      {"framework/tune", "altiplan::tune"},
+      {"framework/conformance", "altiplan::conformance"},
+      {"tools/altiplan", "altiplan::cli"},
+      {"tools/bench", "altiplan::bench"}};
   const std::regex kOpened(R"(^namespace (altiplan[a-z_:]*) \{)");
   std::vector<std::string> found;
   for (const char* part : {"framework", "tools"}) {
@@ -255,7 +262,7 @@ TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
 }
 
 TEST(Structure, PluginsKnowOnlyTheApiAndTheKit) {
-  const std::regex kHost("(^|/)(host|study|tune)/|^(yaml-cpp|boost/dll|fcl|CLI)");
+  const std::regex kHost("(^|/)(host|link|study|tune)/|^(yaml-cpp|boost/dll|fcl|CLI)");
   std::vector<fs::path> code = sources("plugins");
   EXPECT_GT(code.size(), 16u);
   EXPECT_EQ(list(forbidden(code, kHost)), "");

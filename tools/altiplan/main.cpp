@@ -174,6 +174,9 @@ int main_checked(int argc, char** argv) {
   add_check(app, action);
   add_view(app, action);
   add_export(app, action);
+  add_upload(app, action);
+  add_download(app, action);
+  add_status(app, action);
   add_plugins(app, action);
   add_merge(app, action);
   add_replay(app, action);

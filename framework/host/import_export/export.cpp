@@ -309,6 +309,7 @@ struct Attempt {
         " decimals of a degree and " + std::to_string(decimals.metres) + " of a metre" +
         (problem.empty() ? "" : " (with fewer: " + problem + ")"));
     result.text = std::move(now);
+    result.mission = text;
     return result;
   }
 };

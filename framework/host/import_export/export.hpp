@@ -38,6 +38,7 @@ struct ExportSource {
 struct Exported {
   std::optional<std::string> text;    ///< none if the written route would not be valid
   std::vector<std::string> messages;  ///< the verdict first
+  MissionText mission{};              ///< of the text, unless it is CSV
 };
 
 /// Writes the route, reads it back and judges the result; uses more decimals, and more points of

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/import_export/mission_text.hpp"
+
+namespace altiplan::host {
+
+/// Numbers of MAV_CMD.
+struct Command {
+  static constexpr int kWaypoint = 16;
+  static constexpr int kLoiterForever = 17;
+  static constexpr int kLoiterTurns = 18;
+  static constexpr int kLand = 21;
+  static constexpr int kTakeoff = 22;
+  static constexpr int kLoiterToAltitude = 31;
+  static constexpr int kFencePolygonIn = 5001;  ///< a corner; parameter 1: number of corners
+  static constexpr int kFencePolygonOut = 5002;
+  static constexpr int kFenceCircleIn = 5003;  ///< parameter 1: radius
+  static constexpr int kFenceCircleOut = 5004;
+  static constexpr int kRallyPoint = 5100;
+};
+
+/// An item of a plan as autopilots and ground stations number it.
+struct PlanItem {
+  int command = Command::kWaypoint;
+  int frame = 0;  ///< MAV_FRAME
+  /// Latitude and longitude in degrees and an altitude come last; NaN: left to the autopilot.
+  std::array<double, 7> params{};
+  bool continues = true;
+};
+
+/// What a vehicle is given: its mission, its fence and its rally points.
+struct Plan {
+  int autopilot = 3;  ///< MAV_AUTOPILOT: ArduPilot, which supports all three altitude frames
+  int vehicle = 2;    ///< MAV_TYPE: a quadrotor
+  double speed_mps = 15;
+  std::optional<kit::MissionPoint> home;  ///< above sea level
+  std::vector<PlanItem> items;
+  std::vector<PlanItem> fence;
+  std::vector<PlanItem> rally;
+  Decimals decimals;  ///< of its texts
+};
+
+Plan plan_of(const MissionText& mission);
+
+/// QGroundControl's `.plan`.
+std::string plan_text(const Plan& plan);
+/// The `QGC WPL 110` text of its mission.
+std::string waypoints_text(const Plan& plan);
+}  // namespace altiplan::host

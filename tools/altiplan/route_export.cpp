@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "route_export.hpp"
+
+#include <iostream>
+#include <map>
+
+#include "host/flight/events.hpp"
+#include "host/result/stored_result.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+const std::map<std::string, kit::AltitudeFrame>& altitudes() {
+  static const std::map<std::string, kit::AltitudeFrame> kAll{
+      {"sea", kit::AltitudeFrame::sea},
+      {"ground", kit::AltitudeFrame::ground},
+      {"home", kit::AltitudeFrame::home}};
+  return kAll;
+}
+
+void say(const std::string& message) {
+  if (log_level() != LogLevel::quiet) {
+    std::cerr << "altiplan: " << message << '\n';
+  }
+}
+
+/// The accepted route or the flown track; none if the result lacks it.
+std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bool flight) {
+  host::ExportSource source;
+  if (flight) {
+    if (!stored.track) {
+      return std::nullopt;
+    }
+    for (const auto& [time, place] : *stored.track) {
+      source.times.push_back(time);
+      source.route.push_back(place);
+    }
+    return source;
+  }
+  if (!stored.route) {
+    return std::nullopt;
+  }
+  source.route = *stored.route;
+  return source;
+}
+
+}  // namespace
+
+void add_route_export(CLI::App& command, RouteExport& route) {
+  command.add_option("result", route.result, "result file of altiplan run (JSON)")->required();
+  command
+      .add_option("--altitude", route.altitude,
+                  "altitude reference: sea, ground or home (default sea)")
+      ->type_name("FROM")
+      ->check(CLI::IsMember({"sea", "ground", "home"}));
+  command
+      .add_option("--arcs", route.arcs,
+                  "turns as points within 0.5 m (points, the default), or as loiters that end on "
+                  "a tangent where an autopilot flies the same turn (loiter)")
+      ->type_name("FORM")
+      ->check(CLI::IsMember({"points", "loiter"}));
+  command.add_flag("--takeoff", route.options.takeoff, "begin the mission with a take-off item");
+  command.add_flag("--land", route.options.land,
+                   "end the mission with a landing below the last waypoint");
+  command
+      .add_option("--home-altitude", route.options.home_altitude_m,
+                  "altitude of home above sea level (m, default: the ground below the start)")
+      ->type_name("M")
+      ->check(number_from(-1e4, 1e5));
+  command
+      .add_option("--max-items", route.options.max_items,
+                  "maximum number of mission items; waypoints are dropped while the route stays "
+                  "valid (default: no limit)")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1'000'000));
+  add_plugin_path(command, route.overrides);
+}
+
+void finish_options(RouteExport& route) {
+  route.options.loiters = route.arcs == "loiter";
+  route.options.altitude = altitudes().at(route.altitude);
+  if (const std::string problem = route.options.problem(); !problem.empty()) {
+    throw CLI::ValidationError(problem);
+  }
+}
+
+std::optional<host::Exported> exported(const RouteExport& route,
+                                       const std::optional<std::string>& out) {
+  const host::StoredResult stored = host::read_result(route.result, route.overrides);
+  for (const std::string& changed : stored.changed) {
+    warn(changed + " has changed since the result was written");
+  }
+  expect_apart(out, "-o", files_of(stored));
+  std::optional<host::ExportSource> source = source_of(stored, route.flight);
+  if (!source) {
+    say(stored.file + " contains no " + (route.flight ? "flight" : "accepted route"));
+    return std::nullopt;
+  }
+  const host::Config config = host::load_config(stored.pipeline, stored.overrides);
+  const host::Mission mission = host::build_mission(config, 1);
+  source->name =
+      config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
+  if (route.flight) {
+    source->events = host::build_events(config, mission);
+  }
+  host::Exported exported = host::export_route(mission, *source, route.options);
+  for (const std::string& message : exported.messages) {
+    say(message);
+  }
+  return exported.text ? std::optional(std::move(exported)) : std::nullopt;
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "commands.hpp"
+#include "host/import_export/export.hpp"
+
+namespace altiplan::cli {
+
+/// What `export` and `upload` have in common: a result's route as the items of a mission.
+struct RouteExport {
+  std::string result;
+  std::string altitude = "sea";
+  std::string arcs = "points";
+  bool flight = false;
+  host::ExportOptions options;
+  host::Overrides overrides;
+};
+
+/// Adds the result and the options of its items.
+void add_route_export(CLI::App& command, RouteExport& route);
+/// Ends the options; throws CLI::ValidationError where they cannot be combined.
+void finish_options(RouteExport& route);
+
+/// Judges and writes the route, and reports the verdict on stderr. None: there is no route, or it
+/// would not be valid as written. `out`, if it is a file, must not be one of those that are read.
+std::optional<host::Exported> exported(const RouteExport& route,
+                                       const std::optional<std::string>& out);
+}  // namespace altiplan::cli
