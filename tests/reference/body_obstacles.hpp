@@ -157,7 +157,9 @@ class GroundLayer final : public Environment {
   /// A bound that says nothing: all is left to the test of volumes.
   double do_clearance(const Vec3&) const override { return -kInfinity; }
   bool do_blocked(const Vec3&, const Vec3&, double) const override { return true; }
-  bool do_meets(const SweptVolume& volume) const override { return kit::meets_ground(volume, *field_); }
+  bool do_meets(const SweptVolume& volume) const override {
+    return kit::meets_ground(volume, *field_);
+  }
 
   std::shared_ptr<const HeightField> field_;
 };

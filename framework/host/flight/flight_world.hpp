@@ -34,8 +34,8 @@ class FlightWorld {
   const std::set<std::string>& fresh() const { return fresh_; }
   void route_is_new() { fresh_.clear(); }
 
-  /// Id of the obstacle that the leg touches in the true world, or null: layers by the sphere in the
-  /// vehicle, moving obstacles by the one around it.
+  /// Id of the obstacle that the leg touches in the true world, or null: layers by the sphere in
+  /// the vehicle, moving obstacles by the one around it.
   const std::string* contact(const Vec3& a, double t0, const Vec3& b, double t1,
                              const Vehicle& vehicle) const;
   /// Minimum distance between the leg and anything in the true world, if below `least`; signed as
