@@ -43,7 +43,8 @@ bool meets_below(const SweptVolume& volume, const GroundPiece& piece, double hal
 
 bool meets_ground(const SweptVolume& volume, const HeightField& field) {
   const Box& box = volume.box();
-  const auto& [dx, dy] = field.spacing();
+  const double dx = field.spacing()[0];
+  const double dy = field.spacing()[1];
   const auto& [left, south] = field.origin();
   const auto columns = cells_near(box.min.x(), box.max.x(), left, dx, field.columns());
   const auto rows = cells_near(box.min.y(), box.max.y(), south, dy, field.rows());
