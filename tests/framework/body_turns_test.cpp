@@ -118,7 +118,7 @@ void compare(const char* name, int worlds, std::uint64_t seed, const Drawn& draw
         const Gap gap = gap_of(obstacles, body, flight);
         const std::optional<Approach> before =
             flight.before ? std::optional<Approach>(*flight.before) : std::nullopt;
-        const bool met = !body_ok(before, flight.leg, request);
+        const bool met = body_meets(before, flight.leg, request) != nullptr;
         EXPECT_TRUE(count(tally, gap, met))
             << name << ", scale " << scale << ", world " << world << ", query " << n << ": met "
             << met << ", gap " << double(gap.low) << " to " << double(gap.high) << '\n'

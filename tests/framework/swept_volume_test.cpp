@@ -99,7 +99,8 @@ void compare(Kind kind, int worlds, std::uint64_t seed, const Make& make) {
         const Query query = random_query(draw, obstacles, body, scale);
         const Gap gap = query.gap(obstacles);
         const bool by_layer = query.meets(*obstacles.layer);
-        const bool by_judge = !body_ok(std::nullopt, Leg::straight(query.a, query.b), request);
+        const bool by_judge =
+            body_meets(std::nullopt, Leg::straight(query.a, query.b), request) != nullptr;
         const bool is_right = count(tally, gap, by_layer) & count(tally, gap, by_judge);
         EXPECT_TRUE(is_right) << name << ", scale " << scale << ", world " << world << ", query "
                               << n << ": layer " << by_layer << ", judge " << by_judge << ", gap "

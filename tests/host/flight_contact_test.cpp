@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "altiplan/body.hpp"
 #include "flight_scene.hpp"
 #include "host/flight/track_judge.hpp"
 
@@ -100,6 +101,22 @@ void expect_all_met(const std::function<void(Scene&)>& commanded) {
   commanded(scene);
   scene.setup.events = {moving_in(scene, place)};
   expect_met_at_once(scene.setup, place, 10);
+}
+
+TEST(FlightContact, AWallThatTheBodyAloneTouches) {
+  for (const double gap : {14.0, 16.0}) {
+    SCOPED_TRACE(gap);
+    Scene scene;
+    scene.follow_alone();
+    scene.setup.request.vehicle.body = std::make_shared<Body>(
+        Body{{box_part({10, 30, 2}, {0, 0, 0})}});  // 30 m wide: 15 m to each side
+    const Vec3 near(8000, 15000 + gap, 500);
+    scene.hide(layer("wall", BoxShape{{near, near + Vec3(20, 5, 20)}}));
+    const FlightResult result = fly(scene.setup);
+    EXPECT_EQ(result.status, gap < 15 ? RunStatus::collided : RunStatus::solved) << result.message;
+    EXPECT_EQ(result.collisions, gap < 15 ? 1 : 0);
+    expect_judged_alike(result, scene.setup);
+  }
 }
 
 TEST(FlightContact, APopUpOverTheVehicleThatFollowsTheRoute) {

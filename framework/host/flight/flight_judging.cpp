@@ -18,17 +18,19 @@ void Flight::fly_leg(const State& next) {
          leg_violations(before_, a, b, truth_request_, result_.track.size() - 1)) {
       result_.check.violations.push_back(std::move(violation));
     }
-    before_ = onward(before_, a);
   }
   result_.track.emplace_back(t1, b);
   state_ = next;
   end_on_contact(a, t0, b, t1);
+  if (a != b) {
+    before_ = onward(before_, a);
+  }
   meet_events();  // at the goal too: an obstacle may appear there
 }
 
 void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) {
   world_.flown(a, t0, b, t1);
-  const std::string* met = world_.contact(a, t0, b, t1, request_.vehicle);
+  const std::string* met = world_.contact(before_, a, t0, b, t1, truth_request_);
   if (met == nullptr || ended_) {  // events after the end of the flight do not count
     return;
   }

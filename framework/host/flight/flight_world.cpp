@@ -257,9 +257,14 @@ const std::vector<SensedObstacle>& FlightWorld::sensed(const Vec3& p, double tim
   return sensed_;
 }
 
-const std::string* FlightWorld::contact(const Vec3& a, double t0, const Vec3& b, double t1,
-                                        const Vehicle& vehicle) const {
+const std::string* FlightWorld::contact(const std::optional<Approach>& before, const Vec3& a,
+                                        double t0, const Vec3& b, double t1,
+                                        const Request& request) const {
+  const Vehicle& vehicle = request.vehicle;
   if (const Layer* layer = truth_.blocked_by(a, b, vehicle.radius_m)) {
+    return &layer->id;
+  }
+  if (const Layer* layer = body_meets(before, Leg::straight(a, b), request)) {
     return &layer->id;
   }
   for (const MovingObstacle& obstacle : truth_.moving()) {

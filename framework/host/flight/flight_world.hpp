@@ -34,10 +34,10 @@ class FlightWorld {
   const std::set<std::string>& fresh() const { return fresh_; }
   void route_is_new() { fresh_.clear(); }
 
-  /// Id of the obstacle that the leg touches in the true world, or null: layers by the sphere in
-  /// the vehicle, moving obstacles by the one around it.
-  const std::string* contact(const Vec3& a, double t0, const Vec3& b, double t1,
-                             const Vehicle& vehicle) const;
+  /// Id of the obstacle that the vehicle touches on a leg in the true world, or null: moving
+  /// obstacles by the sphere around its body. `request` is that of the true world.
+  const std::string* contact(const std::optional<Approach>& before, const Vec3& a, double t0,
+                             const Vec3& b, double t1, const Request& request) const;
   /// Minimum distance between the leg and anything in the true world, if below `least`; signed as
   /// in leg_clearance: minus the depth inside an obstacle.
   double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const;

@@ -29,7 +29,7 @@ class Replay {
     }
     std::optional<Approach> before = request_.before_start(track.front().second);
     bool touching = false;
-    note_contact(track.front(), track.front(), 0, touching);
+    note_contact(before, track.front(), track.front(), 0, touching);
     for (std::size_t i = 0; i + 1 < track.size(); ++i) {
       meet_events(track[i], i, touching);
       judge_leg(before, track[i], track[i + 1], i, touching);
@@ -63,7 +63,7 @@ class Replay {
       event = events_.erase(event);
     }
     if (world_differs) {
-      note_contact(here, here, at, touching);
+      note_contact(std::nullopt, here, here, at, touching);
     }
   }
 
@@ -83,14 +83,14 @@ class Replay {
         found().push_back(std::move(violation));
       }
     }
-    note_contact(from, to, at, touching);
+    note_contact(before, from, to, at, touching);
   }
 
   /// A contact that continues from point to leg to point counts once.
-  void note_contact(const std::pair<double, Vec3>& from, const std::pair<double, Vec3>& to,
-                    std::size_t at, bool& touching) {
+  void note_contact(const std::optional<Approach>& before, const std::pair<double, Vec3>& from,
+                    const std::pair<double, Vec3>& to, std::size_t at, bool& touching) {
     const std::string* met =
-        world_.contact(from.second, from.first, to.second, to.first, request_.vehicle);
+        world_.contact(before, from.second, from.first, to.second, to.first, request_);
     world_.flown(from.second, from.first, to.second, to.first);
     if (met != nullptr && !touching) {
       ++verdict_.collisions;

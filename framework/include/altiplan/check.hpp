@@ -34,7 +34,16 @@ ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Leg& leg,
 ALTIPLAN_API bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b,
                           const Request& request);
 
-/// True if the vehicle's body, if it has one, keeps off the world's layers on the leg.
+/// The layer that the vehicle's body meets on a leg, or null; null without a body.
+///
+/// On a straight leg the attitude is constant. At its beginning the body turns from that of the
+/// approach by the shortest rotation (both ways if it reverses); along a turn it yaws with it,
+/// banked by atan(speed² / (g radius)), and rolls at its ends. A body whose heading nothing gives
+/// (a first leg straight up) must fit at any. On a leg of no length nothing gives an attitude.
+ALTIPLAN_API const Layer* body_meets(const std::optional<Approach>& before, const Leg& leg,
+                                     const Request& request);
+
+/// True if it meets none; at less cost far from obstacles.
 ALTIPLAN_API bool body_ok(const std::optional<Approach>& before, const Leg& leg,
                           const Request& request);
 

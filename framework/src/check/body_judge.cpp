@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/attributed.hpp"
+#include "altiplan/check.hpp"
 
 #include "pieces.hpp"
 
@@ -24,6 +25,7 @@ struct Attitude {
   double pitch = 0;
   double bank = 0;  ///< positive: the right side is down
 
+  bool operator==(const Attitude&) const = default;
   Matrix3d rotation() const {
     return (AngleAxisd(yaw.value_or(0), Vec3::UnitZ()) * AngleAxisd(-pitch, Vec3::UnitY()) *
             AngleAxisd(bank, Vec3::UnitX()))
@@ -34,15 +36,15 @@ struct Attitude {
 /// Yaw and pitch on a straight path with that displacement, at a height.
 Attitude attitude_on(const Vec3& way, double z, const Request& request) {
   const Body& body = *request.vehicle.body;
-  const double run = way.head<2>().norm();
-  const auto ground_speed_there =
-      run > 0 ? ground_speed(way, request.air_speed(), request.wind.at(z)) : std::nullopt;
   Attitude attitude{body.yaw, 0, 0};
   if (!attitude.yaw && has_heading(way)) {
     const auto into_air = request.vehicle.wing ? request.heading_on(way, z) : std::nullopt;
     attitude.yaw = into_air.value_or(std::atan2(way.y(), way.x()));
   }
   if (body.pitches) {
+    const double run = way.head<2>().norm();
+    const auto ground_speed_there =
+        run > 0 ? ground_speed(way, request.air_speed(), request.wind.at(z)) : std::nullopt;
     const double through_air =
         ground_speed_there ? run * request.air_speed() / *ground_speed_there : run;
     attitude.pitch = std::atan2(way.z(), through_air);
@@ -63,7 +65,8 @@ class BodyOnLeg {
   }
 
   bool meets(const Environment& layer) const {
-    return std::any_of(sweeps_.begin(), sweeps_.end(), [&](const Sweep& sweep) {
+    // The last first: lines are checked at less cost than the rotations before them.
+    return std::any_of(sweeps_.rbegin(), sweeps_.rend(), [&](const Sweep& sweep) {
       return std::any_of(body_.parts.begin(), body_.parts.end(), [&](const BodyPart& part) {
         return part_meets(layer, part, sweep, 0, 1);
       });
@@ -87,8 +90,8 @@ class BodyOnLeg {
     const bool is_short = length <= std::max(16 * outer, 1.0) || middle <= begin || middle >= end;
     // Long volumes have many obstacles about them, and rotations take several: the sphere around
     // the part tells most.
-    if ((!is_short || sweep.bend > 0) &&
-        !layer.blocked(ends.front().at, ends.back().at, outer + grown + kBodyTolerance)) {
+    const double reach = outer + (sweep.turn ? grown : 0) + kBodyTolerance;
+    if ((!is_short || sweep.bend > 0) && !layer.blocked(ends.front().at, ends.back().at, reach)) {
       return false;
     }
     if (is_short) {
@@ -114,21 +117,23 @@ class BodyOnLeg {
       return;
     }
     Attitude last = attitude_before(before, a);
-    double begin = 0;
-    std::vector<double> ends = request_.wind.crossings(a.z(), b.z());
-    ends.push_back(1);
-    for (const double end : ends) {
-      const Vec3 from = begin == 0 ? a : Vec3(a + begin * way);
-      const Vec3 to = end == 1 ? b : Vec3(a + end * way);
+    Vec3 from = a;
+    bool is_first = true;
+    const auto add_piece = [&](const Vec3& to) {
       Attitude now = attitude_on(way, (from.z() + to.z()) / 2, request_);
       now.yaw = now.yaw ? now.yaw : last.yaw;
-      if (last.yaw || begin > 0) {
+      if (last.yaw || !is_first) {
         add_rotation(from, last, now);
       }
       add_line(from, to, now);
       last = now;
-      begin = end;
+      from = to;
+      is_first = false;
+    };
+    for (const double crossing : request_.wind.crossings(a.z(), b.z())) {
+      add_piece(a + crossing * way);
     }
+    add_piece(b);
   }
 
   Attitude attitude_before(const std::optional<Approach>& before, const Vec3& here) const {
@@ -144,43 +149,31 @@ class BodyOnLeg {
   }
 
   void add_line(const Vec3& from, const Vec3& to, const Attitude& attitude) {
-    if (attitude.yaw) {
-      const Matrix3d rotation = attitude.rotation();
-      sweeps_.push_back({[=](double t, std::vector<Placement>& all) {
-                           all.push_back({rotation, from + t * (to - from)});
-                         },
-                         0, 0});
-      return;
+    Sweep sweep{attitude.rotation(), from, to - from};
+    if (!attitude.yaw) {
+      sweep.headings = 32;
+      sweep.between = bend_of(2 * kPi / sweep.headings);
     }
-    // The hull of the body at any heading.
-    constexpr int kHeadings = 32;
-    std::vector<Matrix3d> rotations;
-    for (int n = 0; n < kHeadings; ++n) {
-      rotations.push_back(Attitude{2 * kPi * n / kHeadings, attitude.pitch, 0}.rotation());
-    }
-    sweeps_.push_back({[=](double t, std::vector<Placement>& all) {
-                         for (const Matrix3d& rotation : rotations) {
-                           all.push_back({rotation, from + t * (to - from)});
-                         }
-                       },
-                       0, bend_of(2 * kPi / kHeadings)});
+    sweeps_.push_back(sweep);
   }
 
   /// Of a rotation by an angle about the reference point.
   double bend_of(double angle) const { return outer_ * angle * angle / 8; }
 
   void add_rotation(const Vec3& at, const Attitude& from, const Attitude& to) {
+    if (from == to) {
+      return;
+    }
     const Matrix3d first = from.rotation();
     const AngleAxisd turn(to.rotation() * first.transpose());
     if (turn.angle() < 1e-9) {
       return;
     }
-    const bool reverses = turn.angle() > kReversal;
-    const double angle = reverses ? 2 * kPi : turn.angle();
-    sweeps_.push_back({[=, axis = turn.axis()](double t, std::vector<Placement>& all) {
-                         all.push_back({AngleAxisd(t * angle, axis) * first, at});
-                       },
-                       bend_of(angle), 0});
+    Sweep sweep{first, at};
+    sweep.angle = turn.angle() > kReversal ? 2 * kPi : turn.angle();
+    sweep.axis = turn.axis();
+    sweep.bend = bend_of(sweep.angle);
+    sweeps_.push_back(sweep);
   }
 
   void add_turn(const std::optional<Approach>& before, const Leg& leg) {
@@ -194,15 +187,13 @@ class BodyOnLeg {
       add_rotation(leg.from, last, level);
     }
     add_rotation(leg.from, level, banked);
-    const double yaw_rate = body_.yaw ? 0 : leg.turn;
-    sweeps_.push_back({[=](double t, std::vector<Placement>& all) {
-                         Attitude here = banked;
-                         *here.yaw += t * yaw_rate;
-                         all.push_back({here.rotation(), leg.at(t)});
-                       },
-                       leg.sagitta() + bend_of(yaw_rate), 0});
-    *level.yaw += yaw_rate;
-    *banked.yaw += yaw_rate;
+    Sweep sweep{banked.rotation(), leg.from};
+    sweep.turn = leg;
+    sweep.angle = body_.yaw ? 0 : leg.turn;
+    sweep.bend = leg.sagitta() + bend_of(sweep.angle);
+    sweeps_.push_back(sweep);
+    *level.yaw += sweep.angle;
+    *banked.yaw += sweep.angle;
     add_rotation(leg.to, banked, level);
   }
 
@@ -212,22 +203,39 @@ class BodyOnLeg {
   std::vector<Sweep> sweeps_;
 };
 
-/// True if the layer may come that near to the leg.
-bool is_near(const Environment& layer, const Leg& leg, double reach) {
-  return leg.turns()
-             ? !every_piece(leg,
-                            [&](const Piece& piece) {
-                              return layer.blocked(piece.a, piece.b, reach + piece.e)
-                                         ? piece.e < reach ? Verdict::violated : Verdict::halve
-                                         : Verdict::kept;
-                            })
-             : layer.blocked(leg.from, leg.to, reach);
+/// True if the layer may come that near to the turn.
+bool is_near(const Environment& layer, const Leg& turn, double reach) {
+  return !every_piece(turn, [&](const Piece& piece) {
+    return layer.blocked(piece.a, piece.b, reach + piece.e)
+               ? piece.e < reach ? Verdict::violated : Verdict::halve
+               : Verdict::kept;
+  });
 }
 }  // namespace
+
+void Sweep::place(double t, std::vector<Placement>& all) const {
+  const Vec3 at = turn ? turn->at(t) : Vec3(from + t * way);
+  if (headings > 1) {
+    for (int n = 0; n < headings; ++n) {
+      all.push_back({AngleAxisd(2 * kPi * n / headings, Vec3::UnitZ()) * rotation, at});
+    }
+  } else if (angle != 0 && t > 0) {
+    all.push_back({AngleAxisd(t * angle, axis) * rotation, at});
+  } else {
+    all.push_back({rotation, at});
+  }
+}
 
 std::vector<Sweep> body_sweeps(const std::optional<Approach>& before, const Leg& leg,
                                const Request& request) {
   return BodyOnLeg(before, leg, request).sweeps();
+}
+
+bool body_ok(const std::optional<Approach>& before, const Leg& leg, const Request& request) {
+  const double reach = request.vehicle.reach_m() + kBodyTolerance;
+  return request.vehicle.body == nullptr ||
+         (!leg.turns() && request.world->blocked_by(leg.from, leg.to, reach) == nullptr) ||
+         body_meets(before, leg, request) == nullptr;
 }
 
 const Layer* body_meets(const std::optional<Approach>& before, const Leg& leg,
@@ -247,7 +255,7 @@ const Layer* body_meets(const std::optional<Approach>& before, const Leg& leg,
         attributed([&] { return "the layer '" + layer.id + "' (" + layer.plugin + ")"; },
                    [&] {
                      const Environment& environment = *layer.environment;
-                     if (!is_near(environment, leg, reach)) {
+                     if (leg.turns() && !is_near(environment, leg, reach)) {
                        return false;
                      }
                      if (!body) {

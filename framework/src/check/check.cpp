@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "altiplan/attributed.hpp"
-#include "body_judge.hpp"
 #include "leg_judge.hpp"
 #include "words.hpp"
 
@@ -23,10 +22,6 @@ bool leg_ok(const std::optional<Approach>& before, const Leg& leg, const Request
   const auto note = [&](const auto&) { return ok = false; };
   LegJudge(before, leg, request, 0, note).judge();
   return ok;
-}
-
-bool body_ok(const std::optional<Approach>& before, const Leg& leg, const Request& request) {
-  return body_meets(before, leg, request) == nullptr;
 }
 
 bool turn_ok(const Approach& before, const Vec3& a, const Vec3& b, const Request& request) {

@@ -5,8 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "altiplan/check.hpp"
 #include "altiplan/request.hpp"
-#include "body_judge.hpp"
+#include "altiplan/swept_volume.hpp"
 #include "leg_parts.hpp"
 #include "pieces.hpp"
 #include "words.hpp"

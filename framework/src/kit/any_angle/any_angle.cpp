@@ -126,7 +126,7 @@ void AnyAngleSearch::expand(Node s) {
     const auto& [x, y, z] = kOffsets[std::size_t(d)];
     return parts[0][x] + parts[1][y] + parts[2][z];
   };
-  const bool untested = cells_decide_ && settings_.sight == Sight::lazy;
+  const bool untested = !has_limits_ && settings_.sight == Sight::lazy;
   const DirectionMask free = steps(key);
   if (free != lattice_steps_) {
     rules_.count_blocked(__builtin_popcount(lattice_steps_ & ~free));
@@ -230,7 +230,7 @@ std::optional<Approach> AnyAngleSearch::before(Node n) const {
 }
 
 bool AnyAngleSearch::keeps_limits(Node a, Node b) {
-  return cells_decide_ || rules_.keeps_limits(before(a), position(a), position(b));
+  return !has_limits_ || rules_.keeps_limits(before(a), position(a), position(b));
 }
 
 bool AnyAngleSearch::sees(Node a, Node b) {
@@ -241,8 +241,15 @@ bool AnyAngleSearch::sees(Node a, Node b) {
   if (!by_cells) {
     return rules_.any_leg_ok(printed ? std::nullopt : before(a), position(a), position(b));
   }
-  return line_of_sight(cell_of(a), cell_of(b)) &&
-         (cells_decide_ || printed || rules_.keeps_rules(before(a), position(a), position(b)));
+  const Cell from = cell_of(a);
+  const Cell to = cell_of(b);
+  const bool is_wide = rules_.wide_grid() != nullptr && memory_.wide_sight.line_of_sight(from, to);
+  if (is_wide && !has_limits_) {
+    return true;
+  }
+  return line_of_sight(from, to) &&
+         (cells_decide_ || printed ||
+          rules_.keeps_rules(before(a), position(a), position(b), is_wide));
 }
 
 bool AnyAngleSearch::line_of_sight(const Cell& a, const Cell& b) {

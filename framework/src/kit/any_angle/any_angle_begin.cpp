@@ -8,11 +8,12 @@
 namespace altiplan::kit {
 namespace {
 
-/// True if a leg is free whenever its cells are, whatever precedes it.
-bool cells_alone_decide(const Request& request) {
+/// True if anything but obstacles may refuse a leg.
+bool has_limits(Request request) {
+  request.vehicle.body = nullptr;
   const Limits& limits = request.limits;
-  return MoveRules::cells_decide(request) && limits.max_slope() >= kPi / 2 && limits.min_leg <= 0 &&
-         limits.max_leg == kInfinity;
+  return !MoveRules::cells_decide(request) || limits.max_slope() < kPi / 2 || limits.min_leg > 0 ||
+         limits.max_leg < kInfinity;
 }
 
 /// Bound of the rounding error of a path's cost, for more legs than most have: routes are measured
@@ -43,11 +44,15 @@ AnyAngleSearch::AnyAngleSearch(const Request& request, const Lattice& lattice, M
       open_(memory.open),
       watch_(request.budget),
       numbers_(nodes.grid->spec().counts),
-      cells_decide_(cells_alone_decide(request)),
+      has_limits_(has_limits(request)),
+      cells_decide_(!has_limits_ && request.vehicle.body == nullptr),
       steps_are_free_(cells_decide_ && nodes.corner == CornerRule::free_box),
       lattice_steps_(lattice.steps()) {
   progress_ = settings.before;
   memory_.sight.prepare(rules_.shared_grid());
+  if (rules_.wide_grid() != nullptr) {
+    memory_.wide_sight.prepare(rules_.wide_grid());
+  }
 }
 
 /// The route's start or goal at p; its number is `beyond` if it is no node.

@@ -41,9 +41,11 @@ bool MoveRules::cells_decide(const Request& request) {
          request.limits.max_route_length == kInfinity;
 }
 
-std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice& lattice) {
+namespace {
+std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice& lattice,
+                                           double clearance) {
   GridSpec spec = lattice.spec();
-  spec.inflation = std::max(request.limits.min_clearance, request.vehicle.radius_m);
+  spec.inflation = clearance;
   const auto& layers = request.world->layers();
   const bool own_cells = std::all_of(layers.begin(), layers.end(), [](const Layer& layer) {
     return layer.environment->info().native_grid.has_value();
@@ -52,6 +54,12 @@ std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice
                                                                   : GridSpec::Rule::touched;
   return request.world->voxels(spec, request.budget);
 }
+}  // namespace
+
+std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice& lattice) {
+  return occupancy(request, lattice,
+                   std::max(request.limits.min_clearance, request.vehicle.radius_m));
+}
 
 MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck check,
                      CornerRule corner)
@@ -59,8 +67,8 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       lattice_(lattice),
       corner_(corner),
       needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-      reach_(request.vehicle.reach_m() + kBodyTolerance),
       spare_(needed_ + request.world->over_approximation() + kLengthTolerance),
+      reach_(std::max(request.vehicle.reach_m() + kBodyTolerance, spare_)),
       asks_world_(check == MoveCheck::exact) {
   const Limits& limits = request.limits;
   const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
@@ -68,6 +76,9 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
               cosine(limits.max_turn_space)};
   if (check == MoveCheck::cells) {
     grid_ = occupancy(request, lattice);
+    if (request.vehicle.body != nullptr) {
+      wide_grid_ = occupancy(request, lattice, reach_);
+    }
   }
   has_ground_rules_ = has_ground_rules(request);
   judges_pairs_ = request.judges_pairs();
@@ -315,12 +326,15 @@ bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const
     ++refused_[by_cells];
     return false;
   }
-  return keeps_rules(before, lattice_.position(a), lattice_.position(b));
+  const bool is_wide = wide_grid_ != nullptr && line_of_sight(*wide_grid_, a, b);
+  return keeps_rules(before, lattice_.position(a), lattice_.position(b), is_wide);
 }
 
-bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+                            bool is_wide) {
   return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
-         admits(before, a, b) && (!asks_world_ || keeps_off(*request_.world, a, b));
+         (is_wide ? constraints_admit(before, a, b) : admits(before, a, b)) &&
+         (!asks_world_ || keeps_off(*request_.world, a, b));
 }
 
 bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,

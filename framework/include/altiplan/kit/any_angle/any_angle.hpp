@@ -105,6 +105,7 @@ struct AnyAngleMemory {
   ScratchArray<std::uint64_t> closed;  ///< one bit per node, laid out like the grid of the nodes
   BucketQueue open;
   FreeBlocks sight;
+  FreeBlocks wide_sight;  ///< in reach of the vehicle's body, if it has one
 
   /// Without the open list, rounded up.
   static constexpr std::size_t kBytesPerNode = 9;
@@ -228,6 +229,7 @@ class ALTIPLAN_API AnyAngleSearch {
   BucketQueue& open_;
   BudgetWatch watch_;
   BrickIndex numbers_;
+  bool has_limits_;      ///< more than obstacles refuses legs
   bool cells_decide_;    ///< a leg is free if its cells are
   bool steps_are_free_;  ///< the cells of a step are always free
   DirectionMask lattice_steps_;

@@ -112,10 +112,11 @@ class ALTIPLAN_API MoveRules {
   }
   bool leg_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
+    if (request_.vehicle.body != nullptr) {
+      return body_free(before, c, d, a, b, near_a, near_b);
+    }
     return place_free(c, d, a, b, near_a, near_b) &&
-           (!judges_pairs_ ||
-            (constraints_admit(before, a, b) &&
-             (is_clear_of_body(d, a, b, near_a, near_b) || body_fits(before, a, b))));
+           (!judges_pairs_ || constraints_admit(before, a, b));
   }
 
   /// True if the straight leg between the centres of two cells, for a vehicle that comes from
@@ -124,8 +125,10 @@ class ALTIPLAN_API MoveRules {
   /// never for obstacles: none extends into free cells.
   bool sees(const std::optional<Approach>& before, const Cell& a, const Cell& b);
 
-  /// The checks of `sees` apart from the cells.
-  bool keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  /// The checks of `sees` apart from the cells. `is_wide`: the leg is known to be free of obstacles
+  /// within reach of the vehicle's body.
+  bool keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
+                   bool is_wide = false);
   /// True if the leg satisfies the limits on length, climb and the turn before it.
   bool keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     return keeps_limits(before, a, b, (b - a).norm());
@@ -136,6 +139,9 @@ class ALTIPLAN_API MoveRules {
   /// The occupancy, with moves by cells; else null.
   const VoxelGrid* grid() const { return grid_.get(); }
   const std::shared_ptr<const VoxelGrid>& shared_grid() const { return grid_; }
+  /// With moves by cells and a body: through its free cells the body passes in any attitude. Else
+  /// null.
+  const std::shared_ptr<const VoxelGrid>& wide_grid() const { return wide_grid_; }
 
   /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
   /// that has a heading), with refusals counted per constraint.
@@ -189,15 +195,18 @@ class ALTIPLAN_API MoveRules {
   void find_gaps();
   bool constraints_admit(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   bool body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
-  bool is_clear_of_body(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
-                        KnownClearance& near_b) const;
+  void refuse_body(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
+  bool body_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
+                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b);
+  bool is_wide(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
+               KnownClearance& near_b) const;
 
   const Request& request_;
   const Lattice& lattice_;
   CornerRule corner_;
   double needed_;
-  double reach_;  ///< of the vehicle's body
   double spare_;  ///< clearance beyond half a leg that proves the leg free
+  double reach_;  ///< clearance in which the vehicle's body passes in any attitude
   bool asks_world_;
   struct {
     double climb = 0;
@@ -209,6 +218,7 @@ class ALTIPLAN_API MoveRules {
   bool judges_pairs_ = false;  ///< by constraints, or by the vehicle's body
   std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;
+  std::shared_ptr<const VoxelGrid> wide_grid_;
   World obstacles_;    ///< the layers that contain more than their ground
   World bare_ground_;  ///< the other layers
   std::optional<StepGround> ground_;
