@@ -98,7 +98,9 @@ class BodyOnLeg {
       if (!layer.meets({part, outer, ends, grown})) {
         return false;
       }
-      if (bend <= kBodyTolerance / 2) {
+      // The convex hull of both ends connects different points of the body too.
+      const double excess = bend + std::abs(sweep.angle) * (end - begin) * outer / 2;
+      if (excess <= kBodyTolerance / 2) {
         return true;
       }
       std::vector<Placement> half;
