@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "clip.hpp"
 
+#include <algorithm>
+#include <boost/geometry/algorithms/convert.hpp>
 #include <boost/geometry/algorithms/correct.hpp>
+#include <boost/geometry/algorithms/difference.hpp>
 #include <boost/geometry/algorithms/intersection.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -42,7 +45,56 @@ kit::Ring from_boost(const Ring& ring) {
   }
   return kit::without_repeats(result);
 }
+
+/// Prisms over the polygons; false if one of them touches itself.
+bool add_prisms(const std::vector<Polygon>& polygons, const Prism& like, std::vector<Prism>& to) {
+  for (const Polygon& piece : polygons) {
+    kit::Polygon polygon{from_boost(piece.outer()), {}};
+    for (const auto& hole : piece.inners()) {
+      polygon.holes.push_back(from_boost(hole));
+    }
+    if (!kit::polygon_problem(polygon).empty()) {
+      return false;
+    }
+    to.push_back({polygon.outline, polygon.holes, like.floor, like.ceiling});
+  }
+  return true;
+}
+
+/// Horizontally.
+bool is_outside(const Box& box, const Box& bounds) {
+  return (box.min.head<2>().array() >= bounds.max.head<2>().array()).any() ||
+         (box.max.head<2>().array() <= bounds.min.head<2>().array()).any();
+}
+bool is_inside(const Box& box, const Box& bounds) {
+  return (box.min.head<2>().array() >= bounds.min.head<2>().array()).all() &&
+         (box.max.head<2>().array() <= bounds.max.head<2>().array()).all();
+}
 }  // namespace
+
+Parts split(const Prism& prism, const Box& box) {
+  const Box area = bounds(Shape(prism));
+  if (is_inside(area, box)) {
+    return {{prism}, {}};
+  }
+  if (is_outside(area, box)) {
+    return {{}, {prism}};
+  }
+  // Boost takes no infinite coordinates.
+  const Box cut = box.intersected(area.grown(1));
+  const Polygon polygon = to_boost(prism);
+  Polygon rectangle;
+  bg::convert(bg::model::box<Point>({cut.min.x(), cut.min.y()}, {cut.max.x(), cut.max.y()}),
+              rectangle);
+  std::vector<Polygon> within;
+  std::vector<Polygon> beyond;
+  bg::intersection(polygon, rectangle, within);
+  bg::difference(polygon, rectangle, beyond);
+  Parts parts;
+  return add_prisms(within, prism, parts.within) && add_prisms(beyond, prism, parts.beyond)
+             ? parts
+             : Parts{{}, {prism}};
+}
 
 Clip::Clip(const Site& site) : bounds_(site.volume) {
   const Box layers = site.before->bounds();
@@ -63,18 +115,12 @@ Clip::Clip(const Site& site) : bounds_(site.volume) {
 
 std::vector<Shape> Clip::cut(const Shape& shape) {
   const Box box = bounds(shape);
-  bool outside = false;
-  bool inside = true;
-  for (int axis = 0; axis < 2; ++axis) {
-    outside |= box.max[axis] <= bounds_.min[axis] || box.min[axis] >= bounds_.max[axis];
-    inside &= box.min[axis] >= bounds_.min[axis] && box.max[axis] <= bounds_.max[axis];
-  }
   const Prism* prism = std::get_if<Prism>(&shape);
-  if (outside) {
+  if (is_outside(box, bounds_)) {
     ++dropped_;
     return {};
   }
-  if (inside || prism == nullptr) {
+  if (is_inside(box, bounds_) || prism == nullptr) {
     return {shape};
   }
   std::vector<Polygon> pieces;
@@ -82,19 +128,12 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
       to_boost(*prism),
       bg::model::box<Point>({bounds_.min.x(), bounds_.min.y()}, {bounds_.max.x(), bounds_.max.y()}),
       pieces);
-  std::vector<Shape> parts;
-  for (const Polygon& piece : pieces) {
-    kit::Polygon polygon{from_boost(piece.outer()), {}};
-    for (const auto& hole : piece.inners()) {
-      polygon.holes.push_back(from_boost(hole));
-    }
-    if (!kit::polygon_problem(polygon).empty()) {
-      return {shape};  // pieces that touch each other: the whole shape is equally correct
-    }
-    parts.emplace_back(Prism{polygon.outline, polygon.holes, prism->floor, prism->ceiling});
+  std::vector<Prism> parts;
+  if (!add_prisms(pieces, *prism, parts)) {
+    return {shape};  // pieces that touch each other: the whole shape is equally correct
   }
   ++(parts.empty() ? dropped_ : cut_);
-  return parts;
+  return {parts.begin(), parts.end()};
 }
 
 std::string Clip::note() const {

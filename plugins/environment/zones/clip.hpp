@@ -9,6 +9,14 @@
 
 namespace altiplan::zones {
 
+/// The parts of a prism within the horizontal bounds of a box and beyond them.
+struct Parts {
+  std::vector<Prism> within;
+  std::vector<Prism> beyond;
+};
+/// All of it is beyond if it cannot be cut into polygons that do not touch themselves.
+Parts split(const Prism& prism, const Box& box);
+
 /// Cuts shapes at the horizontal bounds of a world; heights are unchanged.
 class Clip {
  public:

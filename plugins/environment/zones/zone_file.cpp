@@ -7,6 +7,8 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/geojson.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "published.hpp"
 
 namespace altiplan::zones {
 namespace {
@@ -132,6 +134,29 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
   return result;
 }
+/// None for GeoJSON whose properties the scenario names, and for other kinds of files.
+std::optional<kit::Airspace> read_published(const std::string& file, const FileRules& rules) {
+  const std::string text = kit::read_file(file);
+  const bool is_json = text.find_first_of("{<") == text.find_first_not_of("\xEF\xBB\xBF \t\r\n") &&
+                       text.find('{') < text.find('<');
+  if (is_json && rules.name_properties()) {
+    return std::nullopt;
+  }
+  std::optional<kit::Airspace> airspace = kit::read_airspace(file, text);
+  if (airspace && rules.name_properties()) {
+    throw Error(file + ": has no property '" +
+                (rules.floor + rules.ceiling + rules.from + rules.until + rules.type) +
+                "': properties are GeoJSON's");
+  }
+  if (airspace && rules.kind == Kind::keep_in) {
+    throw Error(file + ": is published airspace (" + kit::format_name(airspace->format) +
+                "), expected file_kind: keep_out");
+  }
+  if (airspace && airspace->zones.empty()) {
+    throw Error(file + ": contains no zone");
+  }
+  return airspace;
+}
 }  // namespace
 
 void TypeRule::describe(Fields& f) {
@@ -158,21 +183,31 @@ void FileRules::describe(Fields& f) {
 }
 
 FileZones read_zone_file(const std::string& file, const FileRules& rules) {
+  if (auto airspace = read_published(file, rules)) {
+    FileZones result;
+    result.airspace = std::move(airspace);
+    return result;
+  }
   return kit::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
 }
 
-Frame frame_of(const std::vector<FileZone>& zones) {
+Frame frame_of(const FileZones& file) {
+  std::vector<kit::Point2> corners;
+  if (file.airspace) {
+    corners = corners_of(*file.airspace);
+  }
+  for (const FileZone& zone : file.zones) {
+    const kit::Ring& outline = zone.zone.polygon.outline;
+    corners.insert(corners.end(), outline.begin(), outline.end());
+    if (outline.empty()) {
+      corners.push_back(zone.zone.centre);
+    }
+  }
   kit::Point2 low{180, 90};
   double north = -90;
-  const auto take = [&](const kit::Point2& p) {
+  for (const kit::Point2& p : corners) {
     low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
     north = std::max(north, p[1]);
-  };
-  for (const FileZone& zone : zones) {
-    std::for_each(zone.zone.polygon.outline.begin(), zone.zone.polygon.outline.end(), take);
-    if (zone.zone.polygon.outline.empty()) {
-      take(zone.zone.centre);
-    }
   }
   return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
 }

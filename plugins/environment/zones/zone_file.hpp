@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/frame.hpp"
+#include "altiplan/kit/formats/airspace.hpp"
 #include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/params.hpp"
 
@@ -34,6 +35,7 @@ struct FileRules {
   std::vector<TypeRule> types;
 
   void describe(Fields& f);
+  bool name_properties() const { return !(floor + ceiling + from + until + type).empty(); }
 };
 
 struct FileZone {
@@ -43,13 +45,15 @@ struct FileZone {
 };
 
 struct FileZones {
+  std::optional<kit::Airspace> airspace;  ///< of a file of that kind, which has no other zones
   std::vector<FileZone> zones;
   std::vector<std::string> notes;
 };
 
-/// Reads GeoJSON, KML, or the fence from a ground station's file. Throws Error naming the file.
+/// Reads published airspace, GeoJSON, KML, or the fence from a ground station's file. Throws Error
+/// naming the file.
 FileZones read_zone_file(const std::string& file, const FileRules& rules);
 
 /// A frame for a world that has none: its origin is the south-west corner of the zones.
-Frame frame_of(const std::vector<FileZone>& zones);
+Frame frame_of(const FileZones& file);
 }  // namespace altiplan::zones

@@ -6,7 +6,9 @@
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
 #include "clip.hpp"
+#include "ground_zones.hpp"
 #include "keep_in.hpp"
+#include "published.hpp"
 #include "zone_file.hpp"
 
 namespace altiplan::zones {
@@ -86,6 +88,7 @@ struct Params {
   std::vector<ZoneParams> list;
   std::optional<Path> file;
   FileRules rules;
+  PublishedRules published;
   bool clip = false;
   double horizon_s = 3600;
 
@@ -93,9 +96,12 @@ struct Params {
     f("list", list).doc("zones defined in the scenario");
     f("file", file)
         .doc(
-            "zones from a file: GeoJSON (Polygons and MultiPolygons in WGS 84), KML (Polygons), "
-            "or the fence of a .plan or of QGC WPL 110 (.waypoints, .txt)");
+            "zones from a file, whose content tells its kind: published airspace (ED-269, ED-318, "
+            "AIXM 5.1, OpenAir, UAS facility maps of the FAA), GeoJSON (Polygons and "
+            "MultiPolygons in WGS 84), KML (Polygons), or the fence of a .plan or of QGC WPL 110 "
+            "(.waypoints, .txt)");
     rules.describe(f);
+    published.describe(f);
     f("clip", clip)
         .doc(
             "drop keep-out zones outside the world's bounds (the volume, else the preceding "
@@ -122,6 +128,7 @@ class Zones final : public Environment {
     double horizon_s;
     std::optional<Frame> frame;
     std::vector<Shape> shapes[2];  // by kind
+    std::vector<GroundPrism> above_ground;
     Drawing drawing;
     std::size_t inactive = 0;
     std::vector<std::string> notes;
@@ -144,7 +151,7 @@ class Zones final : public Environment {
           throw ParameterError("list." + std::to_string(n), error.what());
         }
       }
-      notes.push_back(std::to_string(shapes[0].size()) + " keep-out and " +
+      notes.push_back(std::to_string(shapes[0].size() + above_ground.size()) + " keep-out and " +
                       std::to_string(shapes[1].size()) + " keep-in zones, " +
                       std::to_string(inactive) + " not active");
     }
@@ -192,13 +199,16 @@ class Zones final : public Environment {
       const std::string& name = params.file->text;
       FileZones file = read_zone_file(name, params.rules);
       notes.insert(notes.end(), file.notes.begin(), file.notes.end());
-      if (!site.frame.has_position() && !file.zones.empty()) {
-        site.frame = frame_of(file.zones);
+      if (!site.frame.has_position() && (file.airspace || !file.zones.empty())) {
+        site.frame = frame_of(file);
         frame = site.frame;
       }
       std::optional<Clip> clip;
       if (params.clip) {
         clip.emplace(site);
+      }
+      if (file.airspace) {
+        add_published(*file.airspace, params, clip ? &*clip : nullptr);
       }
       for (const FileZone& from : file.zones) {
         const kit::MissionZone& zone = from.zone;
@@ -219,6 +229,22 @@ class Zones final : public Environment {
       }
       if (clip) {
         notes.push_back(clip->note());
+      }
+    }
+
+    void add_published(const kit::Airspace& airspace, const Params& params, Clip* clip) {
+      Published published =
+          published_zones(airspace, params.published, site, params.horizon_s, clip);
+      notes.insert(notes.end(), published.notes.begin(), published.notes.end());
+      inactive += published.inactive;
+      for (PublishedZone& zone : published.zones) {
+        if (zone.on_ground) {
+          drawing.shapes.push_back(
+              {drawn(*site.before, zone.above), Drawn::Role::keep_out, zone.name});
+          above_ground.push_back(std::move(zone.above));
+        } else {
+          add(Kind::keep_out, zone.prism, zone.name);
+        }
       }
     }
 
@@ -274,22 +300,32 @@ class Zones final : public Environment {
   explicit Zones(Reader reader)
       : keep_out_(std::move(reader.shapes[int(Kind::keep_out)])),
         keep_in_(std::move(reader.shapes[int(Kind::keep_in)])),
+        above_ground_(*reader.site.before, std::move(reader.above_ground)),
+        over_approximation_(above_ground_.over_approximation(reader.site.vehicle.radius_m)),
         drawing_(std::move(reader.drawing)),
         info_{std::move(reader.frame), {}, std::move(reader.threats), std::move(reader.notes)} {}
 
-  Box do_bounds() const override { return keep_in_.empty() ? keep_out_.bounds() : Box{}; }
+  Box do_bounds() const override {
+    return keep_in_.empty() ? keep_out_.bounds().united(above_ground_.bounds()) : Box{};
+  }
   double do_clearance(const Vec3& p) const override {
-    const double out = keep_out_.clearance(p);
-    return keep_in_.empty() ? out : std::min(out, keep_in_.clearance(p));
+    double least = keep_out_.clearance(p);
+    if (!above_ground_.empty()) {
+      least = std::min(least, above_ground_.clearance(p));
+    }
+    return keep_in_.empty() ? least : std::min(least, keep_in_.clearance(p));
   }
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    return keep_out_.blocked(a, b, r) || (!keep_in_.empty() && keep_in_.blocked(a, b, r));
+    return keep_out_.blocked(a, b, r) || above_ground_.blocked(a, b, r) ||
+           (!keep_in_.empty() && keep_in_.blocked(a, b, r));
   }
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
     keep_out_.near(p, reach, sink);
+    const int count = static_cast<int>(keep_out_.shapes().size());
+    above_ground_.near(p, reach, count, sink);
     if (!keep_in_.empty()) {
       Nearby outside = keep_in_.nearest(p);
-      outside.id = static_cast<int>(keep_out_.shapes().size());
+      outside.id = count + static_cast<int>(above_ground_.size());
       if (outside.distance <= reach) {
         sink(outside);
       }
@@ -297,25 +333,30 @@ class Zones final : public Environment {
   }
   void do_rasterize(VoxelGrid& grid) const override {
     keep_out_.rasterize(grid);
+    above_ground_.rasterize(grid);
     if (!keep_in_.empty()) {
       keep_in_.rasterize(grid);
     }
   }
-  double do_over_approximation() const override { return 0; }
+  double do_over_approximation() const override { return over_approximation_; }
   const LayerInfo& do_info() const override { return info_; }
   std::optional<Drawing> do_drawing() const override { return drawing_; }
   bool do_meets(const SweptVolume& volume) const override {
-    return keep_out_.meets(volume) || (!keep_in_.empty() && keep_in_.meets(volume));
+    return keep_out_.meets(volume) || above_ground_.meets(volume) ||
+           (!keep_in_.empty() && keep_in_.meets(volume));
   }
 
   kit::ObstacleSet keep_out_;
   KeepIn keep_in_;
+  GroundZones above_ground_;
+  double over_approximation_;
   Drawing drawing_;
   LayerInfo info_;
 };
 }  // namespace
 }  // namespace altiplan::zones
 
-ALTIPLAN_PLUGIN(
-    Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
-    "keep-out and keep-in zones: cylinders, polygons, GeoJSON, KML, fences, time windows")
+ALTIPLAN_PLUGIN(Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
+                "keep-out and keep-in zones: cylinders, polygons, published airspace, GeoJSON, "
+                "KML, fences, time "
+                "windows")

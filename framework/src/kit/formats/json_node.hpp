@@ -18,6 +18,7 @@ class JsonNode {
       : json_(&json), place_(std::move(place)) {}
 
   const std::string& place() const { return place_; }
+  const nlohmann::json& json() const { return *json_; }
   [[noreturn]] void wrong(const std::string& expected) const {
     throw Error((place_.empty() ? "" : place_ + ": ") + "expected " + expected + ", found " +
                 short_text(*json_));

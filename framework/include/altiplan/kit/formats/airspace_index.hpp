@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "altiplan/kit/formats/airspace.hpp"
+
+namespace altiplan::kit {
+
+/// Which zones hold a place at a time. Immutable and thread-safe.
+class ALTIPLAN_API AirspaceIndex {
+ public:
+  struct Place {
+    double lon = 0;  ///< degrees
+    double lat = 0;
+    double z_m = 0;  ///< above sea level
+    /// Height of the ground there; unknown: zones are closed at all heights that depend on it.
+    std::optional<double> ground_m;
+  };
+
+  /// `qnh_hpa`: of flight levels.
+  explicit AirspaceIndex(std::vector<AirspaceZone> zones, double qnh_hpa = 1013.25);
+  ~AirspaceIndex();
+  AirspaceIndex(AirspaceIndex&&) noexcept;
+  AirspaceIndex& operator=(AirspaceIndex&&) noexcept;
+
+  const std::vector<AirspaceZone>& zones() const { return zones_; }
+  /// Calls visit(zone) for each zone that holds the place, limits included, and is active at some
+  /// time of [from, until], until it returns false.
+  void visit(const Place& place, double from, double until,
+             const std::function<bool(const AirspaceZone&)>& visit) const;
+  /// The first of them that is at least as strict, or null.
+  const AirspaceZone* find(const Place& place, double time,
+                           Restriction strict = Restriction::inform) const;
+
+ private:
+  struct Impl;
+  std::vector<AirspaceZone> zones_;
+  std::unique_ptr<Impl> impl_;
+};
+}  // namespace altiplan::kit

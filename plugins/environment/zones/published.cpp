@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "published.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "altiplan/ground.hpp"
+
+namespace altiplan::zones {
+namespace {
+
+using kit::AirspaceLimit;
+using kit::AirspaceVolume;
+using kit::AirspaceZone;
+using kit::Point2;
+using kit::Ring;
+using Datum = AirspaceLimit::Datum;
+using Use = PublishedRules::Use;
+
+// Edges are straight in longitude and latitude to this, metres, where the frame's map bends them.
+constexpr double kStraight = 0.5;
+
+void add_edge(const Frame& frame, const Point2& p, const Point2& q, const Point2& local_p,
+              const Point2& local_q, int depth, Ring& to) {
+  constexpr int kMaxDepth = 12;
+  const Point2 middle{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
+  const Point2 local = frame.to_local(middle[0], middle[1]);
+  const double off = std::hypot(local[0] - (local_p[0] + local_q[0]) / 2,
+                                local[1] - (local_p[1] + local_q[1]) / 2);
+  if (off <= kStraight || depth == kMaxDepth) {
+    return;
+  }
+  add_edge(frame, p, middle, local_p, local, depth + 1, to);
+  to.push_back(local);
+  add_edge(frame, middle, q, local, local_q, depth + 1, to);
+}
+
+Ring local(const Frame& frame, const Ring& lonlat) {
+  Ring ring;
+  for (std::size_t n = 0; n < lonlat.size(); ++n) {
+    const Point2& p = lonlat[n];
+    const Point2& q = lonlat[n + 1 < lonlat.size() ? n + 1 : 0];
+    const Point2 local_p = frame.to_local(p[0], p[1]);
+    ring.push_back(local_p);
+    add_edge(frame, p, q, local_p, frame.to_local(q[0], q[1]), 0, ring);
+  }
+  return ring;
+}
+
+/// Bounds of all ground before this layer.
+Box ground_area(const World& before) {
+  Box area = Box::empty();
+  for (const Layer& layer : before.layers()) {
+    if (layer.environment->ground() != nullptr) {
+      area = area.united(layer.environment->bounds());
+    }
+  }
+  area.min.z() = -kInfinity;
+  area.max.z() = kInfinity;
+  return area;
+}
+
+class Converter {
+ public:
+  Converter(const PublishedRules& rules, const Site& site, Clip* clip)
+      : rules_(rules), site_(site), clip_(clip), ground_(ground_area(*site.before)) {}
+
+  void add(const AirspaceZone& zone) {
+    for (const AirspaceVolume& volume : zone.volumes) {
+      GroundPrism limits{prism_of(volume), -kInfinity, kInfinity};
+      set(volume.lower, limits.prism.floor, limits.above_floor);
+      set(volume.upper, limits.prism.ceiling, limits.above_ceiling);
+      const std::vector<Shape> parts =
+          clip_ != nullptr ? clip_->cut(limits.prism) : std::vector<Shape>{limits.prism};
+      for (const Shape& part : parts) {
+        limits.prism = std::get<Prism>(part);
+        add_part(zone.label(), limits);
+      }
+    }
+  }
+
+  std::vector<PublishedZone> zones;
+
+  std::vector<std::string> notes() const {
+    std::vector<std::string> notes;
+    if (levels_ > 0) {
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "%zu limits are flight levels: altitudes in the standard atmosphere at QNH "
+                    "%.2f hPa (FL100 = %.0f m)",
+                    levels_, rules_.qnh_hpa, kit::standard_to_sea(3048, rules_.qnh_hpa));
+      notes.emplace_back(text);
+    }
+    if (without_ground_ > 0) {
+      notes.push_back(std::to_string(without_ground_) +
+                      " volumes with limits above ground closed at all heights: " +
+                      (site_.before->has_ground() ? "the ground below them has holes"
+                                                  : "expected a layer with ground (terrain) "
+                                                    "before this one"));
+    }
+    if (beyond_ > 0) {
+      notes.push_back(std::to_string(beyond_) +
+                      " volumes with limits above ground closed at all heights beyond the ground");
+    }
+    return notes;
+  }
+
+ private:
+  Prism prism_of(const AirspaceVolume& volume) const {
+    Prism prism{local(site_.frame, volume.polygon.outline), {}};
+    for (const Ring& hole : volume.polygon.holes) {
+      prism.holes.push_back(local(site_.frame, hole));
+    }
+    return prism;
+  }
+
+  void set(const AirspaceLimit& limit, double& sea, double& above) {
+    if (limit.datum == Datum::ground) {
+      above = limit.metres;
+    } else if (limit.datum == Datum::standard) {
+      ++levels_;
+      sea = kit::standard_to_sea(limit.metres, rules_.qnh_hpa);
+    } else if (limit.datum == Datum::sea) {
+      sea = limit.metres;
+    }
+  }
+
+  void close(const std::string& name, Prism prism) {
+    prism.floor = -kInfinity;
+    prism.ceiling = kInfinity;
+    zones.push_back({name, std::move(prism), {}, false});
+  }
+
+  /// Closed at all heights where the ground is not known.
+  void add_part(const std::string& name, const GroundPrism& limits) {
+    if (!std::isfinite(limits.above_floor) && !std::isfinite(limits.above_ceiling)) {
+      zones.push_back({name, limits.prism, {}, false});
+      return;
+    }
+    if (!site_.before->has_ground()) {
+      ++without_ground_;
+      close(name, limits.prism);
+      return;
+    }
+    const Parts parts = split(limits.prism, ground_);
+    for (const Prism& within : parts.within) {
+      if (std::isfinite(site_.before->ground_slope(bounds(Shape(within))))) {
+        GroundPrism above = limits;
+        above.prism = within;
+        zones.push_back({name, {}, std::move(above), true});
+      } else {
+        ++without_ground_;
+        close(name, within);
+      }
+    }
+    beyond_ += !parts.beyond.empty();
+    for (const Prism& beyond : parts.beyond) {
+      close(name, beyond);
+    }
+  }
+
+  const PublishedRules& rules_;
+  const Site& site_;
+  Clip* clip_;
+  Box ground_;
+  std::size_t levels_ = 0;
+  std::size_t without_ground_ = 0;
+  std::size_t beyond_ = 0;
+};
+
+bool has_times(const AirspaceZone& zone) {
+  return std::any_of(zone.periods.begin(), zone.periods.end(), [](const auto& period) {
+    return std::isfinite(period.from) || std::isfinite(period.until) || !period.hours.empty();
+  });
+}
+
+Use use_of(const AirspaceZone& zone, const PublishedRules& rules) {
+  switch (zone.restriction) {
+    case kit::Restriction::ask:
+      return rules.ask;
+    case kit::Restriction::inform:
+      return rules.inform;
+    default:
+      return Use::keep_out;
+  }
+}
+
+/// "keep out: 2 P, 6 R; ask (closed): 3 CTR; inform (skipped): 4 G"
+std::string mapping(const kit::Airspace& airspace, const PublishedRules& rules) {
+  std::map<kit::Restriction, std::map<std::string, std::size_t>> counts;
+  for (const AirspaceZone& zone : airspace.zones) {
+    ++counts[zone.restriction][zone.type.empty() ? "without a class" : zone.type];
+  }
+  const auto heading = [](const char* word, Use use) {
+    return std::string(word) + (use == Use::skip ? " (skipped): " : " (closed): ");
+  };
+  std::string text;
+  for (const auto& [restriction, types] : counts) {
+    text += text.empty() ? "" : "; ";
+    text += restriction == kit::Restriction::keep_out ? "keep out (closed): "
+            : restriction == kit::Restriction::ask    ? heading("ask", rules.ask)
+                                                      : heading("inform", rules.inform);
+    const char* comma = "";
+    for (const auto& [type, count] : types) {
+      text += comma + std::to_string(count) + " " + type;
+      comma = ", ";
+    }
+  }
+  return text;
+}
+}  // namespace
+
+void PublishedRules::describe(Fields& f) {
+  f("ask", ask, {{"keep_out", Use::keep_out}, {"skip", Use::skip}})
+      .doc("published airspace that takes a permission: closed, or ignored because you have it");
+  f("inform", inform, {{"keep_out", Use::keep_out}, {"skip", Use::skip}})
+      .doc("published airspace that only informs");
+  f("qnh_hpa", qnh_hpa)
+      .unit("hPa")
+      .range(850, 1100)
+      .doc("air pressure at sea level, for limits that are flight levels");
+}
+
+Published published_zones(const kit::Airspace& airspace, const PublishedRules& rules,
+                          const Site& site, double horizon_s, Clip* clip) {
+  Published published;
+  Converter converter(rules, site, clip);
+  std::size_t volumes = 0;
+  std::size_t timed = 0;
+  for (const AirspaceZone& zone : airspace.zones) {
+    volumes += zone.volumes.size();
+    if (use_of(zone, rules) == Use::skip) {
+      continue;
+    }
+    timed += !site.has_start_time && has_times(zone);
+    if (site.has_start_time && !zone.is_active(site.start_time_s, site.start_time_s + horizon_s)) {
+      ++published.inactive;
+      continue;
+    }
+    converter.add(zone);
+  }
+  published.notes = {kit::format_name(airspace.format) + ": " +
+                         std::to_string(airspace.zones.size()) + " zones of " +
+                         std::to_string(volumes) + " volumes read",
+                     mapping(airspace, rules)};
+  const std::vector<std::string> more = converter.notes();
+  published.notes.insert(published.notes.end(), more.begin(), more.end());
+  published.notes.insert(published.notes.end(), airspace.notes.begin(), airspace.notes.end());
+  if (timed > 0) {
+    published.notes.push_back(std::to_string(timed) +
+                              " zones with times closed at all times: expected the scenario's "
+                              "start_time");
+  }
+  published.zones = std::move(converter.zones);
+  return published;
+}
+
+std::vector<Point2> corners_of(const kit::Airspace& airspace) {
+  std::vector<Point2> corners;
+  for (const AirspaceZone& zone : airspace.zones) {
+    for (const AirspaceVolume& volume : zone.volumes) {
+      corners.insert(corners.end(), volume.polygon.outline.begin(), volume.polygon.outline.end());
+    }
+  }
+  return corners;
+}
+}  // namespace altiplan::zones

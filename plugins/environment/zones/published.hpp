@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "altiplan/environment.hpp"
+#include "altiplan/kit/formats/airspace.hpp"
+#include "altiplan/params.hpp"
+#include "clip.hpp"
+#include "ground_zones.hpp"
+
+namespace altiplan::zones {
+
+/// Published airspace as this layer has it.
+struct PublishedRules {
+  enum class Use { keep_out, skip };
+  Use ask = Use::keep_out;
+  Use inform = Use::skip;
+  double qnh_hpa = 1013.25;
+
+  void describe(Fields& f);
+};
+
+struct PublishedZone {
+  std::string name;
+  Prism prism;        ///< of a zone between altitudes
+  GroundPrism above;  ///< of a zone with a limit above the ground
+  bool on_ground = false;
+};
+
+struct Published {
+  std::vector<PublishedZone> zones;
+  std::vector<std::string> notes;
+  std::size_t inactive = 0;
+};
+
+/// The zones that are closed at some time of the flight. The site has a frame with a position.
+Published published_zones(const kit::Airspace& airspace, const PublishedRules& rules,
+                          const Site& site, double horizon_s, Clip* clip);
+
+/// All corners, for a frame.
+std::vector<kit::Point2> corners_of(const kit::Airspace& airspace);
+}  // namespace altiplan::zones

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/kit/formats/airspace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+#include "altiplan/geometry.hpp"
+#include "altiplan/kit/formats/airspace_index.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::testing {
+namespace {
+
+using kit::Airspace;
+using kit::AirspaceIndex;
+using kit::AirspaceLimit;
+using kit::AirspaceZone;
+using kit::Restriction;
+using Datum = AirspaceLimit::Datum;
+
+Airspace read(const std::string& text, const std::string& file = "file") {
+  return kit::read_airspace(file, text).value();
+}
+
+Airspace given(const std::filesystem::path& folder, const std::string& name) {
+  return read(kit::read_file((folder / name).string()), name);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool noted(const Airspace& airspace, const std::string& part) {
+  return std::any_of(airspace.notes.begin(), airspace.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+bool holds(const Airspace& airspace, const AirspaceIndex::Place& place, const char* time) {
+  return AirspaceIndex(airspace.zones).find(place, kit::parse_iso_time(time).value()) != nullptr;
+}
+
+/// A zone of ED-269 with parts replaced.
+std::string ed269(std::string from = "", const std::string& to = "") {
+  std::string text =
+      R"({"features": [{"identifier": "Z1", "name": "Zone", "restriction": "PROHIBITED",
+      "applicability": [{"permanent": "NO", "startDateTime": "2022-06-15T09:00:00.00Z",
+        "endDateTime": "2023-06-15T09:00:00.00Z", "schedule": [
+          {"day": ["SAT", "SUN"], "startTime": "17:00:00.00Z", "endTime": "23:59:59.00Z"}]}],
+      "geometry": [{"uomDimensions": "FT", "lowerLimit": 500, "lowerVerticalReference": "AGL",
+        "upperLimit": 3000, "upperVerticalReference": "AMSL",
+        "horizontalProjection": {"type": "Circle", "center": [7, 46], "radius": 3000}}]}]})";
+  if (!from.empty()) {
+    text.replace(text.find(from), from.size(), to);
+  }
+  return text;
+}
+
+std::string openair(const std::string& records) {
+  return "AC R\nAN Zone\nAL 500 ft AGL\nAH FL100\n" + records +
+         "\nDP 46:00:00 N 007:00:00 E\nDP 46:10:00 N 007:00:00 E\nDP 46:10:00 N 007:10:00 E\n";
+}
+
+const AirspaceIndex::Place kInside{7, 46, 600, 300};
+constexpr const char* kSaturday = "2022-06-18T18:00Z";
+
+TEST(Airspace, ReadsTheGivenFilesWhole) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "airspace");
+  const Airspace swiss = given(folder, "ed269-ch.json");
+  ASSERT_EQ(swiss.zones.size(), 4U);
+  EXPECT_EQ(swiss.zones[0].volumes[0].upper, AirspaceLimit{});  // 99999 m
+  EXPECT_EQ(swiss.zones[2].volumes[0].upper, (AirspaceLimit{Datum::ground, 120}));
+  EXPECT_EQ(swiss.zones[3].volumes.size(), 2U);
+  const Airspace swedish = given(folder, "ed318-se.json");
+  ASSERT_EQ(swedish.zones.size(), 3U);
+  EXPECT_EQ(swedish.format, Airspace::Format::ed318);
+  EXPECT_EQ(swedish.zones[2].volumes[0].upper, (AirspaceLimit{Datum::sea, 1500 * 0.3048}));
+  EXPECT_EQ(swedish.zones[2].periods[0].hours.size(), 2U);
+  const Airspace grid = given(folder, "faa-uasfm.json");
+  ASSERT_EQ(grid.zones.size(), 2U);
+  EXPECT_EQ(grid.zones[0].volumes[0].lower, AirspaceLimit{});  // CEILING 0
+  EXPECT_EQ(grid.zones[1].volumes[0].lower, (AirspaceLimit{Datum::ground, 200 * 0.3048}));
+  const Airspace british = given(folder, "aixm51-gb.xml");
+  ASSERT_EQ(british.zones.size(), 6U);
+  EXPECT_EQ(british.zones[1].volumes[0].lower, (AirspaceLimit{Datum::standard, 1524}));
+  EXPECT_EQ(british.zones[1].volumes[0].upper, AirspaceLimit{});  // FL999
+  EXPECT_TRUE(noted(british, "Mon-Sat SR to SS."));
+  const Airspace sample = given(folder, "openair_sample.txt");
+  EXPECT_EQ(sample.zones.size(), 25U);  // of 26 entries one is terrain
+  EXPECT_TRUE(noted(sample, "terrain, skipped: 'Lake Tahoe'"));
+  EXPECT_TRUE(noted(sample, "Ask on 122.8"));
+  EXPECT_EQ(given(folder, "openair_slovenia.txt").zones.size(), 58U);
+  EXPECT_TRUE(refusal(kit::read_file((folder / "openair_broken.txt").string()))
+                  .starts_with("file:5: DC needs a centre"));
+}
+
+TEST(Airspace, ClosesTheWeekendZoneInTheEvening) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "airspace");
+  const Airspace airspace = given(folder, "ed269_u-space_che-1.json");
+  ASSERT_EQ(airspace.zones.size(), 6U);
+  const AirspaceIndex::Place montreux{6.913, 46.431, 700, 400};
+  EXPECT_TRUE(holds(airspace, montreux, kSaturday));
+  EXPECT_TRUE(holds(airspace, montreux, "2022-06-18T23:59:59.5Z"));
+  EXPECT_FALSE(holds(airspace, montreux, "2022-06-18T12:00Z"));
+  EXPECT_FALSE(holds(airspace, montreux, "2022-06-17T18:00Z"));  // a Friday
+  EXPECT_FALSE(holds(airspace, montreux, "2024-06-15T18:00Z"));  // no longer valid
+  EXPECT_FALSE(holds(airspace, {6.913, 46.431, 6260, 400}, kSaturday));
+}
+
+TEST(Airspace, WhatIsUnknownIsClosed) {
+  const Airspace whole = read(ed269());
+  EXPECT_TRUE(holds(whole, kInside, kSaturday));
+  EXPECT_TRUE(whole.notes.empty());
+  EXPECT_FALSE(holds(whole, {7, 46, 440, 300}, kSaturday));  // 140 m above ground
+  EXPECT_TRUE(holds(whole, {7, 46, 440, {}}, kSaturday));    // above unknown ground
+  EXPECT_FALSE(holds(whole, {7, 46, 915, 300}, kSaturday));
+  const auto closed = [](const char* from, const char* to, const AirspaceIndex::Place& place,
+                         const char* time, const char* note) {
+    const Airspace airspace = read(ed269(from, to));
+    return holds(airspace, place, time) && noted(airspace, note);
+  };
+  const AirspaceIndex::Place low{7, 46, 310, 300};
+  const AirspaceIndex::Place high{7, 46, 9000, 300};
+  constexpr const char* kMonday = "2022-06-20T18:00Z";
+  EXPECT_TRUE(closed("500", "\"?\"", low, kSaturday, "lower limit"));
+  EXPECT_TRUE(closed("\"upperLimit\": 3000, ", "", high, kSaturday, "upper limit (none given)"));
+  EXPECT_TRUE(closed("\"FT\"", "\"furlong\"", high, kSaturday, "unit 'furlong'"));
+  EXPECT_TRUE(closed("AMSL", "QNE", high, kSaturday, "reference 'QNE'"));
+  EXPECT_TRUE(closed("AGL", "AMSL", kInside, kSaturday, "") == false);
+  EXPECT_TRUE(closed("\"upperLimit\": 3000, \"upperVerticalReference\": \"AMSL\"",
+                     "\"upperLimit\": 300, \"upperVerticalReference\": \"AGL\"", high, kSaturday,
+                     "not below the upper one"));
+  EXPECT_TRUE(closed("\"SUN\"", "\"HOLIDAY\"", kInside, kMonday, "active all day"));
+  EXPECT_TRUE(closed("17:00:00.00Z", "17:00", kInside, kMonday, "active all day"));
+  EXPECT_TRUE(closed("2023-06-15T09", "2021-06-15T09", kInside, kMonday, "before it starts"));
+  EXPECT_TRUE(closed("2023-06-15T09:00:00.00Z", "later", kInside, "2031-06-14T18:00Z", "end of"));
+  EXPECT_EQ(read(ed269("PROHIBITED", "ALLOWED")).zones[0].restriction, Restriction::keep_out);
+  EXPECT_EQ(read(ed269("PROHIBITED", "REQ_AUTHORISATION")).zones[0].restriction, Restriction::ask);
+}
+
+TEST(Airspace, RefusesZonesWithoutAPlace) {
+  EXPECT_EQ(refusal(ed269("3000}", "-3}")),
+            "file: features.0.geometry.0.horizontalProjection.radius: expected a radius between 0 "
+            "and 1000 km, found -3.000000 m (zone 'Z1 (Zone)')");
+  EXPECT_NE(refusal(ed269("\"center\": [7, 46]", "\"center\": [46, 207]")), "");
+  EXPECT_NE(refusal(ed269("\"Circle\"", "\"Square\"")), "");
+  EXPECT_EQ(refusal(openair("XX 5")).substr(0, 30), "file:5: unknown record 'XX', e");
+  EXPECT_EQ(refusal(openair("DC 5")), "file:5: DC needs a centre, expected V X=… before it");
+  EXPECT_NE(refusal(openair("DP 46:61:00 N 007:00:00 E")), "");
+  EXPECT_NE(refusal(openair("AN Other")).find("a second AN"), std::string::npos);
+  EXPECT_NE(refusal("AC R\nAN Zone\nAL GND\nAH FL100\n").find("no area"), std::string::npos);
+}
+
+TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {
+  const auto zone = [](const std::string& records) { return read(openair(records)).zones.at(0); };
+  EXPECT_EQ(zone("").volumes[0].lower, (AirspaceLimit{Datum::ground, 152.4}));
+  EXPECT_EQ(zone("").volumes[0].upper, (AirspaceLimit{Datum::standard, 3048}));
+  EXPECT_EQ(zone("AY CTR").restriction, Restriction::keep_out);  // the class is R
+  EXPECT_FALSE(zone("AA 2023-12-16T12:00Z/2023-12-16T13:00Z").is_active(0, 1e9));
+  EXPECT_TRUE(zone("AA 2023-12-16T12:00Z/2023-12-16T13:00Z").is_active(1702730000, 1702730000));
+  EXPECT_TRUE(zone("AA NONE").is_active(0, 0));
+  EXPECT_TRUE(zone("AA sometimes\nAA 2023-12-16T12:00Z/NONE").is_active(0, 0));
+  const auto upper = [](const std::string& text) {
+    std::string records = openair("");
+    records.replace(records.find("FL100"), 5, text);
+    return read(records).zones[0].volumes[0].upper;
+  };
+  EXPECT_EQ(upper("2500 m AGL"), (AirspaceLimit{Datum::ground, 2500}));
+  EXPECT_EQ(upper("17000ft (Mo-Fri)"), (AirspaceLimit{Datum::sea, 17000 * 0.3048}));
+  EXPECT_EQ(upper("4500MSL"), (AirspaceLimit{Datum::sea, 4500 * 0.3048}));
+  EXPECT_EQ(upper("UNLIMITED"), AirspaceLimit{});
+  EXPECT_EQ(upper("9 furlongs"), AirspaceLimit{});
+}
+
+/// Points of the arcs that are in the zone by any reckoning.
+TEST(Airspace, ChordsNeverCutIntoTheZone) {
+  // A circle with a bite: its outer arc bulges out, the inner one in.
+  const Airspace airspace = read(
+      "AC R\nAN Bitten\nAL GND\nAH UNL\nV X=46:00:00 N 007:00:00 E\nDA 5,0,180\nV D=-\nDA "
+      "3,180,0\n");
+  ASSERT_EQ(airspace.zones[0].volumes.size(), 1U);
+  EXPECT_TRUE(airspace.notes.empty());
+  const AirspaceIndex index(airspace.zones);
+  const auto inside = [&](double bearing, double metres) {
+    // On the ellipsoid near 46° N; the second order matters below a metre.
+    const double a = radians(bearing);
+    const double lat0 = radians(46);
+    const double w2 = 1 - 0.00669437999014 * std::pow(std::sin(lat0), 2);
+    const double n = 6378137 / std::sqrt(w2);
+    const double m = n * (1 - 0.00669437999014) / w2;
+    const double north = metres * std::cos(a);
+    const double east = metres * std::sin(a);
+    const double lat = lat0 + north / m - east * east * std::tan(lat0) / (2 * m * n);
+    const double lon = east / (n * std::cos(lat0)) * (1 + north * std::tan(lat0) / n);
+    return index.find({7 + degrees(lon), degrees(lat), 0, 0}, 0) != nullptr;
+  };
+  for (double bearing = 1; bearing < 180; bearing += 0.37) {
+    EXPECT_TRUE(inside(bearing, 5 * 1852 - 0.2)) << bearing;
+    EXPECT_FALSE(inside(bearing, 5 * 1852 + 1.4)) << bearing;
+    EXPECT_TRUE(inside(bearing, 3 * 1852 + 0.2)) << bearing;
+    EXPECT_FALSE(inside(bearing, 3 * 1852 - 1.4)) << bearing;
+  }
+}
+
+TEST(Airspace, AnOutlineThatMeetsItselfIsClosedInAllLoops) {
+  const Airspace airspace = read(
+      "AC R\nAN Bow\nAL GND\nAH UNL\nDP 46:00:00 N 007:00:00 E\nDP 46:10:00 N 007:10:00 E\n"
+      "DP 46:10:00 N 007:00:00 E\nDP 46:00:00 N 007:10:00 E\n");
+  EXPECT_TRUE(noted(airspace, "meets itself"));
+  EXPECT_TRUE(holds(airspace, {7.08, 46.02, 0, 0}, kSaturday));
+  EXPECT_TRUE(holds(airspace, {7.08, 46.15, 0, 0}, kSaturday));
+  EXPECT_FALSE(holds(airspace, {7.01, 46.08, 0, 0}, kSaturday));
+}
+
+// Against the tables of the U.S. Naval Observatory, to the minute.
+TEST(Airspace, TheSunRisesAndSets) {
+  using Event = kit::DailyHours::Event;
+  const auto day = [](const char* date) { return long(*kit::parse_iso_time(date) / 86400); };
+  const auto off = [&](Event event, const char* date, const kit::Point2& at, const char* time) {
+    return std::abs(*kit::sun_time(event, day(date), at) - *kit::parse_iso_time(time));
+  };
+  const kit::Point2 greenwich{0, 51.4779};
+  EXPECT_LT(off(Event::sunrise, "2024-03-20", greenwich, "2024-03-20T06:03Z"), 90);
+  EXPECT_LT(off(Event::sunset, "2024-06-20", greenwich, "2024-06-20T20:21Z"), 90);
+  EXPECT_FALSE(kit::sun_time(Event::sunset, day("2024-06-20"), {20, 70}).has_value());
+  const Airspace airspace = read(ed269(R"("startTime": "17:00:00.00Z", "endTime": "23:59:59.00Z")",
+                                       R"("startEvent": "SR", "endEvent": "SS")"));
+  // At 7° E, 46° N on 2022-06-18 the sun rises at 03:39 and sets at 19:27.
+  EXPECT_FALSE(holds(airspace, kInside, "2022-06-18T03:25Z"));
+  EXPECT_TRUE(holds(airspace, kInside, "2022-06-18T03:45Z"));
+  EXPECT_TRUE(holds(airspace, kInside, "2022-06-18T19:22Z"));
+  EXPECT_FALSE(holds(airspace, kInside, "2022-06-18T19:42Z"));
+}
+
+TEST(Airspace, FlightLevelsFollowThePressure) {
+  EXPECT_EQ(kit::standard_to_sea(3048, 1013.25), 3048);
+  EXPECT_NEAR(kit::standard_to_sea(3048, 1003.25), 3048 - 77, 3);  // 1 hPa is 27 to 30 ft
+  EXPECT_GT(kit::standard_to_sea(3048, 1030), 3150);
+}
+}  // namespace
+}  // namespace altiplan::testing
