@@ -6,8 +6,9 @@
 namespace altiplan::link {
 namespace {
 
-/// Most that an item which was through before may take without counting as a standstill.
-constexpr Time kUsualItemTime{1000};
+/// Most that an item which was through before may take without counting as a standstill: ArduPilot
+/// asks for it each second, and 20 % loss each way takes every third item and request.
+constexpr Time kUsualItemTime{5000};
 /// Times that the vehicle may break off a transfer, which loss explains, before it is a refusal.
 constexpr int kBrokenOffByLoss = 10;
 /// A transfer that is not over continues before this.

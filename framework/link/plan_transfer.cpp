@@ -66,10 +66,13 @@ PlanItem plan_item(const MissionItemInt& wire) {
   return item;
 }
 
-bool same_value(double a, double b) {
-  const double x = std::isnan(a) ? 0 : a;
-  const double y = std::isnan(b) ? 0 : b;
-  return std::abs(x - y) <= kValueTolerance;
+/// The floats of altitudes are as coarse as 1 mm.
+constexpr double kFloatTolerance = 0.001;
+
+/// What was left to the autopilot is its own choice.
+bool same_value(double sent, double held) {
+  const double value = std::isnan(held) ? 0 : held;
+  return std::isnan(sent) || std::abs(sent - value) <= kValueTolerance + kFloatTolerance;
 }
 
 std::string in_words(double value, int decimals) {
@@ -128,6 +131,17 @@ std::vector<MissionItemInt> downloaded(Link& link, const Vehicle& vehicle, PlanT
 bool begins_with_home(const Vehicle& vehicle, PlanType type) {
   return vehicle.is_ardupilot() && type == PlanType::mission;
 }
+
+/// ArduPilot leaves every circle when heading for the next item, and does not store that it should.
+void forget_exit_headings(std::vector<MissionItemInt>& items) {
+  for (MissionItemInt& item : items) {
+    if (item.command == host::Command::kLoiterTurns) {
+      item.param2 = 0;
+    } else if (item.command == host::Command::kLoiterToAltitude) {
+      item.param1 = 0;
+    }
+  }
+}
 }  // namespace
 
 std::vector<MissionItemInt> wire_items(const std::vector<PlanItem>& items) {
@@ -164,7 +178,7 @@ std::vector<std::string> differences(const std::vector<MissionItemInt>& sent,
 std::vector<std::string> upload(Link& link, const Vehicle& vehicle, const host::Plan& plan,
                                 PlanType type, const std::stop_token& stop) {
   std::vector<MissionItemInt> sent = wire_items(items_of(plan, type));
-  const bool has_home = begins_with_home(vehicle, type);
+  const bool has_home = begins_with_home(vehicle, type) && !sent.empty();
   if (has_home) {
     sent.insert(sent.begin(), home_item(plan));
   }
@@ -176,6 +190,9 @@ std::vector<std::string> upload(Link& link, const Vehicle& vehicle, const host::
   const std::vector<MissionItemInt> held = downloaded(link, vehicle, type, stop);
   if (has_home && !held.empty()) {
     sent.front() = held.front();
+  }
+  if (vehicle.is_ardupilot()) {
+    forget_exit_headings(sent);
   }
   return differences(sent, held);
 }

@@ -19,8 +19,8 @@ std::vector<host::PlanItem> plan_items(const std::vector<MissionItemInt>& items)
 inline constexpr double kDegreesTolerance = 1e-7;
 inline constexpr double kValueTolerance = 0.01;
 
-/// What a vehicle changed, one line per item. Equivalent frames are equal, and so are zero and
-/// "left to the autopilot".
+/// What a vehicle changed, one line per item. Equivalent frames are equal, and so is anything to
+/// what was left to the autopilot.
 std::vector<std::string> differences(const std::vector<MissionItemInt>& sent,
                                      const std::vector<MissionItemInt>& held);
 

@@ -33,6 +33,9 @@ Messages requests(const Status& status) {
   if (!status.system) {
     messages.emplace_back(request_for(SysStatus::kDeclared.id, vehicle));
   }
+  if (!status.current) {
+    messages.emplace_back(request_for(MissionCurrent::kDeclared.id, vehicle));
+  }
   if (!status.mission_items) {
     MissionRequestList list;
     list.target_system = vehicle.system;

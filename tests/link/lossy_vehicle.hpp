@@ -19,6 +19,7 @@ struct Script {
   bool reports_disorder = true;  ///< with MISSION_ACK, else it asks again at once
   bool asks_by_float = false;    ///< MISSION_REQUEST
   int retries = kRetries;        ///< to get an item; ArduPilot waits for 8 s
+  Time asks_again = kItemTimeout;
   std::optional<std::size_t> refuses_item;
   MissionResult refusal = MissionResult::invalid;
   std::optional<std::size_t> dies_at_item;
@@ -98,7 +99,7 @@ class ScriptedVehicle {
   }
 
   Messages ask(Time now) {
-    due_ = now + kItemTimeout;
+    due_ = now + script_.asks_again;
     if (script_.asks_by_float) {
       MissionRequest request = answer<MissionRequest>();
       request.seq = std::uint16_t(incoming_.size());

@@ -185,6 +185,23 @@ TEST(LinkMissionTransfer, FaultScriptsEndInTime) {
   }
 }
 
+/// ArduPilot asks for an item each second; where its last acknowledgement is lost, all items go
+/// again.
+TEST(LinkMissionTransfer, AVehicleThatAsksSeldomGetsItAll) {
+  Script script;
+  script.overwrites = true;
+  script.asks_by_float = true;
+  script.retries = 8;
+  script.asks_again = Time(1000);
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    ScriptedVehicle vehicle(script);
+    MissionUpload transfer(PlanType::mission, kStation, kVehicle, some_items(400));
+    Airspace airspace(seed, {0.2, 0.2, Time(40)}, vehicle);
+    airspace.run(transfer, Time(7'200'000));
+    EXPECT_EQ(transfer.state(), State::done) << "seed " << seed << ": " << transfer.problem();
+  }
+}
+
 TEST(LinkMissionTransfer, OthersAreIgnored) {
   MissionUpload transfer(PlanType::mission, kStation, kVehicle, some_items(2));
   transfer.start(Time(0));

@@ -50,6 +50,22 @@ TEST(LinkPlanTransfer, WhatIsEqual) {
   EXPECT_EQ(differences(sent, held), std::vector<std::string>());
 }
 
+/// ArduPilot gives a landing a direction of its yaw, and cuts off the centimetres of a float.
+TEST(LinkPlanTransfer, WhatIsLeftToTheAutopilotIsItsChoice) {
+  std::vector<MissionItemInt> sent = wire_items(three_items());
+  std::vector<MissionItemInt> held = sent;
+  held[0].param4 = 1;
+  EXPECT_EQ(differences(sent, held), std::vector<std::string>());
+  sent[0].z = 16.35F;
+  held[0].z = 16.34F;
+  sent[1].z = 5000.005F;
+  held[1].z = 4999.995F;
+  EXPECT_EQ(differences(sent, held), std::vector<std::string>());
+  sent[0].param4 = 0;
+  held[1].z = 4999.99F;
+  EXPECT_EQ(differences(sent, held).size(), 2U);
+}
+
 TEST(LinkPlanTransfer, WhatTheVehicleChangedIsNamed) {
   const std::vector<MissionItemInt> sent = wire_items(three_items());
   std::vector<MissionItemInt> held = sent;

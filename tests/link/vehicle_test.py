@@ -78,12 +78,21 @@ class Vehicle(unittest.TestCase):
                 self.assertEqual(code, 0, err)
                 self.assertIn("quadrotor", out)
                 self.assertIn("disarmed", out)
+                self.assertIn(", at item ", out)
                 for name in ("back.plan", "back.waypoints"):
                     code, _, err = altiplan("download", "--from", address, "-o", self.path(name))
                     self.assertEqual(code, 0, err)
                     code, out, err = altiplan("check", "--route", self.path(name), "--scenario",
                                               self.path("scenario.yaml"))
                     self.assertEqual(code, 0, out + err)
+
+    def test_ardupilot_keeps_a_take_off_and_a_landing(self):
+        for kind in ("copter", "plane"):
+            address = self.vehicle("--autopilot", "ardupilot", "--type", kind)
+            code, out, err = altiplan("upload", self.result, "--to", address, "--takeoff", "--land",
+                                      "--home-altitude", "0")
+            self.assertEqual(code, 0, out + err)
+            self.assertIn("read back equal", out)
 
     def test_loss_is_harmless(self):
         address = self.vehicle("--autopilot", "ardupilot", faults=[

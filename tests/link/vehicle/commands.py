@@ -103,13 +103,14 @@ class Commands:
         return self.done(self.pilot.set_mode(flavours.HOLD))
 
     def do_mission_start(self, message):
-        pilot = self.pilot
+        """ArduPilot knows no first and last item, and a plane that refuses does not say so."""
+        pilot, ardupilot = self.pilot, self.flavour.name == "ardupilot"
         first = whole(message.param1)
+        if ardupilot and (message.param1 or message.param2):
+            return Result.DENIED
         if first > 0 and not pilot.auto.set_current(first):
             return Result.FAILED
-        if not pilot.armed and self.flavour.name == "ardupilot" and pilot.kind == "copter":
-            return Result.FAILED
-        if not pilot.set_mode(flavours.AUTO):
+        if not pilot.set_mode(flavours.AUTO) and not (ardupilot and pilot.kind == "plane"):
             return Result.FAILED
         pilot.started = True
         return Result.ACCEPTED
@@ -129,13 +130,15 @@ class Commands:
         """ArduPilot flies to it in GUIDED, PX4 in hold."""
         pilot = self.pilot
         mode = flavours.HOLD if self.flavour.name == "px4" else flavours.GUIDED
-        target = self.place(message)
-        if not pilot.armed or target is None:
+        ardupilot, target = self.flavour.name == "ardupilot", self.place(message)
+        if target is None or not (pilot.armed or ardupilot):
             return Result.DENIED
         if pilot.mode != mode:
-            if not whole(message.param2) & CHANGE_MODE or not pilot.set_mode(mode):
+            if not whole(message.param2) & CHANGE_MODE:
+                return Result.FAILED if ardupilot and pilot.kind == "plane" else Result.DENIED
+            if not pilot.set_mode(mode):
                 return Result.DENIED
-        if message.param1 > 0:
+        if message.param1 > 0 and not ardupilot:
             pilot.change_speed(message.param1)
         radius = message.param3 if math.isfinite(message.param3) else 0.0
         yaw = math.radians(message.param4) if math.isfinite(message.param4) else None
@@ -168,14 +171,15 @@ class Commands:
             return Result.DENIED
         interval = message.param2
         rate = 0.0 if interval < 0 else 1e6 / interval if interval > 0 else \
-            self.node.telemetry.default_rate(known.name)
+            self.node.telemetry.default_rates().get(known.name, 0)
         self.node.telemetry.rates[known.name] = rate
+        self.node.telemetry.due.pop(known.name, None)
         return Result.ACCEPTED
 
     def do_request_message(self, message):
         known = messages.BY_NUMBER.get(whole(message.param1))
         if known is None or not self.node.telemetry.can_send(known.name):
-            return Result.DENIED
+            return Result.FAILED if self.flavour.name == "ardupilot" else Result.DENIED
         self.node.telemetry.send(known.name)
         return Result.ACCEPTED
 

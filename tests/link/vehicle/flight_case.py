@@ -38,6 +38,9 @@ class Flight(unittest.TestCase):
         self.node, self.pilot = station.node, station.node.pilot
         self.track = []
         station.every_step = lambda: self.track.append((self.pilot.time, self.pilot.body.position))
+        if self.pilot.flavour.name == "ardupilot":  # which streams little by itself
+            station.send("REQUEST_DATA_STREAM", target_system=1, target_component=1,
+                         req_stream_id=0, req_message_rate=5, start_stop=1)
         if items:
             self.assertEqual(station.upload(list(items)), 0)
         return station

@@ -9,7 +9,7 @@ from airframe import Goal
 from constants import ABSOLUTE, RELATIVE, Frame, Severity
 
 NO_POSITION, NO_VELOCITY, NO_YAW, NO_YAW_RATE = 0x007, 0x038, 0x400, 0x800
-NO_HORIZONTAL = 0x003
+NO_ALTITUDE = 0x004
 FARTHEST = 1e6  # m, of a set-point from its origin
 
 
@@ -130,13 +130,13 @@ class Guided:
     def set_target(self, message, target, velocity):
         pilot, mask = self.pilot, message.type_mask
         if pilot.kind == "plane" and pilot.flavour.name == "ardupilot":
-            # Plane takes altitudes by this message and nothing else.
-            altitude = mask & NO_HORIZONTAL == NO_HORIZONTAL and not mask & 4
-            if pilot.mode == "GUIDED" and altitude and math.isfinite(target.alt):
+            # Plane takes the altitude of this message and nothing else.
+            if pilot.mode == "GUIDED" and not mask & NO_ALTITUDE and math.isfinite(target.alt):
                 self.change_altitude(target.alt)
             return
         goal = self.goal_of(mask, target, velocity)
         if goal is None:
+            self.stop_at_nonsense()
             return
         goal.yaw = self.given(message.yaw, mask & NO_YAW)
         goal.yaw_rate = self.given(message.yaw_rate, mask & NO_YAW_RATE)
@@ -146,6 +146,14 @@ class Guided:
             self.stamp = pilot.time
         if pilot.mode == "GUIDED":
             self.accept(goal, target, velocity)
+
+    def stop_at_nonsense(self):
+        """ArduCopter holds its position where it can make nothing of a set-point."""
+        pilot = self.pilot
+        if pilot.flavour.name == "ardupilot" and pilot.mode == "GUIDED" and \
+                not pilot.body.on_ground:
+            self.wanted = pilot.body.stop_here()
+            pilot.node.log("hover", reason="set-point refused")
 
     @staticmethod
     def given(value, ignored):

@@ -8,6 +8,7 @@ import plans
 from constants import ALL_PLANS, FENCE, MISSION, RALLY, MissionResult, Severity
 
 KINDS = (MISSION, FENCE, RALLY)
+IN_TEXTS = {MISSION: "Mission", FENCE: "Fence", RALLY: "Rally"}
 
 
 @dataclasses.dataclass
@@ -42,7 +43,9 @@ class Missions:
     def handle(self, message, address):
         sender = (message.system, message.component, address)
         kind = message.fields.get("mission_type", MISSION)
-        if kind not in KINDS and not (kind == ALL_PLANS and message.name == "MISSION_CLEAR_ALL"):
+        clears_all = kind == ALL_PLANS and message.name == "MISSION_CLEAR_ALL" and \
+            self.flavour.name != "ardupilot"
+        if kind not in KINDS and not clears_all:
             self.acknowledge(sender, kind, MissionResult.UNSUPPORTED)
             return
         injected = self.node.faults.nak(message)
@@ -82,6 +85,8 @@ class Missions:
         first, last = message.start_index, message.end_index
         if not self.flavour.partial_upload:
             self.acknowledge(sender, kind, MissionResult.UNSUPPORTED)
+        elif self.upload is not None and self.flavour.name == "ardupilot":
+            self.acknowledge(sender, kind, MissionResult.DENIED)
         elif not 0 <= first <= last or last >= len(self.stored(kind)):
             self.acknowledge(sender, kind, MissionResult.ERROR)
         else:
@@ -117,6 +122,8 @@ class Missions:
         upload = self.upload
         if upload is None:
             self.item_without_upload(message, sender, kind)
+        elif self.flavour.name == "ardupilot" and message.seq != upload.expected:
+            self.item_out_of_order(sender, kind)
         elif self.busy(sender, kind):
             pass
         elif kind != upload.kind:
@@ -147,6 +154,8 @@ class Missions:
         upload = self.upload
         ardupilot = self.flavour.name == "ardupilot"
         result = plans.refusal(item, upload.kind, ardupilot)
+        if ardupilot and plans.jumps_nowhere(item, upload.last + 1):
+            result = MissionResult.ERROR
         if result == MissionResult.ACCEPTED and self.node.faults.refuses(item):
             result = MissionResult.UNSUPPORTED_FRAME
         if result != MissionResult.ACCEPTED:
@@ -156,7 +165,9 @@ class Missions:
             item = plans.as_ardupilot_keeps(item, self.airframe, upload.kind)
         item = self.node.faults.changed(item)
         target = self.plans[upload.kind] if self.overwrites(upload.kind) else upload.items
-        target[upload.expected:upload.expected + 1] = [item]
+        # The first item that ArduPilot stores at all comes after its own home.
+        added = [item] if target or not ardupilot or upload.kind != MISSION else [item, item]
+        target[upload.expected:upload.expected + 1] = added
         upload.received_at = self.node.now
         upload.expected += 1
         if upload.expected <= upload.last:
@@ -176,7 +187,11 @@ class Missions:
         result = plans.refusal_of_whole(items, kind)
         if result == MissionResult.ACCEPTED:
             self.plans[kind] = [item for item in items if not self.node.faults.drops(item)]
+            self.node.log("stored", kind=kind, items=[plans.listed(each)
+                                                      for each in self.plans[kind]])
             self.pilot.plan_changed(kind)
+            if self.flavour.name == "ardupilot" and kind == MISSION:
+                self.node.text(Severity.INFO, "Flight plan received")
         elif self.flavour.name == "ardupilot":
             result = MissionResult.ERROR
         self.acknowledged = (sender, kind, last, result)
@@ -196,7 +211,7 @@ class Missions:
             return
         if now - upload.received_at >= self.flavour.give_up_after:
             self.upload = None
-            self.node.text(Severity.WARNING, "Mission upload timeout")
+            self.node.text(Severity.WARNING, f"{IN_TEXTS[upload.kind]} upload timeout")
             if self.flavour.name != "px4":
                 self.acknowledge(upload.partner, upload.kind, MissionResult.OPERATION_CANCELLED)
         elif now - upload.requested_at >= self.flavour.resend_after:
@@ -219,7 +234,9 @@ class Missions:
         their own sequence numbers."""
         size = len(self.stored(kind))
         last = message.end_index if message.end_index >= 0 else size - 1
-        if not self.flavour.partial_upload or self.flavour.name == "ardupilot":
+        if self.flavour.name == "ardupilot":
+            return  # a message that it does not know
+        if not self.flavour.partial_upload:
             self.acknowledge(sender, kind, MissionResult.UNSUPPORTED)
         elif not 0 <= message.start_index <= last < size:
             self.acknowledge(sender, kind, MissionResult.ERROR)
@@ -256,11 +273,14 @@ class Missions:
             self.acknowledge(sender, kind, MissionResult[self.flavour.other_partner])
         elif self.flavour.list_first and self.listed != sender[:2]:
             pass
-        elif message.seq >= len(items):
-            result = "ERROR" if self.flavour.name == "ardupilot" else "INVALID_SEQUENCE"
-            self.acknowledge(sender, kind, MissionResult[result])
-        else:
+        elif message.seq < len(items):
             return items[message.seq]
+        elif self.flavour.home_is_item_0 and kind == MISSION and message.seq == 0:
+            return plans.home_item(self.pilot.home)
+        else:
+            if self.flavour.name == "ardupilot" and message.name == "MISSION_REQUEST_INT":
+                self.answer_count(sender, kind, len(items))
+            self.acknowledge(sender, kind, MissionResult.INVALID_SEQUENCE)
         return None
 
     def outgoing(self, item, sequence, sender, kind):
@@ -273,7 +293,7 @@ class Missions:
     def on_mission_clear_all(self, message, sender, kind):
         kinds = KINDS if kind == ALL_PLANS else (kind,)
         flying_it = MISSION in kinds and self.pilot.mission_runs()
-        if self.upload is not None:
+        if self.upload is not None and not self.restarts(sender, kind):
             self.acknowledge(sender, kind, MissionResult.ERROR)
         elif flying_it and self.flavour.name == "ardupilot":
             self.acknowledge(sender, kind, MissionResult.ERROR)
@@ -282,6 +302,14 @@ class Missions:
                 self.plans[each] = []
                 self.pilot.plan_changed(each)
             self.acknowledge(sender, kind, MissionResult.ACCEPTED)
+
+    def restarts(self, sender, kind):
+        """ArduPilot lets the partner of an upload begin anew, and denies it to others before it
+        reports an error."""
+        if self.flavour.name != "ardupilot" or self.busy(sender, kind):
+            return False
+        self.upload = None
+        return True
 
     def acknowledge(self, partner, kind, result):
         fields = self.addressed(partner, kind, type=int(result))

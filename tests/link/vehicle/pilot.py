@@ -60,7 +60,9 @@ class Pilot:
         self.node.send("MISSION_ITEM_REACHED", {"seq": index})
 
     def current_changed(self):
-        self.node.telemetry.send("MISSION_CURRENT")
+        """ArduPilot leaves it to the stream."""
+        if self.flavour.name != "ardupilot":
+            self.node.telemetry.send("MISSION_CURRENT")
 
     def change_speed(self, speed):
         """-1: as before, -2: the default again."""
@@ -73,11 +75,11 @@ class Pilot:
         if kind != MISSION:
             return
         self.node.log("plan", items=len(self.mission_items()))
-        if not self.mission_items():
-            self.auto.restart()
-        elif self.flavour.name != "ardupilot" or not self.mission_runs():
-            # ArduPilot completes the item that it is flying and goes on by the new plan.
-            self.auto.restart()
+        auto = self.auto
+        if self.flavour.name != "ardupilot" or auto.current() >= len(self.mission_items()):
+            auto.restart()
+        elif self.mission_runs() and self.kind == "copter":
+            auto.resume()  # the same item of the new plan; a plane completes the old one
         self.current_changed()
 
     # Arming and modes.
@@ -107,6 +109,8 @@ class Pilot:
             return False
         self.armed = False
         self.node.log("disarmed")
+        if self.flavour.name == "ardupilot" and (self.kind == "copter" or self.mode != AUTO):
+            self.auto.restart()
         return True
 
     def set_mode(self, mode, reason="command"):

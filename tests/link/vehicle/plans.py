@@ -6,8 +6,8 @@ import struct
 import zlib
 
 import geodesy
-from constants import (ABSOLUTE, FENCE, GLOBAL_FRAMES, OF_PLAN, POLYGON, RALLY, RELATIVE, TERRAIN,
-                       Command, Frame, MissionResult)
+from constants import (ABSOLUTE, FENCE, GLOBAL_FRAMES, MISSION, OF_PLAN, POLYGON, RALLY, RELATIVE,
+                       TERRAIN, Command, Frame, MissionResult)
 
 NO_POSITION = (Command.DO_JUMP, Command.DO_CHANGE_SPEED, Command.CONDITION_DELAY,
                Command.NAV_RETURN_TO_LAUNCH, Command.DO_LAND_START)
@@ -15,16 +15,20 @@ NO_POSITION = (Command.DO_JUMP, Command.DO_CHANGE_SPEED, Command.CONDITION_DELAY
 NAN_YAW = (Command.NAV_WAYPOINT, Command.NAV_LOITER_UNLIM, Command.NAV_LOITER_TURNS,
            Command.NAV_LOITER_TIME, Command.NAV_LAND, Command.NAV_TAKEOFF,
            Command.NAV_LOITER_TO_ALT)
-ARDUPILOT_NAN_YAW = (Command.NAV_WAYPOINT, Command.NAV_LAND, Command.NAV_TAKEOFF)
-# Parameters that ArduPilot has room for, of the commands where others come back as zero.
+ARDUPILOT_NAN_YAW = (Command.NAV_WAYPOINT, Command.NAV_LOITER_UNLIM, Command.NAV_LAND,
+                     Command.NAV_TAKEOFF)
+# What ArduPilot makes of a parameter that it keeps: whole numbers, signs, flags; of the commands
+# named here the other parameters come back as zero.
+WHOLE, SIGN, FLAG, BYTE, TURNS, BYTE_RADIUS, YAW_SIGN = range(7)
 ARDUPILOT_KEEPS = {
-    "copter": {Command.NAV_WAYPOINT: (1,), Command.NAV_LOITER_TURNS: (1, 3),
-               Command.NAV_LOITER_TIME: (1,), Command.NAV_LOITER_UNLIM: (3,),
-               Command.NAV_TAKEOFF: (1,), Command.NAV_LAND: (1,)},
-    "plane": {Command.NAV_WAYPOINT: (2, 3), Command.NAV_LOITER_TURNS: (1, 2, 3, 4),
-              Command.NAV_LOITER_TIME: (1, 2, 3, 4), Command.NAV_LOITER_UNLIM: (3,),
-              Command.NAV_LOITER_TO_ALT: (1, 2, 4), Command.NAV_TAKEOFF: (1,),
-              Command.NAV_LAND: (1,)}}
+    Command.NAV_LOITER_UNLIM: {3: WHOLE}, Command.NAV_TAKEOFF: {1: WHOLE},
+    Command.NAV_LOITER_TURNS: {1: TURNS, 3: BYTE_RADIUS, 4: FLAG},
+    Command.NAV_LOITER_TIME: {1: WHOLE, 3: SIGN, 4: FLAG},
+    Command.NAV_LOITER_TO_ALT: {2: WHOLE, 4: FLAG},
+    Command.NAV_LAND: {1: WHOLE, 4: YAW_SIGN}, Command.NAV_RETURN_TO_LAUNCH: {}}
+ARDUPILOT_WAYPOINT = {"copter": {1: WHOLE}, "plane": {2: BYTE, 3: BYTE}}
+ARDUPILOT_HIGHEST = 83000.0  # m, of an item
+ARDUPILOT_CORNERS = 255  # of a polygon
 
 
 @dataclasses.dataclass(frozen=True)
@@ -57,14 +61,18 @@ def fields_of(item):
             **{f"param{i + 1}": value for i, value in enumerate(item.params)}}
 
 
+def listed(item):
+    """For the log."""
+    return [item.command, item.frame, item.autocontinue, item.x, item.y, item.z, *item.params]
+
+
 def refusal(item, kind, ardupilot=False):
     """MissionResult.ACCEPTED, or why the item is refused."""
     if item.command not in OF_PLAN[kind]:
         return MissionResult.UNSUPPORTED
     positioned = item.command not in NO_POSITION
-    if positioned and item.frame not in GLOBAL_FRAMES:
-        return MissionResult.UNSUPPORTED_FRAME
-    if ardupilot and kind == RALLY and item.frame not in RELATIVE:
+    absolute_too = ardupilot and kind == MISSION and item.frame == Frame.MISSION
+    if positioned and item.frame not in GLOBAL_FRAMES and not absolute_too:
         return MissionResult.UNSUPPORTED_FRAME
     may_be_nan = ARDUPILOT_NAN_YAW if ardupilot else NAN_YAW
     for i, value in enumerate(item.params):
@@ -75,9 +83,16 @@ def refusal(item, kind, ardupilot=False):
         return MissionResult.INVALID_PARAM5_X
     if positioned and abs(item.y) > 1_800_000_000:
         return MissionResult.INVALID_PARAM6_Y
-    if not math.isfinite(item.z):
+    if not math.isfinite(item.z) or (ardupilot and abs(item.z) >= ARDUPILOT_HIGHEST):
         return MissionResult.INVALID_PARAM7
+    if ardupilot and item.command in POLYGON and item.params[0] > ARDUPILOT_CORNERS:
+        return MissionResult.INVALID_PARAM1
     return MissionResult.ACCEPTED
+
+
+def jumps_nowhere(item, count):
+    """ArduPilot looks at a jump when it comes; home is no place to jump to."""
+    return item.command == Command.DO_JUMP and not 0 < item.params[0] < count
 
 
 def refusal_of_whole(items, kind):
@@ -107,6 +122,39 @@ def polygons(items):
     return MissionResult.ACCEPTED
 
 
+def single(value):
+    """As a float of 32 bits."""
+    return struct.unpack("<f", struct.pack("<f", value))[0]
+
+
+def ardupilot_parameter(rule, value):
+    """Fractions are cut off, not rounded."""
+    value = value if math.isfinite(value) else 0.0
+    size = abs(value)
+    if rule == FLAG:
+        return float(value > 0)
+    if rule in (SIGN, YAW_SIGN):
+        return -1.0 if value < 0 else 1.0
+    if rule == BYTE:
+        return float(min(255, int(size)))
+    if rule == TURNS:
+        return int(value * 256) / 256 if 0 < value < 1 else float(min(255, int(size)))
+    if rule == BYTE_RADIUS:
+        whole = int(size) if size <= 255 else 10 * min(255, int(size / 10))
+        return float(math.copysign(whole, value))
+    return float(math.copysign(int(size), value))
+
+
+def plain_frame(frame):
+    """Without _INT; an item without a frame is above sea level."""
+    for group, plain in ((ABSOLUTE + (Frame.MISSION,), Frame.GLOBAL),
+                         (RELATIVE, Frame.GLOBAL_RELATIVE_ALT),
+                         (TERRAIN, Frame.GLOBAL_TERRAIN_ALT)):
+        if frame in group:
+            return int(plain)
+    return frame
+
+
 def as_ardupilot_keeps(item, airframe, kind):
     """Altitudes in whole centimetres, frames without _INT, yaw and others lost; of fences no
     altitude and no frame, of rally points whole metres."""
@@ -116,20 +164,18 @@ def as_ardupilot_keeps(item, airframe, kind):
                                    autocontinue=0)
     if kind == RALLY:
         return dataclasses.replace(item, params=(0.0,) * 4, z=float(int(item.z)), autocontinue=0,
-                                   frame=int(Frame.GLOBAL_RELATIVE_ALT))
-    keeps = ARDUPILOT_KEEPS[airframe].get(item.command)
+                                   frame=plain_frame(item.frame))
+    keeps = ARDUPILOT_WAYPOINT[airframe] if item.command == Command.NAV_WAYPOINT else \
+        ARDUPILOT_KEEPS.get(item.command)
     params = item.params
     if keeps is not None:
-        params = tuple(value if i + 1 in keeps and math.isfinite(value) else 0.0
-                       for i, value in enumerate(params))
-    if item.command == Command.NAV_WAYPOINT:
-        params = tuple(float(round(value)) for value in params)
-    frame = item.frame
-    for group, plain in ((ABSOLUTE, Frame.GLOBAL), (RELATIVE, Frame.GLOBAL_RELATIVE_ALT),
-                         (TERRAIN, Frame.GLOBAL_TERRAIN_ALT)):
-        frame = plain if frame in group else frame
-    return dataclasses.replace(item, params=params, frame=int(frame), autocontinue=1,
-                               z=round(item.z * 100) / 100)
+        params = tuple(ardupilot_parameter(keeps[n], value) if n in keeps else 0.0
+                       for n, value in enumerate(params, 1))
+    if item.command in NO_POSITION and item.command != Command.DO_LAND_START:
+        return dataclasses.replace(item, params=params, frame=0, x=0, y=0, z=0.0, autocontinue=1)
+    centimetres = int(single(single(item.z) * 100))
+    return dataclasses.replace(item, params=params, frame=plain_frame(item.frame), autocontinue=1,
+                               z=single(centimetres * single(0.01)))
 
 
 def home_item(home):

@@ -13,6 +13,11 @@ RATES = {"SYS_STATUS": 1, "GLOBAL_POSITION_INT": 5, "LOCAL_POSITION_NED": 5, "AT
          "VFR_HUD": 4, "MISSION_CURRENT": 1, "GPS_RAW_INT": 1, "EXTENDED_SYS_STATE": 1,
          "HOME_POSITION": 0.2, "SYSTEM_TIME": 1, "NAV_CONTROLLER_OUTPUT": 2,
          "POSITION_TARGET_GLOBAL_INT": 2}
+# Unasked, ArduPlane sends each of these once a second, ArduCopter none; HOME_POSITION comes when it
+# changes.
+ARDUPILOT_STREAMS = ("SYS_STATUS", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "ATTITUDE",
+                     "VFR_HUD", "MISSION_CURRENT", "GPS_RAW_INT", "SYSTEM_TIME",
+                     "NAV_CONTROLLER_OUTPUT", "POSITION_TARGET_GLOBAL_INT", "WIND")
 ONLY_GUIDED = ("POSITION_TARGET_GLOBAL_INT",)
 POSITION_ONLY, VELOCITY_ONLY = 0xFF8, 0xFC7  # type masks
 SENSORS = 0x2F  # gyroscope, accelerometer, magnetometer, absolute pressure, GPS
@@ -30,8 +35,7 @@ MISSION_STATES = {"none": 1, "not_started": 2, "active": 3, "paused": 4, "comple
 class Telemetry:
     def __init__(self, node, flavour, kind):
         self.node, self.flavour, self.kind = node, flavour, kind
-        wind = {"ardupilot": "WIND", "px4": "WIND_COV"}.get(flavour.name, "WIND")
-        self.rates = {**RATES, wind: 1}
+        self.rates = self.default_rates()
         self.due = {}
         self.heartbeat_due = 0.0
 
@@ -52,9 +56,11 @@ class Telemetry:
     def can_send(self, name):
         return hasattr(self, name.lower())
 
-    @staticmethod
-    def default_rate(name):
-        return RATES.get(name, 0)
+    def default_rates(self):
+        if self.flavour.name != "ardupilot":
+            return {**RATES, "WIND_COV" if self.flavour.name == "px4" else "WIND": 1}
+        rate = 1 if self.kind == "plane" else 0
+        return {name: rate for name in ARDUPILOT_STREAMS}
 
     def set_stream(self, group, rate):
         for name in STREAMS.get(group, self.rates if group == 0 else ()):
@@ -166,11 +172,14 @@ class Telemetry:
 
     def mission_current(self):
         pilot, stored = self.node.pilot, self.node.missions.plans
-        # Home is not counted where it is an item; without a mission the count is unknown.
+        # Home is not counted where it is an item; ArduPilot does not say "unknown" nor "paused".
+        ardupilot, state = self.flavour.name == "ardupilot", self.mission_state()
         total = len(stored[MISSION]) - (1 if self.flavour.home_is_item_0 else 0)
-        fields = {"seq": pilot.current_item(), "total": total if stored[MISSION] else 65535,
-                  "mission_state": MISSION_STATES[self.mission_state()],
-                  "mission_mode": 1 if pilot.mode == AUTO else 2}
+        fields = {"seq": pilot.current_item(),
+                  "total": total if stored[MISSION] else 0 if ardupilot else 65535,
+                  "mission_state": MISSION_STATES["not_started" if ardupilot and state == "paused"
+                                                  else state],
+                  "mission_mode": 1 if pilot.mode == AUTO else 0 if ardupilot else 2}
         if self.flavour.opaque_ids:
             for field, kind in (("mission_id", MISSION), ("fence_id", FENCE),
                                 ("rally_points_id", RALLY)):

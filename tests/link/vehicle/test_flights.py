@@ -248,7 +248,7 @@ class Plane(Flight):
         where = {"x": round(target.lat * 1e7), "y": round(target.lon * 1e7), "z": 90.0,
                  "frame": int(Frame.GLOBAL_RELATIVE_ALT)}
         self.assertEqual(self.station.command(Command.DO_REPOSITION, -1, 0, -100, 0, **where),
-                         Result.DENIED)
+                         Result.FAILED)
         self.assertEqual(self.station.command(Command.DO_REPOSITION, -1, 1, -100, 0, **where), 0)
         self.assertEqual(self.pilot.mode, GUIDED)
         self.station.run(100)
@@ -309,6 +309,23 @@ class Arming(Flight):
         self.begin()
         self.station.send("MISSION_CLEAR_ALL", target_system=1, target_component=1)
         self.assertEqual(self.station.wait(("MISSION_ACK",), 1).type, 1)
+
+
+class Uploads(Flight):
+    MISSION = [HOME_ITEM, takeoff(10), at(60, 0, 10), at(60, 60, 10), at(0, 60, 10)]
+
+    def test_ardupilot_goes_on_at_the_item_whatever_is_uploaded(self):
+        """Until the mission is begun again, or the vehicle disarms."""
+        for flavour, item in (("ardupilot", 3), ("px4", 0)):
+            self.fly(f"--autopilot {flavour}", self.MISSION)
+            self.begin()
+            self.assertTrue(self.station.run(60, lambda: self.pilot.auto.current() == 3))
+            self.assertEqual(self.station.set_mode(HOLD), 0)
+            self.assertEqual(self.station.upload(self.MISSION), 0)
+            self.assertEqual(self.pilot.current_item(), item)
+        self.assertEqual(self.station.command(Command.MISSION_START, 1, 0), 0)
+        self.fly("--autopilot ardupilot", self.MISSION)
+        self.assertEqual(self.station.command(Command.MISSION_START, 1, 0), Result.DENIED)
 
 
 class Reboot(Flight):

@@ -35,6 +35,17 @@ class Telemetry(unittest.TestCase):
                            ("MISSION_CURRENT", 1), ("WIND", 1)):
             self.assertAlmostEqual(counts[name], 10 * rate, delta=1, msg=name)
 
+    def test_arducopter_sends_nothing_unasked(self):
+        for kind, rate in (("copter", 0), ("plane", 1)):
+            station, counts = self.rates(f"--autopilot ardupilot --type {kind}")
+            self.assertAlmostEqual(counts["HEARTBEAT"], 10, delta=1)
+            for name in ("GLOBAL_POSITION_INT", "MISSION_CURRENT", "SYS_STATUS"):
+                self.assertAlmostEqual(counts[name], 10 * rate, delta=rate, msg=name)
+            self.assertEqual(station.command(Command.SET_MESSAGE_INTERVAL, 33, 100000), 0)
+            station.received.clear()
+            station.run(2)
+            self.assertAlmostEqual(len(station.all("GLOBAL_POSITION_INT")), 20, delta=1)
+
     def test_heartbeats_of_each_autopilot(self):
         for arguments, expected in (
                 ("--autopilot ardupilot", (2, 3, 0)),
@@ -54,9 +65,11 @@ class Telemetry(unittest.TestCase):
         self.assertAlmostEqual(station.last("WIND_COV").wind_y, 6, places=5)
 
     def test_mission_current(self):
-        for flavour, total in (("generic", 6), ("ardupilot", 5)):
+        for flavour, none, total in (("generic", 65535, 6), ("ardupilot", 0, 5)):
             station, _ = self.rates(f"--autopilot {flavour}", 2)
-            self.assertEqual(station.last("MISSION_CURRENT").total, 65535)
+            station.command(Command.SET_MESSAGE_INTERVAL, 42, 1e6)
+            station.run(1.1)
+            self.assertEqual(station.last("MISSION_CURRENT").total, none)
             self.assertEqual(station.last("MISSION_CURRENT").mission_state, 1)
             station.upload(square())
             station.run(1.1)

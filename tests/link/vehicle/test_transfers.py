@@ -44,8 +44,10 @@ class Whole(unittest.TestCase):
             station.ask("MISSION_CLEAR_ALL", ("MISSION_ACK",), mission_type=FENCE)
             counts = [len(station.download(kind)) for kind in (MISSION, FENCE, RALLY)]
             self.assertEqual(counts, [6, 0, 1])
-            station.ask("MISSION_CLEAR_ALL", ("MISSION_ACK",), mission_type=ALL_PLANS)
-            self.assertEqual([len(station.download(kind)) for kind in (0, 1, 2)], [0, 0, 0])
+            answer = station.ask("MISSION_CLEAR_ALL", ("MISSION_ACK",), mission_type=ALL_PLANS)
+            left = [6, 0, 1] if flavour == "ardupilot" else [0, 0, 0]
+            self.assertEqual(answer.type == MissionResult.UNSUPPORTED, flavour == "ardupilot")
+            self.assertEqual([len(station.download(kind)) for kind in (0, 1, 2)], left)
 
     def test_ardupilot_asks_and_answers_as_it_does(self):
         station = start("--autopilot ardupilot")
@@ -56,7 +58,7 @@ class Whole(unittest.TestCase):
         self.assertEqual(len(station.all("MISSION_REQUEST")), 6)
         self.assertEqual(station.all("MISSION_REQUEST_INT"), [])
         stored = station.download()[1]
-        self.assertAlmostEqual(stored["z"], 20.13, places=5)
+        self.assertAlmostEqual(stored["z"], 20.12, places=5)
         self.assertEqual((stored["frame"], stored["param1"], stored["param4"]),
                          (Frame.GLOBAL_RELATIVE_ALT, 2.0, 0.0))
 
@@ -69,10 +71,40 @@ class Whole(unittest.TestCase):
         self.assertEqual(len(station.download(FENCE)), 4, "fences are replaced as a whole")
         station.upload([{**RALLIES[0], "z": 30.9}], RALLY)
         self.assertEqual(station.download(RALLY)[0]["z"], 30.0)
-        absolute = [{**RALLIES[0], "frame": int(Frame.GLOBAL)}]
-        self.assertEqual(station.upload(absolute, RALLY), MissionResult.UNSUPPORTED_FRAME)
-        circle = item(Command.NAV_LOITER_UNLIM, 47.0, 8.0, 20.0, params=(0, 0, 0, math.nan))
-        self.assertEqual(station.upload([circle]), MissionResult.INVALID_PARAM4)
+        absolute = [{**RALLIES[0], "frame": int(Frame.GLOBAL_INT)}]
+        self.assertEqual(station.upload(absolute, RALLY), MissionResult.ACCEPTED)
+        self.assertEqual(station.download(RALLY)[0]["frame"], Frame.GLOBAL)
+        corners = [{**corner, "param1": 256.0} for corner in FENCES]
+        self.assertEqual(station.upload(corners, FENCE), MissionResult.INVALID_PARAM1)
+
+    def test_what_ardupilot_makes_of_parameters(self):
+        """Fractions are cut off; a landing comes back with a direction of its yaw."""
+        nan = math.nan
+        for kind, command, sent, held in (
+                ("copter", Command.NAV_WAYPOINT, (2.9, 3, 4, nan), (2, 0, 0, 0)),
+                ("plane", Command.NAV_WAYPOINT, (2, 300.5, 4.5, nan), (0, 255, 4, 0)),
+                ("plane", Command.NAV_LAND, (0, 0, 0, nan), (0, 0, 0, 1)),
+                ("plane", Command.NAV_LOITER_UNLIM, (0, 0, -80.7, nan), (0, 0, -80, 0)),
+                ("plane", Command.NAV_LOITER_TURNS, (2, 1, -307.5, 1), (2, 0, -300, 1)),
+                ("plane", Command.NAV_LOITER_TIME, (9, 1, 80, 1), (9, 0, 1, 1)),
+                ("plane", Command.NAV_LOITER_TO_ALT, (1, -90.9, 0, 1), (0, -90, 0, 1))):
+            station = start(f"--autopilot ardupilot --type {kind}")
+            mission = square(1) + [item(command, *HOME[:2], 20.0, params=sent)]
+            self.assertEqual(station.upload(mission), MissionResult.ACCEPTED)
+            stored = station.download()[1]
+            self.assertEqual(tuple(stored[f"param{n}"] for n in (1, 2, 3, 4)), held, command)
+
+    def test_what_ardupilot_says_of_items_that_it_has_not(self):
+        station = start("--autopilot ardupilot")
+        station.send("MISSION_REQUEST_INT", target_system=1, target_component=1, seq=0)
+        self.assertEqual(station.wait(("MISSION_ITEM_INT",), 1).x, round(HOME[0] * 1e7))
+        station.upload(square(1))
+        self.assertEqual(len(station.download()), 2, "an empty vehicle puts its own home before")
+        station.upload(square())
+        station.send("MISSION_REQUEST_INT", target_system=1, target_component=1, seq=6)
+        station.run(STEP)
+        self.assertEqual([m.name for m in station.received[-2:]], ["MISSION_COUNT", "MISSION_ACK"])
+        self.assertEqual(station.last("MISSION_ACK").type, MissionResult.INVALID_SEQUENCE)
 
     def test_empty_plan_clears(self):
         station = start()
@@ -220,6 +252,21 @@ class Sequence(unittest.TestCase):
             for sequence in range(3):
                 station.send_item(square(), sequence)
             self.assertEqual(len(station.node.missions.plans[MISSION]), 3)
+
+    def test_clearing_during_an_upload(self):
+        """ArduPilot begins anew for the partner, and answers another one twice."""
+        station = self.begin("ardupilot")
+        other = Station(station.node, 254, "other")
+        station.others["other"] = other
+        other.send("MISSION_CLEAR_ALL", target_system=1, target_component=1)
+        station.run(STEP)
+        self.assertEqual([m.type for m in other.all("MISSION_ACK")],
+                         [MissionResult.DENIED, MissionResult.ERROR])
+        station.send("MISSION_CLEAR_ALL", target_system=1, target_component=1)
+        station.run(STEP)
+        self.assertEqual(station.last("MISSION_ACK").target_system, 255)
+        self.assertEqual(station.last("MISSION_ACK").type, MissionResult.ACCEPTED)
+        self.assertIsNone(station.node.missions.upload)
 
     def test_item_beyond_the_end(self):
         station = start()
