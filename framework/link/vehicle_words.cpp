@@ -54,6 +54,7 @@ const Names kPx4Modes{{1, "MANUAL"}, {2, "ALTCTL"},   {3, "POSCTL"},     {4, "AU
                       {5, "ACRO"},   {6, "OFFBOARD"}, {7, "STABILIZED"}, {8, "RATTITUDE"}};
 const Names kPx4AutoModes{{1, "READY"}, {2, "TAKEOFF"}, {3, "LOITER"},        {4, "MISSION"},
                           {5, "RTL"},   {6, "LAND"},    {8, "FOLLOW_TARGET"}, {9, "PRECLAND"}};
+}  // namespace
 
 bool is_fixed_wing(const Heartbeat& heartbeat) {
   constexpr std::uint8_t kFixedWing = 1;
@@ -62,7 +63,6 @@ bool is_fixed_wing(const Heartbeat& heartbeat) {
   return heartbeat.type == kFixedWing ||
          (heartbeat.type >= kFirstVtol && heartbeat.type <= kLastVtol);
 }
-}  // namespace
 
 std::string type_in_words(const Heartbeat& heartbeat) {
   static const Names kTypes{

@@ -15,6 +15,8 @@ inline constexpr std::uint8_t kPx4 = 12;
 /// Of MAV_MODE_FLAG.
 inline constexpr std::uint8_t kArmedFlag = 128;
 
+/// True also of a VTOL, which flies missions as one.
+bool is_fixed_wing(const Heartbeat& heartbeat);
 /// "quadrotor", "fixed wing".
 std::string type_in_words(const Heartbeat& heartbeat);
 /// "ArduPilot".

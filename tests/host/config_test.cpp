@@ -120,7 +120,7 @@ TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
        "radius_m: 1, speed_mps: 1}, id: a}]\n",
        "moving.1.id: the id 'a' is already used by another moving obstacle"},
       {"events: [{remove: x}]\n", "s.yaml:5:10: events.0: expected either at_s or when_near"},
-      {"events: [{at_s: 3}]\n", "expected one of add, remove, move, set_cells, move_goal"},
+      {"events: [{at_s: 3}]\n", "expected one of add, remove, move, set_cells, move_goal, visit"},
       {"events: [{at_s: 3, remove: x}]\n",
        "s.yaml:5:20: events.0.remove: there is no layer or moving obstacle 'x'"},
       {"events: [{at_s: 3, move_goal: {at_m: [1, 2]}}]\n",

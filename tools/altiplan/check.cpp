@@ -51,8 +51,8 @@ void print_track(const host::TrackVerdict& verdict, const host::Track& track, bo
 
 /// Prints the verdicts on the route and, if there is one, on the flight; returns the exit code.
 int report(const host::Mission& mission, const Route& route,
-           const std::optional<host::Track>& track, const std::vector<host::FlightEvent>& events,
-           bool as_json) {
+           const std::optional<host::Track>& track, bool telemetry,
+           const std::vector<host::FlightEvent>& events, bool as_json) {
   const CheckResult verdict = host::judge(route, mission.request, mission.via);
   const Measures measures = measure(route, mission.request);
   bool valid = verdict.ok();
@@ -65,6 +65,7 @@ int report(const host::Mission& mission, const Route& route,
     setup.request = mission.track_request;
     setup.truth = mission.truth;
     setup.events = events;
+    setup.telemetry = telemetry;
     const host::TrackVerdict flown = host::judge_track(*track, setup);
     valid = valid && flown.check.ok();
     json["flight"] = {{"check", host::to_json(flown.check)},
@@ -91,8 +92,8 @@ int check_result(const Arguments& arguments) {
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
   const host::Mission mission = host::build_mission(config, 1);
-  return report(mission, *stored.route, stored.track, host::build_events(config, mission),
-                arguments.json);
+  return report(mission, *stored.route, stored.track, stored.telemetry,
+                host::build_events(config, mission), arguments.json);
 }
 
 int check_route(const Arguments& arguments) {
@@ -108,7 +109,7 @@ int check_route(const Arguments& arguments) {
         "limits are "
         "checked");
   }
-  return report(mission, imported.route, std::nullopt, {}, arguments.json);
+  return report(mission, imported.route, std::nullopt, false, {}, arguments.json);
 }
 }  // namespace
 

@@ -21,6 +21,7 @@ void add_explain(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_upload(CLI::App& app, Action& action);
+void add_fly(CLI::App& app, Action& action);
 void add_download(CLI::App& app, Action& action);
 void add_status(CLI::App& app, Action& action);
 void add_plugins(CLI::App& app, Action& action);

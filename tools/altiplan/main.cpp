@@ -175,6 +175,7 @@ int main_checked(int argc, char** argv) {
   add_view(app, action);
   add_export(app, action);
   add_upload(app, action);
+  add_fly(app, action);
   add_download(app, action);
   add_status(app, action);
   add_plugins(app, action);

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "host/flight/events.hpp"
-#include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -31,6 +30,7 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
     if (!stored.track) {
       return std::nullopt;
     }
+    source.telemetry = stored.telemetry;
     for (const auto& [time, place] : *stored.track) {
       source.times.push_back(time);
       source.route.push_back(place);
@@ -84,9 +84,8 @@ void finish_options(RouteExport& route) {
   }
 }
 
-std::optional<host::Exported> exported(const RouteExport& route,
-                                       const std::optional<std::string>& out) {
-  const host::StoredResult stored = host::read_result(route.result, route.overrides);
+std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<std::string>& out) {
+  host::StoredResult stored = host::read_result(route.result, route.overrides);
   for (const std::string& changed : stored.changed) {
     warn(changed + " has changed since the result was written");
   }
@@ -96,17 +95,27 @@ std::optional<host::Exported> exported(const RouteExport& route,
     say(stored.file + " contains no " + (route.flight ? "flight" : "accepted route"));
     return std::nullopt;
   }
-  const host::Config config = host::load_config(stored.pipeline, stored.overrides);
-  const host::Mission mission = host::build_mission(config, 1);
+  host::Config config = host::load_config(stored.pipeline, stored.overrides);
+  host::Mission mission = host::build_mission(config, 1);
   source->name =
       config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
   if (route.flight) {
     source->events = host::build_events(config, mission);
   }
-  host::Exported exported = host::export_route(mission, *source, route.options);
+  return LoadedRoute{std::move(stored), std::move(config), std::move(mission), std::move(*source)};
+}
+
+std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExport& route) {
+  host::Exported exported = host::export_route(loaded.mission, loaded.source, route.options);
   for (const std::string& message : exported.messages) {
     say(message);
   }
   return exported.text ? std::optional(std::move(exported)) : std::nullopt;
+}
+
+std::optional<host::Exported> exported(const RouteExport& route,
+                                       const std::optional<std::string>& out) {
+  const std::optional<LoadedRoute> source = loaded(route, out);
+  return source ? exported(*source, route) : std::nullopt;
 }
 }  // namespace altiplan::cli

@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "host/import_export/export.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::cli {
 
@@ -21,8 +22,20 @@ void add_route_export(CLI::App& command, RouteExport& route);
 /// Ends the options; throws CLI::ValidationError where they cannot be combined.
 void finish_options(RouteExport& route);
 
-/// Judges and writes the route, and reports the verdict on stderr. None: there is no route, or it
-/// would not be valid as written. `out`, if it is a file, must not be one of those that are read.
+/// A result as read, and its world.
+struct LoadedRoute {
+  host::StoredResult stored;
+  host::Config config;
+  host::Mission mission;
+  host::ExportSource source;
+};
+/// None, which is reported: there is no route. `out`, if it is a file, must not be one of those
+/// that are read.
+std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<std::string>& out);
+/// Judges and writes the route, and reports the verdict on stderr. None: it would not be valid as
+/// written.
+std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExport& route);
+/// Both.
 std::optional<host::Exported> exported(const RouteExport& route,
                                        const std::optional<std::string>& out);
 }  // namespace altiplan::cli

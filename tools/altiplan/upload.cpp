@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <iostream>
-
-#include "link/plan_transfer.hpp"
-#include "link_options.hpp"
+#include "plan_upload.hpp"
 #include "route_export.hpp"
 
 namespace altiplan::cli {
@@ -14,36 +11,14 @@ struct Arguments {
   bool no_fence = false;
 };
 
-/// Uploads the items of one type; true if the vehicle holds what was sent.
-bool upload(Connection& connection, const host::Plan& plan, link::PlanType type,
-            std::size_t count) {
-  const std::vector<std::string> changed =
-      link::upload(connection.link, connection.vehicle, plan, type, connection.stop);
-  std::cout << link::name(type) << ": " << count << " items uploaded, read back "
-            << (changed.empty() ? "equal" : "with differences") << '\n';
-  for (const std::string& line : changed) {
-    std::cout << "  " << line << '\n';
-  }
-  return changed.empty();
-}
-
 int upload_result(const Arguments& arguments) {
   const std::optional<host::Exported> written = exported(arguments.route, std::nullopt);
   if (!written) {
     return kNoRoute;
   }
-  if (written->mission.decimals.degrees > 7) {
-    warn(
-        "MAVLink carries 7 decimals of a degree: rounded so, the route is not valid, by 1 cm at "
-        "most");
-  }
-  const host::Plan plan = host::plan_of(written->mission);
+  const host::Plan plan = plan_to_upload(*written);
   return connected(arguments.link, [&](Connection& connection) {
-    bool is_equal = upload(connection, plan, link::PlanType::mission, plan.items.size());
-    if (!plan.fence.empty() && !arguments.no_fence) {
-      is_equal = upload(connection, plan, link::PlanType::fence, plan.fence.size()) && is_equal;
-    }
-    return is_equal ? kDone : kNoRoute;
+    return upload_plan(connection, plan, !arguments.no_fence) ? kDone : kNoRoute;
   });
 }
 }  // namespace
@@ -54,8 +29,7 @@ void add_upload(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   add_link_options(*command, "--to", arguments->link);
   add_route_export(*command, arguments->route);
-  command->add_flag("--no-fence", arguments->no_fence,
-                    "leave the vehicle's fence as it is, whatever zones the scenario has");
+  add_no_fence(*command, arguments->no_fence);
   set_example(*command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
   command->callback([&action, arguments] {
     arguments->route.options.format = kit::MissionFile::Format::qgc_plan;

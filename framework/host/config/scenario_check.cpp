@@ -139,6 +139,9 @@ void check_points(Checker& checker, const ScenarioFile& scenario, const Value& t
     if (event.when_near) {
       check(event.when_near->point, place_of(map, "when_near"), item("events", i) + ".when_near");
     }
+    if (event.visit) {
+      check(event.visit->point, place_of(map, "visit"), item("events", i) + ".visit");
+    }
     if (event.move_goal) {
       check(event.move_goal->point, place_of(map, "move_goal"), item("events", i) + ".move_goal");
     }

@@ -256,10 +256,12 @@ void EventEntry::describe(Fields& f) {
   f("move", move).doc("a layer that moves instantly");
   f("set_cells", set_cells).doc("cells that become blocked or free");
   f("move_goal", move_goal).doc("the new goal");
+  f("visit", visit).doc("a target: the local planner flies near it, then back to the route");
   f.check(at_s.has_value() != when_near.has_value(), "expected either at_s or when_near");
   const int actions = int(add.has_value()) + int(remove.has_value()) + int(move.has_value()) +
-                      int(set_cells.has_value()) + int(move_goal.has_value());
-  f.check(actions == 1, "expected one of add, remove, move, set_cells, move_goal");
+                      int(set_cells.has_value()) + int(move_goal.has_value()) +
+                      int(visit.has_value());
+  f.check(actions == 1, "expected one of add, remove, move, set_cells, move_goal, visit");
   f.check(add || id.empty(), "id names an added layer: it is allowed only with add");
 }
 

@@ -190,6 +190,7 @@ struct EventEntry {
   std::optional<MoveEntry> move;
   std::optional<SetCellsEntry> set_cells;
   std::optional<PointEntry> move_goal;
+  std::optional<NearEntry> visit;
   void describe(Fields& f);
 };
 

@@ -117,6 +117,10 @@ std::vector<FlightEvent> build_events(const Config& config, const Mission& missi
       event.id = entry.set_cells->layer;
       event.edit = [cells = entry.set_cells->cells, blocked = entry.set_cells->blocked](
                        const Layer& layer) { return with_cells(layer, cells, blocked); };
+    } else if (entry.visit) {
+      event.kind = FlightEvent::Kind::visit;
+      event.target = {resolve_point(entry.visit->point, site, level, where, key),
+                      entry.visit->within_m};
     } else {
       event.kind = FlightEvent::Kind::move_goal;
       event.vector = resolve_point(entry.move_goal->point, site, level, where, key);

@@ -35,26 +35,31 @@ Flight::Flight(const FlightSetup& setup)
     : setup_(setup),
       world_(setup),
       request_(setup.request),
-      truth_request_(setup.request),
-      path_(setup.route.chords(kChordTolerance)),
+      truth_request_(setup.telemetry ? as_telemetry(setup.request) : setup.request),
+      route_{FlightPath(setup.route.chords(kChordTolerance)), 0, 0, {}},
       events_(setup.events),
       state_(first_state(setup)),
       before_(setup.request.before_start(state_.position)),
-      required_(std::max(request_.limits.min_clearance, request_.vehicle.radius_m)) {
+      required_(std::max(request_.limits.min_clearance, request_.vehicle.radius_m)),
+      simulated_(setup.vehicle == nullptr ? simulated_vehicle(request_.vehicle) : nullptr),
+      vehicle_(setup.vehicle == nullptr ? simulated_.get() : setup.vehicle) {
   // Non-owning: the true world is owned, and changed, by world_.
   truth_request_.world =
       std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
-  truth_request_.limits = limits_of_legs(request_);
+  truth_request_.limits = limits_of_legs(truth_request_);
   result_.track.emplace_back(state_.time_s, state_.position);
 }
 
 FlightResult Flight::run() {
   // A failure ends the flight, but keeps the track.
-  for (const auto part : {&Flight::fly_to_the_end, &Flight::finish}) {
+  for (const auto part : {&Flight::fly_to_the_end, &Flight::release, &Flight::finish}) {
     try {
       (this->*part)();
     } catch (const ParameterError&) {
       throw;
+    } catch (const VehicleLost& lost) {
+      end_flight(RunStatus::not_reached, Reason::none, "");
+      result_.message = lost.what();  // no other planner would have helped
     } catch (const std::exception& error) {
       end_flight(RunStatus::failed, reason_of(error),
                  "the flight with '" + setup_.pilot_name + "' failed: " + error.what());
@@ -76,9 +81,7 @@ void Flight::fly_to_the_end() {
     reach_ = pilot_->reach_m();
   }
   const double end = state_.time_s + max_time();
-  if (request_.vehicle.wing) {
-    take_off_wing();
-  }
+  take_off();
   if (setup_.always && pilot_ != nullptr) {
     hand_over(true, "the pilot flies all the way");
   }
@@ -100,6 +103,25 @@ void Flight::fly_to_the_end() {
       pilot_commands_ ? fly_pilot() : fly_route();
     }
   }
+}
+
+void Flight::release() { vehicle_->release(); }
+
+void Flight::take_off() {
+  const double airspeed = request_.vehicle.wing ? request_.vehicle.wing->airspeed_mps : kInfinity;
+  for (const double z : route_.path.heights_across(request_.wind)) {
+    if (const double wind = request_.wind.at(z).norm(); wind >= airspeed) {
+      char message[160];
+      std::snprintf(message, sizeof message,
+                    "the wind of %g m/s at a height of %.0f m is not below the airspeed of %g m/s: "
+                    "the aeroplane cannot hold its course there",
+                    wind, z, airspeed);
+      end_flight(RunStatus::not_reached, Reason::none, message);
+      return;
+    }
+  }
+  state_ = vehicle_->take_off(request_, route_, state_);
+  result_.track.front() = {state_.time_s, state_.position};
 }
 
 double Flight::max_time() const {

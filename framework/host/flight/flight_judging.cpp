@@ -49,11 +49,14 @@ void Flight::finish() {
   if (const double separation = world_.separation().distance; std::isfinite(separation)) {
     result_.min_separation_m = separation;
   }
-  result_.cross_track_max_m = follow_error_.across_quantile(1);
-  result_.cross_track_p999_m = follow_error_.across_quantile(0.999);
-  result_.height_error_max_m = follow_error_.height_max();
+  result_.cross_track_max_m = route_.error.across_quantile(1);
+  result_.cross_track_p999_m = route_.error.across_quantile(0.999);
+  result_.height_error_max_m = route_.error.height_max();
   if (pilot_ != nullptr) {
     result_.counters = pilot_->counters();
+  }
+  for (Counter& counter : vehicle_->counters()) {
+    result_.counters.push_back(std::move(counter));
   }
   result_.counters.insert(result_.counters.begin(), {"steps", steps_});
   judge_whole();
@@ -79,12 +82,17 @@ std::string Flight::attribute_to() const {
 void Flight::judge_whole() {
   const Request& request = truth_request_;
   std::vector<Violation>& found = result_.check.violations;
+  const Limits& limits = setup_.telemetry ? request.limits : request_.limits;
   const Vec3& end = state_.position;
   if (!at_goal(end, request_)) {  // the goal as it is now
     found.push_back({"goal", result_.track.size() - 1, distance_from(request_.goal, end),
                      arrival_distance(request_), "the flight ended " + away() + " from the goal"});
   }
-  for (Violation& violation : whole_track_violations(result_.track, request, request_.limits)) {
+  for (const FlightEvent::Near& target : targets_) {
+    found.push_back(not_visited(target, result_.track));
+  }
+  for (Violation& violation :
+       whole_track_violations(result_.track, request, limits, setup_.telemetry)) {
     found.push_back(std::move(violation));
   }
 }

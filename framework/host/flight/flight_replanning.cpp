@@ -82,12 +82,12 @@ void Flight::take_route(Route route, const Request& request) {
     } catch (const PluginError&) {  // the route stays unchanged
     }
   }
-  path_ = FlightPath(route.chords(kChordTolerance));
-  restart_path();
+  route_.path = FlightPath(route.chords(kChordTolerance));
+  route_.restart();
   stuck_ = 0;
   end_moved_ = false;
   world_.route_is_new();
-  if (pilot_commands_ && !setup_.always) {
+  if (pilot_commands_ && !setup_.always && targets_.empty()) {
     hand_over(false, "a new route");
   }
 }

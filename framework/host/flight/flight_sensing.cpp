@@ -3,20 +3,30 @@
 
 #include <algorithm>
 
+#include "altiplan/error.hpp"
+#include "host/base/words.hpp"
+
 namespace altiplan::host {
 
 void Flight::meet_events() {
+  if (!targets_.empty() && targets_.front().is_near(state_.position)) {
+    targets_.erase(targets_.begin());
+  }
   bool world_differs = false;
   for (auto event = events_.begin(); event != events_.end();) {
     if (!event->is_due(state_.time_s, state_.position)) {
       ++event;
       continue;
     }
-    if (event->kind == FlightEvent::Kind::move_goal) {
+    if (event->kind == FlightEvent::Kind::visit) {
+      meet_target(event->target);
+    } else if (event->kind == FlightEvent::Kind::move_goal) {
       request_.goal.position = event->vector;
-      path_.move_end(pilot_commands_ || wing_ ? path_.at(progress_) : state_.position, progress_,
-                     event->vector);
-      restart_path();
+      const bool is_beside =
+          pilot_commands_ || setup_.vehicle != nullptr || request_.vehicle.wing.has_value();
+      route_.path.move_end(is_beside ? route_.path.at(route_.progress) : state_.position,
+                           route_.progress, event->vector);
+      route_.restart();
       end_moved_ = true;
       ask_replan();
     } else {
@@ -27,6 +37,19 @@ void Flight::meet_events() {
   }
   if (world_differs) {
     end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
+  }
+}
+
+void Flight::meet_target(const FlightEvent::Near& target) {
+  if (pilot_ == nullptr) {
+    throw Error("event visit: the fly step has no local planner");
+  }
+  targets_.push_back(target);
+  const std::string why = "a target at " + place(target.at);
+  if (!vehicle_->takes_commands()) {
+    note(why);
+  } else if (!pilot_commands_) {
+    hand_over(true, why);
   }
 }
 
@@ -58,9 +81,10 @@ const std::string* Flight::unplanned_near(const Vec3& a, const Vec3& b, double r
 
 bool Flight::rest_is_blocked() const {
   bool blocked = false;
-  path_.for_each_leg(progress_, path_.length(), [&](const Vec3& a, const Vec3& b) {
-    blocked = blocked || unplanned_near(a, b, required_) != nullptr;
-  });
+  route_.path.for_each_leg(route_.progress, route_.path.length(),
+                           [&](const Vec3& a, const Vec3& b) {
+                             blocked = blocked || unplanned_near(a, b, required_) != nullptr;
+                           });
   return blocked;
 }
 
@@ -82,7 +106,7 @@ const std::string* Flight::danger_ahead(double from, double t, double speed, dou
   if (world_.fresh().empty() && !end_moved_ && request_.world->moving().empty()) {
     return danger;  // the route was planned around everything known
   }
-  path_.for_each_leg(from, from + reach_, [&](const Vec3& a, const Vec3& b) {
+  route_.path.for_each_leg(from, from + reach_, [&](const Vec3& a, const Vec3& b) {
     const double t1 = t + (b - a).norm() / speed;
     if (danger == nullptr) {
       danger = danger_on(a, t, b, t1, room);

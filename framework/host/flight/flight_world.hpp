@@ -22,7 +22,7 @@ class FlightWorld {
   const World& truth() const { return truth_; }
   const std::shared_ptr<const World>& known() const { return known_; }
 
-  /// Applies an event other than a moved goal. Throws Error if its layer or obstacle does not
+  /// Applies an event that changes the world. Throws Error if its layer or obstacle does not
   /// exist.
   void apply(const FlightEvent& event);
   /// The changes that became known since the last call.

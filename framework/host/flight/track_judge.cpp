@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/flight/flight_world.hpp"
 
 namespace altiplan::host {
@@ -17,13 +18,14 @@ class Replay {
   explicit Replay(const FlightSetup& setup)
       : world_(setup),
         events_(setup.events),
-        limits_(setup.request.limits),
-        request_(setup.request) {
+        telemetry_(setup.telemetry),
+        request_(telemetry_ ? as_telemetry(setup.request) : setup.request),
+        limits_(request_.limits) {
     request_.limits = limits_of_legs(request_);
   }
 
   TrackVerdict operator()(const Track& track) {
-    if (track.empty() || !request_.start.starts_at(track.front().second)) {
+    if (track.empty() || (!telemetry_ && !request_.start.starts_at(track.front().second))) {
       found().push_back({"start", 0, 0, 0, "the track does not begin at the start"});
       return std::move(verdict_);
     }
@@ -49,12 +51,17 @@ class Replay {
   /// Applies due events; anything that then covers the vehicle is a contact.
   void meet_events(const std::pair<double, Vec3>& here, std::size_t at, bool& touching) {
     bool world_differs = false;
+    if (!targets_.empty() && targets_.front().is_near(here.second)) {
+      targets_.erase(targets_.begin());
+    }
     for (auto event = events_.begin(); event != events_.end();) {
       if (!event->is_due(here.first, here.second)) {
         ++event;
         continue;
       }
-      if (event->kind == FlightEvent::Kind::move_goal) {
+      if (event->kind == FlightEvent::Kind::visit) {
+        targets_.push_back(event->target);
+      } else if (event->kind == FlightEvent::Kind::move_goal) {
         request_.goal.position = event->vector;
       } else {
         world_.apply(*event);
@@ -72,7 +79,8 @@ class Replay {
     const auto& [t0, a] = from;
     const auto& [t1, b] = to;
     const double run = (b - a).norm();
-    const double fastest = request_.vehicle.wing ? kInfinity : top_speed(request_.vehicle);
+    const bool has_own_limit = telemetry_ || request_.vehicle.wing;
+    const double fastest = has_own_limit ? kInfinity : top_speed(request_.vehicle);
     if (!(t1 > t0) || run > fastest * (t1 - t0) * (1 + 1e-6) + kLengthTolerance) {
       found().push_back({"speed", at, t1 > t0 ? run / (t1 - t0) : kInfinity, fastest,
                          "the track is faster than the vehicle there"});
@@ -107,7 +115,10 @@ class Replay {
       found().push_back({"goal", track.size() - 1, distance_from(request_.goal, end),
                          arrival_distance(request_), "the track does not end at the goal"});
     }
-    for (Violation& violation : whole_track_violations(track, request_, limits_)) {
+    for (const FlightEvent::Near& target : targets_) {
+      found().push_back(not_visited(target, track));
+    }
+    for (Violation& violation : whole_track_violations(track, request_, limits_, telemetry_)) {
       found().push_back(std::move(violation));
     }
   }
@@ -122,9 +133,11 @@ class Replay {
   }
 
   FlightWorld world_;
-  std::vector<FlightEvent> events_;  ///< still to come
-  Limits limits_;
+  std::vector<FlightEvent> events_;         ///< still to come
+  std::vector<FlightEvent::Near> targets_;  ///< still to be visited, in order
+  bool telemetry_;
   Request request_;  ///< in the true world at that time
+  Limits limits_;    ///< of the whole track
   TrackVerdict verdict_;
 };
 }  // namespace
@@ -177,10 +190,10 @@ TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
 }
 
 std::vector<Violation> whole_track_violations(const Track& track, const Request& request,
-                                              const Limits& limits) {
+                                              const Limits& limits, bool telemetry) {
   const Polyline places = places_of(track);
   std::vector<Violation> found;
-  if (request.vehicle.wing) {
+  if (request.vehicle.wing && !telemetry) {
     found = wing_violations(track, request, limits);
   } else if (const TrackRadius tightest = track_radius(places, request.vehicle);
              tightest.radius_m && *tightest.radius_m < limits.min_turn_radius - kLengthTolerance) {
@@ -203,6 +216,29 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
     }
   }
   return found;
+}
+
+Request as_telemetry(Request request) {
+  constexpr double kArrival = 5;  // metres: autopilots of multirotors accept waypoints within 2 m
+  Limits& limits = request.limits;
+  limits.min_turn_radius = limits.min_leg = 0;
+  limits.max_turn_horizontal = limits.max_turn_space = kPi;
+  limits.max_climb = kPi / 2;
+  limits.max_sink.reset();
+  request.level_m.reset();
+  const auto& wing = request.vehicle.wing;
+  request.goal.tolerance_m =
+      std::max({request.goal.tolerance_m, kArrival, wing ? wing->turn_radius() : 0});
+  return request;
+}
+
+Violation not_visited(const FlightEvent::Near& target, const Track& track) {
+  double least = kInfinity;
+  for (const auto& [t, p] : track) {
+    least = std::min(least, (p - target.at).norm());
+  }
+  return {"visit", track.size() - 1, least, target.within_m,
+          "the track does not visit the target at " + place(target.at)};
 }
 
 double top_speed(const Vehicle& vehicle) {

@@ -44,10 +44,16 @@ TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle);
 /// turn radius, and on an aeroplane's climb, which are judged for the whole track.
 Limits limits_of_legs(const Request& request);
 
+/// The request by which positions are judged that a vehicle reports, rounded and at times of its
+/// own: without what depends on differences between neighbouring ones (turns, climb, speed, level
+/// flight), which the vehicle's autopilot limits, and with a tolerance at the goal within which
+/// autopilots end a mission.
+Request as_telemetry(Request request);
+
 /// Violations of a whole track, beyond its legs: its turns (minimum turn radius in `limits`), an
-/// aeroplane's motion, its length, and the constraints on whole tracks.
+/// aeroplane's motion (neither of telemetry), its length, and the constraints on whole tracks.
 std::vector<Violation> whole_track_violations(const Track& track, const Request& request,
-                                              const Limits& limits);
+                                              const Limits& limits, bool telemetry = false);
 
 /// The first violation of each of an aeroplane's limits, judged by the times of the track in the
 /// air mass, which moves with the wind at the beginning of each step: airspeed; climb and sink; and
@@ -56,6 +62,9 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
 /// limits violates them, however it is sampled.
 std::vector<Violation> wing_violations(const Track& track, const Request& request,
                                        const Limits& limits);
+
+/// The violation of a track that does not come near a target.
+Violation not_visited(const FlightEvent::Near& target, const Track& track);
 
 /// Distance of a position from the goal, or from its loiter circle.
 double distance_from(const Goal& goal, const Vec3& p);

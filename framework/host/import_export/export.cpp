@@ -148,6 +148,7 @@ std::string problem_of(const Mission& mission, const ExportSource& source, const
     setup.request = mission.track_request;
     setup.truth = mission.truth;
     setup.events = source.events;
+    setup.telemetry = source.telemetry;
     check = judge_track(track, setup).check;
   }
   if (check.ok()) {
@@ -180,7 +181,7 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
   const std::vector<std::size_t> kept =
       thinned(source.route, most, flown ? mission.track_request : mission.request,
               flown ? std::vector<Goal>() : mission.via);
-  ExportSource less{source.name, part_of(source.route, kept), {}, source.events};
+  ExportSource less{source.name, part_of(source.route, kept), {}, source.events, source.telemetry};
   const std::size_t left = item_count(places_of(mission, less.route, options), options);
   if (left > *options.max_items) {
     messages.push_back("not written: the route needs " + std::to_string(left) +

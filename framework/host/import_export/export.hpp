@@ -33,6 +33,7 @@ struct ExportSource {
   Route route;
   std::vector<double> times;        ///< of a flight, one per point
   std::vector<FlightEvent> events;  ///< of the flight
+  bool telemetry = false;           ///< the flight was a vehicle's
 };
 
 struct Exported {

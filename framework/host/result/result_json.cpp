@@ -90,6 +90,7 @@ Json flight_json(const FlightResult& flight) {
   json["status"] = name(flight.status);
   json["reason"] = reason_json(flight.reason);
   json["message"] = flight.message;
+  json["link"] = flight.link ? Json(*flight.link) : Json(nullptr);
   json["metrics"] = to_json(flight.measures);
   json["check"] = to_json(flight.check);
   json["counters"] = counters_json(flight.counters);

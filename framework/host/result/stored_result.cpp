@@ -151,7 +151,7 @@ StoredResult read_result(const std::string& file, const Overrides& overrides) {
 }
 
 StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides) {
-  StoredResult stored{file, std::move(content), {}, {}, {}, {}, {}};
+  StoredResult stored{file, std::move(content), {}, {}, {}, {}, false, {}};
   const Json& json = stored.json;
   try {
     if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {
@@ -171,7 +171,9 @@ StoredResult stored_result(const std::string& file, Json content, const Override
       stored.route = route_of(json, file);
     }
     if (!json.at("flight").is_null()) {
-      stored.track = track_of(json.at("flight").at("track"), file);
+      const Json& flight = json.at("flight");
+      stored.track = track_of(flight.at("track"), file);
+      stored.telemetry = flight.contains("link") && !flight.at("link").is_null();
     }
   } catch (const Json::exception& error) {
     const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"

@@ -21,6 +21,7 @@ struct StoredResult {
   Overrides overrides;  ///< of the run
   std::optional<Route> route;
   std::optional<Track> track;
+  bool telemetry = false;            ///< the track is that of a vehicle at a link
   std::vector<std::string> changed;  ///< input files that have changed since the result was written
 };
 

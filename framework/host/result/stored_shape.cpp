@@ -51,6 +51,7 @@ constexpr Key kStep[] = {
 constexpr Key kFlight[] = {
     {"status", kStatus},
     {"message", kText},
+    {"link", kText | kNull},
     {"metrics", kObject},
     {"check", kObject},
     {"collisions", kNumber},

@@ -43,9 +43,15 @@ RunResult Run::operator()() {
     events_ = build_events(config_, mission_);  // report their errors before planning
     expect_left_alone();
   }
+  if (options_.real) {
+    take_route(options_.real->route);
+  }
   for (const StepEntry& step : config_.steps) {
     if (interrupted()) {
       break;
+    }
+    if (options_.real && step.verb != Verb::fly) {
+      continue;
     }
     if (step.verb != Verb::plan && !result_.accepted) {
       continue;  // there is no input route
@@ -65,6 +71,18 @@ RunResult Run::operator()() {
     }
   }
   return std::move(result_);
+}
+
+void Run::take_route(const Route& route) {
+  StepResult given;
+  given.id = "result";
+  given.accepted = true;
+  given.status = RunStatus::solved;
+  given.route = route;
+  given.measures = measure(route, mission_.request);
+  given.check = judge(route, mission_.request, mission_.via);
+  result_.steps.push_back(std::move(given));
+  result_.accepted = 0;
 }
 
 void Run::attempt(const StepEntry& step) {

@@ -6,11 +6,18 @@
 #include <optional>
 
 #include "host/config/config.hpp"
+#include "host/flight/flown_vehicle.hpp"
 #include "host/run/process_guard.hpp"
 #include "host/run/run_result.hpp"
 #include "host/run/watchdog.hpp"
 
 namespace altiplan::host {
+
+/// A flight with a vehicle of its own time, along a route that is given.
+struct RealFlight {
+  Route route;
+  FlownVehicle& vehicle;
+};
 
 struct RunOptions {
   int threads = 1;
@@ -25,6 +32,8 @@ struct RunOptions {
   ProcessGuard* process = nullptr;  ///< guards the process state; unguarded if null
   /// Timeout of steps without `within_s` and of work without a budget: constructors, judging.
   double timeout_s = kDefaultStepSeconds;
+  /// If set, no step is done but the first attempt of the flight, without a time budget.
+  std::optional<RealFlight> real;
 };
 
 /// Runs a pipeline: every step with its alternatives, the judge after each, and the flight.

@@ -3,6 +3,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/flight/flight.hpp"
+#include "host/flight/track_judge.hpp"
 #include "host/run/pipeline_run.hpp"
 
 namespace altiplan::host {
@@ -25,6 +26,12 @@ class BrokenSession final : public Session {
 }  // namespace
 
 void Run::fly_step(const StepEntry& step) {
+  if (options_.real) {
+    StepEntry only = step;
+    only.within_s.reset();
+    fly_once(only, std::nullopt);
+    return;
+  }
   fly_once(step, std::nullopt);
   for (const StepEntry& other : step.otherwise) {
     if (result_.flight->status == RunStatus::solved || interrupted()) {
@@ -70,6 +77,11 @@ FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
   setup.max_time_s = entry.fly.max_time_s;
   if (planner) {
     find_replanner(entry, *planner, made, setup);
+  }
+  if (options_.real) {
+    setup.vehicle = &options_.real->vehicle;
+    setup.telemetry = true;
+    setup.request.goal = as_telemetry(setup.request).goal;
   }
   return setup;
 }

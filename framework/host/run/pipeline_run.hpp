@@ -35,6 +35,8 @@ class Run {
  private:
   bool interrupted() const { return options_.stop.stop_requested(); }
 
+  /// Accepts a route that no step has planned.
+  void take_route(const Route& route);
   /// Runs the step, then its alternatives, until one is accepted. Its id then refers to (`from`)
   /// the accepted route, or else to its input route.
   void attempt(const StepEntry& step);

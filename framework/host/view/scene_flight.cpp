@@ -99,7 +99,7 @@ class TruthAlong {
   void go_to(std::size_t point) {
     for (; next_ <= point; ++next_) {
       for (std::size_t i = 0; i < events_.size(); ++i) {
-        if (points_[i] == next_ && events_[i].kind != FlightEvent::Kind::move_goal) {
+        if (points_[i] == next_ && events_[i].changes_world()) {
           world_.apply(events_[i]);
         }
       }
@@ -239,12 +239,13 @@ Json happenings_json(const Json& list, std::initializer_list<const char*> texts)
 }
 
 /// The judge's present verdict on the track.
-TrackVerdict judged(const Track& track, const Mission& mission,
+TrackVerdict judged(const Track& track, bool telemetry, const Mission& mission,
                     const std::vector<FlightEvent>& events) {
   FlightSetup setup;
   setup.request = mission.track_request;
   setup.truth = mission.truth;
   setup.events = events;
+  setup.telemetry = telemetry;
   return judge_track(track, setup);
 }
 
@@ -295,7 +296,7 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   }
   Json json;
   copy_texts(json, flight, {"status", "message"});
-  const TrackVerdict now = judged(track, mission, events);
+  const TrackVerdict now = judged(track, stored.telemetry, mission, events);
   const std::string whose = stored.file + ": the flight";
   set_status(json, stored.file, status_of(now), first_found(now, track));
   json["metrics"] = metrics_now(flight.at("metrics"), to_json(now.measures));

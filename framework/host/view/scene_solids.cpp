@@ -191,7 +191,7 @@ class Stays {
     using Kind = FlightEvent::Kind;
     if (event.kind == Kind::add) {
       all_.push_back({event.layer, event.moving, {0, 0, 0}, index, {}});
-    } else if (event.kind != Kind::move_goal) {
+    } else if (event.changes_world()) {
       const auto found = std::find_if(all_.begin(), all_.end(), [&](const Stay& stay) {
         return stay.id() == event.id && !stay.removed_by;
       });
@@ -229,6 +229,8 @@ std::string event_text(const FlightEvent& event) {
       return event.id + " moves by " + place(event.vector) + " m";
     case Kind::set_cells:
       return "cells of " + event.id + " change";
+    case Kind::visit:
+      return "a target appears at " + place(event.target.at);
     case Kind::move_goal:
       break;
   }

@@ -22,6 +22,7 @@ def px4_mode(main, sub=0):
 
 # custom_mode of each mode; the first mode of a number is what the number sets.
 ARDUCOPTER = {MANUAL: 0, AUTO: 3, GUIDED: 4, HOLD: 5, RTL: 6, LAND: 9}
+BRAKE = 17  # of ArduCopter: holds too, whatever the sticks do
 ARDUPLANE = {MANUAL: 0, AUTO: 10, RTL: 11, HOLD: 12, TAKEOFF: 13, GUIDED: 15}
 PX4 = {MANUAL: px4_mode(1), GUIDED: px4_mode(6), TAKEOFF: px4_mode(4, 2), HOLD: px4_mode(4, 3),
        AUTO: px4_mode(4, 4), RTL: px4_mode(4, 5), LAND: px4_mode(4, 6)}
@@ -73,6 +74,8 @@ def mode_of(flavour, kind, base_mode, custom_mode):
         if wanted & FLAG_AUTO:
             return AUTO
         return GUIDED if wanted & FLAG_GUIDED else HOLD if wanted else MANUAL
+    if numbers is ARDUCOPTER and custom_mode == BRAKE:
+        custom_mode = numbers[HOLD]
     for mode, number in numbers.items():
         if number == custom_mode and base_mode & FLAG_CUSTOM:
             return mode

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/flight/point_vehicle.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr double kMinWay = 1e-3;    ///< metres: a shorter rest of a leg is flown with the step
+constexpr double kMinShare = 1e-9;  ///< of a step: a shorter rest is rounding error, not flown
+}  // namespace
+
+FlownTo PointVehicle::follow(RouteAhead& route, const State& from, double duration,
+                             const Report& report) {
+  State now = from;
+  double left = duration;
+  while (left > kMinShare * duration) {
+    const Vec3 next = route.path.next_waypoint(route.progress);
+    const Vec3 way = next - now.position;
+    const double to_next = way.norm();
+    if (to_next <= kMinWay && route.progress + kMinWay >= route.path.length()) {
+      return FlownTo::end_of_route;
+    }
+    if (to_next == 0) {
+      route.progress = route.path.end_of_leg(route.progress);
+      continue;
+    }
+    const double v = request_->vehicle.speed_at(request_->world->clearance(now.position));
+    const bool whole = to_next - v * left <= kMinWay;
+    const double run = whole ? to_next : v * left;
+    route.progress = whole ? route.path.end_of_leg(route.progress) : route.progress + run;
+    const double dt = run / v;
+    now = {now.time_s + dt, whole ? next : Vec3(now.position + way / to_next * run),
+           way / to_next * v};
+    left -= dt;
+    if (!report(now) || request_->goal.reached_at(now.position)) {
+      break;
+    }
+  }
+  return FlownTo::on_the_way;
+}
+}  // namespace altiplan::host

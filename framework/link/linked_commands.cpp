@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "link/linked_vehicle.hpp"
+
+namespace altiplan::link {
+namespace {
+
+using host::RouteAhead;
+
+constexpr Time kAskAgain{500};
+constexpr int kMaxAsks = 10;
+constexpr double kSamePlace = 1e-3;  ///< metres
+constexpr double kLookahead = 2;     ///< seconds, of a multirotor along the route
+constexpr double kCircleAhead = 4;   ///< seconds to the circle that ends an aeroplane's set-point
+constexpr double kBetween = 0.5;     ///< seconds between set-points that are commands of their own
+}  // namespace
+
+std::optional<int> LinkedVehicle::item_at(const Vec3& waypoint) const {
+  // A route may pass a point twice; and autopilots turn to an item before they are at the last one.
+  const std::size_t count = flight_.items.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t item = (std::size_t(flown_item_) + n) % count;
+    if ((flight_.items[item] - waypoint).norm() <= kSamePlace) {
+      return number_of(item);
+    }
+  }
+  return std::nullopt;
+}
+
+void LinkedVehicle::steer(const RouteAhead& route, const State& now) {
+  if (!flight_.command) {
+    return;
+  }
+  const std::optional<int> item = item_at(route.path.next_waypoint(route.progress));
+  if (!item) {
+    take_command();
+    stream(along(route, now), now);
+  } else if (commands_) {
+    hand_back(*item);
+    if (commands_) {  // until the mode has changed
+      stream(along(route, now), now);
+    }
+  }
+}
+
+SetPoint LinkedVehicle::along(const RouteAhead& route, const State& now) const {
+  const double speed = request_->vehicle.speed_at(world_.clearance(now.position));
+  const double ahead = kLookahead * speed;
+  const Vec3 target = route.path.at(route.path.first_beyond(ahead, now.position, route.progress));
+  const Vec3 way = target - now.position;
+  return toward(now.position, way / std::max(way.norm() / speed, 1.0), target.z());
+}
+
+SetPoint LinkedVehicle::toward(const Vec3& from, const Vec3& velocity, double height) const {
+  SetPoint wanted;
+  wanted.velocity = velocity;
+  if (const auto& wing = request_->vehicle.wing) {
+    wanted.radius_m = wing->turn_radius();
+    const double ahead = 2 * wanted.radius_m + kCircleAhead * wing->airspeed_mps;
+    const double speed = std::max(velocity.head<2>().norm(), kLengthTolerance);
+    wanted.position = from + ahead / speed * velocity;
+    wanted.position.z() = height;
+  }
+  return wanted;
+}
+
+void LinkedVehicle::take_command() {
+  if (!flight_.command) {
+    return;
+  }
+  if (!commands_ || hands_back_) {
+    commands_ = true;
+    hands_back_ = is_confirmed_ = false;
+    asks_ = 0;
+    ask_at_ = Time(0);
+  }
+  is_confirmed_ = is_confirmed_ || feed_.mode() == FlightMode::commanded;
+}
+
+void LinkedVehicle::hand_back(int item) {
+  if (!hands_back_) {
+    hands_back_ = true;
+    asks_ = 0;
+    ask_at_ = Time(0);
+  }
+  if (asks_ > 0 && feed_.mode() == FlightMode::mission &&
+      feed_.current_item().value_or(-1) >= item) {
+    commands_ = hands_back_ = false;
+    guardian_->stand_down();
+  } else if (time_now() >= ask_at_) {
+    feed_.set_item(item);
+    ask(FlightMode::mission);
+  }
+}
+
+void LinkedVehicle::ask(FlightMode mode) {
+  if (++asks_ > kMaxAsks) {
+    give_up("the vehicle does not change its mode, " + feed_.mode_name() + feed_.said());
+  }
+  feed_.send(feed_.request(mode));
+  ask_at_ = time_now() + kAskAgain;
+}
+
+void LinkedVehicle::stream(const SetPoint& wanted, const State& now) {
+  if (!commands_) {
+    return;
+  }
+  const bool is_command = feed_.vehicle().is_ardupilot() && request_->vehicle.wing;
+  const bool is_due = !is_command || !is_confirmed_ || now.time_s >= streamed_s_ + kBetween;
+  if (is_due) {
+    link_.send(set_point(feed_.vehicle(), wanted, world_.frame()));
+    streamed_s_ = now.time_s;
+  }
+  guardian_->commanding();
+  if (!hands_back_ && !is_confirmed_ && time_now() >= ask_at_) {
+    ask(FlightMode::commanded);  // after the first set-point: PX4 refuses OFFBOARD without
+  }
+}
+
+bool LinkedVehicle::is_in_own_mode() const {
+  const FlightMode mode = feed_.mode();
+  if (!commands_) {
+    return mode == FlightMode::mission;
+  }
+  const bool changes = !is_confirmed_ || hands_back_;
+  return mode == FlightMode::commanded || (changes && mode == FlightMode::mission);
+}
+
+void LinkedVehicle::release() {
+  constexpr Time kTimeout{400};  // then the guardian does it
+  constexpr Time kAgain{200};
+  Time ask_at{0};
+  for (const Time end = time_now() + kTimeout;
+       commands_ && feed_.mode() != FlightMode::hold && time_now() < end;) {
+    if (time_now() >= ask_at) {
+      feed_.send(feed_.request(FlightMode::hold));
+      ask_at = time_now() + kAgain;
+    }
+    feed_.next(kAgain / 10);
+  }
+  if (guardian_ && (!commands_ || feed_.mode() == FlightMode::hold)) {
+    guardian_->stand_down();
+  }
+  commands_ = false;
+}
+}  // namespace altiplan::link

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "link/vehicle_feed.hpp"
+
+#include "link/terrain_answer.hpp"
+#include "link/vehicle_words.hpp"
+
+namespace altiplan::link {
+
+std::optional<State> VehicleFeed::next(Time wait) {
+  const std::optional<Packet> packet = link_.receive(wait);
+  if (!packet || !(packet->sender == vehicle_.address)) {
+    return std::nullopt;
+  }
+  if (const auto* position = std::get_if<GlobalPositionInt>(&packet->message)) {
+    return take(*position);
+  }
+  take(packet->message);
+  return std::nullopt;
+}
+
+void VehicleFeed::take(const Message& message) {
+  if (const auto* heartbeat = std::get_if<Heartbeat>(&message)) {
+    vehicle_.heartbeat = *heartbeat;
+    mode_ = mode_of(*heartbeat);
+  } else if (const auto* current = std::get_if<MissionCurrent>(&message)) {
+    current_item_ = current->seq;
+  } else if (const auto* reached = std::get_if<MissionItemReached>(&message)) {
+    reached_item_ = reached->seq;
+  } else if (const auto* ack = std::get_if<CommandAck>(&message)) {
+    take(*ack);
+  } else if (const auto* text = std::get_if<Statustext>(&message)) {
+    text_ = text_of(text->text);
+  } else if (const auto* request = std::get_if<TerrainRequest>(&message)) {
+    link_.send(terrain_answer(*request, world_));
+  }
+}
+
+void VehicleFeed::take(const CommandAck& ack) {
+  constexpr int kAccepted = 0;
+  constexpr int kInProgress = 5;
+  if (ack.result != kInProgress) {
+    results_[ack.command] = ack.result;
+  }
+  if (ack.command == VehicleCommand::kSetMode && ack.result == kAccepted) {
+    mode_ = asked_;  // heartbeats come later
+  }
+}
+
+std::optional<State> VehicleFeed::take(const GlobalPositionInt& position) {
+  constexpr std::uint32_t kJitter = 1000;  // ms: packets may come in another order
+  if (boot_ms_ && position.time_boot_ms <= *boot_ms_) {
+    has_restarted_ = has_restarted_ || position.time_boot_ms + kJitter < *boot_ms_;
+    return std::nullopt;
+  }
+  boot_ms_ = position.time_boot_ms;
+  last_position_ = Clock::now();
+  const auto [x, y] = world_.frame().to_local(position.lon / 1e7, position.lat / 1e7);
+  state_.time_s = position.time_boot_ms / 1e3 - zero_s_;
+  state_.position = {x, y, position.alt / 1e3};
+  state_.velocity = Vec3(position.vy, position.vx, -position.vz) / 1e2;
+  return state_;
+}
+
+State VehicleFeed::begin_track(double time_s) {
+  zero_s_ = boot_ms_.value_or(0) / 1e3 - time_s;
+  state_.time_s = time_s;
+  return state_;
+}
+
+std::string VehicleFeed::mode_name() const { return mode_in_words(vehicle_.heartbeat); }
+
+bool VehicleFeed::is_armed() const { return (vehicle_.heartbeat.base_mode & kArmedFlag) != 0; }
+
+std::string VehicleFeed::said() const { return text_.empty() ? "" : " (\"" + text_ + "\")"; }
+
+void VehicleFeed::send(const CommandLong& command) {
+  results_.erase(command.command);
+  link_.send(Message(command));
+}
+
+std::optional<int> VehicleFeed::acknowledged(std::uint16_t command) const {
+  const auto result = results_.find(command);
+  return result == results_.end() ? std::nullopt : std::optional(result->second);
+}
+
+void VehicleFeed::set_item(int item) {
+  MissionSetCurrent set;
+  set.target_system = vehicle_.address.system;
+  set.target_component = vehicle_.address.component;
+  set.seq = static_cast<std::uint16_t>(item);
+  current_item_.reset();
+  link_.send(Message(set));
+}
+
+CommandLong VehicleFeed::request(FlightMode mode) {
+  asked_ = mode;
+  return mode_command(vehicle_, mode);
+}
+}  // namespace altiplan::link

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "altiplan/request.hpp"
+#include "link/flight_mode.hpp"
+
+namespace altiplan::link {
+
+/// What a vehicle reports while it flies, in local metres and in its own time. Its requests for
+/// terrain are answered from the world's ground.
+class VehicleFeed {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// The link and the world outlive it.
+  VehicleFeed(Link& link, const Vehicle& vehicle, const World& world)
+      : link_(link), vehicle_(vehicle), world_(world) {}
+
+  /// Takes what arrives within the time; the new state if it is a position, later than the last.
+  std::optional<State> next(Time wait);
+  /// The present position becomes the one at that time.
+  State begin_track(double time_s);
+
+  const Vehicle& vehicle() const { return vehicle_; }
+  FlightMode mode() const { return mode_; }
+  std::string mode_name() const;
+  bool is_armed() const;
+  /// Number of the mission's item, by the last report.
+  std::optional<int> current_item() const { return current_item_; }
+  std::optional<int> reached_item() const { return reached_item_; }
+  /// Arrival of the last position.
+  Clock::time_point last_position() const { return last_position_; }
+  bool has_position() const { return boot_ms_.has_value(); }
+  /// True if its clock has gone back.
+  bool has_restarted() const { return has_restarted_; }
+  /// Its last status text, in words of its own: " (\"PreArm: …\")", "" if there is none.
+  std::string said() const;
+
+  /// Sends a command; acknowledged() is then about this one.
+  void send(const CommandLong& command);
+  /// MAV_RESULT of the command, once it is known.
+  std::optional<int> acknowledged(std::uint16_t command) const;
+  /// Sends MISSION_SET_CURRENT; current_item() is unknown until the vehicle reports it again.
+  void set_item(int item);
+  /// The command for a mode; mode() is that one as soon as the vehicle accepts it.
+  CommandLong request(FlightMode mode);
+
+ private:
+  void take(const Message& message);
+  void take(const CommandAck& ack);
+  std::optional<State> take(const GlobalPositionInt& position);
+
+  Link& link_;
+  Vehicle vehicle_;
+  const World& world_;
+  FlightMode mode_ = FlightMode::other;
+  FlightMode asked_ = FlightMode::other;
+  std::optional<int> current_item_;
+  std::optional<int> reached_item_;
+  std::map<std::uint16_t, int> results_;  ///< by command
+  std::string text_;
+  Clock::time_point last_position_;
+  std::optional<std::uint32_t> boot_ms_;  ///< of the last position
+  double zero_s_ = 0;                     ///< vehicle's time at which the track has time 0
+  bool has_restarted_ = false;
+  State state_;
+};
+}  // namespace altiplan::link

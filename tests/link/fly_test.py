@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""fly_test.py PROGRAM SOURCES: altiplan fly with the vehicle of tests/link/vehicle."""
+import os
+import signal
+import sys
+
+from flown_case import FlownCase, unittest
+
+FlownCase.program, FlownCase.sources = sys.argv[1:3]
+COPTERS = ("generic", "ardupilot", "px4")
+TAKEOFF = ("--takeoff", "--home-altitude", "500")
+
+
+class Fly(FlownCase):
+    def expect_flown(self, code, flight, out):
+        self.assertEqual(code, 0, out)
+        self.assertEqual(flight["status"], "solved")
+        self.assertEqual(flight["check"]["violations"], [])
+        self.assertTrue(flight["reached"])
+
+    def test_a_route_is_flown_and_judged(self):
+        result = self.planned(pilot="route")
+        for autopilot in COPTERS:
+            with self.subTest(autopilot=autopilot):
+                vehicle = self.vehicle("--autopilot", autopilot)
+                code, flight, out = self.fly(result, vehicle, *TAKEOFF, "--land", "--arm")
+                self.expect_flown(code, flight, out)
+                self.assertEqual(flight["link"], vehicle.address)
+                self.assertLess(flight["cross_track_max_m"], 1)
+                self.assertGreater(len(flight["track"]), 150)
+                self.assertNotIn("setpoint", [entry["event"] for entry in vehicle.log()])
+                code, out, err = self.altiplan("check", self.path("flown.json"))
+                self.assertEqual(code, 0, out + err)
+                code, out, err = self.altiplan("view", self.path("flown.json"), "-o",
+                                               self.path("page.html"))
+                self.assertEqual(code, 0, out + err)
+
+    def test_a_plane_flies_a_route(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--type", "plane", "--wind", "0,6")
+        code, flight, out = self.fly(self.planned("plane", pilot="route"), vehicle, "--arm")
+        self.expect_flown(code, flight, out)
+        self.assertLess(flight["cross_track_max_m"], 100)
+
+    def test_a_threat_is_flown_around(self):
+        for kind, autopilots in (("copter", COPTERS), ("plane", ("ardupilot",))):
+            result = self.planned(kind, pop_up=True)
+            for autopilot in autopilots:
+                with self.subTest(autopilot=autopilot, kind=kind):
+                    vehicle = self.vehicle("--autopilot", autopilot, "--type", kind)
+                    options = TAKEOFF if kind == "copter" else ()
+                    code, flight, out = self.fly(result, vehicle, "--arm", "--command", *options)
+                    self.expect_flown(code, flight, out)
+                    self.assertEqual([handover["to"] for handover in flight["handovers"]],
+                                     ["velocity_field", "route"])
+                    modes = vehicle.modes()
+                    self.assertEqual(modes[modes.index("AUTO"):][:3], ["AUTO", "GUIDED", "AUTO"])
+                    self.assertGreater(flight["min_separation_m"], 5)
+
+    def test_without_command_a_danger_is_only_noted(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot")
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm")
+        self.assertEqual(code, 1, out)
+        self.assertEqual(flight["status"], "collided")
+        self.assertIn("too close to 'pop_up', but commands are not allowed",
+                      flight["handovers"][0]["why"])
+        self.assertEqual(vehicle.log("setpoint"), [])
+
+    def test_without_arm_nothing_is_commanded(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot")
+        process = self.flying(self.planned(), vehicle, *TAKEOFF, "--command")
+        line = ""
+        while "waiting" not in line:
+            line = process.stderr.readline()
+            self.assertTrue(line, "it has ended")
+        self.assertFalse(vehicle.wait(lambda: vehicle.log("mode", "armed", "setpoint"), 2))
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(5), 130)
+        self.assertEqual(vehicle.log("mode", "armed", "setpoint"), [])
+
+    def test_a_lost_link_is_one_sentence(self):
+        faults = '[{"fault": "silence", "from": 6, "seconds": 30}]'
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--faults", faults, speedup=5)
+        code, flight, out = self.fly(self.planned(), vehicle, *TAKEOFF, "--arm", "--command")
+        self.assertEqual(code, 1, out)
+        self.assertEqual((flight["status"], flight["reached"]), ("not_reached", False))
+        self.assertIn("the link is lost", flight["message"])
+        self.assertGreater(len(flight["track"]), 20)
+        self.assertEqual(vehicle.log("setpoint"), [])
+        self.assertNotIn("HOLD", vehicle.modes())
+
+    def test_what_is_interrupted_or_killed_is_left_in_hold(self):
+        result = self.planned(pop_up=True)
+        for number, autopilot in ((signal.SIGKILL, "ardupilot"), (signal.SIGINT, "px4")):
+            with self.subTest(signal=number):
+                vehicle = self.vehicle("--autopilot", autopilot, speedup=3)
+                process = self.flying(result, vehicle, *TAKEOFF, "--arm", "--command")
+                self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1:] == ["GUIDED"] and
+                                             vehicle.log("setpoint"), 60))
+                process.send_signal(number)
+                self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 5))
+                self.assertIn(process.wait(5), (-signal.SIGKILL, 130))
+
+    def test_terrain_is_answered(self):
+        # The world has no ground: nothing is answered, and nothing is harmed.
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--terrain")
+        code, flight, out = self.fly(self.planned(pilot="route"), vehicle, *TAKEOFF, "--arm")
+        self.expect_flown(code, flight, out)
+        self.assertTrue([entry for entry in vehicle.log("sent")
+                         if entry["message"] == "TERRAIN_REQUEST"])
+
+    def test_usage(self):
+        result = self.planned()
+        for options, words in ((("--arcs", "loiter"), "give --arcs points"),):
+            code, _, err = self.altiplan("fly", result, "--link", "udp:127.0.0.1:9", *options)
+            self.assertEqual(code, 2)
+            self.assertIn(words, err)
+
+
+if __name__ == "__main__":
+    if not os.path.exists(os.path.join(FlownCase.sources, "tests", "link", "vehicle")):
+        print("skipped: tests/link/vehicle is missing")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
