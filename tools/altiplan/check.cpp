@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "check_plan.hpp"
 #include "commands.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
@@ -17,6 +18,7 @@ struct Arguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
   std::optional<std::string> scenario;
+  PlanCheck plan;
   host::Overrides overrides;
   bool json = false;
 };
@@ -111,6 +113,35 @@ int check_route(const Arguments& arguments) {
   }
   return report(mission, imported.route, std::nullopt, false, {}, arguments.json);
 }
+
+/// A mission in a world that options describe, in place of a scenario.
+void add_plan_options(CLI::App& command, PlanCheck& plan) {
+  auto* terrain =
+      command
+          .add_option("--terrain", plan.terrain,
+                      "elevation model over which to judge a mission, without a scenario")
+          ->type_name("FILE");
+  command.add_option("--airspace", plan.airspace, "zones over it; repeatable")
+      ->type_name("FILE")
+      ->needs(terrain);
+  command.add_option("--radius", plan.radius_m, "radius of the vehicle (m, default 0)")
+      ->type_name("METRES")
+      ->check(number_from(0, 1e5))
+      ->needs(terrain);
+  command.add_option("--min-agl", plan.min_above_ground_m, "least height above ground (m)")
+      ->type_name("METRES")
+      ->check(number_from(0, 1e5))
+      ->needs(terrain);
+  command.add_option("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)")
+      ->type_name("METRES")
+      ->check(number_from(0, 1e5))
+      ->needs(terrain);
+  command
+      .add_option("--start-time", plan.start_time,
+                  "UTC, 2026-05-01T10:00:00Z: for zones with hours")
+      ->type_name("TIME")
+      ->needs(terrain);
+}
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
@@ -118,7 +149,9 @@ void add_check(CLI::App& app, Action& action) {
       app.add_subcommand("check", "judge the route of a result or an imported route");
   auto arguments = std::make_shared<Arguments>();
   auto* result =
-      command->add_option("result", arguments->result, "result file of altiplan run (JSON)");
+      command->add_option("file", arguments->result,
+                          "result file of altiplan run (JSON), or with --terrain a mission (.plan, "
+                          ".waypoints, .kml, .gpx, .geojson)");
   auto* route = command
                     ->add_option("--route", arguments->route,
                                  "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
@@ -132,14 +165,24 @@ void add_check(CLI::App& app, Action& action) {
                        ->excludes(result);
   route->needs(scenario);
   scenario->needs(route);
+  add_plan_options(*command, arguments->plan);
   add_plugin_path(*command, arguments->overrides);
   command->add_flag("--json", arguments->json, "print as JSON");
   set_example(*command, "altiplan check result.json");
   command->callback([&action, arguments] {
     if (!arguments->result && !arguments->route) {
-      throw CLI::RequiredError("a result, or --route and --scenario");
+      throw CLI::RequiredError("a result, a mission and --terrain, or --route and --scenario");
+    }
+    if (arguments->plan.terrain) {
+      arguments->plan.plan = arguments->result.value_or("");
+      if (!arguments->result) {
+        throw CLI::RequiredError("with --terrain, a mission");
+      }
     }
     action = [arguments] {
+      if (arguments->plan.terrain) {
+        return check_plan(arguments->plan, arguments->overrides, arguments->json);
+      }
       return arguments->result ? check_result(*arguments) : check_route(*arguments);
     };
   });

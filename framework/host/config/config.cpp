@@ -59,11 +59,13 @@ void expect_kind(const Value& tree, FileKind expected) {
   }
 }
 
-/// False if the file cannot be read as YAML: its keys are unknown then.
-bool read_scenario(Config& config, Checker& checker) {
+/// False if the file, or a text in its place, cannot be read as YAML: its keys are unknown then.
+bool read_scenario(Config& config, Checker& checker,
+                   const std::optional<std::string>& text = std::nullopt) {
   std::vector<fs::path> mission;
   try {
-    config.scenario_tree = load_yaml(config.scenario_path);
+    config.scenario_tree =
+        text ? parse_yaml(*text, config.scenario_path.string()) : load_yaml(config.scenario_path);
     expect_kind(config.scenario_tree, FileKind::scenario);
     apply_overrides(config.scenario_tree, config.overrides.set, FileOfKey::scenario);
     config.notes = add_mission(config.scenario_tree, mission);
@@ -72,7 +74,9 @@ bool read_scenario(Config& config, Checker& checker) {
     return false;
   }
   checker.add(bind(config.scenario, &config.scenario_tree).problems);
-  config.files.push_back(config.scenario_path);
+  if (!text) {
+    config.files.push_back(config.scenario_path);
+  }
   config.files.insert(config.files.end(), mission.begin(), mission.end());
   return true;
 }
@@ -123,19 +127,32 @@ FileKind kind_of(const Value& tree) {
   return scenario ? FileKind::scenario : FileKind::pipeline;
 }
 
-Config load_scenario(const fs::path& scenario, const Overrides& overrides) {
+namespace {
+Config scenario_config(const fs::path& path, const std::optional<std::string>& text,
+                       const Overrides& overrides) {
   Config config;
   config.overrides = overrides;
-  config.scenario_path = absolute_file(scenario);
+  config.scenario_path = path;
   config.seed = overrides.seed.value_or(0);
   Checker checker(config);
-  const bool read = read_scenario(config, checker);
+  const bool read = read_scenario(config, checker, text);
   config.registry = make_registry(config);
   if (read) {
     check_scenario(checker, config.scenario, config.scenario_tree);
   }
   checker.finish();
   return config;
+}
+
+}  // namespace
+
+Config load_scenario(const fs::path& scenario, const Overrides& overrides) {
+  return scenario_config(absolute_file(scenario), std::nullopt, overrides);
+}
+
+Config load_scenario_text(const std::string& text, const std::string& name,
+                          const Overrides& overrides) {
+  return scenario_config(name, text, overrides);
 }
 
 Config load_config(const fs::path& pipeline, const Overrides& overrides,

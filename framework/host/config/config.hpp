@@ -43,6 +43,10 @@ Config load_config(const std::filesystem::path& pipeline, const Overrides& overr
 
 /// A scenario without a pipeline (`check --route`, `validate`).
 Config load_scenario(const std::filesystem::path& scenario, const Overrides& overrides);
+/// The same from a text in memory, whose paths are absolute; `name` stands for the file in
+/// messages.
+Config load_scenario_text(const std::string& text, const std::string& name,
+                          const Overrides& overrides);
 
 /// Kind of a file, determined by its keys.
 enum class FileKind { pipeline, scenario, study };

@@ -113,8 +113,9 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
   ImportedRoute result;
   result.notes = mission.notes;
   std::vector<MissionPlace> places;
+  std::vector<MissionItem> items;
   try {
-    const std::vector<MissionItem> items = route_items(mission);
+    items = route_items(mission);
     if (items.size() < mission.items.size()) {
       result.notes.emplace_back(
           "the landing straight below the last point is not part of the route");
@@ -144,6 +145,11 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
     of_end(places[places.size() - 2], request.goal);
   }
   result.route = join(places, request, result.notes);
+  if (result.route.size() == items.size()) {
+    for (const MissionItem& item : items) {
+      result.places.push_back(item.place);
+    }
+  }
   return result;
 }
 
