@@ -103,10 +103,20 @@ bool GroundZones::blocked(const Vec3& a, const Vec3& b, double r) const {
   if (!outlines_.blocked(a, b, r)) {
     return false;
   }
-  return std::any_of(zones_.begin(), zones_.end(), [&](const Zone& zone) {
+  const auto meets = [&](const Zone& zone) {
     const double reach = std::max(r, 0.0) * zone.steepness + kLengthTolerance;
     return kit::may_reach(zone.bounds, a, b, reach) && meets_leg(zone, a, b, r);
+  };
+  constexpr std::size_t kFew = 32;
+  if (zones_.size() <= kFew) {
+    return std::any_of(zones_.begin(), zones_.end(), meets);
+  }
+  bool found = false;
+  const double around = (b - a).norm() / 2 + std::max(r, 0.0) + kLengthTolerance;
+  outlines_.near((a + b) / 2, around, [&](const Nearby& outline) {
+    found = found || meets(zones_[std::size_t(outline.id)]);
   });
+  return found;
 }
 
 bool GroundZones::meets_leg(const Zone& zone, const Vec3& a, const Vec3& b, double r) const {

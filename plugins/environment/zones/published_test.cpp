@@ -205,6 +205,36 @@ TEST_F(Published, ALegMayTouchALimitAboveGround) {
   }
 }
 
+TEST_F(Published, ManyZonesAnswerAsEachOfThem) {
+  std::string all;
+  std::vector<std::unique_ptr<Environment>> each;
+  RandomStream random(7);
+  for (int n = 0; n < 60; ++n) {
+    const double x = random.uniform(100, 1500);
+    const double y = random.uniform(100, 1500);
+    const std::string zone = openair("R", "Zone", n % 2 == 0 ? "GND" : "50 m AGL", "90 m AGL",
+                                     {{x, y}, {x + 150, y + 20}, {x + 80, y + 190}});
+    all += zone;
+    each.push_back(zones(zone));
+  }
+  const auto layer = zones(all);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 a(random.uniform(0, 1800), random.uniform(0, 1800), random.uniform(0, 500));
+    const Vec3 b =
+        a + random.uniform(0, 1) *
+                Vec3(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(-60, 60));
+    const double r = n % 3 == 0 ? 0 : random.uniform(0, 40);
+    double least = kInfinity;
+    bool blocked = false;
+    for (const auto& one : each) {
+      least = std::min(least, one->clearance(a));
+      blocked = blocked || one->blocked(a, b, r);
+    }
+    EXPECT_EQ(layer->clearance(a), least) << n;
+    EXPECT_EQ(layer->blocked(a, b, r), blocked) << n;
+  }
+}
+
 TEST_F(Published, IsClosedWithoutGround) {
   const std::string text = openair("R", "Zone", "50 m AGL", "100 m AGL", kConcave);
   const auto bare = zones(text, "", site(false));

@@ -33,6 +33,12 @@ std::string name_at(const JsonNode& node, const char* key) {
   return text_at(node, key);
 }
 
+/// Keeps the place of the feature as its name if it has neither.
+void set_names(AirspaceZone& zone, const std::string& id, const std::string& name) {
+  zone.id = id;
+  zone.name = id.empty() && name.empty() ? zone.name : name;
+}
+
 LimitText limit_at(const JsonNode& node, const char* key, const char* reference, const char* unit) {
   LimitText limit{{}, text_at(node, unit), text_at(node, reference), ""};
   if (node.has(key)) {
@@ -199,8 +205,7 @@ void read_periods(const JsonNode& node, const char* key, const Target& to) {
 
 void read_ed269(const JsonNode& feature, const Target& to) {
   AirspaceZone& zone = to.zone;
-  zone.id = text_at(feature, "identifier");
-  zone.name = name_at(feature, "name");
+  set_names(zone, text_at(feature, "identifier"), name_at(feature, "name"));
   zone.type = text_at(feature, "restriction");
   read_periods(feature, "applicability", to);
   const JsonNode geometry = feature.at("geometry");
@@ -216,10 +221,10 @@ void read_ed269(const JsonNode& feature, const Target& to) {
     const std::string type = text_at(projection, "type");
     if (type == "Circle") {
       to.add_circle(position(projection.at("center")), projection.at("radius"), lower, upper);
-    } else if (type == "Polygon") {
+    } else if (type == "Polygon" || type == "MultiPolygon") {
       to.add_polygons(projection, lower, upper);
     } else {
-      projection.wrong("a horizontalProjection of type Circle or Polygon");
+      projection.wrong("a horizontalProjection of type Circle, Polygon or MultiPolygon");
     }
   }
 }
@@ -257,8 +262,7 @@ void read_ed318(const JsonNode& feature, const Target& to) {
   static const Json kNone = Json::object();
   const JsonNode properties =
       feature.has("properties") ? feature.at("properties") : JsonNode(kNone, "properties");
-  to.zone.id = text_at(properties, "identifier");
-  to.zone.name = name_at(properties, "name");
+  set_names(to.zone, text_at(properties, "identifier"), name_at(properties, "name"));
   to.zone.type = text_at(properties, "type");
   read_periods(properties, "limitedApplicability", to);
   read_ed318_geometry(feature.at("geometry"), kNone, to);
@@ -267,8 +271,7 @@ void read_ed318(const JsonNode& feature, const Target& to) {
 /// A cell is closed above its ceiling; below it, the FAA authorises automatically.
 void read_faa(const JsonNode& feature, const Target& to) {
   const JsonNode properties = feature.at("properties");
-  to.zone.id = text_at(properties, "OBJECTID");
-  to.zone.name = text_at(properties, "APT1_ICAO");
+  set_names(to.zone, text_at(properties, "OBJECTID"), text_at(properties, "APT1_ICAO"));
   to.zone.type = "UASFM";
   LimitText ceiling = limit_at(properties, "CEILING", "", "");
   ceiling.unit = "FT";
@@ -332,6 +335,7 @@ std::optional<Format> format_of(const Json& document, const Json& features) {
 
 void read_feature(const JsonNode& feature, Format format, Airspace& to, Doubts& doubts) {
   AirspaceZone zone;
+  zone.name = feature.place();  // unless it has one
   const Target target{zone, doubts};
   const auto read = [&] {
     switch (format) {
