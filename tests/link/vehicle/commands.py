@@ -6,7 +6,7 @@ import math
 import flavours
 import geodesy
 import messages
-from constants import RELATIVE, TERRAIN, Command, Result
+from constants import FLAG_CUSTOM, RELATIVE, TERRAIN, Command, Result
 
 FORCE = 21196  # param2 of arming without checks
 CHANGE_MODE = 1  # flag of DO_REPOSITION
@@ -32,7 +32,7 @@ class Commands:
         if handler is None:
             result = Result.UNSUPPORTED
         elif message.name == "COMMAND_LONG" and self.wants_int(number):
-            result = Result.COMMAND_INT_ONLY
+            result = Result.UNSUPPORTED
         else:
             result = handler(message)
         self.node.send("COMMAND_ACK", {
@@ -82,11 +82,16 @@ class Commands:
         if self.flavour.name == "px4":
             # PX4 has main and sub mode in a parameter each.
             custom = flavours.px4_mode(custom, whole(message.param3))
+        if self.flavour.name == "ardupilot" and not base & FLAG_CUSTOM:
+            return Result.DENIED
         mode = flavours.mode_of(self.flavour, self.pilot.kind, base, custom)
         return self.done(self.pilot.set_mode(mode))
 
     def do_nav_takeoff(self, message):
-        height = message.param7 if message.name == "COMMAND_LONG" else message.z
+        is_long, ardupilot = message.name == "COMMAND_LONG", self.flavour.name == "ardupilot"
+        if ardupilot and not is_long and message.frame not in RELATIVE:
+            return Result.DENIED
+        height = message.param7 if is_long else message.z
         if self.flavour.name == "px4":
             height -= self.pilot.home.alt
         if not 0 < height < HIGHEST:

@@ -32,6 +32,8 @@ class Missions:
         self.capacity = capacity
         self.storage = storage or flavour.storage
         self.plans = {kind: [] for kind in KINDS}
+        if flavour.name == "ardupilot":
+            self.plans[MISSION] = [plans.home_item(pilot.home)]
         self.restart()
 
     def restart(self):

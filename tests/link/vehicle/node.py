@@ -28,6 +28,7 @@ class Node:
         self.options, self.write = options, log
         self.now = 0.0
         self.outbox = []  # (packet, address)
+        self.texts = []  # STATUSTEXT that wait for the answer to what caused them
         self.peers = {}  # address: [Encoder, Parser, last heard]
         self.signer = codec.Signer(options.key) if options.key else None
         self.faults = options.faults or Faults()
@@ -95,7 +96,8 @@ class Node:
 
     def set_current(self, index):
         if not self.pilot.auto.set_current(index):
-            self.text(Severity.ERROR, f"Mission has no item {index}")
+            if self.pilot.flavour.name != "ardupilot":
+                self.text(Severity.ERROR, f"Mission has no item {index}")
             return False
         self.telemetry.send("MISSION_CURRENT")
         return True
@@ -168,7 +170,11 @@ class Node:
 
     def text(self, severity, text):
         limit = messages.BY_NAME["STATUSTEXT"].base[-1].length
-        self.send("STATUSTEXT", {"severity": int(severity), "text": text[:limit]})
+        fields = {"severity": int(severity), "text": text[:limit]}
+        if self.pilot.flavour.name == "ardupilot":
+            self.texts.append(fields)
+        else:
+            self.send("STATUSTEXT", fields)
 
     def take_outbox(self):
         packets, self.outbox = self.outbox, []
@@ -179,6 +185,9 @@ class Node:
     def step(self, dt, speedup=1.0):
         self.now += dt
         self.forget()
+        waiting, self.texts = self.texts, []
+        for fields in waiting:
+            self.send("STATUSTEXT", fields)
         for direction, packet, address in self.faults.step(self.now):
             if direction == "in":
                 self.accept(packet, address)

@@ -122,6 +122,8 @@ class Pilot:
             self.node.log("mode", mode=mode, before=self.mode, reason=reason)
             self.mode = mode
             self.enter(mode)
+            if self.flavour.name == "ardupilot":
+                self.node.telemetry.send("HEARTBEAT")
         return True
 
     def mode_problem(self, mode):

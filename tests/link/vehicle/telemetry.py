@@ -174,9 +174,9 @@ class Telemetry:
         pilot, stored = self.node.pilot, self.node.missions.plans
         # Home is not counted where it is an item; ArduPilot does not say "unknown" nor "paused".
         ardupilot, state = self.flavour.name == "ardupilot", self.mission_state()
-        total = len(stored[MISSION]) - (1 if self.flavour.home_is_item_0 else 0)
+        total = max(0, len(stored[MISSION]) - (1 if self.flavour.home_is_item_0 else 0))
         fields = {"seq": pilot.current_item(),
-                  "total": total if stored[MISSION] else 0 if ardupilot else 65535,
+                  "total": total if stored[MISSION] or ardupilot else 65535,
                   "mission_state": MISSION_STATES["not_started" if ardupilot and state == "paused"
                                                   else state],
                   "mission_mode": 1 if pilot.mode == AUTO else 0 if ardupilot else 2}
@@ -188,7 +188,7 @@ class Telemetry:
 
     def mission_state(self):
         pilot = self.node.pilot
-        if not pilot.mission_items():
+        if len(pilot.mission_items()) <= pilot.auto.first():
             return "none"
         if pilot.auto.finished:
             return "complete"

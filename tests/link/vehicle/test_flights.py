@@ -273,8 +273,12 @@ class Arming(Flight):
     def test_checks(self):
         self.fly("--autopilot ardupilot --ready-after 5")
         self.station.set_mode(GUIDED)
+        self.station.received.clear()
         self.assertEqual(self.station.arm(), Result.FAILED)
+        self.station.run(0.1)
         self.assertIn("Arm: Need Position Estimate", self.station.texts())
+        names = [m.name for m in self.station.received]
+        self.assertLess(names.index("COMMAND_ACK"), names.index("STATUSTEXT"))
         self.station.run(5)
         self.assertEqual(self.station.arm(), 0)
         self.station.run(1.1)
@@ -288,7 +292,7 @@ class Arming(Flight):
     def test_numbers_of_modes_want_their_flag(self):
         """base_mode without MAV_MODE_FLAG_CUSTOM_MODE_ENABLED does not say that there is one."""
         self.fly("--autopilot ardupilot")
-        self.assertEqual(self.station.command(Command.DO_SET_MODE, 0, 4), Result.FAILED)
+        self.assertEqual(self.station.command(Command.DO_SET_MODE, 0, 4), Result.DENIED)
         self.assertEqual(self.station.command(Command.DO_SET_MODE, 1, 4), 0)
         self.assertEqual(self.pilot.mode, GUIDED)
 
