@@ -59,7 +59,7 @@ void detach() {
 }
 }  // namespace
 
-Guardian::Guardian(std::function<void()> hold, Time patience) {
+Guardian::Guardian(const std::function<void()>& hold, Time patience) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     fail("pipe");

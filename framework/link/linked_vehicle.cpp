@@ -2,6 +2,7 @@
 #include "link/linked_vehicle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "link/vehicle_words.hpp"
@@ -252,7 +253,7 @@ Counters LinkedVehicle::counters() const {
   constexpr double kShare = 0.99;
   std::vector<std::int64_t> sorted = latencies_us_;
   std::sort(sorted.begin(), sorted.end());
-  const auto at = std::size_t(kShare * double(sorted.size() - 1) + 0.5);
+  const auto at = std::size_t(std::lround(kShare * double(sorted.size() - 1)));
   return {{"commands", count_}, {"command_latency_p99_us", sorted[at]}};
 }
 }  // namespace altiplan::link

@@ -31,6 +31,7 @@ TEST(Visit, LeadsToTheTargetAndBackToTheRoute) {
   expect_flown(result, 2);
   EXPECT_EQ(result.handovers.front().at_s, 100);
   EXPECT_EQ(result.handovers.front().why, "a target at (15000, 19000, 500)");
+  EXPECT_LE(not_visited(scene.setup.events.front().target, result.track).value, 200);
   const TrackVerdict verdict = judge_track(result.track, scene.setup);
   EXPECT_TRUE(verdict.check.ok()) << rules(verdict.check).front();
 }

@@ -119,7 +119,7 @@ class Campaign:
         before = vehicle.modes()[-1]
         process.send_signal(signal.SIGKILL)
         process.wait()
-        held = vehicle.wait(lambda: vehicle.modes()[-1] in ("HOLD", "AUTO"), 5)
+        held = vehicle.wait(lambda: vehicle.modes()[-1] in ("HOLD", "AUTO"), 20)
         modes = vehicle.modes()
         vehicle.end()
         return is_commanded, before, held, modes[-1]

@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 
-from flown_case import FlownCase, unittest
+from flown_case import SPEEDUP, FlownCase, unittest
 
 FlownCase.program, FlownCase.sources = sys.argv[1:3]
 COPTERS = ("generic", "ardupilot", "px4")
@@ -22,7 +22,7 @@ class Fly(FlownCase):
         result = self.planned(pilot="route")
         for autopilot in COPTERS:
             with self.subTest(autopilot=autopilot):
-                vehicle = self.vehicle("--autopilot", autopilot)
+                vehicle = self.vehicle("--autopilot", autopilot, speedup=SPEEDUP)
                 code, flight, out = self.fly(result, vehicle, *TAKEOFF, "--land", "--arm")
                 self.expect_flown(code, flight, out)
                 self.assertEqual(flight["link"], vehicle.address)
@@ -74,7 +74,7 @@ class Fly(FlownCase):
             self.assertTrue(line, "it has ended")
         self.assertFalse(vehicle.wait(lambda: vehicle.log("mode", "armed", "setpoint"), 2))
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(5), 130)
+        self.assertEqual(process.wait(30), 130)
         self.assertEqual(vehicle.log("mode", "armed", "setpoint"), [])
 
     def test_a_lost_link_is_one_sentence(self):
@@ -97,8 +97,19 @@ class Fly(FlownCase):
                 self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1:] == ["GUIDED"] and
                                              vehicle.log("setpoint"), 60))
                 process.send_signal(number)
-                self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 5))
-                self.assertIn(process.wait(5), (-signal.SIGKILL, 130))
+                self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 20))
+                self.assertIn(process.wait(30), (-signal.SIGKILL, 130))
+
+    def test_a_late_planner_leaves_the_vehicle_in_hold(self):
+        vehicle = self.vehicle("--autopilot", "generic", speedup=3)
+        process = self.flying(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm", "--command")
+        self.assertTrue(vehicle.wait(lambda: vehicle.log("setpoint"), 60))
+        process.send_signal(signal.SIGSTOP)
+        self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 20))
+        process.send_signal(signal.SIGCONT)
+        self.assertEqual(process.wait(30), 1)
+        self.assertIn("which this flight has not asked for", self.flight()["message"])
+        self.assertEqual(vehicle.modes()[-1], "HOLD")
 
     def test_terrain_is_answered(self):
         # The world has no ground: nothing is answered, and nothing is harmed.

@@ -129,6 +129,7 @@ Json to_json(const std::vector<Finding>& found) {
 }  // namespace
 
 int check_plan(const PlanCheck& plan, const host::Overrides& overrides, bool as_json) {
+  static_cast<void>(kit::read_mission(plan.plan));  // whose errors need no scenario
   const host::Config config =
       host::load_scenario_text(scenario_text(plan), "the world of --terrain", overrides);
   const host::Mission mission = host::build_mission(config, 1);
