@@ -211,6 +211,34 @@ TEST(Airspace, ChordsNeverCutIntoTheZone) {
   }
 }
 
+std::string aixm_slice(int from, int to) {
+  return R"(<AIXMBasicMessage><Airspace><timeSlice><AirspaceTimeSlice><type>R</type><designator>S
+      </designator><geometryComponent><AirspaceGeometryComponent><theAirspaceVolume><AirspaceVolume>
+      <upperLimit uom="FT">UNL</upperLimit><lowerLimit uom="FT">GND</lowerLimit>
+      <horizontalProjection><PolygonPatch><exterior><Ring><curveMember><Curve><segments>
+      <LineStringSegment><posList>46 7</posList></LineStringSegment><ArcByCenterPoint><pos>46 7
+      </pos><radius uom="KM">5</radius><startAngle>)" +
+         std::to_string(from) + "</startAngle><endAngle>" + std::to_string(to) +
+         R"(</endAngle></ArcByCenterPoint></segments></Curve></curveMember></Ring></exterior>
+      </PolygonPatch></horizontalProjection></AirspaceVolume></theAirspaceVolume>
+      </AirspaceGeometryComponent></geometryComponent></AirspaceTimeSlice></timeSlice></Airspace>
+      </AIXMBasicMessage>)";
+}
+
+// A slice of a disc: with one reading of the angles, and with two.
+TEST(Airspace, ArcsThatMayRunEitherWayAreClosedBothWays) {
+  const AirspaceIndex::Place north{7, 46.02, 0, 0};
+  const AirspaceIndex::Place south{7, 45.98, 0, 0};
+  const Airspace plain = read(aixm_slice(-30, 30));
+  EXPECT_TRUE(plain.notes.empty());
+  EXPECT_TRUE(holds(plain, north, kSaturday));
+  EXPECT_FALSE(holds(plain, south, kSaturday));
+  const Airspace uncertain = read(aixm_slice(330, 30));
+  EXPECT_TRUE(noted(uncertain, "may run either way"));
+  EXPECT_TRUE(holds(uncertain, north, kSaturday));
+  EXPECT_TRUE(holds(uncertain, south, kSaturday));
+}
+
 TEST(Airspace, AnOutlineThatMeetsItselfIsClosedInAllLoops) {
   const Airspace airspace = read(
       "AC R\nAN Bow\nAL GND\nAH UNL\nDP 46:00:00 N 007:00:00 E\nDP 46:10:00 N 007:10:00 E\n"

@@ -37,6 +37,7 @@ struct OutlineArc {
   double sweep_deg;       ///< positive clockwise
   bool has_start = true;  ///< false: the corner before it is where it starts
   bool has_end = true;
+  bool is_uncertain = false;  ///< it may run the other way round
 };
 using OutlinePart = std::variant<Point2, OutlineArc>;
 using Outline = std::vector<OutlinePart>;

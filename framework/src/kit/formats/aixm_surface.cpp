@@ -11,8 +11,6 @@ namespace {
 
 using Node = pugi::xml_node;
 
-// The ends of the curves beside a piece of a border lie within this of it, metres.
-constexpr double kNearBorder = 2000;
 // Edges follow geodesics to this, unless they are longer than a country, metres.
 constexpr double kStraight = 0.5;
 constexpr double kLongEdge = 2e6;
@@ -113,10 +111,11 @@ OutlineArc arc_of(const Node& segment) {
   const double radius = radius_of(segment);
   expect_bearing(from);
   expect_bearing(to);
-  const double turn = std::remainder(to - from, 360);
-  // Half a circle has no shorter way: it runs as the angles do.
-  const double sweep = std::abs(turn) == 180 ? to - from : turn;
-  return {centre.front(), radius, radius, from, sweep == 0 ? 360 : sweep};
+  // The shorter way; if the angles run the longer one, or it is half a circle, either may be meant.
+  const double sweep = std::remainder(to - from, 360);
+  OutlineArc arc{centre.front(), radius, radius, from, sweep == 0 ? 360 : sweep};
+  arc.is_uncertain = sweep != 0 && std::abs(to - from) >= 180;
+  return arc;
 }
 
 /// Points of the geodesic between two others, so that straight edges in longitude and latitude
@@ -187,50 +186,6 @@ Point2 end_of(const OutlinePart& part, double share) {
              : geodesic_end(arc->centre, arc->from_deg + share * arc->sweep_deg, arc->max_radius_m);
 }
 
-/// Index of the vertex before the position nearest to p, with the fraction to the next one.
-double along(const std::vector<Point2>& border, const Point2& p) {
-  const double east = std::cos(radians(p[1]));
-  double best = kInfinity;
-  double result = 0;
-  for (std::size_t n = 0; n + 1 < border.size(); ++n) {
-    const double dx = (border[n + 1][0] - border[n][0]) * east;
-    const double dy = border[n + 1][1] - border[n][1];
-    const double ox = (p[0] - border[n][0]) * east;
-    const double oy = p[1] - border[n][1];
-    const double length2 = dx * dx + dy * dy;
-    const double share = length2 > 0 ? std::clamp((ox * dx + oy * dy) / length2, 0.0, 1.0) : 0;
-    const double off = std::hypot(ox - share * dx, oy - share * dy);
-    if (off < best) {
-      best = off;
-      result = double(n) + share;
-    }
-  }
-  constexpr double kMetresPerDegree = 111000;
-  if (!(best * kMetresPerDegree <= kNearBorder)) {
-    throw Error("expected curves that begin and end within 2 km of the border beside them");
-  }
-  return result;
-}
-
-/// The border's vertices between two positions, in that direction.
-Outline along_border(const std::vector<Point2>& border, const Point2& from, const Point2& to) {
-  if (border.size() < 2 || border.front() == border.back()) {
-    throw Error("expected a border that is open, found a closed one");
-  }
-  const double first = along(border, from);
-  const double last = along(border, to);
-  const double low = std::min(first, last);
-  const double high = std::max(first, last);
-  Outline between;
-  for (auto n = std::size_t(std::floor(low)) + 1; double(n) < high; ++n) {
-    between.emplace_back(border[n]);
-  }
-  if (first > last) {
-    std::reverse(between.begin(), between.end());
-  }
-  return between;
-}
-
 Outline joined(const std::vector<Piece>& pieces) {
   Outline outline;
   for (std::size_t n = 0; n < pieces.size(); ++n) {
@@ -254,41 +209,57 @@ Outline joined(const std::vector<Piece>& pieces) {
   return outline;
 }
 
-/// The outline, with some of its arcs the other way round if it meets itself otherwise.
-Outline turned(const Outline& outline) {
-  std::vector<std::size_t> arcs;
-  for (std::size_t n = 0; n < outline.size(); ++n) {
-    if (std::holds_alternative<OutlineArc>(outline[n])) {
-      arcs.push_back(n);
-    }
-  }
-  if (arcs.empty() || arcs.size() > kMaxFlips || is_simple(outline)) {
-    return outline;
-  }
-  for (unsigned flips = 1; flips < 1U << arcs.size(); ++flips) {
-    Outline other = outline;
-    for (std::size_t k = 0; k < arcs.size(); ++k) {
-      auto& arc = std::get<OutlineArc>(other[arcs[k]]);
-      if ((flips >> k & 1U) != 0 && std::abs(arc.sweep_deg) < 360) {
-        arc.sweep_deg -= std::copysign(360, arc.sweep_deg);
-      }
-    }
-    if (is_simple(other)) {
-      return other;
+/// The outline with these of its arcs the other way round.
+Outline flipped(Outline outline, const std::vector<std::size_t>& arcs, unsigned flips) {
+  for (std::size_t k = 0; k < arcs.size(); ++k) {
+    auto& arc = std::get<OutlineArc>(outline[arcs[k]]);
+    if ((flips >> k & 1U) != 0 && std::abs(arc.sweep_deg) < 360) {
+      arc.sweep_deg -= std::copysign(360, arc.sweep_deg);
     }
   }
   return outline;
 }
 
+/// The outline, with arcs the other way round if it meets itself otherwise, and with the uncertain
+/// ones either way as long as it does not.
+std::vector<Outline> turned(const Outline& outline) {
+  std::vector<std::size_t> arcs;
+  unsigned uncertain = 0;
+  for (std::size_t n = 0; n < outline.size(); ++n) {
+    if (const auto* arc = std::get_if<OutlineArc>(&outline[n])) {
+      uncertain |= unsigned(arc->is_uncertain) << std::min(arcs.size(), kMaxFlips);
+      arcs.push_back(n);
+    }
+  }
+  if (arcs.empty() || arcs.size() > kMaxFlips) {
+    return {outline};
+  }
+  unsigned flips = 0;
+  while (flips < 1U << arcs.size() && !is_simple(flipped(outline, arcs, flips))) {
+    ++flips;
+  }
+  if (flips == 1U << arcs.size()) {
+    return {outline};
+  }
+  std::vector<Outline> outlines{flipped(outline, arcs, flips)};
+  for (unsigned other = uncertain; other != 0; other = (other - 1) & uncertain) {
+    if (Outline candidate = flipped(outline, arcs, flips ^ other); is_simple(candidate)) {
+      outlines.push_back(std::move(candidate));
+    }
+  }
+  return outlines;
+}
+
+/// A circle, or outlines one of which is meant.
 struct RingParts {
-  Outline outline;
+  std::vector<Outline> outlines;
   std::optional<std::pair<Point2, double>> circle;
 };
 
 RingParts ring_parts(const Node& boundary, const std::map<std::string, Node>& borders) {
   if (const Node linear = child(boundary, "LinearRing")) {
     const std::vector<Point2> points = points_of(linear);
-    return {{points.begin(), points.end()}, {}};
+    return {{{points.begin(), points.end()}}, {}};
   }
   std::vector<Piece> pieces;
   for (const Node& member : child(boundary, "Ring").children()) {
@@ -310,22 +281,38 @@ RingParts ring_parts(const Node& boundary, const std::map<std::string, Node>& bo
   return {turned(joined(pieces)), {}};
 }
 
+std::vector<Polygon> covered(const RingParts& parts, const std::string& zone, Doubts& doubts) {
+  if (parts.circle) {
+    return {{circle_ring(parts.circle->first, parts.circle->second), {}}};
+  }
+  if (parts.outlines.size() > 1) {
+    doubts.add("arc that may run either way round, closed both ways", zone);
+  }
+  std::vector<Polygon> polygons;
+  for (const Outline& outline : parts.outlines) {
+    std::vector<Polygon> more = cover_of(outline, zone, doubts);
+    std::move(more.begin(), more.end(), std::back_inserter(polygons));
+  }
+  return polygons;
+}
+
 void read_patch(const Node& patch, const std::map<std::string, Node>& borders,
                 const std::string& zone, Doubts& doubts, std::vector<Polygon>& to) {
-  const RingParts outer = ring_parts(child(patch, "exterior"), borders);
   std::vector<Ring> holes;
   for (const Node& node : patch.children()) {
-    if (local_name(node) == "interior") {
-      const RingParts inner = ring_parts(node, borders);
-      holes.push_back(inner.circle ? circle_ring(inner.circle->first, inner.circle->second, true)
-                                   : ring_within(inner.outline));
+    if (local_name(node) != "interior") {
+      continue;
+    }
+    const RingParts inner = ring_parts(node, borders);
+    if (inner.circle) {
+      holes.push_back(circle_ring(inner.circle->first, inner.circle->second, true));
+    } else if (inner.outlines.size() == 1) {
+      holes.push_back(ring_within(inner.outlines.front()));
+    } else {
+      doubts.add("hole with an arc that may run either way round, closed", zone);
     }
   }
-  std::vector<Polygon> cover =
-      outer.circle
-          ? std::vector<Polygon>{{circle_ring(outer.circle->first, outer.circle->second), {}}}
-          : cover_of(outer.outline, zone, doubts);
-  for (Polygon& polygon : cover) {
+  for (Polygon& polygon : covered(ring_parts(child(patch, "exterior"), borders), zone, doubts)) {
     cut_holes(polygon, holes, zone, doubts);
     to.push_back(std::move(polygon));
   }

@@ -18,6 +18,10 @@ std::string identifier(const pugi::xml_node& feature);
 /// What an element's xlink:href refers to, likewise.
 std::string reference(const pugi::xml_node& node);
 
+/// A border's vertices between two positions, in that direction. Throws Error if it is closed, or
+/// too far from them.
+Outline along_border(const std::vector<Point2>& border, const Point2& from, const Point2& to);
+
 /// Polygons that cover the patches of a surface.
 std::vector<Polygon> read_surface(const pugi::xml_node& projection,
                                   const std::map<std::string, pugi::xml_node>& borders,
