@@ -19,8 +19,8 @@ constexpr Time kLostAfter{5000};
 constexpr Time kSlice{100};
 /// Longer than a heartbeat takes to report a mode that has just been changed.
 constexpr Time kStrange{1500};
-/// Without a position the vehicle is asked to send them.
-constexpr Time kAskForPositions{1500};
+/// Without a position, or the item that it flies to, the vehicle is asked to send them.
+constexpr Time kAskForReports{1500};
 /// Of the guardian, between set-points.
 constexpr Time kPatience{3000};
 constexpr double kWindow = 20;  ///< metres that progress may exceed twice the distance flown
@@ -77,22 +77,32 @@ void LinkedVehicle::await_nearest(const Vec3& start) {
 }
 
 void LinkedVehicle::await_position() {
-  constexpr float kPeriodUs = 1e5;
-  const auto ask = [&] {
-    feed_.send(command_to(feed_.vehicle(), VehicleCommand::kSetMessageInterval,
-                          float(GlobalPositionInt::kDeclared.id), kPeriodUs));
-  };
   if (flight_.command) {
-    ask();  // as often as commands are
+    ask_for_reports();  // as often as commands are
   }
-  for (Time ask_at = began_ + kAskForPositions; !feed_.has_position() && !stop_.stop_requested();) {
+  constexpr int kTries = 3;  // not every vehicle reports its item
+  Time ask_at = began_ + kAskForReports;
+  for (int n = 0; !feed_.has_position() || (!feed_.current_item() && n < kTries);) {
+    if (stop_.stop_requested()) {
+      return;
+    }
     expect_in_reach();
     feed_.next(kSlice);
     if (time_now() >= ask_at) {
-      ask();
-      ask_at += kAskForPositions;
+      ask_for_reports();
+      ask_at += kAskForReports;
+      ++n;
     }
   }
+}
+
+void LinkedVehicle::ask_for_reports() {
+  const auto ask = [&](std::uint32_t message, float period_us) {
+    feed_.send(command_to(feed_.vehicle(), VehicleCommand::kSetMessageInterval, float(message),
+                          period_us));
+  };
+  ask(GlobalPositionInt::kDeclared.id, 1e5F);
+  ask(MissionCurrent::kDeclared.id, 5e5F);
 }
 
 bool LinkedVehicle::flies_route() const {
@@ -147,12 +157,20 @@ void LinkedVehicle::expect_done(const CommandLong& command, const std::string& w
         if (*result == 0) {
           return;
         }
+        await_words();
         give_up("the vehicle refuses " + what + feed_.said());
       }
     }
   }
   if (!stop_.stop_requested()) {
     give_up("the vehicle does not answer the command " + what);
+  }
+}
+
+void LinkedVehicle::await_words() {
+  constexpr Time kWordsFollow{300};
+  for (const Time end = time_now() + kWordsFollow; time_now() < end && !stop_.stop_requested();) {
+    feed_.next(kSlice);
   }
 }
 

@@ -53,11 +53,14 @@ class LinkedVehicle final : public host::FlownVehicle {
 
   // The begin of the mission.
   void await_position();
+  void ask_for_reports();
   void start_mission();
   /// Autopilots turn to the second item before they are at the first.
   void await_nearest(const Vec3& start);
   /// Sends until it is acknowledged; gives up where it is refused.
   void expect_done(const CommandLong& command, const std::string& what);
+  /// After a refusal: its reason comes as a text of its own, if it comes.
+  void await_words();
   /// True once the vehicle flies from the first item to the second.
   bool flies_route() const;
   int number_of(std::size_t item) const;
