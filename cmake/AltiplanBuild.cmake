@@ -41,8 +41,11 @@ function(altiplan_precompile target group)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
     return()
   endif()
-  # Precompiled, std::string is no system header to these two warnings of g++ 12, which misread it.
-  target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
+  # Precompiled, std::string is no system header to these warnings of g++ 12, which misread it.
+  target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow
+    -Wno-stringop-overread)
+  # Libraries would else differ in a macro, which GCC does not allow.
+  set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
   get_property(owner GLOBAL PROPERTY ALTIPLAN_PRECOMPILED_${group})
   if(owner)
     target_precompile_headers(${target} REUSE_FROM ${owner})
