@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM, SOURCES = sys.argv[1:3]
 TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
@@ -57,7 +58,7 @@ class CheckPlan(unittest.TestCase):
             points = [list(point) for point in low]
             out, _ = self.check(points, *bounds, code=1)
             self.assertIn("fail: mission.plan", out)
-            self.assertIn("mission.items.2 (-84.220000, 36.600000)", out)
+            self.assertIn("mission.items.2", out)
             cures = re.findall(r"cure: (raise|lower) mission\.items\.(\d) by ([0-9.]+) m", out)
             self.assertTrue(cures, out)
             word, number, by = cures[0]
@@ -85,6 +86,131 @@ class CheckPlan(unittest.TestCase):
         out, _ = self.check(high, *zones, "2022-06-18T18:00:00Z", code=1)  # a Saturday
         self.assertIn("'zones.json'", out)
         self.check(high, *zones, "2022-06-18T12:00:00Z", code=0)
+
+    def write(self, items, **keys):
+        plan = plan_of([])
+        plan["mission"].update(keys, items=items)
+        (self.folder / "mission.plan").write_text(json.dumps(plan))
+
+    def zones(self, name, ring, ceiling, datum="AMSL", schedule=None):
+        """A zone of ED-269 from the ground up."""
+        times = {"startDateTime": "2022-01-01T00:00:00Z", "endDateTime": "2030-01-01T00:00:00Z",
+                 "permanent": "NO"}
+        if schedule:
+            times["schedule"] = [dict(schedule, day=["ANY"])]
+        feature = {"identifier": "Z", "country": "USA", "name": "Z", "type": "COMMON",
+                   "restriction": "PROHIBITED", "reason": ["OTHER"], "zoneAuthority": [],
+                   "applicability": [times], "geometry": [{
+                       "uomDimensions": "M", "lowerLimit": 0, "lowerVerticalReference": "AGL",
+                       "upperLimit": ceiling, "upperVerticalReference": datum,
+                       "horizontalProjection": {"type": "Polygon", "coordinates": [ring]}}]}
+        (self.folder / name).write_text(json.dumps({"title": "test", "features": [feature]}))
+
+    def around(self, lon, lat, by=0.002):
+        return [[lon - by, lat - by], [lon + by, lat - by], [lon + by, lat + by],
+                [lon - by, lat + by], [lon - by, lat - by]]
+
+    def test_climb_and_descent_are_judged_among_zones(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        takeoff = dict(item([0, 0, 1500], 1), command=22)
+        landing = dict(item([0, 0, 0], 9), command=21)
+        points = [item(point, n + 2) for n, point in enumerate(high)]
+        for at, extra, word in ((POINTS[0], [takeoff, *points], "climb"),
+                                (POINTS[3], [*points, landing], "descent")):
+            self.zones("z.json", self.around(*at[:2]), 60, "AGL")
+            self.write(points)
+            options = ("mission.plan", "--terrain", TERRAIN, "--min-agl", "100")
+            self.call(*options, "--airspace", "z.json", code=0)  # above it
+            self.write(extra)
+            self.call(*options, code=0)
+            out, _ = self.call(*options, "--airspace", "z.json", code=1)
+            self.assertIn(f"{word}: the {word}", out)
+            self.assertIn("'z.json'", out)
+
+    def test_a_landing_elsewhere_is_flown_to_first(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        landing = dict(item([-84.19, 36.67, 0], 9), command=21)
+        self.write([*(item(point, n + 1) for n, point in enumerate(high)), landing])
+        options = ("mission.plan", "--terrain", TERRAIN, "--min-agl", "100", "--airspace", "z.json")
+        self.zones("z.json", self.around(-84.195, 36.665, 0.001), 1450)  # below that leg
+        out, _ = self.call(*options, code=0)
+        self.assertIn("5 waypoints", out)
+        # An aeroplane goes down along it.
+        self.write([*(item(point, n + 1) for n, point in enumerate(high)), landing], vehicleType=1)
+        out, _ = self.call(*options, code=1)
+        self.assertIn("mission.items.4", out)
+        self.assertIn("descent", out)
+
+    def test_hours_are_those_of_the_flight(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        points = [item(point, n + 1) for n, point in enumerate(high)]
+        self.zones("z.json", self.around(*POINTS[2][:2]), 3000,
+                   schedule={"startTime": "12:40:00Z", "endTime": "13:00:00Z"})
+        options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json", "--start-time",
+                   "2026-06-18T12:00:00Z")
+        self.write(points)  # 27 km at 5 m/s
+        self.call(*options, code=1)
+        self.write(points, hoverSpeed=60)
+        self.call(*options, code=0)
+        faster = dict(item([0, 0, 0], 1), command=178, params=[0, 60, -1, 0, 0, 0, 0])
+        self.write([faster, *points])
+        self.call(*options, code=0)
+        waiting = dict(item([0, 0, 0], 1), command=93, params=[2400, -1, -1, -1, 0, 0, 0])
+        self.write([faster, points[0], waiting, *points[1:]])
+        self.call(*options, code=1)
+
+    def test_fix_writes_what_passes(self):
+        low = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        low[2][2] = 500
+        self.check(low, "--min-agl", "150", "--fix", "fixed.plan", code=1)
+        before = json.loads((self.folder / "mission.plan").read_text())
+        after = json.loads((self.folder / "fixed.plan").read_text())
+        self.call("fixed.plan", "--terrain", TERRAIN, "--min-agl", "150", code=0)
+        self.assertGreater(after["mission"]["items"][2]["params"][6], 500)
+        for plan in (before, after):
+            plan["mission"]["items"][2]["params"][6] = 0
+        self.assertEqual(before, after)  # all else is kept
+
+    def test_fix_of_waypoints_moves_aside(self):
+        lines = ["QGC WPL 110", "0\t1\t0\t16\t0\t0\t0\t0\t36.48\t-84.38\t400\t1"]
+        for n, (lon, lat, _) in enumerate(POINTS):
+            lines.append(f"{n + 1}\t0\t0\t16\t0\t0\t0\t0\t{lat:.7f}\t{lon:.7f}\t1500\t1")
+        (self.folder / "m.waypoints").write_text("\n".join(lines) + "\n")
+        self.zones("z.json", self.around(*POINTS[2][:2]), 100000)
+        options = ("--terrain", TERRAIN, "--airspace", "z.json")
+        out, _ = self.call("m.waypoints", *options, "--fix", "f.waypoints", code=1)
+        self.assertRegex(out, r"cure: move line 5 by [0-9.]+ m (to the|toward) ")
+        self.call("f.waypoints", *options, code=0)
+        fixed = (self.folder / "f.waypoints").read_text().splitlines()
+        changed = [n for n, line in enumerate(fixed) if line != lines[n]]
+        self.assertEqual(changed, [4])
+
+    def test_fix_writes_nothing_that_fails(self):
+        ring = self.around(-84.3, 36.55, 1)
+        self.zones("z.json", ring, 100000)
+        _, err = self.check(POINTS, "--airspace", "z.json", "--fix", "f.plan", code=1)
+        self.assertIn("f.plan: not written", err)
+        self.assertFalse((self.folder / "f.plan").exists())
+
+    def test_certificate_and_junit(self):
+        low = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        low[2][2] = 500
+        self.check(low, "--min-agl", "150", "--certificate", "c.html", "--junit", "j.xml", code=1)
+        page = (self.folder / "c.html").read_text()
+        for words in ("fail</span>: mission.plan", "SHA-256", "raise mission.items.2", "<svg",
+                      "mission.items.2", "lowest above ground"):
+            self.assertIn(words, page)
+        suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+        self.assertEqual(suite.get("tests"), "3")
+        failed = [case.get("name") for case in suite.iter("testcase") if len(case)]
+        self.assertEqual(len(failed), int(suite.get("failures")))
+        self.assertIn("mission.items.1 to mission.items.2", failed)
+
+    def test_a_plan_in_a_scenario(self):
+        scenario = str(pathlib.Path(SOURCES) / "configs/scenarios/jacksboro_ridge.yaml")
+        self.write([item(point, n + 1) for n, point in enumerate(POINTS)])
+        out, _ = self.call("mission.plan", "--scenario", scenario, code=1)
+        self.assertRegex(out, r"mission\.items\.0 to .*: start: the route begins [0-9.]+ m from the")
 
     def test_json(self):
         low = [[lon, lat, 300] for lon, lat, _ in POINTS]

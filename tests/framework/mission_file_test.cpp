@@ -51,7 +51,7 @@ constexpr Valid kValid[] = {
     {"px4_avoidance.plan", 3, 0, ""},
     {"qgc_MissionPlanner.waypoints", 5, 0, ""},
     {"qgc_MissionPlanner_full.waypoints", 11, 0,
-     "3 commands that are not waypoints skipped (177, 178, 189)"},
+     "2 commands that are not waypoints skipped (177, 189)"},
     {"dronekit_mpmission.waypoints", 6, 0, ""},
     {"mavproxy_springvalley-foamy-mission-cw.txt", 9, 0, "(177, 189)"},
     {"mavproxy_springvalleybottom-foamy-fence.txt", 0, 1, "1 return points of the fence skipped"},

@@ -17,10 +17,8 @@ namespace {
 struct Arguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
-  std::optional<std::string> scenario;
   PlanCheck plan;
   host::Overrides overrides;
-  bool json = false;
 };
 
 void print_violations(const CheckResult& verdict, const char* point) {
@@ -95,11 +93,11 @@ int check_result(const Arguments& arguments) {
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
   const host::Mission mission = host::build_mission(config, 1);
   return report(mission, *stored.route, stored.track, stored.telemetry,
-                host::build_events(config, mission), arguments.json);
+                host::build_events(config, mission), arguments.plan.json);
 }
 
 int check_route(const Arguments& arguments) {
-  const host::Config config = host::load_scenario(*arguments.scenario, arguments.overrides);
+  const host::Config config = host::load_scenario(*arguments.plan.scenario, arguments.overrides);
   const host::Mission mission = host::build_mission(config, 1);
   const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
   for (const std::string& note : imported.notes) {
@@ -111,36 +109,54 @@ int check_route(const Arguments& arguments) {
         "limits are "
         "checked");
   }
-  return report(mission, imported.route, std::nullopt, false, {}, arguments.json);
+  return report(mission, imported.route, std::nullopt, false, {}, arguments.plan.json);
 }
 
 /// A mission in a world that options describe, in place of a scenario.
-void add_plan_options(CLI::App& command, PlanCheck& plan) {
-  auto* terrain =
-      command
-          .add_option("--terrain", plan.terrain,
-                      "elevation model over which to judge a mission, without a scenario")
-          ->type_name("FILE");
+void add_world_options(CLI::App& command, CLI::Option* terrain, PlanCheck& plan) {
+  const auto metres = [&](const char* name, auto& value, const char* what) {
+    command.add_option(name, value, what)
+        ->type_name("METRES")
+        ->check(number_from(0, 1e5))
+        ->needs(terrain);
+  };
   command.add_option("--airspace", plan.airspace, "zones over it; repeatable")
       ->type_name("FILE")
       ->needs(terrain);
-  command.add_option("--radius", plan.radius_m, "radius of the vehicle (m, default 0)")
-      ->type_name("METRES")
-      ->check(number_from(0, 1e5))
-      ->needs(terrain);
-  command.add_option("--min-agl", plan.min_above_ground_m, "least height above ground (m)")
-      ->type_name("METRES")
-      ->check(number_from(0, 1e5))
-      ->needs(terrain);
-  command.add_option("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)")
-      ->type_name("METRES")
-      ->check(number_from(0, 1e5))
-      ->needs(terrain);
+  metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
+  metres("--min-agl", plan.min_above_ground_m, "least height above ground (m)");
+  metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
+  metres("--max-distance", plan.max_ground_distance_m,
+         "greatest distance from the nearest point of the ground (m)");
   command
       .add_option("--start-time", plan.start_time,
                   "UTC, 2026-05-01T10:00:00Z: for zones with hours")
       ->type_name("TIME")
       ->needs(terrain);
+  command
+      .add_option("--speed", plan.speed_mps,
+                  "where the mission gives no speed, for zones with hours (m/s, default 5)")
+      ->type_name("M/S")
+      ->check(number_from(0.01, 1000))
+      ->needs(terrain);
+}
+
+/// What is written besides the verdict; returns the options.
+std::vector<CLI::Option*> add_outputs(CLI::App& command, PlanCheck& plan) {
+  const auto file = [&](const char* name, std::optional<std::string>& value, const char* what) {
+    return command.add_option(name, value, what)->type_name("FILE");
+  };
+  return {file("--certificate", plan.certificate,
+               "also write the verdict as a page (HTML) with the height profile"),
+          file("--junit", plan.junit, "also write the verdict as JUnit XML"),
+          file("--fix", plan.fixed,
+               "write the mission with items raised, lowered or moved until it passes (.plan, "
+               ".waypoints)")};
+}
+
+/// A mission whose ending is not its format's is told by --scenario or --terrain.
+bool is_plan(const Arguments& arguments) {
+  return arguments.result && (arguments.plan.terrain || arguments.plan.scenario);
 }
 }  // namespace
 
@@ -150,40 +166,46 @@ void add_check(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   auto* result =
       command->add_option("file", arguments->result,
-                          "result file of altiplan run (JSON), or with --terrain a mission (.plan, "
-                          ".waypoints, .kml, .gpx, .geojson)");
+                          "result file of altiplan run (JSON), or with --terrain or --scenario a "
+                          "mission (.plan, .waypoints, .kml, .gpx, .geojson)");
   auto* route = command
                     ->add_option("--route", arguments->route,
                                  "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
-                                 "or a mission (.plan, .waypoints, .kml, .gpx, .geojson)")
+                                 "or a mission")
                     ->type_name("FILE")
                     ->excludes(result);
   auto* scenario = command
-                       ->add_option("--scenario", arguments->scenario,
+                       ->add_option("--scenario", arguments->plan.scenario,
                                     "scenario file in which to judge the route (YAML)")
-                       ->type_name("FILE")
-                       ->excludes(result);
+                       ->type_name("FILE");
+  auto* terrain =
+      command
+          ->add_option("--terrain", arguments->plan.terrain,
+                       "elevation model over which to judge a mission, without a scenario")
+          ->type_name("FILE")
+          ->excludes(scenario)
+          ->needs(result);
   route->needs(scenario);
-  scenario->needs(route);
-  add_plan_options(*command, arguments->plan);
+  add_world_options(*command, terrain, arguments->plan);
+  const std::vector<CLI::Option*> outputs = add_outputs(*command, arguments->plan);
   add_plugin_path(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print as JSON");
-  set_example(*command, "altiplan check result.json");
-  command->callback([&action, arguments] {
+  command->add_flag("--json", arguments->plan.json, "print as JSON");
+  set_example(*command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
+  command->callback([&action, arguments, outputs] {
     if (!arguments->result && !arguments->route) {
-      throw CLI::RequiredError("a result, a mission and --terrain, or --route and --scenario");
+      throw CLI::RequiredError(
+          "a result, a mission and --terrain or --scenario, or --route and --scenario");
     }
-    if (arguments->plan.terrain) {
-      arguments->plan.plan = arguments->result.value_or("");
-      if (!arguments->result) {
-        throw CLI::RequiredError("with --terrain, a mission");
+    for (const CLI::Option* output : outputs) {
+      if (output->count() > 0 && !is_plan(*arguments)) {
+        throw CLI::RequiresError(output->get_name(), "a mission and --terrain or --scenario");
       }
     }
+    arguments->plan.plan = arguments->result.value_or("");
     action = [arguments] {
-      if (arguments->plan.terrain) {
-        return check_plan(arguments->plan, arguments->overrides, arguments->json);
-      }
-      return arguments->result ? check_result(*arguments) : check_route(*arguments);
+      return is_plan(*arguments) ? check_plan(arguments->plan, arguments->overrides)
+             : arguments->result ? check_result(*arguments)
+                                 : check_route(*arguments);
     };
   });
 }

@@ -9,19 +9,26 @@
 
 namespace altiplan::cli {
 
-/// What `check` takes in place of a scenario.
+/// A mission to judge, the world that options describe in place of a scenario, and what to write.
 struct PlanCheck {
   std::string plan;
+  std::optional<std::string> scenario;
   std::optional<std::string> terrain;
   std::vector<std::string> airspace;
   double radius_m = 0;
+  std::optional<double> speed_mps;
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
+  std::optional<double> max_ground_distance_m;
   std::optional<std::string> start_time;
+  bool json = false;
+  std::optional<std::string> certificate;
+  std::optional<std::string> junit;
+  std::optional<std::string> fixed;
 };
 
-/// Judges a ground station's mission in a world of an elevation model and zones; prints each
-/// violation with its items and, where one item's height cures it, by how much. Returns the exit
-/// code.
-int check_plan(const PlanCheck& plan, const host::Overrides& overrides, bool as_json);
+/// Judges a ground station's mission; prints each violation with its items, its place and, where
+/// one item's change cures it, that change. Writes a certificate, JUnit XML and the cured mission
+/// where asked to. Returns the exit code.
+int check_plan(const PlanCheck& plan, const host::Overrides& overrides);
 }  // namespace altiplan::cli

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/base/base64.hpp"
+#include "host/base/xml_text.hpp"
 #include "host/result/result_json.hpp"
 
 // The parts of the top view, one file each. Lengths are pixels from the top left.
@@ -39,8 +40,6 @@ inline std::string_view role_color(std::string_view role) {
 /// Unknown space would hide everything else, and is not drawn.
 inline bool is_drawn(const Json& thing) { return thing.at("role") != "unknown"; }
 
-/// Escapes text and attributes for XML; drops control characters, which XML cannot hold.
-std::string escaped(std::string_view text);
 /// Formats to tenths of a pixel.
 std::string pixels(double value);
 

@@ -67,7 +67,40 @@ class Chart {
     return path;
   }
 
+  /// The heights that layers fill, as upright strokes.
+  std::string solids(const Json& profile) const {
+    std::string path;
+    double widest = 0;
+    const Json& s = profile.at("s");
+    for (const Json& layer : profile.at("solid")) {
+      for (std::size_t i = 0; i < layer.size(); ++i) {
+        for (const Json& span : layer[i]) {
+          const double low = std::max(span[0].get<double>(), low_);
+          const double high = std::min(span[1].get<double>(), high_);
+          if (low < high) {
+            path +=
+                "M" + pixels(x(s[i].get<double>())) + " " + pixels(y(low)) + "V" + pixels(y(high));
+            widest = std::max(widest, gap(s, i));
+          }
+        }
+      }
+    }
+    return path.empty()
+               ? ""
+               : "<path d=\"" + path + "\" stroke=\"#cc79a7\" stroke-opacity=\"0.45\" " +
+                     "stroke-width=\"" + pixels(widest / longest_ * area_.width) + "\"/>\n";
+  }
+
  private:
+  /// From a sample to the next.
+  static double gap(const Json& s, std::size_t i) {
+    if (s.size() < 2) {
+      return 0;
+    }
+    const std::size_t next = std::min(i + 1, s.size() - 1);
+    return s[next].get<double>() - s[next == i ? i - 1 : i].get<double>();
+  }
+
   Area area_;
   double longest_ = 0;
   double low_ = kInfinity;
@@ -81,13 +114,23 @@ Area within(const Area& area) {
 
 std::string heights(const Json& scene, const Area& area) {
   const Json& results = scene.at("results");
-  const Chart chart(results, within(area), {"altitude", "ground"});
+  const Chart chart(results, within(area), {"altitude", "ground", "lowest", "highest"});
   std::string caption = "Height above sea level over distance flown, m";
   if (!scene.at("ground").is_null()) {
     caption += results.size() > 1 ? "; ground: grey below the first route, thin below others"
                                   : "; the ground below";
   }
-  std::string svg = text_at(area.left, area.top + 8, caption, kFaint, 12) + chart.axes();
+  std::string svg = chart.axes();
+  if (const Json& first = results.front().at("profile"); !first.is_null()) {
+    const std::string solids = chart.solids(first);
+    const std::string limits = chart.curve(first, "lowest") + chart.curve(first, "highest");
+    caption += limits.empty() ? "" : "; dashed: lowest and highest allowed";
+    caption += solids.empty() ? "" : "; pink: obstacles, zones";
+    svg += solids + (limits.empty() ? ""
+                                    : "<path d=\"" + limits + "\" stroke=\"" + std::string(kFaint) +
+                                          "\" stroke-dasharray=\"5 4\"/>\n");
+  }
+  svg += text_at(area.left, area.top + 8, caption, kFaint, 12);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& profile = results[i].at("profile");
     if (profile.is_null()) {

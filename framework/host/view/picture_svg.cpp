@@ -6,34 +6,10 @@
 
 #include "host/base/words.hpp"
 #include "host/view/picture_parts.hpp"
+#include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {
 namespace picture {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(letter) >= ' ') {
-          out += letter;
-        }
-    }
-  }
-  return out;
-}
 
 std::string pixels(double value) {
   char text[32];
@@ -50,7 +26,7 @@ std::string text_at(double x, double y, std::string_view text, std::string_view 
          : align == Align::end  ? " text-anchor=\"end\""
                                 : "";
   out += bold ? " font-weight=\"600\">" : ">";
-  return out + escaped(text) + "</text>\n";
+  return out + xml_text(text) + "</text>\n";
 }
 
 std::string line(double x0, double y0, double x1, double y1, std::string_view color, double width) {
@@ -134,7 +110,7 @@ std::string picture_svg(const Json& scene) {
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size + " viewBox=\"0 0 " +
                     pixels(kWidth) + " " + pixels(height) +
                     "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n";
-  svg += "<title>" + escaped(title) + "</title>\n";
+  svg += "<title>" + xml_text(title) + "</title>\n";
   svg += rectangle({0, 0, kWidth, height}, "fill=\"" + std::string(kPaper) + "\"");
   svg += text_at(kMargin, kMargin + 16, title, kInk, 20, Align::start, true);
   svg += "<clipPath id=\"map\">" + rectangle(map.area(), "") + "</clipPath>\n";
@@ -148,5 +124,17 @@ std::string picture_svg(const Json& scene) {
   }
   svg += text_at(kWidth - kMargin, height - 8, attribution(scene), kFaint, 11, Align::end);
   return svg + "</svg>\n";
+}
+
+std::string profile_svg(const Route& route, const Request& request) {
+  using namespace picture;
+  constexpr std::size_t kSamples = 400;
+  const Json ground = request.world->has_ground() ? Json(true) : Json(nullptr);
+  const Json scene{{"results", {{{"profile", route_profile(route, request, kSamples)}}}},
+                   {"ground", ground}};
+  const double height = kProfile + kMargin;
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + pixels(kWidth) + " " +
+         pixels(height) + "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n" +
+         profiles(scene, {0, kMargin, kWidth, kProfile}) + "</svg>\n";
 }
 }  // namespace altiplan::host

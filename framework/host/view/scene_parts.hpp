@@ -82,6 +82,12 @@ class ClearanceProfile {
 /// unless it has more waypoints.
 Json route_profile(const Route& route, const Request& request, std::size_t samples);
 
+/// Adds to a route's profile, at each sample: `lowest` and `highest`, the limits of the allowed
+/// heights around the route's own or nearest to it, null where there is none nearby; and `solid`,
+/// for each layer that is met above or below the route the heights that it fills. Within half a
+/// metre.
+void add_heights(Json& profile, const Request& request);
+
 /// The stored flight, judged now, its track thinned to what is visible, its profile to `samples`
 /// points.
 Json flight_scene(const StoredResult& stored, const Mission& mission,

@@ -178,6 +178,7 @@ Json route_profile(const Route& whole, const Request& request, std::size_t sampl
     profile["turn"].push_back(rounded(sample.turn_deg));
   }
   clearance.write(profile);
+  add_heights(profile, request);
   return profile;
 }
 }  // namespace altiplan::host

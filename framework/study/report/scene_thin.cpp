@@ -116,8 +116,12 @@ void thin_profile(host::Json& profile) {
       thin(values);
     }
   }
-  for (host::Json& values : profile.at("to")) {
-    thin(values);
+  for (const char* of_layers : {"to", "solid"}) {
+    if (profile.contains(of_layers)) {
+      for (host::Json& values : profile.at(of_layers)) {
+        thin(values);
+      }
+    }
   }
 }
 }  // namespace

@@ -77,6 +77,12 @@ MissionFile read_json_mission(const std::string& file, const std::string& text) 
   }
 }
 
+/// Seconds spent at a waypoint, or in a loiter of a given time.
+double hold_of(const CommandList::Command& command) {
+  const bool holds = (command.number == 16 || command.number == 19) && command.params[0] > 0;
+  return holds ? command.params[0] : 0;
+}
+
 bool is_nowhere(double lon, double lat) {
   return (lon == 0 && lat == 0) || (std::isnan(lon) && std::isnan(lat));
 }
@@ -155,7 +161,24 @@ MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kin
   return at;
 }
 
+bool CommandList::take(const Command& command) {
+  constexpr int kDelay = 93;
+  constexpr int kChangeSpeed = 178;
+  if (command.number == kChangeSpeed && command.params[1] > 0) {
+    speed_mps_ = command.params[1];
+    return true;
+  }
+  if (command.number == kDelay && command.params[0] > 0 && !mission_.items.empty()) {
+    mission_.items.back().hold_s += command.params[0];
+    return true;
+  }
+  return false;
+}
+
 void CommandList::add(const Command& command) {
+  if (take(command)) {
+    return;
+  }
   const auto kind = kind_of(command.number);
   if (!kind) {
     ++skipped_;
@@ -164,7 +187,8 @@ void CommandList::add(const Command& command) {
   }
   const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
   mission_.items.push_back({*kind, place_of(command, *kind), acceptance, command.place,
-                            circle_of(command.number, command.params)});
+                            circle_of(command.number, command.params), speed_mps_,
+                            hold_of(command)});
 }
 
 void CommandList::finish() {

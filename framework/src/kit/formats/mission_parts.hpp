@@ -59,7 +59,11 @@ class CommandList {
  private:
   MissionPoint place_of(const Command& command, MissionItem::Kind kind) const;
 
+  /// True for a command that says how the others are flown.
+  bool take(const Command& command);
+
   MissionFile& mission_;
+  double speed_mps_ = 0;
   std::size_t skipped_ = 0;
   std::set<int> skipped_numbers_;
   std::size_t complex_ = 0;

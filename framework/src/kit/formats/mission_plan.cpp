@@ -147,12 +147,12 @@ MissionFile read_plan(const Node& root) {
   mission.format = MissionFile::Format::qgc_plan;
   const Node body = root.at("mission");
   body.at("version").expect_version(2, 2);
-  for (const char* key : {"cruiseSpeed", "hoverSpeed"}) {
-    body.at(key).number();
-  }
-  for (const char* key : {"firmwareType", "vehicleType"}) {
-    body.at(key).whole(255);
-  }
+  constexpr int kAeroplane = 1;  // MAV_TYPE_FIXED_WING
+  const double cruise = body.at("cruiseSpeed").number();
+  const double hover = body.at("hoverSpeed").number();
+  body.at("firmwareType").whole(255);
+  mission.is_wing = body.at("vehicleType").whole(255) == kAeroplane;
+  mission.speed_mps = mission.is_wing ? cruise : hover;
   const Node home = body.at("plannedHomePosition");
   if (home.size() != 3) {
     home.wrong("[latitude, longitude, altitude]");

@@ -75,7 +75,9 @@ function draw(chart, profile, charts, world, store) {
   const made = {};
   // The cursor's dot is on the curve itself, not on ground and limits beside it.
   const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range: range_of(chart,
-    seen(chart, data, limit))}}, hooks: {draw: [() => made.redrawn?.()], setCursor: [(self) => {
+    seen(chart, data, limit))}}, hooks: {drawClear: [(self) => {
+    if (chart.key === 'altitude') draw_solids(self, profile);
+  }], draw: [() => made.redrawn?.()], setCursor: [(self) => {
     if (!link.silent && self.cursor.event) follow(self, profile, store);
   }]}});
   plot.over.addEventListener('click', () => {
@@ -107,6 +109,12 @@ function curves(chart, profile, limit, color, limits) {
         height + limits.ground_clearance_m));
       series.push(limit_line());
     }
+    for (const key of ['lowest', 'highest']) {
+      if (profile[key]?.some((height) => height !== null)) {
+        data.push(profile[key]);
+        series.push({...limit_line(), spanGaps: false});
+      }
+    }
   }
   const names = [];
   if (chart.key === 'clearance') {
@@ -136,6 +144,26 @@ function compared(profile, color) {
         profile.altitude[index] - height)});
   }
   return made;
+}
+
+/** The heights that obstacles and zones fill below, at and above the route. */
+function draw_solids({ctx, bbox, data, valToPos}, profile) {
+  const [x] = data;
+  const pixel = (nth) => valToPos(x[Math.max(0, Math.min(nth, x.length - 1))], 'x', true);
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.fillStyle = style_of('--solid_fill');
+  for (const spans of Object.values(profile.solid ?? {})) {
+    spans.forEach((its, nth) => its.forEach(([low, high]) => {
+      const left = (pixel(nth - 1) + pixel(nth)) / 2;
+      const right = (pixel(nth) + pixel(nth + 1)) / 2;
+      const top = valToPos(high, 'y', true);
+      ctx.fillRect(left, top, right - left, valToPos(low, 'y', true) - top);
+    }));
+  }
+  ctx.restore();
 }
 
 /** The columns that set the chart's range; clearances from distant kinds may exceed it. */

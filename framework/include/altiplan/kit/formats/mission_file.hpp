@@ -41,6 +41,8 @@ struct MissionItem {
   std::string place;        ///< position in the file, for messages: "mission.items.3", "line 5"
   /// Of a loiter whose radius the file gives, and which is left along a tangent or never.
   std::optional<MissionCircle> circle{};
+  double speed_mps = 0;  ///< on the way to it, from the commands before; 0: as the vehicle's
+  double hold_s = 0;     ///< spent there
 };
 
 /// An area that must not be left (`keep_in`) or entered: a polygon, or a circle where the outline
@@ -61,6 +63,8 @@ struct MissionFile {
   Format format = Format::qgc_plan;
   std::string name;
   std::optional<MissionPoint> home;  ///< above sea level
+  double speed_mps = 0;              ///< of the vehicle; 0 where the file gives none
+  bool is_wing = false;              ///< true if the file says that it is an aeroplane
   std::vector<MissionItem> items;
   std::string route_problem;  ///< why the items are not a route, "" where they are
   std::vector<MissionZone> zones;

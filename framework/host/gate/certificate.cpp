@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/gate/certificate.hpp"
+
+#include <cmath>
+
+#include "host/base/words.hpp"
+#include "host/base/xml_text.hpp"
+#include "host/gate/leg_heights.hpp"
+#include "host/view/picture_svg.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr const char* kStyle =
+    "body{font:14px/1.45 'DejaVu Sans',Verdana,sans-serif;max-width:1100px;margin:2em auto;"
+    "padding:0 1em;color:#1a2027}"
+    "h1{font-size:1.4em}h2{font-size:1.1em;margin-top:1.6em}"
+    ".pass{color:#00704f}.fail{color:#b3400a}"
+    "table{border-collapse:collapse;width:100%}"
+    "th,td{text-align:left;padding:.2em .8em .2em 0;border-bottom:1px solid #d8dde2;"
+    "vertical-align:top}"
+    "td.n,th.n{text-align:right}svg{width:100%;height:auto}"
+    "@media print{body{margin:0;font-size:11px}}";
+
+std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
+  std::string html = "<tr>";
+  for (const std::string& cell : cells) {
+    html += std::string("<") + tag + ">" + cell + "</" + tag + ">";
+  }
+  return html + "</tr>\n";
+}
+
+std::string lonlat(const Vec3& p, const Request& request) {
+  if (!request.world->frame().has_position()) {
+    return place(p);
+  }
+  const auto [lon, lat] = request.world->frame().to_lonlat(p.x(), p.y());
+  return with_digits(lon, 9) + ", " + with_digits(lat, 8);
+}
+
+std::string metres(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? with_digits(std::round(*value * 10) / 10, 6) : "–";
+}
+
+std::string violations(const PlanReport& report, const Request& request) {
+  if (report.passed()) {
+    return "";
+  }
+  std::string html = "<h2>" + counted(report.findings.size(), "violation") + "</h2>\n<table>\n" +
+                     row({"where", "near (longitude, latitude; height, m)", "what", "cure"}, "th");
+  for (const Finding& finding : report.findings) {
+    std::string items;
+    for (const std::string& item : finding.items) {
+      items += (items.empty() ? "" : " to ") + item;
+    }
+    html += row({xml_text(items), lonlat(finding.at, request) + "; " + metres(finding.at.z()),
+                 xml_text(finding.violation.message),
+                 finding.cure
+                     ? xml_text(in_words(*finding.cure, report.name_of(finding.cure->waypoint)))
+                     : "none of a single item"});
+  }
+  return html + "</table>\n";
+}
+
+std::string legs(const PlanReport& report, const Request& request) {
+  const Route& route = report.imported.route;
+  std::string html =
+      "<h2>Legs</h2>\n<table>\n" + row({"from", "to", "height at its end, m", "length, m",
+                                        "lowest above ground, m", "highest above ground, m"},
+                                       "th");
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const auto [lowest, highest] = leg_heights(route.leg(i), *request.world);
+    html +=
+        row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)), metres(route[i + 1].z()),
+             metres(route.leg(i).length()), metres(lowest), metres(highest)});
+  }
+  return html + "</table>\n";
+}
+
+std::string list(const std::vector<std::string>& notes) {
+  std::string html;
+  for (const std::string& note : notes) {
+    html += "<li>" + xml_text(note) + "</li>\n";
+  }
+  return html.empty() ? "" : "<h2>How the files were read</h2>\n<ul>\n" + html + "</ul>\n";
+}
+}  // namespace
+
+std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis) {
+  Request request = world.request;
+  request.world = std::make_shared<const World>(world.truth);
+  const std::string verdict = report.passed() ? "pass" : "fail";
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>" +
+                     verdict + ": " + xml_text(report.file) + "</title><style>" + kStyle +
+                     "</style></head>\n<body>\n" + "<h1><span class=\"" + verdict + "\">" +
+                     verdict + "</span>: " + xml_text(report.file) + "</h1>\n<table>\n";
+  for (const auto& [what, value] : basis) {
+    html += row({xml_text(what), xml_text(value)});
+  }
+  const Measures& measures = report.measures;
+  html += row({"route", counted(measures.waypoints, "waypoint") + ", " + metres(measures.length_m) +
+                            " m, at least " + metres(measures.min_ground_clearance_m) +
+                            " m above ground, " + metres(measures.min_clearance_m) +
+                            " m from obstacles"});
+  html += "</table>\n" + violations(report, request);
+  html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);
+  return html + legs(report, request) + list(report.notes) + "</body>\n</html>\n";
+}
+
+std::string junit(const PlanReport& report) {
+  const Route& route = report.imported.route;
+  std::string cases;
+  std::size_t count = 0;
+  std::size_t failed = 0;
+  const auto add = [&](const std::string& name, const auto& is_here) {
+    std::string failures;
+    for (const Finding& finding : report.findings) {
+      if (is_here(finding)) {
+        failures += "      <failure message=\"" + xml_text(finding.violation.message) + "\"/>\n";
+      }
+    }
+    ++count;
+    failed += failures.empty() ? 0 : 1;
+    cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"" + xml_text(name) +
+             (failures.empty() ? "\"/>\n" : "\">\n" + failures + "    </testcase>\n");
+  };
+  const auto is_passage = [](const Finding& finding) {
+    return finding.violation.constraint == "climb" || finding.violation.constraint == "descent";
+  };
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const bool is_last = i + 1 == route.leg_count();  // has what concerns the last waypoint or all
+    add(report.name_of(i) + " to " + report.name_of(i + 1), [&](const Finding& finding) {
+      const std::size_t at = finding.violation.at;
+      return !is_passage(finding) && (at == i || (is_last && at > i));
+    });
+  }
+  for (const Passage& passage : report.passages) {
+    const std::string what = passage.is_climb ? "climb" : "descent";
+    add(what + " of " + passage.item,
+        [&](const Finding& finding) { return finding.violation.constraint == what; });
+  }
+  const std::string counts =
+      " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
+         ">\n  <testsuite name=\"altiplan check\"" + counts + ">\n" + cases +
+         "  </testsuite>\n</testsuites>\n";
+}
+}  // namespace altiplan::host

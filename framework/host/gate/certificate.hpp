@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/gate/plan_report.hpp"
+
+namespace altiplan::host {
+
+/// What the verdict rests on, in words: ("terrain", "dem.tif, SHA-256 …").
+using Basis = std::vector<std::pair<std::string, std::string>>;
+
+/// The verdict as a page of HTML without scripts: what it rests on, the violations with their
+/// cures, the height profile, and heights leg by leg.
+std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis);
+
+/// The verdict as JUnit XML: one test case a leg, climb and descent.
+std::string junit(const PlanReport& report);
+}  // namespace altiplan::host
