@@ -43,8 +43,8 @@ STORED = "read to refuse it by its former name"
 EXCEPTIONS = {
     ("framework/include/altiplan/kit/sampling/star_params.hpp", "goal_share"): REFUSED,
     ("plugins/planner/rrt/rrt.cpp", "goal_share"): REFUSED,
-    ("tools/altiplan/main.cpp", "--patience"): REFUSED,
-    ("tools/altiplan/main.cpp", "patience"): REFUSED,
+    ("tools/altiplan/command_line.cpp", "--patience"): REFUSED,
+    ("tools/altiplan/command_line.cpp", "patience"): REFUSED,
     ("framework/host/result/stored_shape.cpp", '"stands"'): STORED,
     ("framework/host/result/stored_shape.cpp", ".stands"): STORED,
     ("framework/study/model/run_values.cpp", '"stands"'): STORED,

@@ -113,7 +113,7 @@ int check_route(const Arguments& arguments) {
 }
 
 /// A mission in a world that options describe, in place of a scenario.
-void add_world_options(CLI::App& command, CLI::Option* terrain, PlanCheck& plan) {
+void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
   const auto metres = [&](const char* name, auto& value, const char* what) {
     command.add_option(name, value, what)
         ->type_name("METRES")
@@ -142,7 +142,7 @@ void add_world_options(CLI::App& command, CLI::Option* terrain, PlanCheck& plan)
 }
 
 /// What is written besides the verdict; returns the options.
-std::vector<CLI::Option*> add_outputs(CLI::App& command, PlanCheck& plan) {
+std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
   const auto file = [&](const char* name, std::optional<std::string>& value, const char* what) {
     return command.add_option(name, value, what)->type_name("FILE");
   };
@@ -160,9 +160,8 @@ bool is_plan(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_check(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("check", "judge the route of a result or an imported route");
+void add_check(App& app, Action& action) {
+  App* command = app.add_subcommand("check", "judge the route of a result or an imported route");
   auto arguments = std::make_shared<Arguments>();
   auto* result =
       command->add_option("file", arguments->result,
@@ -187,18 +186,18 @@ void add_check(CLI::App& app, Action& action) {
           ->needs(result);
   route->needs(scenario);
   add_world_options(*command, terrain, arguments->plan);
-  const std::vector<CLI::Option*> outputs = add_outputs(*command, arguments->plan);
+  const std::vector<Option*> outputs = add_outputs(*command, arguments->plan);
   add_plugin_path(*command, arguments->overrides);
   command->add_flag("--json", arguments->plan.json, "print as JSON");
   set_example(*command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
   command->callback([&action, arguments, outputs] {
     if (!arguments->result && !arguments->route) {
-      throw CLI::RequiredError(
-          "a result, a mission and --terrain or --scenario, or --route and --scenario");
+      throw UsageError{
+          "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
     }
-    for (const CLI::Option* output : outputs) {
+    for (const Option* output : outputs) {
       if (output->count() > 0 && !is_plan(*arguments)) {
-        throw CLI::RequiresError(output->get_name(), "a mission and --terrain or --scenario");
+        throw UsageError{output->name() + " requires a mission and --terrain or --scenario"};
       }
     }
     arguments->plan.plan = arguments->result.value_or("");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
+#include "command_line.hpp"
 #include "guarded.hpp"
 #include "host/config/config.hpp"
 #include "host/result/stored_result.hpp"
@@ -15,40 +15,40 @@ namespace altiplan::cli {
 using Action = std::function<int()>;
 
 // Each adds its subcommand, which sets the action when it is called.
-void add_run(CLI::App& app, Action& action);
-void add_validate(CLI::App& app, Action& action);
-void add_explain(CLI::App& app, Action& action);
-void add_check(CLI::App& app, Action& action);
-void add_export(CLI::App& app, Action& action);
-void add_upload(CLI::App& app, Action& action);
-void add_fly(CLI::App& app, Action& action);
-void add_download(CLI::App& app, Action& action);
-void add_status(CLI::App& app, Action& action);
-void add_plugins(CLI::App& app, Action& action);
-void add_view(CLI::App& app, Action& action);
-void add_merge(CLI::App& app, Action& action);
-void add_replay(CLI::App& app, Action& action);
-void add_compare(CLI::App& app, Action& action);
-void add_slurm(CLI::App& app, Action& action);
-void add_study(CLI::App& app, Action& action, const std::string& command_line);
-void add_report(CLI::App& app, Action& action);
-void add_tune(CLI::App& app, Action& action);
-void add_new(CLI::App& app, Action& action);
-void add_check_plugin(CLI::App& app, Action& action);
+void add_run(App& app, Action& action);
+void add_validate(App& app, Action& action);
+void add_explain(App& app, Action& action);
+void add_check(App& app, Action& action);
+void add_export(App& app, Action& action);
+void add_upload(App& app, Action& action);
+void add_fly(App& app, Action& action);
+void add_download(App& app, Action& action);
+void add_status(App& app, Action& action);
+void add_plugins(App& app, Action& action);
+void add_view(App& app, Action& action);
+void add_merge(App& app, Action& action);
+void add_replay(App& app, Action& action);
+void add_compare(App& app, Action& action);
+void add_slurm(App& app, Action& action);
+void add_study(App& app, Action& action, const std::string& command_line);
+void add_report(App& app, Action& action);
+void add_tune(App& app, Action& action);
+void add_new(App& app, Action& action);
+void add_check_plugin(App& app, Action& action);
 
 /// Adds --plugin-path.
-void add_plugin_path(CLI::App& command, host::Overrides& overrides);
+void add_plugin_path(App& command, host::Overrides& overrides);
 /// Adds --plugin-path, --scenario, --seed and --set.
-void add_overrides(CLI::App& command, host::Overrides& overrides);
+void add_overrides(App& command, host::Overrides& overrides);
 
-/// Accepts a number in the range; unlike CLI::Range, rejects NaN.
-CLI::Validator number_from(double low, double high);
+/// Accepts a number in the range, and no NaN.
+Check number_from(double low, double high);
 /// The error message for a seed, or for KEY=VALUE; "" if it is valid.
 std::string seed_problem(const std::string& text);
 std::string assignment_problem(const std::string& text);
 
 /// Adds the example to the --help text.
-void set_example(CLI::App& command, const std::string& example);
+void set_example(App& command, const std::string& example);
 
 enum class LogLevel { quiet, warning, info };
 LogLevel& log_level();

@@ -190,9 +190,8 @@ int compare(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_compare(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("compare", "compare the results of two executions of a study");
+void add_compare(App& app, Action& action) {
+  App* command = app.add_subcommand("compare", "compare the results of two executions of a study");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("first", arguments->first, "reference study database")
       ->required()
@@ -204,7 +203,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->add_option("--metric", arguments->metrics,
                    "metric to compare; repeatable (default: the study's metrics)")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   command
       ->add_option("--tolerance", arguments->tolerance_percent,
                    "allowed degradation of a metric (%)")

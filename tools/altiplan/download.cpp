@@ -77,22 +77,22 @@ int print_status(const LinkOptions& options) {
 }
 }  // namespace
 
-void add_download(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_download(App& app, Action& action) {
+  App* command =
       app.add_subcommand("download", "write a vehicle's mission, fence and rally points to a file");
   auto arguments = std::make_shared<Arguments>();
   add_link_options(*command, "--from", arguments->link);
   command->add_option("-o,--out", arguments->out, "output file: .plan, or .waypoints (mission)")
       ->required()
       ->type_name("FILE")
-      ->check(CLI::Validator([](std::string& text) { return out_problem(text); }, ""));
+      ->check(out_problem);
   set_example(*command, "altiplan download --from udp:127.0.0.1:14550 -o mission.plan");
   command->callback(
       [&action, arguments] { action = [arguments] { return download_plan(*arguments); }; });
 }
 
-void add_status(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_status(App& app, Action& action) {
+  App* command =
       app.add_subcommand("status", "print a vehicle's mode, position, battery and mission count");
   auto options = std::make_shared<LinkOptions>();
   add_link_options(*command, "--from", *options);

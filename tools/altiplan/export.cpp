@@ -40,15 +40,15 @@ int export_result(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_export(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_export(App& app, Action& action) {
+  App* command =
       app.add_subcommand("export", "write a result's route for ground control stations and maps");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("--to", arguments->to, "format: qgc-plan, waypoints, kml, geojson, gpx or csv")
       ->required()
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
+      ->check(Check::one_of({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
   command->add_option("-o,--out", arguments->out, "output file (default: stdout)")
       ->type_name("FILE");
   add_route_export(*command, arguments->route);

@@ -145,8 +145,8 @@ int fly_result(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_fly(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+void add_fly(App& app, Action& action) {
+  App* command = app.add_subcommand(
       "fly", "upload a result's route to a vehicle, follow its flight and judge it");
   auto arguments = std::make_shared<Arguments>();
   add_link_options(*command, "--link", arguments->link);
@@ -165,7 +165,7 @@ void add_fly(CLI::App& app, Action& action) {
               "altiplan fly result.json --link udp:127.0.0.1:14550 --takeoff --arm --command");
   command->callback([&action, arguments] {
     if (arguments->route.arcs == "loiter") {
-      throw CLI::ValidationError("fly follows legs between points: give --arcs points");
+      throw UsageError{"fly follows legs between points: give --arcs points"};
     }
     arguments->route.options.format = kit::MissionFile::Format::qgc_plan;
     finish_options(arguments->route);

@@ -23,23 +23,23 @@ std::optional<link::Signer> signer_of(const LinkOptions& options) {
 }
 }  // namespace
 
-void add_link_options(CLI::App& command, const char* address, LinkOptions& options) {
+void add_link_options(App& command, const char* address, LinkOptions& options) {
   command
       .add_option(address, options.address,
                   "the vehicle: udp:HOST:PORT, udpin:[HOST:]PORT to listen (default host "
                   "127.0.0.1), tcp:HOST:PORT or serial:DEVICE:BAUD")
       ->required()
       ->type_name("ADDRESS")
-      ->check(CLI::Validator([](std::string& text) { return address_problem(text); }, ""));
+      ->check(address_problem);
   command.add_option("--target", options.target, "system id of the vehicle (default: the first)")
       ->type_name("N")
-      ->check(CLI::Range(1, 255));
+      ->check(Check::between(1, 255));
   command.add_option("--system", options.system, "own system id (default 255)")
       ->type_name("N")
-      ->check(CLI::Range(1, 255));
+      ->check(Check::between(1, 255));
   command.add_option("--component", options.component, "own component id (default 190)")
       ->type_name("N")
-      ->check(CLI::Range(1, 255));
+      ->check(Check::between(1, 255));
   command
       .add_option("--sign-key", options.sign_key,
                   "file of a 32-byte key: packets are signed, and unsigned ones ignored")

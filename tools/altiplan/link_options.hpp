@@ -18,7 +18,7 @@ struct LinkOptions {
 };
 
 /// Adds the address under this name, and the other options.
-void add_link_options(CLI::App& command, const char* address, LinkOptions& options);
+void add_link_options(App& command, const char* address, LinkOptions& options);
 
 /// A vehicle that has been heard.
 struct Connection {

@@ -28,21 +28,20 @@ void info(const std::string& message) {
   }
 }
 
-void set_example(CLI::App& command, const std::string& example) {
+void set_example(App& command, const std::string& example) {
   command.footer("Example:\n  " + example);
 }
 
-void add_plugin_path(CLI::App& command, host::Overrides& overrides) {
+void add_plugin_path(App& command, host::Overrides& overrides) {
   command
       .add_option("--plugin-path", overrides.plugin_path,
                   "folder of plugin libraries, searched before the default ones; repeatable")
-      ->expected(1)
-      ->allow_extra_args(false)  // or a -- that follows is taken for the end of the list
+      ->one_at_a_time()
       ->type_name("DIR")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
 }
 
-void add_overrides(CLI::App& command, host::Overrides& overrides) {
+void add_overrides(App& command, host::Overrides& overrides) {
   add_plugin_path(command, overrides);
   command.add_option("--scenario", overrides.scenario, "scenario file, overrides the pipeline's")
       ->type_name("FILE");
@@ -54,22 +53,22 @@ void add_overrides(CLI::App& command, host::Overrides& overrides) {
                   "override a key of the pipeline, or of the scenario as scenario.KEY; repeatable")
       ->expected(1)
       ->type_name("KEY=VALUE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->take_all()
       ->check(assignment_problem);
 }
 
-CLI::Validator number_from(double low, double high) {
+Check number_from(double low, double high) {
   const std::string range = "from " + host::Json(low).dump() + " to " + host::Json(high).dump();
-  return {[low, high, range](std::string& text) {
-            double value = 0;
-            const auto [stop, error] =
-                std::from_chars(text.data(), text.data() + text.size(), value);
-            const bool whole = error == std::errc() && stop == text.data() + text.size();
-            return whole && value >= low && value <= high
-                       ? std::string()
-                       : "expected a number " + range + ", found '" + text + "'";
-          },
-          range};
+  return Check(
+      [low, high, range](const std::string& text) {
+        double value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc() && stop == text.data() + text.size();
+        return whole && value >= low && value <= high
+                   ? std::string()
+                   : "expected a number " + range + ", found '" + text + "'";
+      },
+      range);
 }
 
 std::string seed_problem(const std::string& text) {
@@ -116,26 +115,16 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
-const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
-
-/// Exit code of a command line that cannot be parsed; prints the reason.
-int refuse(const CLI::App& app, const CLI::ParseError& error) {
-  // CLI11 would only report a missing command.
-  const std::vector<std::string> rest = app.remaining();
-  if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
-    std::cerr << "altiplan: unknown command '" << rest.front()
-              << "' (altiplan --help lists the commands)\n";
-    return kUsage;
+/// "" if it is a log level, which it sets.
+std::string read_log_level(const std::string& text) {
+  static const std::map<std::string, LogLevel> kLevels{
+      {"quiet", LogLevel::quiet}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
+  const auto level = kLevels.find(text);
+  if (level == kLevels.end()) {
+    return "expected quiet, warning or info, found '" + text + "'";
   }
-  for (const std::string& argument : app.remaining(true)) {
-    const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
-    if (renamed != kRenamedOptions.end()) {
-      std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
-      return kUsage;
-    }
-  }
-  const int code = app.exit(error);
-  return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
+  log_level() = level->second;
+  return "";
 }
 
 int main_checked(int argc, char** argv) {
@@ -146,25 +135,10 @@ int main_checked(int argc, char** argv) {
   if (const int code = guarded("altiplan", begin); code != kDone) {
     return code;
   }
-  CLI::App app("Plans and judges routes for unmanned aircraft with plugins configured in YAML.",
-               "altiplan");
-  app.set_version_flag("--version", ALTIPLAN_VERSION);
-  app.require_subcommand(1);
-  app.fallthrough();
-  static const std::map<std::string, LogLevel> kLevels{
-      {"quiet", LogLevel::quiet}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
-  app.add_option("--log-level", log_level(),
-                 "messages on stderr: quiet, warning or info (default warning)")
-      ->transform(CLI::Validator(
-          [](std::string& text) {
-            const auto level = kLevels.find(text);
-            if (level == kLevels.end()) {
-              return "expected quiet, warning or info, found '" + text + "'";
-            }
-            text = std::to_string(int(level->second));
-            return std::string();
-          },
-          ""))
+  App app("Plans and judges routes for unmanned aircraft with plugins configured in YAML.",
+          "altiplan");
+  app.add_option_function("--log-level", read_log_level,
+                          "messages on stderr: quiet, warning or info (default warning)")
       ->type_name("LEVEL");
   set_example(app, "altiplan run configs/pipelines/ridge_crossing.yaml");
   Action action;
@@ -188,10 +162,8 @@ int main_checked(int argc, char** argv) {
   add_tune(app, action);
   add_new(app, action);
   add_check_plugin(app, action);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return refuse(app, error);
+  if (const std::optional<int> code = app.parse(argc, argv)) {
+    return *code;
   }
   return guarded("altiplan", action);
 }

@@ -45,8 +45,8 @@ int merge(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_merge(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("merge", "merge the shards of a study into one database");
+void add_merge(App& app, Action& action) {
+  App* command = app.add_subcommand("merge", "merge the shards of a study into one database");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("stores", arguments->stores, "study databases, all of the same study")
       ->required()

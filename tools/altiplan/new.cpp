@@ -174,8 +174,8 @@ int new_project(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_new(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_new(App& app, Action& action) {
+  App* command =
       app.add_subcommand("new", "create a complete out-of-tree plugin project in ./NAME");
   auto arguments = std::make_shared<Arguments>();
   command

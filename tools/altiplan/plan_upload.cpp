@@ -40,7 +40,7 @@ bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence
   return is_equal;
 }
 
-void add_no_fence(CLI::App& command, bool& no_fence) {
+void add_no_fence(App& command, bool& no_fence) {
   command.add_flag("--no-fence", no_fence,
                    "leave the vehicle's fence as it is, whatever zones the scenario has");
 }

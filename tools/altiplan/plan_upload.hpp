@@ -13,5 +13,5 @@ host::Plan plan_to_upload(const host::Exported& written);
 /// it holds what was sent.
 bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence);
 /// Adds --no-fence.
-void add_no_fence(CLI::App& command, bool& no_fence);
+void add_no_fence(App& command, bool& no_fence);
 }  // namespace altiplan::cli

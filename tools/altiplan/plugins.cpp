@@ -59,9 +59,9 @@ int schema(const Arguments& arguments) {
   return kDone;
 }
 
-CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sentence,
-              const std::shared_ptr<Arguments>& arguments, int (*call)(const Arguments&)) {
-  CLI::App* command = app.add_subcommand(name, sentence);
+App* add(App& app, Action& action, const char* name, const char* sentence,
+         const std::shared_ptr<Arguments>& arguments, int (*call)(const Arguments&)) {
+  App* command = app.add_subcommand(name, sentence);
   add_plugin_path(*command, arguments->overrides);
   command->add_flag("--json", arguments->json, "print as JSON");
   command->callback(
@@ -70,9 +70,9 @@ CLI::App* add(CLI::App& app, Action& action, const char* name, const char* sente
 }
 }  // namespace
 
-void add_plugins(CLI::App& app, Action& action) {
+void add_plugins(App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
+  App* command =
       add(app, action, "plugins", "list the loaded plugins, and why other libraries are refused",
           arguments, &plugins);
   command->add_flag("--strict", arguments->strict, "exit with code 4 if a library is refused");

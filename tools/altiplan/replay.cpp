@@ -144,8 +144,8 @@ int replay(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_replay(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_replay(App& app, Action& action) {
+  App* command =
       app.add_subcommand("replay", "repeat a run of a study and compare the results bit for bit");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("store", arguments->store, "study database")->required()->type_name("DB");

@@ -82,8 +82,8 @@ int report(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_report(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_report(App& app, Action& action) {
+  App* command =
       app.add_subcommand("report", "write a study's results as a page with figures and tables");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("stores", arguments->stores, "study databases; all shards of one study")
@@ -105,7 +105,7 @@ void add_report(CLI::App& app, Action& action) {
   set_example(*command, "altiplan report study.db -o report");
   command->callback([&action, arguments] {
     if (arguments->folder.empty() && !arguments->arena) {
-      throw CLI::RequiredError("-o or --arena");
+      throw UsageError{"-o or --arena is required"};
     }
     action = [arguments] { return report(*arguments); };
   });

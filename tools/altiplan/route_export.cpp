@@ -46,19 +46,19 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 
 }  // namespace
 
-void add_route_export(CLI::App& command, RouteExport& route) {
+void add_route_export(App& command, RouteExport& route) {
   command.add_option("result", route.result, "result file of altiplan run (JSON)")->required();
   command
       .add_option("--altitude", route.altitude,
                   "altitude reference: sea, ground or home (default sea)")
       ->type_name("FROM")
-      ->check(CLI::IsMember({"sea", "ground", "home"}));
+      ->check(Check::one_of({"sea", "ground", "home"}));
   command
       .add_option("--arcs", route.arcs,
                   "turns as points within 0.5 m (points, the default), or as loiters that end on "
                   "a tangent where an autopilot flies the same turn (loiter)")
       ->type_name("FORM")
-      ->check(CLI::IsMember({"points", "loiter"}));
+      ->check(Check::one_of({"points", "loiter"}));
   command.add_flag("--takeoff", route.options.takeoff, "begin the mission with a take-off item");
   command.add_flag("--land", route.options.land,
                    "end the mission with a landing below the last waypoint");
@@ -72,7 +72,7 @@ void add_route_export(CLI::App& command, RouteExport& route) {
                   "maximum number of mission items; waypoints are dropped while the route stays "
                   "valid (default: no limit)")
       ->type_name("N")
-      ->check(CLI::Range(2, 1'000'000));
+      ->check(Check::between(2, 1'000'000));
   add_plugin_path(command, route.overrides);
 }
 
@@ -80,7 +80,7 @@ void finish_options(RouteExport& route) {
   route.options.loiters = route.arcs == "loiter";
   route.options.altitude = altitudes().at(route.altitude);
   if (const std::string problem = route.options.problem(); !problem.empty()) {
-    throw CLI::ValidationError(problem);
+    throw UsageError{problem};
   }
 }
 

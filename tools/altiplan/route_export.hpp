@@ -18,8 +18,8 @@ struct RouteExport {
 };
 
 /// Adds the result and the options of its items.
-void add_route_export(CLI::App& command, RouteExport& route);
-/// Ends the options; throws CLI::ValidationError where they cannot be combined.
+void add_route_export(App& command, RouteExport& route);
+/// Ends the options; throws UsageError where they cannot be combined.
 void finish_options(RouteExport& route);
 
 /// A result as read, and its world.

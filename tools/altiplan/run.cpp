@@ -193,16 +193,15 @@ int run(const RunArguments& arguments) {
 }
 }  // namespace
 
-void add_run(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("run", "run a pipeline: plan, smooth, judge and fly a route");
+void add_run(App& app, Action& action) {
+  App* command = app.add_subcommand("run", "run a pipeline: plan, smooth, judge and fly a route");
   auto arguments = std::make_shared<RunArguments>();
   command->add_option("pipeline", arguments->pipeline, "pipeline file (YAML)")->required();
   add_overrides(*command, arguments->overrides);
   command
       ->add_option("--threads", arguments->threads,
                    "maximum number of threads per plugin (default 1)")
-      ->check(CLI::Range(1, 1024));
+      ->check(Check::between(1, 1024));
   command->add_option("--trace", arguments->trace, "write a search trace to this file")
       ->type_name("FILE");
   command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")

@@ -221,14 +221,14 @@ int slurm(const Arguments& arguments) {
   return kDone;
 }
 
-void add_selection(CLI::App& command, Arguments& arguments) {
+void add_selection(App& command, Arguments& arguments) {
   command
       .add_option("--jobs", arguments.jobs, "parallel runs, and processors, per task (default 1)")
-      ->check(CLI::Range(1, 1024));
+      ->check(Check::between(1, 1024));
   command
       .add_option("--reuse", arguments.reuse,
                   "runs per worker process, as for altiplan study (default 1)")
-      ->check(CLI::Range(1, 1000000));
+      ->check(Check::between(1, 1000000));
   command.add_flag("--traces", arguments.traces, "store search traces");
   command
       .add_option("--sample", arguments.sample,
@@ -243,8 +243,8 @@ void add_selection(CLI::App& command, Arguments& arguments) {
 }
 }  // namespace
 
-void add_slurm(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("slurm", "run a study as a job array on a Slurm cluster");
+void add_slurm(App& app, Action& action) {
+  App* command = app.add_subcommand("slurm", "run a study as a job array on a Slurm cluster");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("study", arguments->study, "study file (YAML)")->required();
   command->add_option("-o,--out", arguments->out, "results database (SQLite)")
@@ -267,8 +267,8 @@ void add_slurm(CLI::App& app, Action& action) {
               "--account=uav");
   command->callback([&action, arguments] {
     if (!arguments->sbatch.empty() && !arguments->sbatch.front().starts_with("-")) {
-      throw CLI::ValidationError("sbatch", "expected options of sbatch after --, found '" +
-                                               arguments->sbatch.front() + "'");
+      throw UsageError{"sbatch: expected options of sbatch after --, found '" +
+                       arguments->sbatch.front() + "'"};
     }
     action = [arguments] { return slurm(*arguments); };
   });

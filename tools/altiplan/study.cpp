@@ -190,26 +190,19 @@ std::string read_shard(const std::string& text, study::StudySelection& selection
 }
 
 /// Options that select runs of the study.
-void add_selection(CLI::App& app, const std::shared_ptr<Arguments>& arguments) {
-  CLI::App* command = &app;
+void add_selection(App& app, const std::shared_ptr<Arguments>& arguments) {
+  App* command = &app;
   command
-      ->add_option_function<std::string>(
+      ->add_option_function(
           "--shard",
-          [arguments](const std::string& text) {
-            if (const std::string why = read_shard(text, arguments->selection); !why.empty()) {
-              throw CLI::ValidationError("--shard", why);
-            }
-          },
+          [arguments](const std::string& text) { return read_shard(text, arguments->selection); },
           "run only part I of N, to split a study across machines")
       ->type_name("I/N");
   command
-      ->add_option_function<std::string>(
+      ->add_option_function(
           "--sample",
           [arguments](const std::string& text) {
-            if (const std::string why = read_share(text, arguments->selection.sample);
-                !why.empty()) {
-              throw CLI::ValidationError("--sample", why);
-            }
+            return read_share(text, arguments->selection.sample);
           },
           "run only this fraction of the scenarios and repetitions, with every pipeline: 0.05 or "
           "5%")
@@ -222,8 +215,8 @@ void add_selection(CLI::App& app, const std::shared_ptr<Arguments>& arguments) {
 }
 }  // namespace
 
-void add_study(CLI::App& app, Action& action, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
+void add_study(App& app, Action& action, const std::string& command_line) {
+  App* command = app.add_subcommand(
       "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
   auto arguments = std::make_shared<Arguments>();
   arguments->options.command = command_line;
@@ -233,11 +226,11 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
                    "results database (SQLite); optional only with --dry-run")
       ->type_name("DB");
   command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
-      ->check(CLI::Range(1, 1024));
+      ->check(Check::between(1, 1024));
   command
       ->add_option("--reuse", arguments->options.reuse,
                    "runs per worker process, recorded in the results (default 1)")
-      ->check(CLI::Range(1, 1000000));
+      ->check(Check::between(1, 1000000));
   add_selection(*command, arguments);
   command->add_flag("--traces", arguments->options.traces, "store search traces");
   auto* fresh =
@@ -252,7 +245,7 @@ void add_study(CLI::App& app, Action& action, const std::string& command_line) {
   set_example(*command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");
   command->callback([&action, arguments] {
     if (arguments->store.empty() && !arguments->dry_run) {
-      throw CLI::RequiredError("--out");
+      throw UsageError{"--out is required"};
     }
     arguments->options.plugin_path = arguments->overrides.plugin_path;
     action = [arguments] { return study(*arguments); };

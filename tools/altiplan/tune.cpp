@@ -160,7 +160,7 @@ std::string metric_problem(const std::string& text) {
   });
 }
 
-void add_what(CLI::App& command, tune::TuneRequest& request) {
+void add_what(App& command, tune::TuneRequest& request) {
   command.add_option("pipeline", request.pipeline, "pipeline file to tune (YAML)")->required();
   command
       .add_option("--over", request.over,
@@ -169,7 +169,7 @@ void add_what(CLI::App& command, tune::TuneRequest& request) {
       ->required()
       ->expected(1)
       ->type_name("KEY=RANGE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   command
       .add_option("--metric", request.metric,
                   "metric to minimise: a value of a run, or an expression of values and numbers "
@@ -181,23 +181,23 @@ void add_what(CLI::App& command, tune::TuneRequest& request) {
       .add_option("--scenarios", request.scenarios,
                   "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' for each combination of "
                   "the values (default: the pipeline's scenario)")
-      ->expected(1, -1)
+      ->one_or_more()
       ->type_name("FILE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   command
       .add_option("--hold-out", request.hold_out,
                   "held-out scenarios, on which the tuned pipeline is compared with the original")
-      ->expected(1, -1)
+      ->one_or_more()
       ->type_name("FILE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
 }
 
-void add_how(CLI::App& command, tune::TuneRequest& request) {
+void add_how(App& command, tune::TuneRequest& request) {
   command.add_option("--tuner", request.tuner, "tuner plugin (default pso)")->type_name("NAME");
   command.add_option("--set-tuner", request.set_tuner, "parameter of the tuner; repeatable")
       ->expected(1)
       ->type_name("KEY=VALUE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->take_all()
       ->check(assignment_problem);
   command.add_option("--seed", request.seed, "random seed of the tuner (default 0)")
       ->type_name("N")
@@ -205,7 +205,7 @@ void add_how(CLI::App& command, tune::TuneRequest& request) {
   command
       .add_option("--evaluations", request.evaluations,
                   "maximum number of evaluations (default: the tuner's)")
-      ->check(CLI::Range(1, 100000000));
+      ->check(Check::between(1, 100000000));
   command
       .add_option("--penalty", request.penalty, "metric value of a failed run (default: infinity)")
       ->check(number_from(-1e300, 1e300));
@@ -218,8 +218,8 @@ void add_how(CLI::App& command, tune::TuneRequest& request) {
 }
 }  // namespace
 
-void add_tune(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+void add_tune(App& app, Action& action) {
+  App* command = app.add_subcommand(
       "tune", "optimise parameters of a pipeline with a tuner plugin; resumable");
   auto arguments = std::make_shared<Arguments>();
   add_what(*command, arguments->request);
@@ -228,7 +228,7 @@ void add_tune(CLI::App& app, Action& action) {
       ->required()
       ->type_name("DIR");
   command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
-      ->check(CLI::Range(1, 1024));
+      ->check(Check::between(1, 1024));
   auto* fresh = command->add_flag("--fresh", arguments->options.fresh,
                                   "delete earlier tuning results in the folder first");
   command->add_flag("--resume", arguments->resume, "continue an interrupted tuning run (default)")
@@ -240,7 +240,7 @@ void add_tune(CLI::App& app, Action& action) {
   command->callback([&action, arguments] {
     const std::string over = problem_of([&] { tune::read_over(arguments->request.over); });
     if (!over.empty()) {
-      throw CLI::ValidationError(over);
+      throw UsageError{over};
     }
     arguments->request.plugin_path = arguments->overrides.plugin_path;
     action = [arguments] { return tune(*arguments); };

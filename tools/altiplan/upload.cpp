@@ -23,8 +23,8 @@ int upload_result(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_upload(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+void add_upload(App& app, Action& action) {
+  App* command = app.add_subcommand(
       "upload", "judge a result's route, upload it to a vehicle and compare what that holds");
   auto arguments = std::make_shared<Arguments>();
   add_link_options(*command, "--to", arguments->link);

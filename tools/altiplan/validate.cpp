@@ -94,8 +94,8 @@ int explain(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_validate(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+void add_validate(App& app, Action& action) {
+  App* command = app.add_subcommand(
       "validate", "check pipeline, scenario and study files without running them");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("files", arguments->files, "pipeline, scenario and study files (YAML)")
@@ -106,8 +106,8 @@ void add_validate(CLI::App& app, Action& action) {
       [&action, arguments] { action = [arguments] { return validate(*arguments); }; });
 }
 
-void add_explain(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+void add_explain(App& app, Action& action) {
+  App* command = app.add_subcommand(
       "explain", "print a pipeline with all defaults and the source of each value");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("pipeline", arguments->files, "pipeline file (YAML)")

@@ -119,8 +119,8 @@ int view(const Arguments& arguments) {
 }
 }  // namespace
 
-void add_view(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("view", "show results in a 3-D page that works offline");
+void add_view(App& app, Action& action) {
+  App* command = app.add_subcommand("view", "show results in a 3-D page that works offline");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("results", arguments->results,
@@ -147,7 +147,7 @@ void add_view(CLI::App& app, Action& action) {
   set_example(*command, "altiplan view result.json -o page.html");
   command->callback([&action, arguments] {
     if (!arguments->page && !arguments->png && !arguments->svg) {
-      throw CLI::RequiredError("-o, --png or --svg");
+      throw UsageError{"-o, --png or --svg is required"};
     }
     action = [arguments] { return view(*arguments); };
   });

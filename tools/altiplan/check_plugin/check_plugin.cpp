@@ -216,8 +216,8 @@ std::string regex_problem(const std::string& text) {
 }
 }  // namespace
 
-void add_check_plugin(CLI::App& app, Action& action) {
-  CLI::App* command =
+void add_check_plugin(App& app, Action& action) {
+  App* command =
       app.add_subcommand("check-plugin",
                          "check a plugin library against the contract of its interface, each test "
                          "in its own process");
@@ -237,7 +237,7 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->add_option("--rounds", arguments->rounds,
                    "number of random worlds, routes or samples per test")
       ->type_name("N")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(Check::between(1, 1'000'000))
       ->capture_default_str();
   command
       ->add_option("--sets", arguments->sets,
@@ -249,7 +249,7 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->add_option("--jobs", arguments->jobs,
                    "number of parallel tests (default: number of processors)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(Check::between(1, 1024));
   command->add_option("--time-limit", arguments->time_limit_s, "time limit of a test (s)")
       ->type_name("S")
       ->check(number_from(0.01, 86400))
@@ -260,14 +260,14 @@ void add_check_plugin(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--untimed", arguments->untimed, "skip the tests that measure time");
   command->add_flag("--list", arguments->list, "print the test names without running any");
-  CLI::Option* here =
+  Option* here =
       command->add_flag("--here", arguments->here,
                         "run the single test selected by --only in this process, for a debugger");
   command->add_flag("--json", arguments->json, "print as JSON")->excludes(here);
   command->add_option("--junit", arguments->junit, "also write the verdicts as JUnit XML")
       ->type_name("FILE")
       ->excludes(here);
-  command->add_option("--answer", arguments->answer)->group("");  // internal, from the parent
+  command->add_option("--answer", arguments->answer)->hide();  // internal, from the parent
   set_example(*command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
   command->callback(
       [&action, arguments] { action = [arguments] { return check_plugin(*arguments); }; });

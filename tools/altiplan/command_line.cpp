@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include "guarded.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
+
+/// Prints the reason.
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  // CLI11 would only report a missing command.
+  const std::vector<std::string> rest = app.remaining();
+  if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
+    std::cerr << "altiplan: unknown command '" << rest.front()
+              << "' (altiplan --help lists the commands)\n";
+    return kUsage;
+  }
+  for (const std::string& argument : app.remaining(true)) {
+    const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
+    if (renamed != kRenamedOptions.end()) {
+      std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
+      return kUsage;
+    }
+  }
+  const int code = app.exit(error);
+  return guarded("altiplan", [&] { return code == 0 ? kDone : kUsage; });
+}
+}  // namespace
+
+Check::Check(CLI::Validator validator)
+    : validator_(std::make_shared<CLI::Validator>(std::move(validator))) {}
+
+Check::Check(const std::function<std::string(const std::string&)>& problem,
+             const std::string& range)
+    : Check(CLI::Validator([problem](std::string& text) { return problem(text); }, range)) {}
+
+Check Check::between(std::int64_t low, std::int64_t high) { return Check(CLI::Range(low, high)); }
+
+Check Check::one_of(const std::vector<std::string>& words) { return Check(CLI::IsMember(words)); }
+
+Option* Option::required() {
+  option_->required();
+  return this;
+}
+
+Option* Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return this;
+}
+
+Option* Option::check(const Check& check) {
+  option_->check(*check.validator_);
+  return this;
+}
+
+Option* Option::excludes(const Option* other) {
+  option_->excludes(other->option_);
+  return this;
+}
+
+Option* Option::needs(const Option* other) {
+  option_->needs(other->option_);
+  return this;
+}
+
+Option* Option::expected(int count) {
+  option_->expected(count);
+  return this;
+}
+
+Option* Option::one_or_more() {
+  option_->expected(1, -1);
+  return this;
+}
+
+Option* Option::take_all() {
+  option_->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return this;
+}
+
+Option* Option::one_at_a_time() {
+  option_->expected(1)->allow_extra_args(false);
+  return this;
+}
+
+Option* Option::capture_default_str() {
+  option_->capture_default_str();
+  return this;
+}
+
+Option* Option::hide() {
+  option_->group("");
+  return this;
+}
+
+std::size_t Option::count() const { return option_->count(); }
+
+std::string Option::name() const { return option_->get_name(); }
+
+App::App(const std::string& description, const std::string& name)
+    : own_(std::make_unique<CLI::App>(description, name)), app_(own_.get()) {
+  app_->set_version_flag("--version", ALTIPLAN_VERSION);
+  app_->require_subcommand(1);
+  app_->fallthrough();
+}
+
+App::App(CLI::App* subcommand) : app_(subcommand) {}
+
+App::~App() = default;
+
+Option* App::keep(CLI::Option* option) {
+  return options_.emplace_back(std::make_unique<Option>(option)).get();
+}
+
+App* App::add_subcommand(const std::string& name, const std::string& description) {
+  CLI::App* added = app_->add_subcommand(name, description);
+  return subcommands_.emplace_back(new App(added)).get();
+}
+
+template <class Value>
+Option* App::add_option(const std::string& names, Value& value, const std::string& description) {
+  return keep(app_->add_option(names, value, description));
+}
+
+#define ALTIPLAN_OPTION(...) \
+  template Option* App::add_option(const std::string&, __VA_ARGS__&, const std::string&)
+ALTIPLAN_OPTION(std::string);
+ALTIPLAN_OPTION(std::optional<std::string>);
+ALTIPLAN_OPTION(std::vector<std::string>);
+ALTIPLAN_OPTION(std::filesystem::path);
+ALTIPLAN_OPTION(std::optional<std::filesystem::path>);
+ALTIPLAN_OPTION(std::vector<std::filesystem::path>);
+ALTIPLAN_OPTION(double);
+ALTIPLAN_OPTION(std::optional<double>);
+ALTIPLAN_OPTION(int);
+ALTIPLAN_OPTION(std::optional<int>);
+ALTIPLAN_OPTION(std::int64_t);
+ALTIPLAN_OPTION(std::optional<std::int64_t>);
+ALTIPLAN_OPTION(std::size_t);
+ALTIPLAN_OPTION(std::optional<std::size_t>);
+#undef ALTIPLAN_OPTION
+
+Option* App::add_option_function(const std::string& name,
+                                 const std::function<std::string(const std::string&)>& take,
+                                 const std::string& description) {
+  const std::function<void(const std::string&)> call = [name, take](const std::string& text) {
+    if (const std::string problem = take(text); !problem.empty()) {
+      throw CLI::ValidationError(name, problem);
+    }
+  };
+  return keep(app_->add_option_function(name, call, description));
+}
+
+Option* App::add_flag(const std::string& names, bool& value, const std::string& description) {
+  return keep(app_->add_flag(names, value, description));
+}
+
+void App::footer(const std::string& text) { app_->footer(text); }
+
+void App::callback(const std::function<void()>& call) {
+  app_->callback([call] {
+    try {
+      call();
+    } catch (const UsageError& error) {
+      throw CLI::ValidationError(error.message);
+    }
+  });
+}
+
+std::optional<int> App::parse(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    return refuse(*app_, error);
+  }
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
+
+/// \file The command line. Behind it is CLI11, whose headers one file includes: each that does
+/// takes seconds to build.
+namespace altiplan::cli {
+
+/// Options that do not fit together; thrown by what `callback` is given.
+struct UsageError {
+  std::string message;
+};
+
+/// What an option's text must be.
+class Check {
+ public:
+  /// `problem` returns what is wrong with a text, "" if nothing; `range` is for --help.
+  explicit Check(const std::function<std::string(const std::string&)>& problem,
+                 const std::string& range = "");
+  static Check between(std::int64_t low, std::int64_t high);
+  static Check one_of(const std::vector<std::string>& words);
+
+ private:
+  friend class Option;
+  explicit Check(CLI::Validator validator);
+  std::shared_ptr<CLI::Validator> validator_;
+};
+
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option* required();
+  Option* type_name(const std::string& name);
+  Option* check(const Check& check);
+  Option* check(const std::function<std::string(const std::string&)>& problem) {
+    return check(Check(problem));
+  }
+  Option* excludes(const Option* other);
+  Option* needs(const Option* other);
+  /// As many values each time.
+  Option* expected(int count);
+  Option* one_or_more();
+  /// Of a repeated option all values count.
+  Option* take_all();
+  /// One value each time, so that a -- that follows is not taken for another.
+  Option* one_at_a_time();
+  Option* capture_default_str();
+  /// Not in --help.
+  Option* hide();
+  std::size_t count() const;
+  std::string name() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+class App {
+ public:
+  App(const std::string& description, const std::string& name);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  App* add_subcommand(const std::string& name, const std::string& description);
+  /// For the types that command_line.cpp lists.
+  template <class Value>
+  Option* add_option(const std::string& names, Value& value, const std::string& description = "");
+  /// `take` returns what is wrong with the text, "" if nothing.
+  Option* add_option_function(const std::string& name,
+                              const std::function<std::string(const std::string&)>& take,
+                              const std::string& description);
+  Option* add_flag(const std::string& names, bool& value, const std::string& description);
+  void footer(const std::string& text);
+  /// Called when the subcommand has been parsed.
+  void callback(const std::function<void()>& call);
+
+  /// Calls the subcommand's callback, or prints what is wrong, or what was asked for (--help), and
+  /// returns the exit code.
+  std::optional<int> parse(int argc, char** argv);
+
+ private:
+  explicit App(CLI::App* subcommand);
+  Option* keep(CLI::Option* option);
+
+  std::unique_ptr<CLI::App> own_;
+  CLI::App* app_;
+  std::vector<std::unique_ptr<App>> subcommands_;
+  std::vector<std::unique_ptr<Option>> options_;
+};
+}  // namespace altiplan::cli
