@@ -95,7 +95,7 @@ std::string of_constraint(const Factory<Constraint>& make, const Options& option
     for (Vec3& p : route) {
       p = random.in(scene.request.volume);
     }
-    all << constraint->admits({route[0], route[1], route[2]}) << '\n';
+    all << constraint->admits({route[0], route[1], route[2], scene.request.world.get()}) << '\n';
     for (const Violation& violation : constraint->violations(route, scene.request)) {
       all << violation.at << ' ' << text(violation.value) << ' ' << text(violation.limit) << ' '
           << violation.message << '\n';

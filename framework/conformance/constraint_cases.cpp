@@ -115,9 +115,10 @@ Vec3 direction(RandomStream& random) {
 }
 
 /// Begins in a volume that the user names, by default around the origin.
-Motion random_leg(RandomStream& random, const Options& options) {
+Motion random_leg(RandomStream& random, const Options& options, const Scene& scene) {
   static const Box kAround{{-3000, -3000, 0}, {3000, 3000, 3000}};
   Motion leg;
+  leg.world = scene.request.world.get();
   const double scale = std::pow(10, random.uniform(-1, 4));
   leg.from = random.in(options.volume.value_or(kAround));
   leg.to = leg.from + scale * direction(random);
@@ -170,7 +171,8 @@ Answers ask(const Constraint& constraint, const Bench& bench, bool backward = fa
     constraint.tighten(limits, scene.request);
     answers.limits.push_back(figures(limits));
     std::vector<Motion> legs(50);
-    std::generate(legs.begin(), legs.end(), [&] { return random_leg(random, bench.options); });
+    std::generate(legs.begin(), legs.end(),
+                  [&] { return random_leg(random, bench.options, scene); });
     std::vector<bool> admitted(legs.size());
     for (std::size_t i = 0; i < legs.size(); ++i) {
       const std::size_t at = backward ? legs.size() - 1 - i : i;
@@ -244,8 +246,9 @@ void legs_and_routes(const Bench& bench, Report& report) {
   bool says_anything = false;
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("legs", std::uint64_t(n));
+    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
     for (int k = 0; k < 20; ++k) {
-      const Motion leg = random_leg(random, bench.options);
+      const Motion leg = random_leg(random, bench.options, scene);
       const bool admitted = constraint->admits(leg);
       says_anything |= !admitted;
       if (stricter != nullptr) {
@@ -254,7 +257,6 @@ void legs_and_routes(const Bench& bench, Report& report) {
         });
       }
     }
-    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
     const Polyline route = random_route(random, scene);
     const auto found = constraint->violations(route, scene.request);
     says_anything |= !found.empty();
@@ -293,7 +295,7 @@ void legs_and_routes(const Bench& bench, Report& report) {
 bool depends_on_place(const Constraint& constraint, const Motion& leg, RandomStream& random) {
   for (int n = 0; n < 20; ++n) {
     const Vec3 by = 3000 * direction(random);
-    if (constraint.admits({std::nullopt, leg.from + by, leg.to + by})) {
+    if (constraint.admits({std::nullopt, leg.from + by, leg.to + by, leg.world})) {
       return true;
     }
   }
@@ -303,16 +305,17 @@ bool depends_on_place(const Constraint& constraint, const Motion& leg, RandomStr
 /// Legs through refused ones: a constraint that looks at a leg's ends alone admits them.
 void legs_through_refused_ones(const Bench& bench, Report& report) {
   const auto constraint = bench.make();
+  const Scene scene = scene_of(bench.options.seed * 100);
   for (int n = 0; n < 400 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("through", std::uint64_t(n));
-    Motion part = random_leg(random, bench.options);
+    Motion part = random_leg(random, bench.options, scene);
     part.before.reset();
     if (constraint->admits(part) || part.from == part.to) {
       continue;
     }
     for (const double longer : {1.0, 10.0, 100.0}) {
       const Vec3 by = longer * (part.to - part.from);
-      const Motion whole{std::nullopt, part.from - by, part.to + by};
+      const Motion whole{std::nullopt, part.from - by, part.to + by, part.world};
       report.expect(
           !constraint->admits(whole) || !depends_on_place(*constraint, part, random), kThrough,
           [&] { return text(whole) + " is admitted, and its part, " + text(part) + ", refused"; });
@@ -341,7 +344,8 @@ void agrees_with_the_judge(const Bench& bench, Report& report) {
     bool admitted = true;
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
       const auto before = i > 0 ? std::optional(route[i - 1]) : std::nullopt;
-      admitted = admitted && constraint->admits({before, route[i], route[i + 1]});
+      admitted =
+          admitted && constraint->admits({before, route[i], route[i + 1], request.world.get()});
     }
     Request limits_alone = request;
     limits_alone.constraints.clear();
@@ -361,8 +365,10 @@ void odd_questions(const Bench& bench, Report&) {
         Polyline{p, p + Vec3(0, 0, 1e6)}, Polyline{p, p + Vec3(1e-9, 0, 0)}}) {
     (void)constraint->violations(route, scene.request);
     for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-      (void)constraint->admits({std::nullopt, route[i], route[i + 1]});
-      (void)constraint->admits({route[i], route[i], route[i + 1]});
+      for (const World* world : {scene.request.world.get(), static_cast<const World*>(nullptr)}) {
+        (void)constraint->admits({std::nullopt, route[i], route[i + 1], world});
+        (void)constraint->admits({route[i], route[i], route[i + 1], world});
+      }
     }
   }
   Request bare;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "altiplan/kit/layers/field_within.hpp"
 #include "altiplan/random.hpp"
 
 namespace altiplan {
@@ -73,6 +74,29 @@ TEST(GroundWithin, IsRightByATenthOfAMillimetre) {
     EXPECT_NEAR(found, distance, 1e-4) << n;
     EXPECT_TRUE(is_within(a, b, found + 1e-6, top)) << n;
     EXPECT_FALSE(is_within(a, b, found - 1e-6, top)) << n;
+  }
+}
+
+TEST(GroundWithin, TheNearestPointOfAnElevationModel) {
+  RandomStream random(6);
+  std::vector<float> heights(8 * 8);
+  for (float& height : heights) {
+    height = float(random.uniform(0, 60));
+  }
+  const HeightField field({0, 0}, {20, 30}, 8, 8, heights);
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 p(random.uniform(0, 140), random.uniform(0, 210), random.uniform(61, 120));
+    kit::GroundWithin search(p, p, 200, kit::GroundWithin::Until::nearest);
+    kit::search_field(search, field);
+    ASSERT_TRUE(search.nearest()) << n;
+    const Vec3& q = *search.nearest();
+    EXPECT_NEAR((p - q).norm(), search.distance(), 1e-9) << n;
+    EXPECT_NEAR(*field.at(q.x(), q.y()), q.z(), 1e-9) << n;
+    for (int k = 0; k < 1000; ++k) {
+      const double x = random.uniform(0, 140);
+      const double y = random.uniform(0, 210);
+      EXPECT_GE((p - Vec3(x, y, *field.at(x, y))).norm(), search.distance() - 1e-8) << n;
+    }
   }
 }
 

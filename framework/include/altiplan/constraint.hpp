@@ -11,6 +11,7 @@
 
 namespace altiplan {
 
+class World;
 struct Request;
 
 /// A straight motion, with the preceding point where there is one.
@@ -18,6 +19,7 @@ struct Motion {
   std::optional<Vec3> before;
   Vec3 from{0, 0, 0};
   Vec3 to{0, 0, 0};
+  const World* world = nullptr;  ///< of the request; null: nothing is known of it
 };
 
 /// Maximum distance, metres, between a turn and the chords that constraints see of it.
@@ -40,8 +42,8 @@ enum class AppliesTo { route, track, both };
 /// Contract:
 ///  1. Pure and const: callable from any number of threads.
 ///  2. tighten only ever makes a limit stricter.
-///  3. admits depends on the leg, and the point before it, alone. A stricter parameter admits less.
-///     A leg through a part that is refused for its place is refused.
+///  3. admits depends on the leg, the point before it and the world alone. A stricter parameter
+///     admits less. A leg through a part that is refused for its place is refused.
 ///  4. Legs are straight: a turn is given as chords at most kChordTolerance from it.
 ///  5. violations is empty if and only if the route satisfies the constraint; it covers what
 ///     tighten and admits cannot express (path-dependent constraints).

@@ -319,11 +319,11 @@ class LegJudge {
     }
     std::optional<Vec3> before = before_ ? std::optional(before_->from) : std::nullopt;
     if (turn_ == nullptr) {
-      return admitted({before, a_, b_});
+      return admitted({before, a_, b_, request_.world.get()});
     }
     const Polyline points = turn_->chords(kChordTolerance);
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-      if (!admitted({before, points[i], points[i + 1]})) {
+      if (!admitted({before, points[i], points[i + 1], request_.world.get()})) {
         return false;
       }
       before = points[i];

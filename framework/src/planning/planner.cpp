@@ -249,7 +249,7 @@ std::string refusing_ends(const Request& request) {
   for (const auto& [end, p] :
        {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
     for (const NamedConstraint& named : request.constraints) {
-      if (!named.admits_all && !named.admits({std::nullopt, p, p})) {
+      if (!named.admits_all && !named.admits({std::nullopt, p, p, request.world.get()})) {
         text += "; the constraint '" + named.name + "' refuses the " + end + " itself";
       }
     }

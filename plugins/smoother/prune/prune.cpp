@@ -174,10 +174,11 @@ class Pruning {
       return true;
     }
     return turn_ok(*before, route_[j], route_[k], request_) &&
-           std::all_of(request_.constraints.begin(), request_.constraints.end(),
-                       [&](const NamedConstraint& named) {
-                         return named.admits({before->from, route_[j], route_[k]});
-                       }) &&
+           std::all_of(
+               request_.constraints.begin(), request_.constraints.end(),
+               [&](const NamedConstraint& named) {
+                 return named.admits({before->from, route_[j], route_[k], request_.world.get()});
+               }) &&
            body_ok(before, Leg::straight(route_[j], route_[k]), request_);
   }
 

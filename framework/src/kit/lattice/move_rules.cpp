@@ -232,13 +232,14 @@ bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
 
 bool MoveRules::constraints_admit(const std::optional<Approach>& before, const Vec3& a,
                                   const Vec3& b) {
+  const World* world = request_.world.get();
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     const auto from = before ? std::optional(before->from) : std::nullopt;
-    if (!constraints_[i].admits({from, a, b})) {
+    if (!constraints_[i].admits({from, a, b, world})) {
       ++refused_[by_constraint];
       refused_constraint_ = request_.constraints[i].name;
       admit_needed_parent_ =
-          admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b}));
+          admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b, world}));
       return false;
     }
   }

@@ -100,7 +100,7 @@ bool LegRules::follows(const Approach& before, const Vec3& a, const Vec3& b) {
   if (turn_ok(before, a, b, request_) &&
       std::all_of(request_.constraints.begin(), request_.constraints.end(),
                   [&](const NamedConstraint& named) {
-                    return named.admits({before.from, a, b});
+                    return named.admits({before.from, a, b, request_.world.get()});
                   }) &&
       body_ok(before, Leg::straight(a, b), request_)) {
     return true;

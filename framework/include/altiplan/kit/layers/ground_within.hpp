@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "altiplan/geometry.hpp"
 
@@ -42,6 +43,10 @@ class GroundWithin {
   bool found() const { return found_; }
   /// Distance of the nearest ground found, else the distance asked for.
   double distance() const { return distance_; }
+  /// That ground's position, with Until::nearest; none if there is none so near.
+  const std::optional<Vec3>& nearest() const { return nearest_; }
+  /// Contains all ground near enough, horizontally.
+  Box reach() const { return box_.grown(distance_); }
 
   /// True if the search continues, and ground no higher than `top` over the rectangle may be near
   /// enough.
@@ -96,7 +101,10 @@ class GroundWithin {
     const double here = way.norm();
     const bool is_smallest = std::max(half_x, half_y) < kSmallest;
     if (until_ == Until::nearest) {
-      distance_ = std::min(distance_, here);
+      if (here < distance_) {
+        distance_ = here;
+        nearest_ = a_ + found.share * (b_ - a_) - way;
+      }
     } else {
       found_ = here < distance_ + kFine || is_smallest;
     }
@@ -173,6 +181,7 @@ class GroundWithin {
   Box box_;
   double distance_;
   Until until_;
+  std::optional<Vec3> nearest_;
   bool found_ = false;
 };
 }  // namespace altiplan::kit
