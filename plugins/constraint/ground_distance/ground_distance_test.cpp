@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
-#include <optional>
 
-#include "altiplan/ground.hpp"
-#include "altiplan/height_field.hpp"
 #include "altiplan/random.hpp"
 #include "distance_oracle.hpp"
+#include "support/posts.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::testing {
@@ -16,32 +15,6 @@ namespace {
 constexpr double kEast = 20;
 constexpr double kNorth = 30;
 constexpr int kPosts = 9;
-
-/// An elevation model, from the origin.
-class Posts final : public Environment, public Ground {
- public:
-  explicit Posts(std::vector<float> heights)
-      : field_({0, 0}, {kEast, kNorth}, kPosts, kPosts, std::move(heights)) {}
-
- private:
-  Box do_bounds() const override {
-    return {{0, 0, -kInfinity}, {(kPosts - 1) * kEast, (kPosts - 1) * kNorth, field_.max_height()}};
-  }
-  double do_clearance(const Vec3& p) const override { return p.z() - field_.max_height(); }
-  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
-    return field_.gap(a, b) < r - kLengthTolerance;
-  }
-  const Ground* do_ground() const override { return this; }
-  bool do_is_all() const override { return true; }
-  std::optional<double> do_height(double x, double y) const override { return field_.at(x, y); }
-  double do_gap(const Vec3& a, const Vec3& b, double enough) const override {
-    return field_.gap(a, b, enough);
-  }
-  double do_gap_max(const Vec3& a, const Vec3& b) const override { return field_.gap_max(a, b); }
-  const HeightField* do_height_field() const override { return &field_; }
-
-  HeightField field_;
-};
 
 std::vector<float> heights_of(const std::function<double(double x, double y)>& height) {
   std::vector<float> all;
@@ -53,9 +26,12 @@ std::vector<float> heights_of(const std::function<double(double x, double y)>& h
   return all;
 }
 
-World world_with(std::vector<float> heights) {
-  return world_of(std::make_shared<Posts>(std::move(heights)));
+std::shared_ptr<const Posts> posts_with(std::vector<float> heights) {
+  return std::make_shared<Posts>(
+      HeightField({0, 0}, {kEast, kNorth}, kPosts, kPosts, std::move(heights)));
 }
+
+World world_with(std::vector<float> heights) { return world_of(posts_with(std::move(heights))); }
 
 std::string at_most(double metres) {
   char text[80];
@@ -112,7 +88,7 @@ TEST(GroundDistance, TheNearestGroundOfAnyLayerCounts) {
   const Vec3 a(60, 10, 140);
   const Vec3 b(60, 200, 140);
   EXPECT_FALSE(admits(low, a, b, 50));
-  const World both = low.with({"high", "posts", std::make_shared<Posts>(heights_of(cliff)), true});
+  const World both = low.with({"high", "posts", posts_with(heights_of(cliff)), true});
   EXPECT_TRUE(admits(both, a, b, 50));
 }
 
