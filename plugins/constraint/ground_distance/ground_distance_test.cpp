@@ -203,6 +203,42 @@ TEST(GroundDistance, AgreesWithAnIndependentReference) {
   EXPECT_GT(tally.beside, tally.legs / 3);
 }
 
+TEST(GroundDistance, OverHillsItAgreesWithTheirDistances) {
+  Site site;
+  const World before;
+  site.before = &before;
+  const World world = world_of(make_environment("hills",
+                                                "{base_m: 100, peaks: [{at_m: [0, 0], height_m: "
+                                                "400, sigma_m: [150, 250]}, {at_m: [500, 100], "
+                                                "height_m: 300, sigma_m: [80, 200]}]}",
+                                                site));
+  const Ground& hills = *world.layers().front().environment->ground();
+  RandomStream random(30);
+  int beside = 0;
+  for (int n = 0; n < 40; ++n) {
+    const auto place = [&] {
+      const double x = random.uniform(-300, 700);
+      const double y = random.uniform(-300, 300);
+      return Vec3(x, y, *world.ground(x, y) + random.uniform(60, 160));
+    };
+    const Vec3 a = place();
+    const Vec3 b = a + 0.3 * (place() - a);
+    if (world.ground_gap(a, b) < 1) {
+      continue;
+    }
+    double farthest = 0;
+    constexpr int kSamples = 1000;
+    for (int k = 0; k <= kSamples; ++k) {
+      const Vec3 p = a + double(k) / kSamples * (b - a);
+      farthest = std::max(farthest, *hills.distance(p, p));
+    }
+    beside += world.ground_gap_max(a, b) > farthest + 1;
+    EXPECT_FALSE(admits(world, a, b, farthest - 1e-5)) << n;
+    EXPECT_TRUE(admits(world, a, b, farthest + (b - a).norm() / kSamples)) << n;
+  }
+  EXPECT_GT(beside, 20);
+}
+
 TEST(NightlyGroundDistance, AgreesWithAnIndependentReference) {
   const Tally tally = compare(4000, 29);
   RecordProperty("legs", tally.legs);
