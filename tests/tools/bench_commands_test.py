@@ -11,6 +11,8 @@ PROGRAM, SOURCES = sys.argv[1:3]
 ANTS = f"{SOURCES}/configs/scenarios/ant_colony.yaml"
 # What is measured, and the columns of a table or the names of Google Benchmark's rows.
 CALLS = {
+    "airspace": ([f"{SOURCES}/plugins/environment/zones/conformance.openair", "--questions", "1000"],
+                 {"files": "questions_per_s"}),
     "ants": ([ANTS, "--iterations", "2", "--cells", "20", "--passes", "1"],
              {"steps": "ns_per_step", "threads": "efficiency", "by_cells": "ns_per_cell"}),
     "any-angle": (["city", "--seeds", "1", "--passes", "1"], {"planners": "median_ms"}),

@@ -47,6 +47,7 @@ class Subcommands {
 };
 
 // Each adds its subcommand.
+void add_airspace(Subcommands& all);
 void add_ants(Subcommands& all);
 void add_any_angle(Subcommands& all);
 void add_bodies(Subcommands& all);
