@@ -58,11 +58,11 @@ class CheckPlan(unittest.TestCase):
             points = [list(point) for point in low]
             out, _ = self.check(points, *bounds, code=1)
             self.assertIn("fail: mission.plan", out)
-            self.assertIn("mission.items.2", out)
-            cures = re.findall(r"cure: (raise|lower) mission\.items\.(\d) by ([0-9.]+) m", out)
+            self.assertIn("item 3 (waypoint)", out)
+            cures = re.findall(r"cure: (raise|lower) item (\d) \(waypoint\) by ([0-9.]+) m", out)
             self.assertTrue(cures, out)
             word, number, by = cures[0]
-            self.assertEqual((word, number), ("raise", "2"))
+            self.assertEqual((word, number), ("raise", "3"))
             points[2][2] += float(by) - 0.2
             self.check(points, *bounds, code=1)  # it is the least
             points[2][2] += 0.2
@@ -124,8 +124,8 @@ class CheckPlan(unittest.TestCase):
             self.write(extra)
             self.call(*options, code=0)
             out, _ = self.call(*options, "--airspace", "z.json", code=1)
-            self.assertIn(f"{word}: the {word}", out)
-            self.assertIn("'z.json'", out)
+            self.assertIn(f": the {word} ", out)
+            self.assertIn("'Z' of 'z.json'", out)
 
     def test_a_landing_elsewhere_is_flown_to_first(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
@@ -138,8 +138,82 @@ class CheckPlan(unittest.TestCase):
         # An aeroplane goes down along it.
         self.write([*(item(point, n + 1) for n, point in enumerate(high)), landing], vehicleType=1)
         out, _ = self.call(*options, code=1)
-        self.assertIn("mission.items.4", out)
-        self.assertIn("descent", out)
+        self.assertIn("item 9 (landing): the descent", out)
+
+    def test_a_return_is_flown_home(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        points = [item(point, n + 1) for n, point in enumerate(high)]
+        back = dict(item([0, 0, 0], 9), command=20, frame=2)
+        self.write([*points, back])
+        options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json")
+        self.zones("z.json", self.around(-84.29, 36.57), 3000)  # on the straight way
+        self.write(points)
+        self.call(*options, code=0)
+        self.write([*points, back])
+        out, _ = self.call(*options, code=1)
+        self.assertIn("item 4 (waypoint) to item 9 (landing)", out)
+
+    def test_what_is_not_judged_does_not_pass(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        points = [item(point, n + 1) for n, point in enumerate(high)]
+        jump = dict(item([0, 0, 0], 5), command=177, frame=2, params=[1, 2, 0, 0, 0, 0, 0])
+        scan = {"type": "ComplexItem", "complexItemType": "StructureScan"}
+        for extra, words in ((jump, "item 5 (jump)"), (scan, "mission.items.4 (complex item)")):
+            self.write([*points, extra])
+            out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
+            self.assertIn(words + ": where this flies is not judged", out)
+        camera = dict(item([0, 0, 0], 5), command=203, frame=2)
+        self.write([*points, camera])
+        self.call("mission.plan", "--terrain", TERRAIN, code=0)
+
+    def test_home_is_where_the_ground_is(self):
+        relative = [dict(item([lon, lat, 900], n + 1), frame=3)
+                    for n, (lon, lat, _) in enumerate(POINTS)]
+        for height, code in ((636, 0), (400, 1), (660, 1)):
+            self.write(relative, plannedHomePosition=[36.48, -84.38, height])
+            out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=code)
+            self.assertEqual(code == 1, "home: home is at" in out, out)
+
+    def test_a_fence_in_the_plan_is_kept(self):
+        self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
+        plan = json.loads((self.folder / "mission.plan").read_text())
+        circle = {"center": [36.54, -84.30], "radius": 500}
+        plan["geoFence"]["circles"] = [{"version": 1, "inclusion": False, "circle": circle}]
+        (self.folder / "mission.plan").write_text(json.dumps(plan))
+        out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
+        self.assertIn("'fence of the mission'", out)
+
+    def test_voids_are_closed(self):
+        """A grid in degrees whose middle is unknown, as GIS programs write it."""
+        rows = [["100"] * 40 for _ in range(40)]
+        for j in range(18, 23):
+            rows[j][18:23] = ["-9999"] * 5
+        (self.folder / "dem.asc").write_text(
+            "ncols 40\nnrows 40\nxllcorner 8\nyllcorner 47\ncellsize 0.001\n"
+            "NODATA_value -9999\n" + "\n".join(" ".join(row) for row in rows) + "\n")
+        (self.folder / "dem.prj").write_text(
+            'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+            'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+        options = ("mission.plan", "--terrain", "dem.asc")
+        self.write([item([8.002, 47.005, 300], 1), item([8.037, 47.005, 300], 2)])
+        self.call(*options, code=0)
+        self.write([item([8.002, 47.02, 300], 1), item([8.037, 47.02, 300], 2)])
+        self.call(*options, code=1)
+        self.call(*options, "--fill-voids", code=0)
+
+    def test_zones_of_permission(self):
+        self.zones("z.json", self.around(*POINTS[2][:2]), 3000)
+        text = (self.folder / "z.json").read_text().replace("PROHIBITED", "REQ_AUTHORISATION")
+        (self.folder / "z.json").write_text(text)
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        self.check(high, "--airspace", "z.json", code=1)
+        self.check(high, "--airspace", "z.json", "--permission", code=0)
+
+    def test_airspace_of_elsewhere_is_said(self):
+        self.zones("z.json", self.around(8, 47), 3000)
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        out, _ = self.check(high, "--airspace", "z.json", code=0)
+        self.assertIn("z.json: no zone within 50 km of the route", out)
 
     def test_hours_are_those_of_the_flight(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
@@ -179,7 +253,7 @@ class CheckPlan(unittest.TestCase):
         self.zones("z.json", self.around(*POINTS[2][:2]), 100000)
         options = ("--terrain", TERRAIN, "--airspace", "z.json")
         out, _ = self.call("m.waypoints", *options, "--fix", "f.waypoints", code=1)
-        self.assertRegex(out, r"cure: move line 5 by [0-9.]+ m (to the|toward) ")
+        self.assertRegex(out, r"cure: move item 3 \(waypoint\) by [0-9.]+ m (to the|toward) ")
         self.call("f.waypoints", *options, code=0)
         fixed = (self.folder / "f.waypoints").read_text().splitlines()
         changed = [n for n, line in enumerate(fixed) if line != lines[n]]
@@ -197,20 +271,20 @@ class CheckPlan(unittest.TestCase):
         low[2][2] = 500
         self.check(low, "--min-agl", "150", "--certificate", "c.html", "--junit", "j.xml", code=1)
         page = (self.folder / "c.html").read_text()
-        for words in ("fail</span>: mission.plan", "SHA-256", "raise mission.items.2", "<svg",
-                      "mission.items.2", "lowest above ground"):
+        for words in ("fail</span>: mission.plan", "SHA-256", "raise item 3 (waypoint)", "<svg",
+                      "none given: not judged", "lowest above ground", "36.600000 N, 84.220000 W"):
             self.assertIn(words, page)
         suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
-        self.assertEqual(suite.get("tests"), "3")
+        self.assertEqual(suite.get("tests"), "5")  # three legs, moves, home
         failed = [case.get("name") for case in suite.iter("testcase") if len(case)]
         self.assertEqual(len(failed), int(suite.get("failures")))
-        self.assertIn("mission.items.1 to mission.items.2", failed)
+        self.assertIn("item 2 (waypoint) to item 3 (waypoint)", failed)
 
     def test_a_plan_in_a_scenario(self):
         scenario = str(pathlib.Path(SOURCES) / "configs/scenarios/jacksboro_ridge.yaml")
         self.write([item(point, n + 1) for n, point in enumerate(POINTS)])
         out, _ = self.call("mission.plan", "--scenario", scenario, code=1)
-        self.assertRegex(out, r"mission\.items\.0 to .*: start: the route begins [0-9.]+ m from the")
+        self.assertRegex(out, r"item 1 \(waypoint\) to .*: the route begins [0-9.]+ m from the")
 
     def test_json(self):
         low = [[lon, lat, 300] for lon, lat, _ in POINTS]
@@ -219,8 +293,8 @@ class CheckPlan(unittest.TestCase):
         self.assertFalse(found["passed"])
         self.assertEqual(found["plan"], "mission.plan")
         for violation in found["violations"]:
-            self.assertTrue(violation["items"][0].startswith("mission.items."), violation)
-            self.assertEqual(len(violation["items"]), len(violation["lonlat"]))
+            self.assertTrue(violation["items"][0].startswith("item "), violation)
+            self.assertEqual(len(violation["lonlat"]), 2)
 
     def test_bad_input(self):
         _, err = self.call("missing.plan", "--terrain", TERRAIN, code=3)
@@ -232,8 +306,15 @@ class CheckPlan(unittest.TestCase):
         self.assertIn("--terrain", err)
         self.call("--terrain", TERRAIN, code=2)
         outside = [[lon + 40, lat, 1500] for lon, lat, _ in POINTS]
-        out, _ = self.check(outside, code=1)
-        self.assertIn("no ground", out)
+        _, err = self.check(outside, code=3)
+        self.assertIn("no position of the mission is within the elevation model: item 1", err)
+        swapped = [[lat, lon, 1500] for lon, lat, _ in POINTS]
+        _, err = self.check(swapped, code=3)
+        self.assertIn("are swapped", err)
+        _, err = self.check(POINTS, "--start-time", "2026-05-02", code=2)
+        self.assertIn("--start-time: expected a time such as", err)
+        _, err = self.call("mission.plan", code=2)
+        self.assertIn("is a mission: add --terrain DEM", err)
         (self.folder / "mission.plan").write_text("{}")
         self.call("mission.plan", "--terrain", TERRAIN, code=3)
 

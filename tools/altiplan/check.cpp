@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
 #include "check_plan.hpp"
 #include "commands.hpp"
 #include "host/flight/events.hpp"
@@ -123,6 +125,16 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
   command.add_option("--airspace", plan.airspace, "zones over it; repeatable")
       ->type_name("FILE")
       ->needs(terrain);
+  command
+      .add_flag("--permission", plan.has_permission,
+                "zones that take a permission are open, because you have it")
+      ->needs(terrain);
+  command
+      .add_flag(
+          "--fill-voids", plan.fills_voids,
+          "fill voids of the elevation model from their neighbours; else nothing may fly over "
+          "them")
+      ->needs(terrain);
   metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
   metres("--min-agl", plan.min_above_ground_m, "least height above ground (m)");
   metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
@@ -161,7 +173,8 @@ bool is_plan(const Arguments& arguments) {
 }  // namespace
 
 void add_check(App& app, Action& action) {
-  App* command = app.add_subcommand("check", "judge the route of a result or an imported route");
+  App* command =
+      app.add_subcommand("check", "judge a mission (.plan, .waypoints, …), a result or a route");
   auto arguments = std::make_shared<Arguments>();
   auto* result =
       command->add_option("file", arguments->result,
@@ -194,6 +207,14 @@ void add_check(App& app, Action& action) {
     if (!arguments->result && !arguments->route) {
       throw UsageError{
           "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
+    }
+    if (arguments->result && !is_plan(*arguments) && kit::is_mission_file(*arguments->result)) {
+      throw UsageError{*arguments->result + " is a mission: add --terrain DEM or --scenario FILE"};
+    }
+    if (arguments->plan.start_time && (arguments->plan.start_time->find('T') == std::string::npos ||
+                                       !kit::parse_iso_time(*arguments->plan.start_time))) {
+      throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
+                       *arguments->plan.start_time + "'"};
     }
     for (const Option* output : outputs) {
       if (output->count() > 0 && !is_plan(*arguments)) {

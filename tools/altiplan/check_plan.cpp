@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 
@@ -12,6 +13,7 @@
 #include "host/base/sha256.hpp"
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
+#include "host/gate/flight_time.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
@@ -25,6 +27,8 @@ using host::PlanReport;
 
 /// Where neither the file nor an option gives one: slow, so that more zones' hours count.
 constexpr double kSpeed = 5;
+/// Height of the ground where it is unknown, metres.
+constexpr double kClosed = 10'000;
 /// Of a mission that ends in a loiter without end.
 constexpr double kLongest = 86400;
 
@@ -38,20 +42,47 @@ double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
   return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
 }
 
+std::string name_of(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
+/// True if the mission has a fence for the autopilot; of other formats polygons are areas of work.
+bool has_fence(const kit::MissionFile& mission) {
+  using Format = kit::MissionFile::Format;
+  return !mission.zones.empty() &&
+         (mission.format == Format::qgc_plan || mission.format == Format::waypoints);
+}
+
+std::string point_text(const char* key, const kit::MissionItem& item) {
+  return std::string(key) + ": {at_lonlat: [" + Json(item.at.lon).dump() + ", " +
+         Json(item.at.lat).dump() + ", 0]}\n";
+}
+
 /// The scenario that the options describe.
 std::string scenario_text(const PlanCheck& plan, const kit::MissionFile& mission) {
-  std::string text =
-      "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) + "}\n";
+  // A void is closed: whatever flies over it flies into the ground.
+  const std::string voids =
+      plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
+  std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
+                     ", " + voids + "}\n";
+  const auto add_zones = [&](const std::string& file, const std::string& name,
+                             const std::string& more) {
+    text +=
+        "  - zones: {file: " + path_text(file) + more + "}\n    id: " + Json(name).dump() + "\n";
+  };
   for (const std::string& file : plan.airspace) {
-    const std::string name = std::filesystem::path(file).filename().string();
-    text += "  - zones: {file: " + path_text(file) +
-            ", horizon_s: " + Json(flown_s(plan, mission)).dump() +
-            "}\n    id: " + Json(name).dump() + "\n";
+    add_zones(file, name_of(file),
+              ", horizon_s: " + Json(flown_s(plan, mission)).dump() +
+                  (plan.has_permission ? ", ask: skip" : ""));
+  }
+  if (has_fence(mission)) {
+    add_zones(plan.plan, "fence of the mission", "");
   }
   // The ground and the zones alone bound a mission.
   text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";
   text += "vehicle: {radius_m: " + Json(plan.radius_m).dump() + "}\n";
-  text += "mission: " + path_text(plan.plan) + "\n";
+  // Heights are the mission's own; the judge is told.
+  text += point_text("start", mission.items.front()) + point_text("goal", mission.items.back());
   if (plan.start_time) {
     text += "start_time: " + Json(*plan.start_time).dump() + "\n";
   }
@@ -67,15 +98,12 @@ std::string scenario_text(const PlanCheck& plan, const kit::MissionFile& mission
   return text + "constraints:\n" + (constraints.empty() ? "  []\n" : constraints);
 }
 
-std::string where(const Finding& finding, const host::Mission& world) {
+std::string items_of(const Finding& finding) {
   std::string text;
   for (const std::string& item : finding.items) {
     text += (text.empty() ? "" : " to ") + item;
   }
-  const Frame& frame = world.truth.frame();
-  const auto [lon, lat] = frame.to_lonlat(finding.at.x(), finding.at.y());
-  return text + " near " + fixed(lon, 6) + ", " + fixed(lat, 6) + " at " +
-         fixed(finding.at.z(), 1) + " m";
+  return text;
 }
 
 std::string cure_of(const Finding& finding, const PlanReport& report) {
@@ -88,8 +116,10 @@ void print(const PlanReport& report, const host::Mission& world) {
               fixed(report.measures.length_m / 1000, 3).c_str(),
               fixed(report.measures.min_ground_clearance_m, 1).c_str());
   for (const Finding& finding : report.findings) {
-    std::printf("  %s: %s: %s\n", where(finding, world).c_str(),
-                finding.violation.constraint.c_str(), finding.violation.message.c_str());
+    std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
+    if (finding.at) {
+      std::printf("    worst at %s\n", host::place_in_words(*finding.at, world.request).c_str());
+    }
     if (finding.cure) {
       std::printf("    cure: %s\n", cure_of(finding, report).c_str());
     }
@@ -103,15 +133,18 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
   Json all = Json::array();
   for (const Finding& finding : report.findings) {
     const Violation& violation = finding.violation;
-    const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at.x(), finding.at.y());
     Json one{{"constraint", violation.constraint},
              {"items", finding.items},
-             {"lonlat", {lon, lat}},
-             {"altitude_m", finding.at.z()},
+             {"leg", violation.at},
              {"value", violation.value},
              {"limit", violation.limit},
              {"margin", violation.value - violation.limit},
              {"message", violation.message}};
+    if (finding.at) {
+      const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at->x(), finding.at->y());
+      one["lonlat"] = {lon, lat};
+      one["altitude_m"] = finding.at->z();
+    }
     if (finding.cure) {
       one["cure"] = cure_of(finding, report);
     }
@@ -138,11 +171,17 @@ host::Basis basis_of(const PlanCheck& plan, const kit::MissionFile& mission) {
   for (const std::string& file : plan.airspace) {
     add_file("airspace", file);
   }
+  if (plan.airspace.empty()) {
+    basis.emplace_back("airspace", "none given: not judged");
+  }
   const auto add_metres = [&](const char* what, const std::optional<double>& metres) {
-    if (metres) {
-      basis.emplace_back(what, fixed(metres, 1) + " m");
-    }
+    basis.emplace_back(what, metres ? fixed(metres, 1) + " m" : "not judged");
   };
+  if (mission.home) {
+    basis.emplace_back("home", fixed(mission.home->lat, 6) + ", " + fixed(mission.home->lon, 6) +
+                                   " (latitude, longitude), " + fixed(mission.home->altitude_m, 1) +
+                                   " m above sea level");
+  }
   add_metres("vehicle's radius", plan.radius_m);
   add_metres("least height above ground", plan.min_above_ground_m);
   add_metres("greatest height above ground", plan.max_above_ground_m);
@@ -150,31 +189,102 @@ host::Basis basis_of(const PlanCheck& plan, const kit::MissionFile& mission) {
   basis.emplace_back("hours", plan.start_time ? *plan.start_time + " and " +
                                                     duration(flown_s(plan, mission)) + " on"
                                               : "any: zones count at all hours");
-  basis.emplace_back("judged by", "altiplan " ALTIPLAN_VERSION);
+  char now[32];
+  const std::time_t seconds = std::time(nullptr);
+  std::strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&seconds));
+  basis.emplace_back("judged", std::string(now) + " by altiplan " ALTIPLAN_VERSION);
   return basis;
 }
 
-/// The mission with the route that cures it, judged again; none if that fails.
-std::optional<std::string> cured_text(const PlanReport& report, const std::string& text,
-                                      const kit::MissionFile& plan, const host::Mission& world) {
+/// The changes of items that cure the mission; none if that fails.
+std::vector<host::ChangedItem> changes_of(const PlanReport& report, const host::Mission& world,
+                                          std::string& words) {
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
   const Route& route = report.imported.route;
   request.start.position = route.front();
   request.goal = {route.back()};
-  const std::optional<Route> better = host::cured(route, request);
-  if (!better || report.imported.places.empty()) {
-    return std::nullopt;
-  }
+  const host::FollowsGround follows = report.follows_ground();
+  const std::optional<Route> better = host::cured(route, request, follows);
   std::vector<host::ChangedItem> changes;
-  for (std::size_t i = 0; i < route.size(); ++i) {
-    const Vec3 by = (*better)[i] - route[i];
-    if (by.norm() > 0) {
-      const auto [lon, lat] = world.truth.frame().to_lonlat((*better)[i].x(), (*better)[i].y());
-      changes.push_back({report.imported.places[i], lon, lat, by.z()});
+  for (std::size_t i = 0; better && i < report.imported.items.size(); ++i) {
+    Vec3 by = (*better)[i] - route[i];
+    if (by.norm() == 0) {
+      continue;
+    }
+    const auto [lon, lat] = world.truth.frame().to_lonlat((*better)[i].x(), (*better)[i].y());
+    if (follows[i]) {  // its height above the ground
+      by.z() -= world.truth.ground((*better)[i].x(), (*better)[i].y()).value_or(0) -
+                world.truth.ground(route[i].x(), route[i].y()).value_or(0);
+    }
+    by.z() = std::round(by.z() * 10) / 10;
+    changes.push_back({report.imported.items[i].place, lon, lat, by.z()});
+    for (const Vec3& part : {Vec3(0, 0, by.z()), Vec3(by.x(), by.y(), 0)}) {
+      if (part.norm() > 0) {
+        words += "  " + in_words(host::Cure{i, part}, report.name_of(i)) + "\n";
+      }
     }
   }
-  return host::changed_plan(text, plan.format, changes);
+  return changes;
+}
+
+/// Writes the cured mission, judged again, or says why not.
+void fix(const PlanCheck& plan, const PlanReport& report, const std::string& text,
+         const kit::MissionFile& mission, const host::Mission& world) {
+  if (report.passed()) {
+    warn(*plan.fixed + ": not written: the mission passes as it is");
+    return;
+  }
+  std::string words;
+  const std::vector<host::ChangedItem> changes = changes_of(report, world, words);
+  const std::string better = host::changed_plan(text, mission.format, changes);
+  const bool passes =
+      !changes.empty() &&
+      host::judge_plan(plan.plan, kit::read_mission(plan.plan, better), world, !plan.scenario)
+          .passed();
+  if (!passes) {
+    warn(*plan.fixed +
+         ": not written: found no items to raise, lower or move with which the mission passes");
+    return;
+  }
+  host::write_file(*plan.fixed, better);
+  if (!plan.json) {
+    std::printf("fixed: %s passes:\n%s", plan.fixed->c_str(), words.c_str());
+  }
+}
+
+/// Notes of layers, and of airspace that has nothing near the route.
+void add_notes(PlanReport& report, const host::Mission& world) {
+  constexpr double kFar = 50'000;  // metres
+  const Route& route = report.imported.route;
+  for (const Layer& layer : world.truth.layers()) {
+    for (const std::string& note : layer.environment->info().notes) {
+      report.notes.push_back(layer.id + ": " + note);
+    }
+    double nearest = kInfinity;
+    for (std::size_t i = 0; i < route.size(); ++i) {
+      nearest = std::min(nearest, layer.environment->clearance(route[i]));
+    }
+    if (nearest > kFar) {
+      report.notes.insert(report.notes.begin(),
+                          layer.id + ": no zone within 50 km of the route: of another region?");
+    }
+  }
+}
+
+/// Throws Error naming the option whose file is missing.
+void expect_files(const PlanCheck& plan) {
+  const auto expect = [](const char* option, const std::string& file) {
+    if (!std::filesystem::exists(file)) {
+      throw Error(std::string(option) + ": file not found: '" + file + "'");
+    }
+  };
+  if (plan.terrain) {
+    expect("--terrain", *plan.terrain);
+  }
+  for (const std::string& file : plan.airspace) {
+    expect("--airspace", file);
+  }
 }
 }  // namespace
 
@@ -187,19 +297,20 @@ int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
     read.push_back(plan.plan);
     expect_apart(*file, option, read);
   }
+  expect_files(plan);
   const std::string text = kit::read_file(plan.plan);
   const kit::MissionFile mission = kit::read_mission(plan.plan, text);
+  if (plan.fixed) {
+    static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
+  }
+  host::expect_route(plan.plan, mission);
   const host::Config config = plan.scenario
                                   ? host::load_scenario(*plan.scenario, overrides)
                                   : host::load_scenario_text(scenario_text(plan, mission),
                                                              "the world of --terrain", overrides);
   const host::Mission world = host::build_mission(config, 1);
   PlanReport report = host::judge_plan(plan.plan, mission, world, !plan.scenario);
-  for (const Layer& layer : world.truth.layers()) {
-    for (const std::string& note : layer.environment->info().notes) {
-      report.notes.push_back(layer.id + ": " + note);
-    }
-  }
+  add_notes(report, world);
   if (plan.certificate) {
     host::write_file(*plan.certificate, certificate(report, world, basis_of(plan, mission)));
   }
@@ -207,16 +318,8 @@ int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
     host::write_file(*plan.junit, junit(report));
   }
   plan.json ? void(std::cout << host::file_text(to_json(report, world))) : print(report, world);
-  if (plan.fixed && !report.passed()) {
-    const std::optional<std::string> better = cured_text(report, text, mission, world);
-    if (better &&
-        host::judge_plan(plan.plan, kit::read_mission(plan.plan, *better), world, !plan.scenario)
-            .passed()) {
-      host::write_file(*plan.fixed, *better);
-      warn(*plan.fixed + ": written with items changed, and passes");
-    } else {
-      warn(*plan.fixed + ": not written: raising, lowering or moving items does not cure it");
-    }
+  if (plan.fixed) {
+    fix(plan, report, text, mission, world);
   }
   return report.passed() ? kDone : kNoRoute;
 }

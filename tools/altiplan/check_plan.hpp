@@ -15,6 +15,8 @@ struct PlanCheck {
   std::optional<std::string> scenario;
   std::optional<std::string> terrain;
   std::vector<std::string> airspace;
+  bool fills_voids = false;     ///< from their neighbours, else they are closed
+  bool has_permission = false;  ///< for zones that take one
   double radius_m = 0;
   std::optional<double> speed_mps;
   std::optional<double> min_above_ground_m;

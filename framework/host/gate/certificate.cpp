@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/certificate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "host/base/words.hpp"
 #include "host/base/xml_text.hpp"
@@ -30,12 +32,10 @@ std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
   return html + "</tr>\n";
 }
 
-std::string lonlat(const Vec3& p, const Request& request) {
-  if (!request.world->frame().has_position()) {
-    return place(p);
-  }
-  const auto [lon, lat] = request.world->frame().to_lonlat(p.x(), p.y());
-  return with_digits(lon, 9) + ", " + with_digits(lat, 8);
+std::string in_degrees(double value, char positive, char negative) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6f %c", std::abs(value), value < 0 ? negative : positive);
+  return text;
 }
 
 std::string metres(const std::optional<double>& value) {
@@ -47,13 +47,13 @@ std::string violations(const PlanReport& report, const Request& request) {
     return "";
   }
   std::string html = "<h2>" + counted(report.findings.size(), "violation") + "</h2>\n<table>\n" +
-                     row({"where", "near (longitude, latitude; height, m)", "what", "cure"}, "th");
+                     row({"where", "worst at", "what", "cure"}, "th");
   for (const Finding& finding : report.findings) {
     std::string items;
     for (const std::string& item : finding.items) {
       items += (items.empty() ? "" : " to ") + item;
     }
-    html += row({xml_text(items), lonlat(finding.at, request) + "; " + metres(finding.at.z()),
+    html += row({xml_text(items), finding.at ? place_in_words(*finding.at, request) : "",
                  xml_text(finding.violation.message),
                  finding.cure
                      ? xml_text(in_words(*finding.cure, report.name_of(finding.cure->waypoint)))
@@ -64,15 +64,30 @@ std::string violations(const PlanReport& report, const Request& request) {
 
 std::string legs(const PlanReport& report, const Request& request) {
   const Route& route = report.imported.route;
-  std::string html =
-      "<h2>Legs</h2>\n<table>\n" + row({"from", "to", "height at its end, m", "length, m",
-                                        "lowest above ground, m", "highest above ground, m"},
-                                       "th");
+  std::string html = "<h2>Legs</h2>\n<table>\n" +
+                     row({"from", "to", "which is at", "length, m", "lowest above ground, m",
+                          "highest above ground, m", "verdict"},
+                         "th");
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const auto [lowest, highest] = leg_heights(route.leg(i), *request.world);
-    html +=
-        row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)), metres(route[i + 1].z()),
-             metres(route.leg(i).length()), metres(lowest), metres(highest)});
+    const bool fails =
+        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
+          return finding.items.size() == 2 && finding.violation.at == i;
+        });
+    html += row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)),
+                 place_in_words(route[i + 1], request), metres(route.leg(i).length()),
+                 metres(lowest), metres(highest), fails ? "fails" : "valid"});
+  }
+  for (const Passage& passage : report.passages) {
+    const bool fails =
+        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
+          return finding.items == std::vector{passage.item} &&
+                 finding.violation.constraint == (passage.is_climb ? "climb" : "descent");
+        });
+    const Vec3& end = passage.is_climb ? passage.top : passage.foot;
+    html += row({passage.is_climb ? "the ground" : "above", xml_text(passage.item),
+                 place_in_words(end, request), metres((passage.top - passage.foot).norm()), "", "",
+                 fails ? "fails" : "valid"});
   }
   return html + "</table>\n";
 }
@@ -85,6 +100,16 @@ std::string list(const std::vector<std::string>& notes) {
   return html.empty() ? "" : "<h2>How the files were read</h2>\n<ul>\n" + html + "</ul>\n";
 }
 }  // namespace
+
+std::string place_in_words(const Vec3& p, const Request& request) {
+  char height[48];
+  std::snprintf(height, sizeof height, "%.1f m above sea level", p.z());
+  if (!request.world->frame().has_position()) {
+    return place(p);
+  }
+  const auto [lon, lat] = request.world->frame().to_lonlat(p.x(), p.y());
+  return in_degrees(lat, 'N', 'S') + ", " + in_degrees(lon, 'E', 'W') + ", " + height;
+}
 
 std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis) {
   Request request = world.request;
@@ -116,7 +141,11 @@ std::string junit(const PlanReport& report) {
     std::string failures;
     for (const Finding& finding : report.findings) {
       if (is_here(finding)) {
-        failures += "      <failure message=\"" + xml_text(finding.violation.message) + "\"/>\n";
+        std::string words = finding.violation.message;
+        if (finding.cure) {
+          words += "; cure: " + in_words(*finding.cure, report.name_of(finding.cure->waypoint));
+        }
+        failures += "      <failure message=\"" + xml_text(words) + "\"/>\n";
       }
     }
     ++count;
@@ -124,20 +153,24 @@ std::string junit(const PlanReport& report) {
     cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"" + xml_text(name) +
              (failures.empty() ? "\"/>\n" : "\">\n" + failures + "    </testcase>\n");
   };
-  const auto is_passage = [](const Finding& finding) {
-    return finding.violation.constraint == "climb" || finding.violation.constraint == "descent";
+  const auto is_of_route = [](const Finding& finding) {
+    const std::string& rule = finding.violation.constraint;
+    return rule != "climb" && rule != "descent" && rule != "not_judged" && rule != "home";
   };
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const bool is_last = i + 1 == route.leg_count();  // has what concerns the last waypoint or all
     add(report.name_of(i) + " to " + report.name_of(i + 1), [&](const Finding& finding) {
       const std::size_t at = finding.violation.at;
-      return !is_passage(finding) && (at == i || (is_last && at > i));
+      return is_of_route(finding) && (at == i || (is_last && at > i));
     });
   }
   for (const Passage& passage : report.passages) {
     const std::string what = passage.is_climb ? "climb" : "descent";
     add(what + " of " + passage.item,
         [&](const Finding& finding) { return finding.violation.constraint == what; });
+  }
+  for (const char* whole : {"not_judged", "home"}) {
+    add(whole, [&](const Finding& finding) { return finding.violation.constraint == whole; });
   }
   const std::string counts =
       " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";

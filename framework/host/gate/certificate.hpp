@@ -12,6 +12,10 @@ namespace altiplan::host {
 /// What the verdict rests on, in words: ("terrain", "dem.tif, SHA-256 …").
 using Basis = std::vector<std::pair<std::string, std::string>>;
 
+/// "46.815182 N, 9.824228 E, 1766.0 m above sea level"; local metres in a world without a
+/// georeference.
+std::string place_in_words(const Vec3& p, const Request& request);
+
 /// The verdict as a page of HTML without scripts: what it rests on, the violations with their
 /// cures, the height profile, and heights leg by leg.
 std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis);

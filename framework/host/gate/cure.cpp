@@ -9,30 +9,50 @@
 namespace altiplan::host {
 namespace {
 
-constexpr int kMost = 10'000;  ///< steps
 constexpr double kStep = 0.1;  ///< metres
+constexpr int kMost = 10'000;  ///< steps
+/// Steps between tries, or an eighth of those made: what is valid for less than that may be missed.
+constexpr int kStride = 20;
 constexpr int kDirections = 16;
+
+/// A route with the heights of some waypoints bound to the ground.
+struct Subject {
+  Polyline points;
+  const FollowsGround& follows;
+  const Request& request;
+
+  /// A waypoint moved by so much.
+  Vec3 moved(std::size_t i, const Vec3& by) const {
+    Vec3 p = points[i] + by;
+    if (i < follows.size() && follows[i]) {
+      const World& world = *request.world;
+      const auto before = world.ground(points[i].x(), points[i].y());
+      const auto after = world.ground(p.x(), p.y());
+      p.z() += before && after ? *after - *before : 0;
+    }
+    return p;
+  }
+};
 
 /// Waypoints first to last moved together in a direction.
 class Trial {
  public:
-  Trial(const Polyline& points, std::size_t first, std::size_t last, const Vec3& direction,
-        const Request& request)
-      : before_(points),
-        points_(points),
+  Trial(const Subject& subject, std::size_t first, std::size_t last, const Vec3& direction)
+      : subject_(subject),
+        points_(subject.points),
         first_(first),
         last_(last),
-        direction_(direction),
-        request_(request) {}
+        direction_(direction) {}
 
   /// The legs from `first_leg` to `last_leg` alone are judged.
   bool is_valid(int steps, std::size_t first_leg, std::size_t last_leg) {
     for (std::size_t i = first_; i <= last_; ++i) {
-      points_[i] = before_[i] + steps * kStep * direction_;
+      points_[i] = subject_.moved(i, steps * kStep * direction_);
     }
-    std::optional<Approach> before = request_.before_start(points_.front());
+    const Request& request = subject_.request;
+    std::optional<Approach> before = request.before_start(points_.front());
     for (std::size_t i = 0; i <= last_leg; ++i) {
-      if (i >= first_leg && !leg_ok(before, points_[i], points_[i + 1], request_)) {
+      if (i >= first_leg && !leg_ok(before, points_[i], points_[i + 1], request)) {
         return false;
       }
       if (points_[i] != points_[i + 1]) {
@@ -42,16 +62,17 @@ class Trial {
     return true;
   }
 
-  /// The least number of steps, found by doubling and halving; 0: none below `enough`.
-  int least(std::size_t first_leg, std::size_t last_leg, int most = kMost) {
+  /// The least number of steps, found by strides and halving; 0: none up to `most`.
+  int least(std::size_t first_leg, std::size_t last_leg, int most) {
+    int few = 0;
     int enough = 1;
     while (!is_valid(enough, first_leg, last_leg)) {
-      enough *= 2;
+      few = enough;
+      enough += std::max(std::min(enough, kStride), enough / 8);
       if (enough > most) {
         return 0;
       }
     }
-    int few = enough / 2;
     while (enough - few > 1) {
       const int middle = (few + enough) / 2;
       (is_valid(middle, first_leg, last_leg) ? enough : few) = middle;
@@ -60,12 +81,11 @@ class Trial {
   }
 
  private:
-  const Polyline& before_;
+  const Subject& subject_;
   Polyline points_;
   std::size_t first_;
   std::size_t last_;
   Vec3 direction_;
-  const Request& request_;
 };
 
 struct Change {
@@ -77,17 +97,17 @@ struct Change {
 /// The least change of the leg's ends, one of them or both, along one of the directions; with both,
 /// the leg alone need be valid.
 template <class Directions>
-std::optional<Change> least_change(const Polyline& points, std::size_t leg, bool both,
-                                   const Directions& directions, const Request& request) {
+std::optional<Change> least_change(const Subject& subject, std::size_t leg, bool both,
+                                   const Directions& directions) {
   std::optional<Change> best;
   int least = kMost;
   for (const std::size_t waypoint : {leg, leg + 1}) {
     const std::size_t first = both ? leg : waypoint;
     const std::size_t last = both ? leg + 1 : waypoint;
     const std::size_t first_leg = both ? leg : std::max<std::size_t>(waypoint, 1) - 1;
-    const std::size_t last_leg = both ? leg : std::min(waypoint, points.size() - 2);
+    const std::size_t last_leg = both ? leg : std::min(waypoint, subject.points.size() - 2);
     for (const Vec3& direction : directions) {
-      Trial trial(points, first, last, direction, request);
+      Trial trial(subject, first, last, direction);
       const int steps = trial.least(first_leg, last_leg, least);
       if (steps != 0 && (!best || steps < least)) {
         best = Change{first, last, steps * kStep * direction};
@@ -112,18 +132,19 @@ std::array<Vec3, kDirections> around() {
   return directions;
 }
 
-std::optional<Change> of_one_waypoint(const Polyline& points, std::size_t leg,
-                                      const Request& request) {
-  const auto by_height = least_change(points, leg, false, up_and_down(), request);
-  return by_height ? by_height : least_change(points, leg, false, around(), request);
+std::optional<Change> of_one_waypoint(const Subject& subject, std::size_t leg) {
+  const auto by_height = least_change(subject, leg, false, up_and_down());
+  return by_height ? by_height : least_change(subject, leg, false, around());
 }
 }  // namespace
 
-std::optional<Cure> cure(const Route& route, const Violation& violation, const Request& request) {
+std::optional<Cure> cure(const Route& route, const Violation& violation, const Request& request,
+                         const FollowsGround& follows) {
   if (!route.is_straight() || violation.at >= route.leg_count()) {
     return std::nullopt;
   }
-  const auto change = of_one_waypoint(route.waypoints(), violation.at, request);
+  const Subject subject{route.waypoints(), follows, request};
+  const auto change = of_one_waypoint(subject, violation.at);
   return change ? std::optional(Cure{change->first, change->by}) : std::nullopt;
 }
 
@@ -144,11 +165,13 @@ std::string in_words(const Cure& cure, const std::string& item) {
   return "move " + item + " by " + metres + toward;
 }
 
-std::optional<Route> cured(const Route& route, const Request& request) {
+std::optional<Route> cured(const Route& route, const Request& request,
+                           const FollowsGround& follows) {
   if (!route.is_straight()) {
     return std::nullopt;
   }
-  Polyline points = route.waypoints();
+  Subject subject{route.waypoints(), follows, request};
+  Polyline& points = subject.points;
   const auto first_violated = [&] {
     std::optional<Approach> before = request.before_start(points.front());
     std::size_t leg = 0;
@@ -166,18 +189,18 @@ std::optional<Route> cured(const Route& route, const Request& request) {
     if (leg + 1 >= points.size()) {
       return Route(std::move(points));
     }
-    auto change = least_change(points, leg, false, up_and_down(), request);
+    auto change = least_change(subject, leg, false, up_and_down());
     if (!change) {
-      change = least_change(points, leg, true, up_and_down(), request);
+      change = least_change(subject, leg, true, up_and_down());
     }
     if (!change) {
-      change = least_change(points, leg, false, around(), request);
+      change = least_change(subject, leg, false, around());
     }
     if (!change) {
       return std::nullopt;
     }
     for (std::size_t i = change->first; i <= change->last; ++i) {
-      points[i] += change->by;
+      points[i] = subject.moved(i, change->by);
     }
   }
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
@@ -22,61 +23,103 @@ double foot_of(const Vec3& top, const std::optional<MissionPoint>& home, const W
   return std::min(top.z(), ground ? *ground : home ? home->altitude_m : top.z());
 }
 
-/// The mission without the parts of its flight that are no legs, which go to `passages`.
-kit::MissionFile route_part(kit::MissionFile plan, const World& world,
-                            std::vector<Passage>& passages) {
-  const auto place = [&](const MissionItem& item) {
-    try {
-      return to_local(item.at, plan.home, world);
-    } catch (const Error& error) {
-      throw Error(item.place + ": " + error.what());
-    }
-  };
-  const auto add = [&](const MissionItem& item, const Vec3& foot_place, const Vec3& top) {
-    const double z = foot_of({foot_place.x(), foot_place.y(), top.z()}, plan.home, world);
-    passages.push_back(
-        {item.place, item.kind == Kind::takeoff, {foot_place.x(), foot_place.y(), z}, top});
-  };
-  if (plan.items.empty()) {
-    return plan;
-  }
-  if (plan.items.front().kind == Kind::takeoff) {
-    const Vec3 top = place(plan.items.front());
-    add(plan.items.front(), top, top);
-  }
-  if (plan.items.size() > 1 && plan.items.back().kind == Kind::land) {
-    MissionItem& landing = plan.items.back();
-    const Vec3 before = place(plan.items[plan.items.size() - 2]);
-    Vec3 over = before;
-    const auto [x, y] = world.frame().to_local(landing.at.lon, landing.at.lat);
-    const bool is_elsewhere = std::hypot(x - before.x(), y - before.y()) > kRoundingReach;
-    if (is_elsewhere && !plan.is_wing) {
-      over = {x, y, before.z()};
-    }
-    add(landing, {x, y, 0}, over);
-    if (over == before) {
-      plan.items.pop_back();
-    } else {
-      landing.kind = Kind::waypoint;
-      landing.at = {landing.at.lon, landing.at.lat, before.z(), kit::AltitudeFrame::sea};
-    }
-  }
-  return plan;
+std::string type_of(const MissionItem& item) {
+  return item.kind == Kind::takeoff  ? "take-off"
+         : item.kind == Kind::land   ? "landing"
+         : item.kind == Kind::loiter ? "loiter"
+                                     : "waypoint";
 }
 
-/// Heights above a home that the elevation model has elsewhere would be misread.
-void note_home(const std::optional<MissionPoint>& home, const World& world,
-               std::vector<std::string>& notes) {
-  constexpr double kWorthNoting = 5;
-  if (!home || !world.frame().has_position()) {
+std::string name_of_item(const MissionItem& item) {
+  return item.number > 0 ? "item " + std::to_string(item.number) + " (" + type_of(item) + ")"
+                         : item.place;
+}
+
+std::string name_of_move(const kit::MissionMove& move) {
+  const std::string what = move.command == kit::MissionMove::kReturn ? "return to launch"
+                           : move.command == 177                     ? "jump"
+                           : move.command == 0                       ? "complex item"
+                                               : "command " + std::to_string(move.command);
+  return (move.number > 0 ? "item " + std::to_string(move.number) : move.place) + " (" + what + ")";
+}
+
+/// A return at the end as a landing at home.
+void end_at_home(kit::MissionFile& plan) {
+  if (plan.moves.empty() || !plan.home || plan.items.empty()) {
     return;
   }
-  const auto [x, y] = world.frame().to_local(home->lon, home->lat);
-  const double above = home->altitude_m - world.ground(x, y).value_or(home->altitude_m);
-  if (std::abs(above) > kWorthNoting) {
-    notes.push_back("home is " + with_digits(std::round(std::abs(above)), 6) + " m " +
-                    (above > 0 ? "above" : "below") + " the ground of the world");
+  const kit::MissionMove& last = plan.moves.back();
+  if (last.command == kit::MissionMove::kReturn && last.after == plan.items.size() &&
+      plan.items.back().kind != Kind::land) {
+    MissionItem landing{Kind::land, *plan.home, 0, last.place};
+    landing.number = last.number;
+    plan.items.push_back(std::move(landing));
+    plan.moves.pop_back();
   }
+}
+
+/// Splits a mission into its route and what is no leg of it.
+class Splitter {
+ public:
+  Splitter(kit::MissionFile plan, const World& world) : plan_(std::move(plan)), world_(world) {}
+
+  std::vector<Passage> passages;
+
+  kit::MissionFile route() {
+    end_at_home(plan_);
+    if (plan_.items.empty()) {
+      return plan_;
+    }
+    if (const MissionItem& first = plan_.items.front(); first.kind == Kind::takeoff) {
+      const Vec3 top = place(first);
+      add(first, top, top);
+    }
+    if (plan_.items.size() > 1 && plan_.items.back().kind == Kind::land) {
+      end_above_landing();
+    }
+    return plan_;
+  }
+
+ private:
+  Vec3 place(const MissionItem& item) const {
+    try {
+      return to_local(item.at, plan_.home, world_);
+    } catch (const Error& error) {
+      throw Error(name_of_item(item) + ": " + error.what());
+    }
+  }
+
+  void add(const MissionItem& item, const Vec3& foot, const Vec3& top) {
+    const double z = foot_of({foot.x(), foot.y(), top.z()}, plan_.home, world_);
+    passages.push_back(
+        {name_of_item(item), item.kind == Kind::takeoff, {foot.x(), foot.y(), z}, top});
+  }
+
+  void end_above_landing() {
+    MissionItem& landing = plan_.items.back();
+    const Vec3 before = place(plan_.items[plan_.items.size() - 2]);
+    const auto [x, y] = world_.frame().to_local(landing.at.lon, landing.at.lat);
+    const bool is_elsewhere = std::hypot(x - before.x(), y - before.y()) > kRoundingReach;
+    const bool is_flown_to = is_elsewhere && !plan_.is_wing;
+    add(landing, {x, y, 0}, is_flown_to ? Vec3(x, y, before.z()) : before);
+    if (is_flown_to) {
+      landing.at = {landing.at.lon, landing.at.lat, before.z(), kit::AltitudeFrame::sea};
+    } else {
+      plan_.items.pop_back();
+    }
+  }
+
+  kit::MissionFile plan_;
+  const World& world_;
+};
+
+/// True if the violation is of a layer with ground.
+bool is_ground(const Violation& violation, const Request& request) {
+  const auto& layers = request.world->layers();
+  return std::any_of(layers.begin(), layers.end(), [&](const Layer& layer) {
+    return layer.environment->ground() != nullptr &&
+           violation.message.find("'" + layer.id + "'") != std::string::npos;
+  });
 }
 
 /// The layer, but not the ground, that the vehicle comes too near to; null if none.
@@ -90,33 +133,102 @@ const Layer* layer_in_the_way(const Passage& passage, const Request& request) {
   return nullptr;
 }
 
-/// A place on the leg within a metre of which it is violated: of its halves, the first that is.
-Vec3 violated_place(Vec3 a, Vec3 b, const Request& request) {
+/// The same rule's violation of a part of a leg, if it is violated there.
+std::optional<Violation> same_of_part(const Vec3& a, const Vec3& b, const Violation& whole,
+                                      const Request& request) {
+  for (const Violation& found : leg_violations(std::nullopt, a, b, request, whole.at)) {
+    if (found.constraint == whole.constraint) {
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The place, within a metre, at which the violation is as bad as on the whole leg: of two halves
+/// the one whose value is nearer to the leg's. The middle of the leg where no part violates it.
+Vec3 worst_place(Vec3 a, Vec3 b, const Violation& whole, const Request& request) {
   constexpr double kNear = 1;
   while ((b - a).norm() > kNear) {
     const Vec3 middle = (a + b) / 2;
-    if (!leg_ok(std::nullopt, a, middle, request)) {
-      b = middle;
-    } else if (!leg_ok(std::nullopt, middle, b, request)) {
-      a = middle;
-    } else {
+    const auto first = same_of_part(a, middle, whole, request);
+    const auto second = same_of_part(middle, b, whole, request);
+    if (!first && !second) {
       break;  // by its whole, or by what precedes it
     }
+    const auto off = [&](const std::optional<Violation>& part) {
+      return part ? std::abs(part->value - whole.value) : kInfinity;
+    };
+    (off(first) <= off(second) ? b : a) = middle;
   }
   return (a + b) / 2;
 }
 
+/// The name of the layer's part that holds the place or is nearest to it, if it has names.
+std::string part_at(const Layer& layer, const Vec3& p) {
+  const std::optional<Drawing> drawing = layer.environment->drawing();
+  std::string name;
+  double nearest = kInfinity;
+  for (const Drawn& drawn : drawing ? drawing->shapes : std::vector<Drawn>{}) {
+    const double distance = signed_distance(drawn.shape, p);
+    if (distance < nearest) {
+      nearest = distance;
+      name = drawn.name;
+    }
+  }
+  return name;
+}
+
+/// Adds the name of the zone to a message about a layer.
+void name_zone(Finding& finding, const Request& request) {
+  for (const Layer& layer : request.world->layers()) {
+    const std::string quoted = "'" + layer.id + "'";
+    const std::size_t at = finding.violation.message.find(quoted);
+    if (at != std::string::npos && finding.at) {
+      if (const std::string name = part_at(layer, *finding.at); !name.empty()) {
+        finding.violation.message.insert(at, "'" + name + "' of ");
+      }
+      return;
+    }
+  }
+}
+
 Finding finding_of(const Violation& violation, const PlanReport& report, const Request& request) {
   const Route& route = report.imported.route;
-  Finding finding{violation, {report.name_of(violation.at)}, {}, cure(route, violation, request)};
+  Finding finding{violation, {report.name_of(violation.at)}, {}, {}};
   if (violation.at < route.leg_count()) {
     const Leg leg = route.leg(violation.at);
     finding.items.push_back(report.name_of(violation.at + 1));
-    finding.at = violated_place(leg.from, leg.to, request);
+    finding.at = worst_place(leg.from, leg.to, violation, request);
   } else {
     finding.at = route.back();
   }
+  name_zone(finding, request);
   return finding;
+}
+
+/// One finding a leg and rule; a leg into the ground is told once.
+void add_violations(PlanReport& report, const CheckResult& verdict, const Request& request) {
+  std::map<std::size_t, std::optional<Cure>> cures;  // of legs
+  for (const Violation& violation : verdict.violations) {
+    const bool is_told =
+        violation.constraint == "clearance" &&
+        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& other) {
+          return other.violation.at == violation.at &&
+                 other.violation.constraint == "ground_clearance" && other.violation.value < 0 &&
+                 is_ground(violation, request);
+        });
+    if (is_told) {
+      continue;
+    }
+    Finding finding = finding_of(violation, report, request);
+    const auto [cure_of_leg, is_new] = cures.try_emplace(violation.at);
+    if (is_new) {
+      cure_of_leg->second =
+          cure(report.imported.route, violation, request, report.follows_ground());
+    }
+    finding.cure = cure_of_leg->second;
+    report.findings.push_back(std::move(finding));
+  }
 }
 
 void add_passages(PlanReport& report, const Request& request) {
@@ -128,15 +240,104 @@ void add_passages(PlanReport& report, const Request& request) {
       violation.message = "the " + violation.constraint +
                           (passage.is_climb ? " after take-off" : " to land") +
                           " passes too close to '" + layer->id + "'";
-      report.findings.push_back({violation, {passage.item}, passage.top, std::nullopt});
+      Finding finding{violation, {passage.item}, (passage.foot + passage.top) / 2, {}};
+      name_zone(finding, request);
+      report.findings.push_back(std::move(finding));
     }
+  }
+}
+
+void add_moves(PlanReport& report, const kit::MissionFile& plan) {
+  for (const kit::MissionMove& move : plan.moves) {
+    Violation violation;
+    violation.constraint = "not_judged";
+    violation.message = "where this flies is not judged: replace it by waypoints";
+    report.findings.push_back({violation, {name_of_move(move)}, {}, {}});
+  }
+}
+
+void add_home(PlanReport& report, const kit::MissionFile& plan, const World& world) {
+  const auto relative =
+      std::count_if(plan.items.begin(), plan.items.end(), [](const MissionItem& item) {
+        return item.at.frame == kit::AltitudeFrame::home && item.kind != Kind::land;
+      });
+  if (!plan.home || !world.frame().has_position()) {
+    return;
+  }
+  const auto [x, y] = world.frame().to_local(plan.home->lon, plan.home->lat);
+  const std::optional<double> ground = world.ground(x, y);
+  if (!ground || std::abs(plan.home->altitude_m - *ground) <= kHomeTolerance) {
+    return;
+  }
+  Violation violation;
+  violation.constraint = "home";
+  violation.value = plan.home->altitude_m;
+  violation.limit = *ground;
+  violation.message = "home is at " + with_digits(std::round(plan.home->altitude_m), 6) +
+                      " m in the mission, where the ground is at " +
+                      with_digits(std::round(*ground), 6) + " m: the heights of " +
+                      counted(std::size_t(relative), "item") + " are relative to it";
+  if (relative > 0) {
+    report.findings.insert(report.findings.begin(), {violation, {"home"}, Vec3(x, y, *ground), {}});
+  } else {
+    report.notes.push_back(violation.message);
+  }
+}
+
+/// Throws Error if no position of the mission has ground below it.
+void expect_on_ground(const kit::MissionFile& plan, const World& world) {
+  const auto has_ground = [&](double lon, double lat) {
+    const auto [x, y] = world.frame().to_local(lon, lat);
+    return world.ground(x, y).has_value();
+  };
+  const auto& items = plan.items;
+  if (!world.has_ground() || !world.frame().has_position() || items.empty() ||
+      std::any_of(items.begin(), items.end(),
+                  [&](const MissionItem& item) { return has_ground(item.at.lon, item.at.lat); })) {
+    return;
+  }
+  const bool is_swapped = std::all_of(items.begin(), items.end(), [&](const MissionItem& item) {
+    return std::abs(item.at.lon) <= 90 && has_ground(item.at.lat, item.at.lon);
+  });
+  const MissionItem& first = items.front();
+  throw Error("no position of the mission is within the elevation model: " + name_of_item(first) +
+              " is at latitude " + with_digits(first.at.lat, 8) + ", longitude " +
+              with_digits(first.at.lon, 9) +
+              (is_swapped ? ", which are swapped: exchanged, all are within" : ""));
+}
+
+kit::MissionFile told(const std::string& file, const auto& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
   }
 }
 }  // namespace
 
 std::string PlanReport::name_of(std::size_t waypoint) const {
-  return waypoint < imported.places.size() ? imported.places[waypoint]
-                                           : "waypoint " + std::to_string(waypoint);
+  return waypoint < imported.items.size() ? name_of_item(imported.items[waypoint])
+                                          : "waypoint " + std::to_string(waypoint);
+}
+
+FollowsGround PlanReport::follows_ground() const {
+  FollowsGround follows;
+  for (const MissionItem& item : imported.items) {
+    follows.push_back(item.at.frame == kit::AltitudeFrame::ground);
+  }
+  return follows;
+}
+
+void expect_route(const std::string& file, const kit::MissionFile& plan) {
+  if (!plan.route_problem.empty()) {
+    throw Error(file + ": " + plan.route_problem);
+  }
+  if (plan.items.empty()) {
+    throw Error(file + ": it contains no route" +
+                (plan.moves.empty()
+                     ? plan.zones.empty() ? "" : ": it contains only zones"
+                     : ", and where " + name_of_move(plan.moves.front()) + " flies is not judged"));
+  }
 }
 
 PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, const Mission& world,
@@ -145,12 +346,12 @@ PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, con
   report.file = file;
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
-  kit::MissionFile flown;
-  try {
-    flown = route_part(plan, world.truth, report.passages);
-  } catch (const Error& error) {
-    throw Error(file + ": " + error.what());
-  }
+  Splitter splitter(plan, world.truth);
+  const kit::MissionFile flown = told(file, [&] {
+    expect_on_ground(plan, world.truth);
+    return splitter.route();
+  });
+  report.passages = splitter.passages;
   report.imported = route_in(flown, world.truth, request, file);
   const Route& route = report.imported.route;
   if (own_ends) {
@@ -158,46 +359,15 @@ PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, con
     request.goal = {route.back()};
   }
   report.notes = report.imported.notes;
-  note_home(plan.home, world.truth, report.notes);
-  const CheckResult verdict = judge(route, request, own_ends ? std::vector<Goal>{} : world.via);
-  for (const Violation& violation : verdict.violations) {
-    report.findings.push_back(finding_of(violation, report, request));
-  }
+  add_violations(report, judge(route, request, own_ends ? std::vector<Goal>{} : world.via),
+                 request);
   add_passages(report, request);
+  add_moves(report, flown);
+  add_home(report, plan, world.truth);
+  if (!flown.items.empty() && flown.items.front().kind != Kind::takeoff && plan.home) {
+    report.notes.emplace_back("the mission has no take-off: the way from home is not judged");
+  }
   report.measures = measure(route, request);
   return report;
-}
-
-double flight_time(const kit::MissionFile& plan, double speed_mps) {
-  constexpr double kVertical = 1;  // m/s
-  constexpr double kMetresPerDegree = 111195;
-  const double home = plan.home ? plan.home->altitude_m : 0;
-  const auto height = [&](const MissionItem& item) {
-    return item.kind == Kind::land                    ? 0
-           : item.at.frame == kit::AltitudeFrame::sea ? item.at.altitude_m - home
-                                                      : item.at.altitude_m;
-  };
-  double seconds = 0;
-  if (!plan.items.empty() && plan.items.front().kind == Kind::takeoff) {
-    seconds += std::abs(height(plan.items.front())) / kVertical;
-  }
-  for (std::size_t n = 0; n < plan.items.size(); ++n) {
-    const MissionItem& item = plan.items[n];
-    const MissionItem& before = plan.items[n == 0 ? 0 : n - 1];
-    const double own = item.speed_mps > 0 ? item.speed_mps : plan.speed_mps;
-    const double speed = own > 0 ? own : speed_mps;
-    const double north = (item.at.lat - before.at.lat) * kMetresPerDegree;
-    const double east = std::remainder(item.at.lon - before.at.lon, 360) * kMetresPerDegree *
-                        std::cos(radians((item.at.lat + before.at.lat) / 2));
-    seconds += std::hypot(north, east) / speed +
-               std::abs(height(item) - height(before)) / kVertical + item.hold_s;
-    if (item.circle) {
-      if (item.circle->until == kit::MissionCircle::Until::forever) {
-        return kInfinity;
-      }
-      seconds += 2 * kPi * item.circle->radius_m * (item.circle->turns + 1) / speed;
-    }
-  }
-  return seconds;
 }
 }  // namespace altiplan::host

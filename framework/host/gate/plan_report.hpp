@@ -14,18 +14,20 @@ namespace altiplan::host {
 /// A violation as the author of a mission sees it.
 struct Finding {
   Violation violation;
-  std::vector<std::string> items;  ///< as the file names them: one, or the two of a leg
-  Vec3 at{0, 0, 0};                ///< a place where it is violated
+  std::vector<std::string> items;  ///< as ground stations name them: one, or the two of a leg
+  std::optional<Vec3> at;          ///< where it is worst, within a metre, if anywhere
   std::optional<Cure> cure;        ///< of one waypoint
 };
 
 /// A motion that is no leg of the route: a climb after take-off, or a descent to land.
 struct Passage {
-  std::string item;
+  std::string item;  ///< as ground stations name it
   bool is_climb = true;
   Vec3 foot{0, 0, 0};
   Vec3 top{0, 0, 0};
 };
+
+inline constexpr double kHomeTolerance = 10;  ///< metres
 
 /// The verdict on a mission of a ground station.
 struct PlanReport {
@@ -37,18 +39,21 @@ struct PlanReport {
   std::vector<std::string> notes;  ///< how the file and the world were read
 
   bool passed() const { return findings.empty(); }
-  /// As the file names it, "waypoint 3" where the route has other points than the file.
+  /// "item 3 (waypoint)" as ground stations number it, "point 3" where the file numbers nothing,
+  /// "waypoint 3" where the route has other points than the file.
   std::string name_of(std::size_t waypoint) const;
+  FollowsGround follows_ground() const;
 };
 
+/// Throws Error, beginning with `file`, naming what a mission without a route holds instead.
+void expect_route(const std::string& file, const kit::MissionFile& plan);
+
 /// Judges the mission's route and, by the layers but the ground, its climb from home and its
-/// descent to land. A landing that is not below the item before it is flown to at that item's
-/// height, or by an aeroplane straight down to the ground. With `own_ends` the route need not begin
-/// and end where the world's scenario says. Messages begin with `file`.
+/// descent to land. A landing that is not below the item before it, and a return at the end, are
+/// flown to at that item's height, a landing by an aeroplane straight down to the ground. Other
+/// commands that fly somewhere, and heights relative to a home that is more than kHomeTolerance off
+/// the ground, are findings. Throws Error for a mission wholly beside the ground. With `own_ends`
+/// the route need not begin and end where the world's scenario says. Messages begin with `file`.
 PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, const Mission& world,
                       bool own_ends);
-
-/// Seconds from take-off to landing at the plan's own speeds, climbs and descents at 1 m/s; where
-/// it gives no speed, at `speed_mps`. Infinite if it ends in a loiter without end.
-double flight_time(const kit::MissionFile& plan, double speed_mps);
 }  // namespace altiplan::host

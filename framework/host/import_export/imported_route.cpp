@@ -146,9 +146,7 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
   }
   result.route = join(places, request, result.notes);
   if (result.route.size() == items.size()) {
-    for (const MissionItem& item : items) {
-      result.places.push_back(item.place);
-    }
+    result.items = std::move(items);
   }
   return result;
 }

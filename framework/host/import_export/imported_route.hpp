@@ -15,8 +15,8 @@ namespace altiplan::host {
 struct ImportedRoute {
   Route route;
   std::vector<std::string> notes;  ///< what was ignored, how heights were interpreted
-  /// Of a mission without circles: where each waypoint is written, "mission.items.3" or "line 5".
-  std::vector<std::string> places{};
+  /// Of a mission without circles: the item of each waypoint.
+  std::vector<kit::MissionItem> items{};
 };
 
 /// Maximum rounding error of degrees with seven decimals, in metres: a first point this near to the

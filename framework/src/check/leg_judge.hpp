@@ -228,8 +228,9 @@ class LegJudge {
              at_most(std::max(a_.z(), b_.z()), band.max, kLengthTolerance, "altitude",
                      "the altitude", " m");
     }
-    return keeps_above(band.min, "altitude", "the altitude") &&
-           (band.max == kInfinity || keeps_below(band.max, "altitude", "the altitude"));
+    const char* height = "the height above ground";
+    return keeps_above(band.min, "altitude", height) &&
+           (band.max == kInfinity || keeps_below(band.max, "altitude", height));
   }
 
   /// `looked_at` begins the part of a turn that was looked at last: where the ground ends.

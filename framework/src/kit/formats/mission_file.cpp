@@ -47,6 +47,33 @@ std::optional<MissionItem::Kind> kind_of(int command) {
   }
 }
 
+/// True for a command that flies the vehicle somewhere, but to no position that it gives.
+bool moves_vehicle(int command) {
+  switch (command) {
+    case MissionMove::kReturn:
+    case 23:   // NAV_LAND_LOCAL
+    case 24:   // NAV_TAKEOFF_LOCAL
+    case 25:   // NAV_FOLLOW
+    case 30:   // NAV_CONTINUE_AND_CHANGE_ALT
+    case 32:   // DO_FOLLOW
+    case 33:   // DO_FOLLOW_REPOSITION
+    case 34:   // DO_ORBIT
+    case 35:   // DO_FIGURE_EIGHT
+    case 36:   // NAV_ARC_WAYPOINT
+    case 81:   // NAV_PATHPLANNING
+    case 83:   // NAV_ALTITUDE_WAIT
+    case 92:   // NAV_GUIDED_ENABLE
+    case 94:   // NAV_PAYLOAD_PLACE
+    case 176:  // DO_SET_MODE
+    case 177:  // DO_JUMP
+    case 192:  // DO_REPOSITION
+    case 601:  // DO_JUMP_TAG
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// The circle of a loiter's parameters as MAVLink numbers them; radii are positive clockwise.
 std::optional<MissionCircle> circle_of(int command, const std::array<double, 4>& params) {
   using Until = MissionCircle::Until;
@@ -181,6 +208,10 @@ void CommandList::add(const Command& command) {
   }
   const auto kind = kind_of(command.number);
   if (!kind) {
+    if (moves_vehicle(command.number)) {
+      mission_.moves.push_back(
+          {command.number, command.place, command.item, mission_.items.size()});
+    }
     ++skipped_;
     skipped_numbers_.insert(command.number);
     return;
@@ -188,7 +219,12 @@ void CommandList::add(const Command& command) {
   const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
   mission_.items.push_back({*kind, place_of(command, *kind), acceptance, command.place,
                             circle_of(command.number, command.params), speed_mps_,
-                            hold_of(command)});
+                            hold_of(command), command.item});
+}
+
+void CommandList::skip_complex(const std::string& place) {
+  ++complex_;
+  mission_.moves.push_back({0, place, 0, mission_.items.size()});
 }
 
 void CommandList::finish() {

@@ -45,13 +45,14 @@ class CommandList {
     double lat = 0;
     double altitude_m = 0;
     std::string place;
+    int item = 0;  ///< MissionItem::number
   };
 
   explicit CommandList(MissionFile& mission) : mission_(mission) {}
   /// Adds the item of the command, if it is a position to fly to. Throws Error for an invalid
   /// position.
   void add(const Command& command);
-  void skip_complex() { ++complex_; }
+  void skip_complex(const std::string& place);
   void take_complex(std::size_t items) { taken_ += items; }
   /// Adds the notes on skipped commands.
   void finish();

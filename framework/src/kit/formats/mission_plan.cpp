@@ -30,13 +30,13 @@ void read_simple_item(const Node& item, CommandList& commands) {
     }
   }
   item.at("autoContinue").boolean();
-  item.at("doJumpId").whole(1'000'000);
   command.number = item.at("command").whole(65535);
   command.frame = item.at("frame").whole(21);
   command.lat = places.at(first).number_or_nan();
   command.lon = places.at(first + 1).number_or_nan();
   command.altitude_m = places.at(first + 2).number_or_nan();
   command.place = item.place();
+  command.item = item.at("doJumpId").whole(1'000'000);
   item.told([&] { commands.add(command); });
 }
 
@@ -44,7 +44,7 @@ void read_simple_item(const Node& item, CommandList& commands) {
 void read_complex_item(const Node& item, CommandList& commands) {
   item.at("complexItemType").text();
   if (!item.has("TransectStyleComplexItem") || !item.at("TransectStyleComplexItem").has("Items")) {
-    commands.skip_complex();
+    commands.skip_complex(item.place());
     return;
   }
   const Node items = item.at("TransectStyleComplexItem").at("Items");

@@ -194,7 +194,8 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
                     row.lon(),
                     row.lat(),
                     row.altitude(),
-                    "line " + std::to_string(line)});
+                    "line " + std::to_string(line),
+                    int(number)});
     }
     ++number;
   };

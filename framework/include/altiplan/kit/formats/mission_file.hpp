@@ -43,6 +43,16 @@ struct MissionItem {
   std::optional<MissionCircle> circle{};
   double speed_mps = 0;  ///< on the way to it, from the commands before; 0: as the vehicle's
   double hold_s = 0;     ///< spent there
+  int number = 0;        ///< as ground stations show it; 0: the format numbers nothing
+};
+
+/// A command that moves the vehicle otherwise than to a position: a return, a jump, a scan.
+struct MissionMove {
+  static constexpr int kReturn = 20;
+  int command = 0;  ///< MAV_CMD; 0: a complex item of the ground station
+  std::string place;
+  int number = 0;
+  std::size_t after = 0;  ///< how many items come before it
 };
 
 /// An area that must not be left (`keep_in`) or entered: a polygon, or a circle where the outline
@@ -66,6 +76,7 @@ struct MissionFile {
   double speed_mps = 0;              ///< of the vehicle; 0 where the file gives none
   bool is_wing = false;              ///< true if the file says that it is an aeroplane
   std::vector<MissionItem> items;
+  std::vector<MissionMove> moves;  ///< not part of the items
   std::string route_problem;  ///< why the items are not a route, "" where they are
   std::vector<MissionZone> zones;
   std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
