@@ -77,7 +77,7 @@ struct MissionFile {
   bool is_wing = false;              ///< true if the file says that it is an aeroplane
   std::vector<MissionItem> items;
   std::vector<MissionMove> moves;  ///< not part of the items
-  std::string route_problem;  ///< why the items are not a route, "" where they are
+  std::string route_problem;       ///< why the items are not a route, "" where they are
   std::vector<MissionZone> zones;
   std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
   /// Skipped parts, one per line ("4 commands that are not waypoints skipped: 177, 178").
