@@ -48,6 +48,7 @@ PARAMETERS = {
     "clearance": "{min_m: 1}",
     "climb_angle": "{max_deg: 80}",
     "ground_clearance": "{min_m: 1}",
+    "ground_distance": "{max_m: 100}",
     "leg_length": "{min_m: 0.1}",
     "route_length": "{max_ratio: 5}",
     "turn_angle": "{max_deg: 170}",
