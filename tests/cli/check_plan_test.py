@@ -14,6 +14,11 @@ TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
 # Longitude, latitude, metres above sea level: north-east over the ridges.
 POINTS = [[-84.38, 36.48, 800], [-84.30, 36.54, 900], [-84.22, 36.60, 800], [-84.20, 36.66, 900]]
 
+UTM = """PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],
+PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],
+PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",-117],PARAMETER["scale_factor",0.9996],
+PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]]"""
+
 
 def item(point, number):
     lon, lat, height = point
@@ -295,6 +300,17 @@ class CheckPlan(unittest.TestCase):
         for violation in found["violations"]:
             self.assertTrue(violation["items"][0].startswith("item "), violation)
             self.assertEqual(len(violation["lonlat"]), 2)
+
+    def test_a_model_in_a_map_projection(self):
+        (self.folder / "utm.asc").write_text(
+            "ncols 4\nnrows 4\nxllcorner 400000\nyllcorner 3800000\ncellsize 1000\n" + "500 500 500 500\n" * 4)
+        (self.folder / "utm.prj").write_text(UTM)
+        points = [[-118.07, 34.35, 650], [-118.06, 34.36, 650]]
+        (self.folder / "mission.plan").write_text(json.dumps(plan_of(points)))
+        options = ("mission.plan", "--terrain", "utm.asc", "--min-agl")
+        out, _ = self.call(*options, "150", code=0)
+        self.assertIn("at least 150.0 m", out)
+        self.call(*options, "150.1", code=1)
 
     def test_bad_input(self):
         _, err = self.call("missing.plan", "--terrain", TERRAIN, code=3)

@@ -12,6 +12,7 @@
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
+#include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 
 namespace altiplan::host {
@@ -118,12 +119,6 @@ std::vector<NamedConstraint> constraints_of(const Config& config, const Calling&
   return all;
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", share * 100);
-  return text;
-}
-
 /// The point, or nothing if it depends on a layer that is not built yet.
 std::optional<Vec3> maybe_point(const Point& point, const Site& site,
                                 const std::optional<double>& level) {
@@ -226,23 +221,6 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     if (info.frame && !truth.frame().has_position()) {
       truth = truth.with_frame(*info.frame);
     }
-  }
-}
-
-/// Notes the frame's scale error, and warns if it is large.
-void note_scale(Mission& mission, const NoteSink& on_note) {
-  const Frame& frame = mission.truth.frame();
-  const double error = frame.scale_error(mission.site.volume);
-  if (error > 0) {
-    mission.notes.push_back("frame: " + frame.crs() + ", maximum scale error " + percent(error));
-    on_note(mission.notes.back());
-  }
-  if (error > 0.005) {
-    mission.warnings.push_back(
-        "lengths in the local frame are off by up to " + percent(error) +
-        (mission.truth.has_ground()
-             ? "; use a projected coordinate system: frame: {crs: …}"
-             : "; use an origin near the flight: frame: {origin_lonlat: [lon, lat]}"));
   }
 }
 

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "host/mission/mission.hpp"
+
+namespace altiplan::host {
+
+/// Notes the frame's scale error where routes may be, and warns if it is large.
+void note_scale(Mission& mission, const NoteSink& on_note);
+}  // namespace altiplan::host
