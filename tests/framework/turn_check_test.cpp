@@ -44,7 +44,8 @@ class Slope final : public Environment, public Ground {
   double do_gap_max(const Vec3& a, const Vec3& b) const override {
     return is_below(a, b) ? std::max(a.z() - 0.5 * a.x(), b.z() - 0.5 * b.x()) : kInfinity;
   }
-  double do_slope(const Box& box) const override { return box.max.x() <= end_ ? 0.5 : kInfinity; }
+  // As an elevation model does: of the ground that there is.
+  double do_slope(const Box& box) const override { return box.min.x() <= end_ ? 0.5 : 0; }
 
   double end_;
 };
@@ -184,6 +185,8 @@ TEST_F(TurnCheck, GroundThatEndsBelowTheTurn) {
   // 80 sin t = 60, and y = 80 (1 - cos t).
   EXPECT_EQ(result_.violations.at(0).message,
             "there is no ground of known height below (60.00, 27.08, 100.00), a point of the leg");
+  over(-1);
+  EXPECT_EQ(rules({half_circle()}), "ground@0 ");
 }
 
 /// Admits what stays west of a line.
