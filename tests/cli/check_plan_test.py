@@ -132,6 +132,44 @@ class CheckPlan(unittest.TestCase):
             self.assertIn(f": the {word} ", out)
             self.assertIn("'Z' of 'z.json'", out)
 
+    def test_circles_and_the_way_from_home_are_judged(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json")
+        # East of the last item, where its circle goes and no leg does.
+        self.zones("z.json", self.around(-84.1944, 36.66, 0.001), 3000)
+        for command, params in ((17, [0, 0, 500, 0]), (18, [3, 0, -500, 0]), (19, [60, 0, 500, 0]),
+                                (31, [1, 500, 0, 1])):
+            loiter = item(high[3], 4)
+            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter])
+            self.call(*options, code=0)
+            loiter["command"] = command
+            loiter["params"][:4] = params
+            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter])
+            out, _ = self.call(*options, code=1)
+            self.assertIn("item 4 (loiter): its circle: ", out)
+        takeoff = dict(item([-84.38, 36.50, 1500], 1), command=22)
+        self.write([takeoff, *(item(point, n + 2) for n, point in enumerate(high[1:]))])
+        self.zones("z.json", self.around(-84.38, 36.49, 0.003), 3000)  # between home and item 1
+        out, _ = self.call(*options, code=1)
+        self.assertIn("item 1 (take-off): the way from home: ", out)
+
+    def test_an_aeroplane_does_not_land_through_a_ridge(self):
+        landing = dict(item([-84.22, 36.48, 0], 2), command=21)
+        self.write([item([-84.38, 36.48, 900], 1), item([-84.37, 36.48, 900], 2), landing],
+                   vehicleType=1)
+        out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
+        self.assertIn("item 2 (landing): the descent to land goes through the ground", out)
+
+    def test_outputs_are_kept_apart(self):
+        self.write([item(point, n + 1) for n, point in enumerate(POINTS)])
+        terrain = self.folder / "dem.tif"
+        terrain.write_bytes(pathlib.Path(TERRAIN).read_bytes())
+        for options in (["--junit", "dem.tif"], ["--certificate", "./mission.plan"],
+                        ["--junit", "a.out", "--certificate", "./a.out"]):
+            _, err = self.call("mission.plan", "--terrain", "dem.tif", *options, code=3)
+            self.assertIn("already read or written", err)
+        self.assertEqual(terrain.read_bytes(), pathlib.Path(TERRAIN).read_bytes())
+
     def test_a_landing_elsewhere_is_flown_to_first(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         landing = dict(item([-84.19, 36.67, 0], 9), command=21)

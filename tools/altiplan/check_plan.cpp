@@ -6,11 +6,13 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 #include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/sha256.hpp"
+#include "host/base/utf8.hpp"
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
 #include "host/gate/flight_time.hpp"
@@ -65,8 +67,11 @@ std::string scenario_text(const PlanCheck& plan, const kit::MissionFile& mission
       plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
   std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
                      ", " + voids + "}\n";
-  const auto add_zones = [&](const std::string& file, const std::string& name,
-                             const std::string& more) {
+  std::set<std::string> ids{"terrain"};
+  const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
+    while (!ids.insert(name).second) {
+      name += "'";  // of another folder
+    }
     text +=
         "  - zones: {file: " + path_text(file) + more + "}\n    id: " + Json(name).dump() + "\n";
   };
@@ -272,11 +277,37 @@ void add_notes(PlanReport& report, const host::Mission& world) {
   }
 }
 
+/// Throws Error if what is to be written cannot be, or is read, or written twice.
+void expect_outputs(const PlanCheck& plan, const host::Config& config) {
+  std::vector<std::string> others{plan.plan};
+  others.insert(others.end(), plan.airspace.begin(), plan.airspace.end());
+  for (const auto& file : {plan.scenario, plan.terrain}) {
+    others.insert(others.end(), file.value_or(plan.plan));
+  }
+  for (const std::filesystem::path& file : config.files) {
+    others.push_back(file.string());
+  }
+  for (const auto& [file, option] : {std::pair(&plan.certificate, "--certificate"),
+                                     {&plan.junit, "--junit"},
+                                     {&plan.fixed, "--fix"}}) {
+    if (*file) {
+      expect_writable(*file, option);
+      expect_apart(*file, option, others);
+      others.push_back(std::filesystem::absolute(**file).lexically_normal().string());
+      expect_apart(others.back(), option, {others.begin(), others.end() - 1});
+    }
+  }
+}
+
 /// Throws Error naming the option whose file is missing.
 void expect_files(const PlanCheck& plan) {
   const auto expect = [](const char* option, const std::string& file) {
     if (!std::filesystem::exists(file)) {
       throw Error(std::string(option) + ": file not found: '" + file + "'");
+    }
+    if (host::printable(file) != file) {
+      throw Error(std::string(option) + ": expected a name in UTF-8, found '" +
+                  host::printable(file) + "'");
     }
   };
   if (plan.terrain) {
@@ -289,14 +320,6 @@ void expect_files(const PlanCheck& plan) {
 }  // namespace
 
 int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
-  for (const auto& [file, option] : {std::pair(&plan.certificate, "--certificate"),
-                                     {&plan.junit, "--junit"},
-                                     {&plan.fixed, "--fix"}}) {
-    expect_writable(*file, option);
-    std::vector<std::string> read = plan.airspace;
-    read.push_back(plan.plan);
-    expect_apart(*file, option, read);
-  }
   expect_files(plan);
   const std::string text = kit::read_file(plan.plan);
   const kit::MissionFile mission = kit::read_mission(plan.plan, text);
@@ -308,6 +331,7 @@ int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
                                   ? host::load_scenario(*plan.scenario, overrides)
                                   : host::load_scenario_text(scenario_text(plan, mission),
                                                              "the world of --terrain", overrides);
+  expect_outputs(plan, config);
   const host::Mission world = host::build_mission(config, 1);
   PlanReport report = host::judge_plan(plan.plan, mission, world, !plan.scenario);
   add_notes(report, world);

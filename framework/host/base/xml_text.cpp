@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/xml_text.hpp"
 
+#include "host/base/utf8.hpp"
+
 namespace altiplan::host {
 
 std::string xml_text(std::string_view text) {
   std::string out;
-  for (const char letter : text) {
+  for (const char letter : printable(text, true)) {
     switch (letter) {
       case '&':
         out += "&amp;";
@@ -20,9 +22,12 @@ std::string xml_text(std::string_view text) {
         out += "&quot;";
         break;
       default:
-        if (static_cast<unsigned char>(letter) >= ' ') {
-          out += letter;
-        }
+        out += letter;
+    }
+  }
+  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"}) {  // U+FFFE and U+FFFF
+    for (std::size_t at = 0; (at = out.find(none, at)) != std::string::npos;) {
+      out.replace(at, 3, "?");
     }
   }
   return out;

@@ -15,58 +15,86 @@ constexpr int kMost = 10'000;  ///< steps
 constexpr int kStride = 20;
 constexpr int kDirections = 16;
 
+std::optional<Approach> after(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
+  return a == b ? before : onward(before, a);
+}
+
 /// A route with the heights of some waypoints bound to the ground.
 struct Subject {
   Polyline points;
   const FollowsGround& follows;
   const Request& request;
+  std::vector<std::optional<Approach>> before;  ///< each leg
+
+  Subject(const Polyline& route, const FollowsGround& their_follows, const Request& their_request)
+      : points(route),
+        follows(their_follows),
+        request(their_request),
+        before{request.before_start(points.front())} {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      before.push_back(after(before[i], points[i], points[i + 1]));
+    }
+  }
+
+  /// The first violated leg from `leg` on, whose approach is known; the number of legs if none is.
+  std::size_t first_violated(std::size_t leg) {
+    if (leg == 0) {
+      before[0] = request.before_start(points.front());
+    }
+    while (leg + 1 < points.size() && leg_ok(before[leg], points[leg], points[leg + 1], request)) {
+      before[leg + 1] = after(before[leg], points[leg], points[leg + 1]);
+      ++leg;
+    }
+    return leg;
+  }
 
   /// A waypoint moved by so much.
   Vec3 moved(std::size_t i, const Vec3& by) const {
     Vec3 p = points[i] + by;
     if (i < follows.size() && follows[i]) {
       const World& world = *request.world;
-      const auto before = world.ground(points[i].x(), points[i].y());
-      const auto after = world.ground(p.x(), p.y());
-      p.z() += before && after ? *after - *before : 0;
+      const auto left = world.ground(points[i].x(), points[i].y());
+      const auto reached = world.ground(p.x(), p.y());
+      p.z() += left && reached ? *reached - *left : 0;
     }
     return p;
   }
 };
 
-/// Waypoints first to last moved together in a direction.
+/// Waypoints first to last moved together in a direction; the legs from `first_leg` to `last_leg`
+/// are judged.
 class Trial {
  public:
-  Trial(const Subject& subject, std::size_t first, std::size_t last, const Vec3& direction)
+  Trial(const Subject& subject, std::size_t first, std::size_t last, std::size_t first_leg,
+        std::size_t last_leg, const Vec3& direction)
       : subject_(subject),
-        points_(subject.points),
         first_(first),
         last_(last),
-        direction_(direction) {}
+        first_leg_(first_leg),
+        direction_(direction),
+        points_(subject.points.begin() + std::ptrdiff_t(first_leg),
+                subject.points.begin() + std::ptrdiff_t(last_leg + 2)) {}
 
-  /// The legs from `first_leg` to `last_leg` alone are judged.
-  bool is_valid(int steps, std::size_t first_leg, std::size_t last_leg) {
+  bool is_valid(int steps) {
     for (std::size_t i = first_; i <= last_; ++i) {
-      points_[i] = subject_.moved(i, steps * kStep * direction_);
+      points_[i - first_leg_] = subject_.moved(i, steps * kStep * direction_);
     }
-    const Request& request = subject_.request;
-    std::optional<Approach> before = request.before_start(points_.front());
-    for (std::size_t i = 0; i <= last_leg; ++i) {
-      if (i >= first_leg && !leg_ok(before, points_[i], points_[i + 1], request)) {
+    std::optional<Approach> before =
+        first_ == 0 ? subject_.request.before_start(points_.front()) : subject_.before[first_leg_];
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+      if (!leg_ok(before, points_[i], points_[i + 1], subject_.request)) {
         return false;
       }
-      if (points_[i] != points_[i + 1]) {
-        before = onward(before, points_[i]);
-      }
+      before = after(before, points_[i], points_[i + 1]);
     }
     return true;
   }
 
   /// The least number of steps, found by strides and halving; 0: none up to `most`.
-  int least(std::size_t first_leg, std::size_t last_leg, int most) {
+  int least(int most) {
     int few = 0;
     int enough = 1;
-    while (!is_valid(enough, first_leg, last_leg)) {
+    while (!is_valid(enough)) {
       few = enough;
       enough += std::max(std::min(enough, kStride), enough / 8);
       if (enough > most) {
@@ -75,17 +103,18 @@ class Trial {
     }
     while (enough - few > 1) {
       const int middle = (few + enough) / 2;
-      (is_valid(middle, first_leg, last_leg) ? enough : few) = middle;
+      (is_valid(middle) ? enough : few) = middle;
     }
     return enough;
   }
 
  private:
   const Subject& subject_;
-  Polyline points_;
   std::size_t first_;
   std::size_t last_;
+  std::size_t first_leg_;
   Vec3 direction_;
+  Polyline points_;
 };
 
 struct Change {
@@ -107,8 +136,8 @@ std::optional<Change> least_change(const Subject& subject, std::size_t leg, bool
     const std::size_t first_leg = both ? leg : std::max<std::size_t>(waypoint, 1) - 1;
     const std::size_t last_leg = both ? leg : std::min(waypoint, subject.points.size() - 2);
     for (const Vec3& direction : directions) {
-      Trial trial(subject, first, last, direction);
-      const int steps = trial.least(first_leg, last_leg, least);
+      Trial trial(subject, first, last, first_leg, last_leg, direction);
+      const int steps = trial.least(least);
       if (steps != 0 && (!best || steps < least)) {
         best = Change{first, last, steps * kStep * direction};
         least = steps;
@@ -143,7 +172,7 @@ std::optional<Cure> cure(const Route& route, const Violation& violation, const R
   if (!route.is_straight() || violation.at >= route.leg_count()) {
     return std::nullopt;
   }
-  const Subject subject{route.waypoints(), follows, request};
+  const Subject subject(route.waypoints(), follows, request);
   const auto change = of_one_waypoint(subject, violation.at);
   return change ? std::optional(Cure{change->first, change->by}) : std::nullopt;
 }
@@ -170,22 +199,12 @@ std::optional<Route> cured(const Route& route, const Request& request,
   if (!route.is_straight()) {
     return std::nullopt;
   }
-  Subject subject{route.waypoints(), follows, request};
+  Subject subject(route.waypoints(), follows, request);
   Polyline& points = subject.points;
-  const auto first_violated = [&] {
-    std::optional<Approach> before = request.before_start(points.front());
-    std::size_t leg = 0;
-    while (leg + 1 < points.size() && leg_ok(before, points[leg], points[leg + 1], request)) {
-      if (points[leg] != points[leg + 1]) {
-        before = onward(before, points[leg]);
-      }
-      ++leg;
-    }
-    return leg;
-  };
   const std::size_t most_rounds = 20 * points.size();
+  std::size_t leg = 0;
   for (std::size_t round = 0; round < most_rounds; ++round) {
-    const std::size_t leg = first_violated();
+    leg = subject.first_violated(leg);
     if (leg + 1 >= points.size()) {
       return Route(std::move(points));
     }
@@ -202,6 +221,7 @@ std::optional<Route> cured(const Route& route, const Request& request,
     for (std::size_t i = change->first; i <= change->last; ++i) {
       points[i] = subject.moved(i, change->by);
     }
+    leg = std::max<std::size_t>(change->first, 1) - 1;
   }
   return std::nullopt;
 }

@@ -32,12 +32,7 @@ double flight_time(const kit::MissionFile& plan, double speed_mps) {
                         std::cos(radians((item.at.lat + before.at.lat) / 2));
     seconds += std::hypot(north, east) / speed +
                std::abs(height(item) - height(before)) / kVertical + item.hold_s;
-    if (item.circle) {
-      if (item.circle->until == kit::MissionCircle::Until::forever) {
-        return kInfinity;
-      }
-      seconds += 2 * kPi * item.circle->radius_m * (item.circle->turns + 1) / speed;
-    }
+    seconds += 2 * kPi * item.loiter_m * (item.turns + 1) / speed;
   }
   return seconds;
 }

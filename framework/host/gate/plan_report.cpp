@@ -17,102 +17,6 @@ using kit::MissionItem;
 using kit::MissionPoint;
 using Kind = MissionItem::Kind;
 
-/// Height of the ground there, else of home, else of the point.
-double foot_of(const Vec3& top, const std::optional<MissionPoint>& home, const World& world) {
-  const std::optional<double> ground = world.ground(top.x(), top.y());
-  return std::min(top.z(), ground ? *ground : home ? home->altitude_m : top.z());
-}
-
-std::string type_of(const MissionItem& item) {
-  return item.kind == Kind::takeoff  ? "take-off"
-         : item.kind == Kind::land   ? "landing"
-         : item.kind == Kind::loiter ? "loiter"
-                                     : "waypoint";
-}
-
-std::string name_of_item(const MissionItem& item) {
-  return item.number > 0 ? "item " + std::to_string(item.number) + " (" + type_of(item) + ")"
-                         : item.place;
-}
-
-std::string name_of_move(const kit::MissionMove& move) {
-  const std::string what = move.command == kit::MissionMove::kReturn ? "return to launch"
-                           : move.command == 177                     ? "jump"
-                           : move.command == 0                       ? "complex item"
-                                               : "command " + std::to_string(move.command);
-  return (move.number > 0 ? "item " + std::to_string(move.number) : move.place) + " (" + what + ")";
-}
-
-/// A return at the end as a landing at home.
-void end_at_home(kit::MissionFile& plan) {
-  if (plan.moves.empty() || !plan.home || plan.items.empty()) {
-    return;
-  }
-  const kit::MissionMove& last = plan.moves.back();
-  if (last.command == kit::MissionMove::kReturn && last.after == plan.items.size() &&
-      plan.items.back().kind != Kind::land) {
-    MissionItem landing{Kind::land, *plan.home, 0, last.place};
-    landing.number = last.number;
-    plan.items.push_back(std::move(landing));
-    plan.moves.pop_back();
-  }
-}
-
-/// Splits a mission into its route and what is no leg of it.
-class Splitter {
- public:
-  Splitter(kit::MissionFile plan, const World& world) : plan_(std::move(plan)), world_(world) {}
-
-  std::vector<Passage> passages;
-
-  kit::MissionFile route() {
-    end_at_home(plan_);
-    if (plan_.items.empty()) {
-      return plan_;
-    }
-    if (const MissionItem& first = plan_.items.front(); first.kind == Kind::takeoff) {
-      const Vec3 top = place(first);
-      add(first, top, top);
-    }
-    if (plan_.items.size() > 1 && plan_.items.back().kind == Kind::land) {
-      end_above_landing();
-    }
-    return plan_;
-  }
-
- private:
-  Vec3 place(const MissionItem& item) const {
-    try {
-      return to_local(item.at, plan_.home, world_);
-    } catch (const Error& error) {
-      throw Error(name_of_item(item) + ": " + error.what());
-    }
-  }
-
-  void add(const MissionItem& item, const Vec3& foot, const Vec3& top) {
-    const double z = foot_of({foot.x(), foot.y(), top.z()}, plan_.home, world_);
-    passages.push_back(
-        {name_of_item(item), item.kind == Kind::takeoff, {foot.x(), foot.y(), z}, top});
-  }
-
-  void end_above_landing() {
-    MissionItem& landing = plan_.items.back();
-    const Vec3 before = place(plan_.items[plan_.items.size() - 2]);
-    const auto [x, y] = world_.frame().to_local(landing.at.lon, landing.at.lat);
-    const bool is_elsewhere = std::hypot(x - before.x(), y - before.y()) > kRoundingReach;
-    const bool is_flown_to = is_elsewhere && !plan_.is_wing;
-    add(landing, {x, y, 0}, is_flown_to ? Vec3(x, y, before.z()) : before);
-    if (is_flown_to) {
-      landing.at = {landing.at.lon, landing.at.lat, before.z(), kit::AltitudeFrame::sea};
-    } else {
-      plan_.items.pop_back();
-    }
-  }
-
-  kit::MissionFile plan_;
-  const World& world_;
-};
-
 /// True if the violation is of a layer with ground.
 bool is_ground(const Violation& violation, const Request& request) {
   const auto& layers = request.world->layers();
@@ -120,6 +24,13 @@ bool is_ground(const Violation& violation, const Request& request) {
     return layer.environment->ground() != nullptr &&
            violation.message.find("'" + layer.id + "'") != std::string::npos;
   });
+}
+
+/// True if an aeroplane's climb or descent goes through the ground, or beyond what is known of it.
+bool meets_ground(const Passage& passage, const World& world) {
+  constexpr double kTouch = 1;  // metres: where it ends
+  return !passage.is_vertical && world.has_ground() &&
+         !(world.ground_gap(passage.foot, passage.top) >= -kTouch);
 }
 
 /// The layer, but not the ground, that the vehicle comes too near to; null if none.
@@ -233,14 +144,32 @@ void add_violations(PlanReport& report, const CheckResult& verdict, const Reques
 
 void add_passages(PlanReport& report, const Request& request) {
   for (const Passage& passage : report.passages) {
-    if (const Layer* layer = layer_in_the_way(passage, request)) {
-      Violation violation;
-      violation.at = passage.is_climb ? 0 : report.imported.route.size() - 1;
-      violation.constraint = passage.is_climb ? "climb" : "descent";
-      violation.message = "the " + violation.constraint +
-                          (passage.is_climb ? " after take-off" : " to land") +
-                          " passes too close to '" + layer->id + "'";
-      Finding finding{violation, {passage.item}, (passage.foot + passage.top) / 2, {}};
+    const Layer* layer = layer_in_the_way(passage, request);
+    const bool is_in_ground = meets_ground(passage, *request.world);
+    if (layer == nullptr && !is_in_ground) {
+      continue;
+    }
+    Violation violation;
+    violation.at = passage.is_climb ? 0 : report.imported.route.size() - 1;
+    violation.constraint = passage.is_climb ? "climb" : "descent";
+    violation.message = "the " + violation.constraint +
+                        (passage.is_climb ? " after take-off" : " to land") +
+                        (is_in_ground ? " goes through the ground, or beyond what is known of it"
+                                      : " passes too close to '" + layer->id + "'");
+    Finding finding{violation, {passage.item}, (passage.foot + passage.top) / 2, {}};
+    name_zone(finding, request);
+    report.findings.push_back(std::move(finding));
+  }
+}
+
+void add_ways(PlanReport& report, const Request& request) {
+  for (const Way& way : report.ways) {
+    for (Violation violation : leg_violations(std::nullopt, way.leg, request, 0)) {
+      violation.message = way.what + ": " + violation.message;
+      Finding finding{violation, {way.item}, way.leg.at(0.5), {}};
+      if (way.leg.kind() == Leg::Kind::straight) {
+        finding.at = worst_place(way.leg.from, way.leg.to, violation, request);
+      }
       name_zone(finding, request);
       report.findings.push_back(std::move(finding));
     }
@@ -253,6 +182,18 @@ void add_moves(PlanReport& report, const kit::MissionFile& plan) {
     violation.constraint = "not_judged";
     violation.message = "where this flies is not judged: replace it by waypoints";
     report.findings.push_back({violation, {name_of_move(move)}, {}, {}});
+  }
+}
+
+/// What is judged by what the mission says, though the vehicle may do otherwise.
+void note_unknown(const kit::MissionFile& plan, std::vector<std::string>& notes) {
+  if (!plan.items.empty() && plan.items.front().kind != Kind::takeoff) {
+    notes.emplace_back("the mission has no take-off: the way from home is not judged");
+  }
+  for (const MissionItem& item : plan.items) {
+    if (item.kind == Kind::loiter && item.loiter_m == 0) {
+      notes.push_back(name_of_item(item) + ": judged as a point: it gives no radius");
+    }
   }
 }
 
@@ -305,14 +246,6 @@ void expect_on_ground(const kit::MissionFile& plan, const World& world) {
               with_digits(first.at.lon, 9) +
               (is_swapped ? ", which are swapped: exchanged, all are within" : ""));
 }
-
-kit::MissionFile told(const std::string& file, const auto& read) {
-  try {
-    return read();
-  } catch (const Error& error) {
-    throw Error(file + ": " + error.what());
-  }
-}
 }  // namespace
 
 std::string PlanReport::name_of(std::size_t waypoint) const {
@@ -346,12 +279,16 @@ PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, con
   report.file = file;
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
-  Splitter splitter(plan, world.truth);
-  const kit::MissionFile flown = told(file, [&] {
+  FlownParts parts;
+  try {
     expect_on_ground(plan, world.truth);
-    return splitter.route();
-  });
-  report.passages = splitter.passages;
+    parts = flown_parts(plan, world.truth);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
+  report.passages = std::move(parts.passages);
+  report.ways = std::move(parts.ways);
+  const kit::MissionFile& flown = parts.route;
   report.imported = route_in(flown, world.truth, request, file);
   const Route& route = report.imported.route;
   if (own_ends) {
@@ -361,12 +298,11 @@ PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, con
   report.notes = report.imported.notes;
   add_violations(report, judge(route, request, own_ends ? std::vector<Goal>{} : world.via),
                  request);
+  add_ways(report, request);
   add_passages(report, request);
   add_moves(report, flown);
   add_home(report, plan, world.truth);
-  if (!flown.items.empty() && flown.items.front().kind != Kind::takeoff && plan.home) {
-    report.notes.emplace_back("the mission has no take-off: the way from home is not judged");
-  }
+  note_unknown(plan, report.notes);
   report.measures = measure(route, request);
   return report;
 }

@@ -7,6 +7,7 @@
 
 #include "altiplan/measures.hpp"
 #include "host/gate/cure.hpp"
+#include "host/gate/flown_parts.hpp"
 #include "host/import_export/imported_route.hpp"
 
 namespace altiplan::host {
@@ -19,14 +20,6 @@ struct Finding {
   std::optional<Cure> cure;        ///< of one waypoint
 };
 
-/// A motion that is no leg of the route: a climb after take-off, or a descent to land.
-struct Passage {
-  std::string item;  ///< as ground stations name it
-  bool is_climb = true;
-  Vec3 foot{0, 0, 0};
-  Vec3 top{0, 0, 0};
-};
-
 inline constexpr double kHomeTolerance = 10;  ///< metres
 
 /// The verdict on a mission of a ground station.
@@ -34,6 +27,7 @@ struct PlanReport {
   std::string file;
   ImportedRoute imported;
   std::vector<Passage> passages;
+  std::vector<Way> ways;
   std::vector<Finding> findings;  ///< none: passed
   Measures measures;
   std::vector<std::string> notes;  ///< how the file and the world were read
@@ -50,7 +44,8 @@ void expect_route(const std::string& file, const kit::MissionFile& plan);
 
 /// Judges the mission's route and, by the layers but the ground, its climb from home and its
 /// descent to land. A landing that is not below the item before it, and a return at the end, are
-/// flown to at that item's height, a landing by an aeroplane straight down to the ground. Other
+/// flown to at that item's height, a landing by an aeroplane straight down to the ground. The way
+/// from home and whole circles of loiters are judged as legs. Other
 /// commands that fly somewhere, and heights relative to a home that is more than kHomeTolerance off
 /// the ground, are findings. Throws Error for a mission wholly beside the ground. With `own_ends`
 /// the route need not begin and end where the world's scenario says. Messages begin with `file`.

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
+#include "altiplan/geometry.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "mission_parts.hpp"
 #include "text_file.hpp"
@@ -106,8 +108,20 @@ MissionFile read_json_mission(const std::string& file, const std::string& text) 
 
 /// Seconds spent at a waypoint, or in a loiter of a given time.
 double hold_of(const CommandList::Command& command) {
+  constexpr int kForever = 17;
   const bool holds = (command.number == 16 || command.number == 19) && command.params[0] > 0;
-  return holds ? command.params[0] : 0;
+  return command.number == kForever ? kInfinity : holds ? command.params[0] : 0;
+}
+
+/// The radius that a loiter's parameters give; 0: none, or beyond kMaxRadius.
+double loiter_radius_of(const CommandList::Command& command) {
+  const double radius = std::abs(command.params[command.number == 31 ? 1 : 2]);
+  return radius > 0 && radius <= kMaxRadius ? radius : 0;
+}
+
+/// Full circles of a loiter, which take time that its speed tells.
+double turns_of(const CommandList::Command& command) {
+  return command.number == 18 && command.params[0] > 0 ? std::min(command.params[0], kMaxTurns) : 0;
 }
 
 bool is_nowhere(double lon, double lat) {
@@ -190,13 +204,21 @@ MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kin
 
 bool CommandList::take(const Command& command) {
   constexpr int kDelay = 93;
+  constexpr int kConditionDelay = 112;
   constexpr int kChangeSpeed = 178;
-  if (command.number == kChangeSpeed && command.params[1] > 0) {
-    speed_mps_ = command.params[1];
+  const auto& params = command.params;
+  if (command.number == kChangeSpeed) {
+    constexpr double kDefault = -2;
+    constexpr double kFastest = 1000;
+    const bool is_speed = params[0] == 0 || params[0] == 1;  // through the air, over the ground
+    if (is_speed && (params[1] == kDefault || (params[1] > 0 && params[1] <= kFastest))) {
+      speed_mps_ = std::max(params[1], 0.0);
+    }
     return true;
   }
-  if (command.number == kDelay && command.params[0] > 0 && !mission_.items.empty()) {
-    mission_.items.back().hold_s += command.params[0];
+  if (command.number == kDelay || command.number == kConditionDelay) {
+    const double hold = params[0] >= 0 ? params[0] : kInfinity;  // until a time of day
+    (mission_.items.empty() ? hold_s_ : mission_.items.back().hold_s) += hold;
     return true;
   }
   return false;
@@ -217,9 +239,16 @@ void CommandList::add(const Command& command) {
     return;
   }
   const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
-  mission_.items.push_back({*kind, place_of(command, *kind), acceptance, command.place,
-                            circle_of(command.number, command.params), speed_mps_,
-                            hold_of(command), command.item});
+  MissionItem item{*kind, place_of(command, *kind), acceptance, command.place,
+                   circle_of(command.number, command.params)};
+  item.speed_mps = speed_mps_;
+  item.hold_s = hold_of(command) + std::exchange(hold_s_, 0.0);
+  item.number = command.item;
+  if (*kind == MissionItem::Kind::loiter) {
+    item.loiter_m = loiter_radius_of(command);
+    item.turns = turns_of(command);
+  }
+  mission_.items.push_back(std::move(item));
 }
 
 void CommandList::skip_complex(const std::string& place) {

@@ -42,7 +42,9 @@ struct MissionItem {
   /// Of a loiter whose radius the file gives, and which is left along a tangent or never.
   std::optional<MissionCircle> circle{};
   double speed_mps = 0;  ///< on the way to it, from the commands before; 0: as the vehicle's
-  double hold_s = 0;     ///< spent there
+  double hold_s = 0;     ///< spent there; infinite where nothing ends it, or a time of day does
+  double loiter_m = 0;   ///< radius of a loiter of any kind; 0 where the file gives none
+  double turns = 0;      ///< full circles of a loiter
   int number = 0;        ///< as ground stations show it; 0: the format numbers nothing
 };
 
