@@ -197,6 +197,36 @@ class Model:
         found = np.concatenate([c, c + s + q, c + t * (s + q * t)])
         return found.min(), found.max()
 
+    def circle(self, centre, radius):
+        """Least and greatest height above ground of a level circle; None where it leaves the posts."""
+        centre = np.array(centre, float)
+        if not all(self.holds(*(centre[:2] + radius * np.array(d))) for d in ((1, 0), (-1, 0), (0, 1), (0, -1))):
+            return None
+        turns = [np.linspace(0, 2 * math.pi, 33)]
+        for k in (0, 1):
+            low, high = (centre[k] - radius) / self.step[k], (centre[k] + radius) / self.step[k]
+            lines = np.arange(math.ceil(low), math.floor(high) + 1) * self.step[k]
+            off = np.arccos(np.clip((lines - centre[k]) / radius, -1, 1))
+            turns.append(np.concatenate([off, -off]) + k * math.pi / 2)
+        cuts = np.unique(np.concatenate(turns) % (2 * math.pi))
+        cuts = np.append(cuts, cuts[0] + 2 * math.pi)
+
+        def places(t):
+            return (centre[:2] + radius * np.stack([np.cos(t), np.sin(t)], -1)) / self.step
+
+        cells = self.cell(places((cuts[:-1] + cuts[1:]) / 2))
+        found = []
+        for sign in (1, -1):
+            low, high = cuts[:-1], cuts[1:]
+            for _ in range(16):
+                t = low[:, None] + (high - low)[:, None] * (GRID + 1) / 2
+                values = sign * (centre[2] - self.at(places(t).reshape(-1, 2), cells.repeat(GRID.size, 0)))
+                best = values.reshape(t.shape).argmin(1)
+                rows = np.arange(len(t))
+                low, high = t[rows, np.maximum(best - 1, 0)], t[rows, np.minimum(best + 1, GRID.size - 1)]
+            found.append(sign * values.min())
+        return tuple(found)
+
     def clipped(self, a, b):
         """The part of a leg that is over the posts, None if there is none."""
         a, b = np.array(a, float), np.array(b, float)

@@ -54,6 +54,7 @@ class Mutant:
         self.set_heights()
         if rng.random() < 0.1:
             self.vehicle = 1
+        self.has_circle = rng.random() < 0.08 and self.add_circle()
 
     def shorten(self):
         count = self.rng.choice([5, 8, 12, 16])
@@ -128,6 +129,23 @@ class Mutant:
             row[1] = rng.choice(FRAMES[word])
             row[5] = z - {"sea": 0, "home": self.home[2], "ground": here}[word]
 
+    def add_circle(self):
+        """Full circles about one item, left on the tangent to the next, all at one height."""
+        rng, placed = self.rng, [r for r in self.rows if r[0] in POSITIONS]
+        inner = [k for k in range(1, len(placed) - 1) if placed[k][0] == 16]
+        if not inner or not all(is_placed(r) for r in placed) or placed[-1][0] in mission_peer.LAND:
+            return False
+        k = rng.choice(inner)
+        reach = min(math.dist(placed[k][3:5], placed[k + d][3:5]) for d in (-1, 1))
+        if reach < 30:
+            return False
+        placed[k][0] = 18
+        placed[k][2] = [rng.choice([1, 2]), 0, rng.choice([-1, 1]) * rng.uniform(0.1, 0.9) * reach, 1]
+        height = max(self.ground(*r[3:5]) for r in placed) + rng.uniform(-20, 200)
+        for row in placed:
+            row[1], row[5] = 0, height
+        return True
+
     # --- writing
 
     def lonlat(self, row, near):
@@ -142,7 +160,7 @@ class Mutant:
         rng = self.rng
         self.digits = rng.random() < 0.5
         suffix = rng.choice(["plan", "plan", "plan", "waypoints", "waypoints", "waypoints",
-                             "kml", "gpx", "geojson"])
+                             "kml", "gpx", "geojson"][:6 if self.has_circle else 9])
         home = [*self.lonlat([0, 0, 0, *self.home], near), self.home[2]]
         rows = [[*r[:3], *self.lonlat(r, near), r[5]] for r in self.rows]
         if suffix == "plan":

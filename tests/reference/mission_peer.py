@@ -20,13 +20,14 @@ class Item:
     def __init__(self, name, kind, lon, lat, height, frame):
         self.name, self.kind, self.frame = name, kind, frame
         self.lon, self.lat, self.height = lon, lat, height
+        self.circle = None  # radius, positive clockwise, of full circles left on a tangent
 
 
 class Mission:
     def __init__(self):
         self.items, self.home, self.wing = [], None, False
 
-    def command(self, name, number, frame, lon, lat, height):
+    def command(self, name, number, frame, lon, lat, height, params):
         if number not in (*TAKEOFF, *LAND, *OTHERS):
             return
         kind = "takeoff" if number in TAKEOFF else "land" if number in LAND else "other"
@@ -40,6 +41,8 @@ class Mission:
         if frame not in FRAMES:
             raise Refused("frame %d" % frame)
         self.items.append(Item(name, kind, lon, lat, height, FRAMES[frame]))
+        if number == 18 and params[3] == 1 and params[2]:
+            self.items[-1].circle = params[2]
 
 
 def read_waypoints(text):
@@ -53,7 +56,8 @@ def read_waypoints(text):
         if number == 0 and command == 16 and frame == 0:
             mission.home = (lon, lat, height)
         else:
-            mission.command("line %d" % n, command, frame, lon, lat, height)
+            mission.command("line %d" % n, command, frame, lon, lat, height,
+                            [float(w) for w in words[4:8]])
         number += 1
     return mission
 
@@ -65,7 +69,7 @@ def read_plan(document):
 
     def simple(item, name):
         lat, lon, height = item["coordinate"] if "coordinate" in item else item["params"][4:]
-        mission.command(name, item["command"], item["frame"], lon, lat, height)
+        mission.command(name, item["command"], item["frame"], lon, lat, height, item["params"])
 
     for n, item in enumerate(body["items"]):
         name = "mission.items.%d" % n
@@ -126,10 +130,13 @@ class Flight:
 
     def __init__(self, mission, model):
         self.names, self.points, self.columns = [], [], []
+        self.circle = None  # (index of its item, radius), of one level circle between straight legs
         items = mission.items
         if len(items) < 2:
             raise Refused("%d points" % len(items))
-        for item in items:
+        for n, item in enumerate(items):
+            if item.circle:
+                self.circle = (n, item.circle)
             x, y = model.to_local(item.lon, item.lat)
             self.names.append(item.name)
             self.points.append((x, y, self.height(item, x, y, mission, model)))
@@ -171,7 +178,21 @@ class Flight:
         return ground + item.height
 
     def legs(self):
-        return list(zip(self.names, self.names[1:], self.points, self.points[1:], strict=False))
+        found = list(zip(self.names, self.names[1:], self.points, self.points[1:], strict=False))
+        if self.circle:
+            n, radius = self.circle
+            (a, b, before, centre), (c, d, _, after) = found[n - 1:n + 1]
+            found[n - 1] = (a, b, before, tangent(before, centre, radius, 1))
+            found[n] = (c, d, tangent(after, centre, radius, -1), after)
+        return found
+
+
+def tangent(p, centre, radius, way):
+    """Where a straight line from (way 1) or to (way -1) p touches the circle, flown in its sense."""
+    x, y = p[0] - centre[0], p[1] - centre[1]
+    turn = math.acos(abs(radius) / math.hypot(x, y)) * -math.copysign(1, radius) * way
+    angle = math.atan2(y, x) + turn
+    return (centre[0] + abs(radius) * math.cos(angle), centre[1] + abs(radius) * math.sin(angle), centre[2])
 
 
 def same_degrees(items):
@@ -216,9 +237,32 @@ def judge_leg(names, a, b, model, zones, limits):
     return leg
 
 
+def judge_circle(centre, radius, model, zones, limits):
+    """Of a vehicle without a radius; by chords as to zones, whose depth is uncertain by a metre."""
+    leg, heights = Leg(("circle",)), model.circle(centre, radius)
+    corners = [(centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t), centre[2])
+               for t in (2 * math.pi * k / 90 for k in range(91))]
+    leg.margins["ground"] = min(min(centre[k], model.size[k] - centre[k]) - radius for k in (0, 1))
+    if heights is None:
+        leg.off_ground, leg.terrain = True, math.nan
+    else:
+        leg.lowest, leg.terrain = heights[0], heights[0]
+        if "min_agl" in limits:
+            leg.margins["ground_clearance"] = heights[0] - limits["min_agl"]
+        if "max_agl" in limits:
+            leg.margins["altitude"] = limits["max_agl"] - heights[1]
+    for a, b in zip(corners, corners[1:], strict=False):
+        for v in zones_peer.verdicts(zones, a, b, model, 0):
+            leg.zones.append(zones_peer.Verdict(v.zone, v.hit - 1, v.near + 1))
+    return leg
+
+
 def judge(mission, model, zones, limits):
     flight = Flight(mission, model)
     legs = [judge_leg((m, n), a, b, model, zones, limits) for m, n, a, b in flight.legs()]
+    if flight.circle:
+        n, radius = flight.circle
+        legs.append(judge_circle(flight.points[n], abs(radius), model, zones, limits))
     columns = [(rule, item, zones_peer.verdicts(zones, foot, top, model, limits.get("radius", 0)))
                for rule, item, foot, top in flight.columns]
     return legs, columns

@@ -85,8 +85,8 @@ class Case:
         """Limits, half of them next to what decides; zones, some of them made for a leg."""
         rng, limits = self.rng, self.limits
         legs, _ = mission_peer.judge(self.mission, self.world.model, [], {"min_agl": 0, "max_agl": 0})
-        lows = [leg.values["ground_clearance"] for leg in legs if not leg.off_ground]
-        highs = [leg.values["altitude"] for leg in legs if not leg.off_ground]
+        lows = [leg.margins["ground_clearance"] for leg in legs if not leg.off_ground]
+        highs = [-leg.margins["altitude"] for leg in legs if not leg.off_ground]
 
         def beside(value):
             return value + rng.choice([-1, 1]) * 10 ** rng.uniform(-5.4, 1)
@@ -95,7 +95,7 @@ class Case:
             limits["min_agl"] = beside(rng.choice(lows)) if lows and rng.random() < 0.5 else rng.uniform(0, 120)
         if rng.random() < 0.6:
             limits["max_agl"] = beside(max(highs)) if lows and rng.random() < 0.6 else rng.uniform(60, 600)
-        if rng.random() < 0.35:
+        if rng.random() < 0.35 and not mission_peer.Flight(self.mission, self.world.model).circle:
             limits["radius"] = rng.uniform(0, 6)
             if lows and rng.random() < 0.7:
                 limits["radius"] = self.radius(lows, beside)
@@ -104,7 +104,7 @@ class Case:
         for _ in range(rng.choice([0, 0, 1, 1, 2])):
             self.zones.append(rng.choice(self.world.zones))
         if rng.random() < 0.35:
-            self.add_zone(rng.choice(legs), beside)
+            self.add_zone(rng.choice([leg for leg in legs if len(leg.names) == 2]), beside)
         if rng.random() < 0.5:
             day = datetime.datetime(2022, 6, 10, tzinfo=datetime.timezone.utc)
             self.start = round(day.timestamp() + rng.uniform(0, 4.5 * 365) * 86400)
@@ -156,6 +156,8 @@ class Case:
 
 # --- comparison
 
+ORDER = ("violated", "uncertain", "tie", "kept")
+
 
 def status(margin, tie):
     return "tie" if abs(margin) <= tie else "violated" if margin < 0 else "kept"
@@ -174,7 +176,7 @@ def of_zones(verdicts, start):
         if state != "kept":
             states.add(state)
             files.add(v.zone.file)
-    return next((s for s in ("violated", "uncertain", "tie") if s in states), "kept"), files
+    return next((s for s in ORDER if s in states), "kept"), files
 
 
 def expected(case):
@@ -185,8 +187,7 @@ def expected(case):
     for leg in legs:
         def note(rule, state, leg=leg):
             key = (rule, leg.names)
-            order = ("violated", "uncertain", "tie", "kept")
-            states[key] = min(states.get(key, "kept"), state, key=order.index)
+            states[key] = min(states.get(key, "kept"), state, key=ORDER.index)
         for rule, margin in leg.margins.items():
             note(rule, status(margin, TIE_M))
             close += abs(margin) < 1e-3
@@ -213,12 +214,25 @@ def heights_differ(told, least):
     return (told is None) != (least is None) or told is not None and abs(told - least) > 2e-6
 
 
+def by_rule(states):
+    """With turns, a program's legs are more than the items': the worst of each constraint."""
+    found = {}
+    for (rule, items), state in states.items():
+        key = (rule, items if rule in ("climb", "descent") else ())
+        found[key] = min(found.get(key, "kept"), state, key=ORDER.index)
+    return found
+
+
 def differences(case, answer):
     """Sentences about what program and peer do not agree on, and the mission's state."""
     states, files, values, least, close = expected(case)
+    turns = ("clearance", ("circle",)) in states
+    if turns:
+        states, files, values = by_rule(states), {}, {}
     found, wrong = set(), []
     for v in answer["violations"]:
-        key = (v["constraint"], tuple(v["items"]))
+        items = () if turns and v["constraint"] not in ("climb", "descent") else tuple(v["items"])
+        key = (v["constraint"], items)
         found.add(key)
         state = states.get(key)
         if state is None:
@@ -226,7 +240,7 @@ def differences(case, answer):
         elif state == "kept":
             wrong.append("refused that is valid: %s" % v)
         named = re.search("'([^']*)'", v["message"])
-        if named and state in ("violated", "uncertain", "tie") and named[1] not in files[key]:
+        if named and state in ORDER[:3] and named[1] not in files.get(key, named[1]):
             wrong.append("another layer: %s, expected one of %s" % (v, files[key]))
         if key in values and all(abs(v["value"] - mine) > 2e-6 for mine in values[key]):
             wrong.append("another value: %s, expected %r" % (v, values[key]))
@@ -236,10 +250,12 @@ def differences(case, answer):
     if answer["passed"] != (not answer["violations"]):
         wrong.append("passed with violations")
     told = answer["metrics"]["min_ground_clearance_m"]
-    if heights_differ(told, least):
+    if not turns and heights_differ(told, least):
         wrong.append("least height above ground %s, expected %s" % (told, least))
-    worst = next((s for s in ("violated", "uncertain", "tie") if s in states.values()), "kept")
-    return wrong, worst, collections.Counter(states.values()) + collections.Counter({"within 1 mm of a limit": close})
+    worst = next((s for s in ORDER if s in states.values()), "kept")
+    legs = collections.Counter(states.values()) + collections.Counter(
+        {"within 1 mm of a limit": close, "of missions with circles": turns * len(states)})
+    return wrong, worst, legs
 
 
 def judge(case, program, counts):
