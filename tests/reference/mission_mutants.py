@@ -15,7 +15,7 @@ ROUTES = ["px4_avoidance.plan", "qgc_SectionTest.plan", "qgroundcontrol_sample.p
           "qgroundcontrol_sample_with_survey.plan", "dronekit_mpmission.waypoints",
           "qgc_100Waypoints.waypoints", "qgc_MissionPlanner.waypoints", "qgc_MissionPlanner_full.waypoints",
           "mavproxy_springvalley-foamy-mission-cw.txt"]
-POSITIONS = (*mission_peer.TAKEOFF, *mission_peer.LAND, *mission_peer.OTHERS)
+POSITIONS = tuple(mission_peer.KINDS)
 FRAMES = {"sea": (0, 5), "home": (3, 6), "ground": (10, 11)}
 
 
@@ -48,6 +48,9 @@ class Mutant:
     def __init__(self, text, model, rng):
         self.model, self.rng = model, rng
         self.home, self.vehicle, self.rows = commands(text)
+        self.fence = None
+        keeps = rng.random() < 0.15  # commands that are not judged
+        self.rows = [r for r in self.rows if keeps or r[0] == 20 or r[0] not in mission_peer.MOVES]
         self.shorten()
         self.place()
         self.reorder()
@@ -112,10 +115,10 @@ class Mutant:
     def set_heights(self):
         """Near the ground or over the highest of it, in one frame or in any."""
         rng = self.rng
-        self.home[2] = self.ground(*self.home[:2]) + rng.choice([0, 0, rng.uniform(-20, 20)])
+        self.home[2] = self.ground(*self.home[:2]) + rng.choice([0, 0, 0, rng.uniform(-20, 20)])
         placed = [r for r in self.rows if is_placed(r)]
         tops = [self.ground(*r[3:5]) for r in placed] or [0]
-        above, level = rng.uniform(5, 250), rng.random() < 0.6
+        above, level = rng.uniform(5, 250), rng.random() < 0.75
         spread = rng.choice([0, 5, 60])
         words = rng.choice([["sea"], ["home"], ["ground"], ["sea", "home", "ground"]])
         for row in self.rows:
@@ -188,8 +191,9 @@ class Mutant:
                                        "TransectStyleComplexItem": {"Items": items[first:first + 3]}}]
         body = {"version": 2, "firmwareType": 12, "vehicleType": self.vehicle, "cruiseSpeed": 15,
                 "hoverSpeed": 5, "plannedHomePosition": home, "items": items}
+        fence = self.fence or {"version": 2, "polygons": [], "circles": []}
         return json.dumps({"fileType": "Plan", "version": 1, "groundStation": "test", "mission": body,
-                           "geoFence": {"version": 2, "polygons": [], "circles": []},
+                           "geoFence": fence,
                            "rallyPoints": {"version": 2, "points": []}})
 
     def map_text(self, suffix, home, rows):

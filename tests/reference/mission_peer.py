@@ -7,9 +7,15 @@ import xml.etree.ElementTree as ET
 
 import zones_peer
 
-TAKEOFF, LAND, OTHERS = (22, 84), (21, 85), (16, 82, 17, 18, 19, 31)
+TAKEOFF, LAND, WAYPOINT, LOITER = (22, 84), (21, 85), (16, 82), (17, 18, 19, 31)
+RETURN = 20
+# Fly the vehicle somewhere, but to no position that is known.
+MOVES = (RETURN, 23, 24, 25, 30, 32, 33, 34, 35, 36, 81, 83, 92, 94, 176, 177, 192, 601)
+KINDS = {**dict.fromkeys(TAKEOFF, "take-off"), **dict.fromkeys(LAND, "landing"),
+         **dict.fromkeys(WAYPOINT, "waypoint"), **dict.fromkeys(LOITER, "loiter")}
 FRAMES = {0: "sea", 5: "sea", 3: "home", 6: "home", 10: "ground", 11: "ground"}
 SAME_PLACE_M = 0.02
+HOME_M = 10  # between home's height in the mission and the ground there
 
 
 class Refused(Exception):
@@ -21,18 +27,24 @@ class Item:
         self.name, self.kind, self.frame = name, kind, frame
         self.lon, self.lat, self.height = lon, lat, height
         self.circle = None  # radius, positive clockwise, of full circles left on a tangent
+        self.loiter = 0  # radius of any loiter
 
 
 class Mission:
     def __init__(self):
         self.items, self.home, self.wing = [], None, False
+        self.moves = []  # (name, number, how many items come before)
 
-    def command(self, name, number, frame, lon, lat, height, params):
-        if number not in (*TAKEOFF, *LAND, *OTHERS):
+    def command(self, number, command, frame, place, params):
+        """`number` as ground stations show it; `place` is longitude, latitude and height."""
+        if command in MOVES:
+            what = {RETURN: "return to launch", 177: "jump"}.get(command, "command %d" % command)
+            self.moves.append(("item %d (%s)" % (number, what), command, len(self.items)))
+        if command not in KINDS:
             return
-        kind = "takeoff" if number in TAKEOFF else "land" if number in LAND else "other"
+        lon, lat, height = place
         if lon == 0 and lat == 0 or lon is None and lat is None:
-            if number in (16, 82):
+            if command in WAYPOINT:
                 raise Refused("a waypoint without a position")
             before = (self.items[-1].lon, self.items[-1].lat) if self.items else self.home
             if before is None:
@@ -40,24 +52,36 @@ class Mission:
             lon, lat = before[:2]
         if frame not in FRAMES:
             raise Refused("frame %d" % frame)
-        self.items.append(Item(name, kind, lon, lat, height, FRAMES[frame]))
-        if number == 18 and params[3] == 1 and params[2]:
+        kind = KINDS[command]
+        self.items.append(Item("item %d (%s)" % (number, kind), kind, lon, lat, height, FRAMES[frame]))
+        if command in LOITER:
+            self.items[-1].loiter = abs(params[1 if command == 31 else 2] or 0)
+        if command == 18 and params[3] == 1 and params[2]:
             self.items[-1].circle = params[2]
+
+    def end_at_home(self):
+        """A return that ends the mission is a landing at home."""
+        if not self.moves or not self.items or self.home is None:
+            return
+        name, command, before = self.moves[-1]
+        if command == RETURN and before == len(self.items) and self.items[-1].kind != "landing":
+            self.moves.pop()
+            name = name.replace("return to launch", "landing")
+            self.items.append(Item(name, "landing", *self.home, "sea"))
 
 
 def read_waypoints(text):
     mission, number = Mission(), 0
-    for n, line in enumerate(text.splitlines(), 1):
+    for line in text.splitlines()[1:]:
         words = line.split()
-        if n == 1 or not words:
+        if not words:
             continue
         frame, command = int(words[2]), int(words[3])
         lat, lon, height = map(float, words[8:11])
         if number == 0 and command == 16 and frame == 0:
             mission.home = (lon, lat, height)
         else:
-            mission.command("line %d" % n, command, frame, lon, lat, height,
-                            [float(w) for w in words[4:8]])
+            mission.command(number, command, frame, (lon, lat, height), [float(w) for w in words[4:8]])
         number += 1
     return mission
 
@@ -67,18 +91,11 @@ def read_plan(document):
     lat, lon, height = body["plannedHomePosition"]
     mission.home, mission.wing = (lon, lat, height), body["vehicleType"] == 1
 
-    def simple(item, name):
-        lat, lon, height = item["coordinate"] if "coordinate" in item else item["params"][4:]
-        mission.command(name, item["command"], item["frame"], lon, lat, height, item["params"])
-
-    for n, item in enumerate(body["items"]):
-        name = "mission.items.%d" % n
-        if item["type"] == "SimpleItem":
-            simple(item, name)
-        else:
-            inner = item.get("TransectStyleComplexItem", {}).get("Items", [])
-            for k, one in enumerate(inner):
-                simple(one, "%s.TransectStyleComplexItem.Items.%d" % (name, k))
+    for item in body["items"]:
+        inner = [item] if item["type"] == "SimpleItem" else item["TransectStyleComplexItem"]["Items"]
+        for one in inner:
+            lat, lon, height = one["coordinate"] if "coordinate" in one else one["params"][4:]
+            mission.command(one["doJumpId"], one["command"], one["frame"], (lon, lat, height), one["params"])
     return mission
 
 
@@ -91,7 +108,7 @@ def read_geojson(document):
         if frame == "home":
             mission.home = feature["properties"]["home"]
         for k, (lon, lat, height) in enumerate(feature["geometry"]["coordinates"]):
-            mission.items.append(Item("features.%d.geometry.coordinates.%d" % (n, k), "other",
+            mission.items.append(Item("features.%d.geometry.coordinates.%d" % (n, k), "waypoint",
                                       lon, lat, height, frame))
     return mission
 
@@ -110,7 +127,7 @@ def read_xml(text):
         else:
             continue
         for p in points:
-            mission.items.append(Item("point %d" % (len(mission.items) + 1), "other", *p, frame))
+            mission.items.append(Item("point %d" % (len(mission.items) + 1), "waypoint", *p, frame))
     return mission
 
 
@@ -126,43 +143,61 @@ def read(text):
 
 
 class Flight:
-    """Names and places of the points that legs join, and columns: (constraint, item, foot, top)."""
+    """Names and places of the points that legs join; columns: (constraint, item, foot, top), of an aeroplane
+    slanted; and what is judged beside the route: (item, from, to) and (item, centre, radius)."""
 
     def __init__(self, mission, model):
-        self.names, self.points, self.columns = [], [], []
+        self.names, self.points, self.columns, self.ways, self.circles = [], [], [], [], []
         self.circle = None  # (index of its item, radius), of one level circle between straight legs
-        items = mission.items
-        if len(items) < 2:
-            raise Refused("%d points" % len(items))
-        for n, item in enumerate(items):
+        self.model, self.home, self.wing = model, mission.home, mission.wing
+        if not mission.items:
+            raise Refused("no route")
+        if all(model.ground(*model.to_local(i.lon, i.lat)) is None for i in mission.items):
+            raise Refused("no position within the model")
+        mission.end_at_home()
+        for n, item in enumerate(mission.items):
             if item.circle:
                 self.circle = (n, item.circle)
             x, y = model.to_local(item.lon, item.lat)
             self.names.append(item.name)
             self.points.append((x, y, self.height(item, x, y, mission, model)))
+            if item.loiter:
+                self.circles.append((item.name, self.points[-1], item.loiter))
+        if mission.items[0].kind == "take-off":
+            self.begin()
+        if len(mission.items) > 1 and mission.items[-1].kind == "landing":
+            self.end(mission.items)
 
-        def foot(x, y, top):
-            ground = model.ground(x, y)
-            if ground is None:
-                ground = mission.home[2] if mission.home else top[2]
-            return (x, y, min(top[2], ground))
+    def foot(self, x, y, top):
+        ground = self.model.ground(x, y)
+        if ground is None:
+            ground = self.home[2] if self.home else top[2]
+        return (x, y, min(top[2], ground))
 
-        if items[0].kind == "takeoff":
-            top = self.points[0]
-            self.columns.append(("climb", items[0].name, foot(*top[:2], top), top))
-        if items[-1].kind == "land":
-            before, (x, y, _) = self.points[-2:]
-            over = before
-            if math.hypot(x - before[0], y - before[1]) > SAME_PLACE_M and not mission.wing:
-                over = (x, y, before[2])
-            self.columns.append(("descent", items[-1].name, foot(x, y, over), over))
-            if over == before:
-                self.names.pop()
-                self.points.pop()
-                if len(items) == 2 and same_degrees(items):
-                    raise Refused("one point")
-            else:
-                self.points[-1] = over
+    def begin(self):
+        name, top = self.names[0], self.points[0]
+        above = top
+        if self.home:
+            x, y = self.model.to_local(*self.home[:2])
+            if math.dist((x, y), top[:2]) > SAME_PLACE_M:
+                above = (x, y, top[2])
+        self.columns.append(("climb", name, self.foot(*above[:2], above), top if self.wing else above))
+        if above != top and not self.wing:
+            self.ways.append((name, above, top))
+
+    def end(self, items):
+        before, (x, y, _) = self.points[-2:]
+        is_flown_to = math.dist((x, y), before[:2]) > SAME_PLACE_M and not self.wing
+        over = (x, y, before[2]) if is_flown_to else before
+        self.columns.append(("descent", self.names[-1], self.foot(x, y, over), over))
+        if is_flown_to:
+            self.points[-1] = over
+            return
+        self.names.pop()
+        self.points.pop()
+        if len(items) > 2 and items[-2].kind == "landing" and same_degrees(items[-3:-1]):
+            self.names.pop()  # nor is another one straight below
+            self.points.pop()
 
     @staticmethod
     def height(item, x, y, mission, model):
@@ -196,7 +231,7 @@ def tangent(p, centre, radius, way):
 
 
 def same_degrees(items):
-    a, b = items[-2:]
+    a, b = items
     return abs(a.lon - b.lon) <= 2e-7 and abs(a.lat - b.lat) <= 2e-7
 
 
@@ -237,32 +272,57 @@ def judge_leg(names, a, b, model, zones, limits):
     return leg
 
 
-def judge_circle(centre, radius, model, zones, limits):
-    """Of a vehicle without a radius; by chords as to zones, whose depth is uncertain by a metre."""
-    leg, heights = Leg(("circle",)), model.circle(centre, radius)
+def judge_circle(name, centre, radius, model, zones, limits):
+    """By chords as to zones, whose depth is uncertain by a metre; by slopes as to a vehicle's radius."""
+    leg, heights, keep = Leg((name,)), model.circle(centre, radius), limits.get("radius", 0)
     corners = [(centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t), centre[2])
                for t in (2 * math.pi * k / 90 for k in range(91))]
     leg.margins["ground"] = min(min(centre[k], model.size[k] - centre[k]) - radius for k in (0, 1))
     if heights is None:
         leg.off_ground, leg.terrain = True, math.nan
     else:
-        leg.lowest, leg.terrain = heights[0], heights[0]
+        leg.lowest, leg.terrain = heights[0], heights[0] - keep
+        if keep > 0 and leg.terrain > 0:
+            reach, middle = radius + keep, model.size * 0 + centre[:2]
+            least = leg.lowest / math.hypot(1, model.steepest(middle - reach, middle + reach)) - keep
+            leg.terrain = least if least > 0 else math.nan
         if "min_agl" in limits:
             leg.margins["ground_clearance"] = heights[0] - limits["min_agl"]
         if "max_agl" in limits:
             leg.margins["altitude"] = limits["max_agl"] - heights[1]
     for a, b in zip(corners, corners[1:], strict=False):
-        for v in zones_peer.verdicts(zones, a, b, model, 0):
+        for v in zones_peer.verdicts(zones, a, b, model, keep):
             leg.zones.append(zones_peer.Verdict(v.zone, v.hit - 1, v.near + 1))
     return leg
 
 
-def judge(mission, model, zones, limits):
-    flight = Flight(mission, model)
+def home_margin(mission, model):
+    """None where no height counts from home, or the ground there is unknown."""
+    relative = any(i.frame == "home" and i.kind != "landing" for i in mission.items)
+    ground = model.ground(*model.to_local(*mission.home[:2])) if mission.home and relative else None
+    return None if ground is None else HOME_M - abs(mission.home[2] - ground)
+
+
+TOUCH_M = 1  # an aeroplane's climb and descent end at the ground
+
+
+def judge_column(foot, top, model, zones, limits):
+    """Verdicts of zones; of a slanted one also its height above the ground, less what may be missing."""
+    low = None
+    if foot[:2] != top[:2]:
+        heights = model.leg(foot, top)
+        low = heights[0] + TOUCH_M if heights else -math.inf
+    return zones_peer.verdicts(zones, foot, top, model, limits.get("radius", 0)), low
+
+
+def judge(flight, model, zones, limits):
+    """Legs of the route; those beside it; and (constraint, item, verdicts, height) of columns."""
     legs = [judge_leg((m, n), a, b, model, zones, limits) for m, n, a, b in flight.legs()]
     if flight.circle:
         n, radius = flight.circle
-        legs.append(judge_circle(flight.points[n], abs(radius), model, zones, limits))
-    columns = [(rule, item, zones_peer.verdicts(zones, foot, top, model, limits.get("radius", 0)))
+        legs.append(judge_circle("circle", flight.points[n], abs(radius), model, zones, limits))
+    beside = [judge_leg((name,), a, b, model, zones, limits) for name, a, b in flight.ways]
+    beside += [judge_circle(*circle, model, zones, limits) for circle in flight.circles]
+    columns = [(rule, item, *judge_column(foot, top, model, zones, limits))
                for rule, item, foot, top in flight.columns]
-    return legs, columns
+    return legs, beside, columns
