@@ -183,6 +183,27 @@ class CheckPlan(unittest.TestCase):
         out, _ = self.call(*options, code=1)
         self.assertIn("item 9 (landing): the descent", out)
 
+    def test_of_two_landings_the_descent_begins_above_the_first(self):
+        points = [[-84.38, 36.48, 1500], [-84.20, 36.66, 1500], [-84.20, 36.66, 620], [-84.20, 36.66, 600]]
+        items = [item(p, n + 1) for n, p in enumerate(points)]
+        items[2]["command"] = items[3]["command"] = 21
+        self.write(items)
+        options = ("mission.plan", "--terrain", TERRAIN)
+        self.call(*options, code=0)
+        self.zones("z.json", self.around(-84.20, 36.66), 1450)
+        zone = (self.folder / "z.json").read_text()
+        between = zone.replace('"lowerLimit": 0, "lowerVerticalReference": "AGL"',
+                               '"lowerLimit": 1000, "lowerVerticalReference": "AMSL"')
+        self.assertNotEqual(between, zone)
+        (self.folder / "z.json").write_text(between)
+        out, _ = self.call(*options, "--airspace", "z.json", code=1)
+        self.assertIn("item 4 (landing): the descent to land passes too close", out)
+
+    def test_one_position_is_judged(self):
+        self.check([[-84.20, 36.66, 1500]], "--min-agl", "100", code=0)
+        out, _ = self.check([[-84.20, 36.66, 200]], code=1)
+        self.assertIn("the only position: lies up to", out)
+
     def test_a_return_is_flown_home(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         points = [item(point, n + 1) for n, point in enumerate(high)]

@@ -52,7 +52,13 @@ class Splitter {
     begin_at_home();
     add_circles();
     if (plan_.items.size() > 1 && plan_.items.back().kind == Kind::land) {
+      keep_one_landing();
       end_above_landing();
+    }
+    if (plan_.items.size() == 1) {
+      const Vec3 p = place(plan_.items.front());
+      parts_.ways.push_back(
+          {name_of_item(plan_.items.front()), "the only position", Leg::straight(p, p)});
     }
     parts_.route = std::move(plan_);
     return std::move(parts_);
@@ -100,6 +106,22 @@ class Splitter {
         parts_.ways.push_back(
             {name_of_item(item), "its circle", Loiter{item.loiter_m, 1}.circle(centre)});
       }
+    }
+  }
+
+  /// Of landings at one place: the descent begins above the first.
+  void keep_one_landing() {
+    auto& items = plan_.items;
+    const auto xy = [&](const MissionItem& item) {
+      return world_.frame().to_local(item.at.lon, item.at.lat);
+    };
+    while (items.size() > 2 && items[items.size() - 2].kind == Kind::land) {
+      const auto [x, y] = xy(items.back());
+      const auto [before_x, before_y] = xy(items[items.size() - 2]);
+      if (std::hypot(x - before_x, y - before_y) > kRoundingReach) {
+        break;
+      }
+      items.erase(items.end() - 2);
     }
   }
 
