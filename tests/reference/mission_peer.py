@@ -166,7 +166,9 @@ class Flight:
         if mission.items[0].kind == "take-off":
             self.begin()
         if len(mission.items) > 1 and mission.items[-1].kind == "landing":
-            self.end(mission.items)
+            self.end(list(mission.items))
+        if len(self.points) == 1:
+            self.ways.append((self.names[0], self.points[0], self.points[0]))
 
     def foot(self, x, y, top):
         ground = self.model.ground(x, y)
@@ -186,6 +188,10 @@ class Flight:
             self.ways.append((name, above, top))
 
     def end(self, items):
+        while len(items) > 2 and items[-2].kind == "landing" and (
+                math.dist(self.points[-1][:2], self.points[-2][:2]) <= SAME_PLACE_M):
+            for of in (items, self.names, self.points):  # the descent begins above the first
+                del of[-2]
         before, (x, y, _) = self.points[-2:]
         is_flown_to = math.dist((x, y), before[:2]) > SAME_PLACE_M and not self.wing
         over = (x, y, before[2]) if is_flown_to else before
