@@ -298,6 +298,15 @@ TEST(Structure, OnlyPluginsThatReadGeodataUseGdal) {
   }
 }
 
+// Its headers take seconds to build, in each file.
+TEST(Structure, OneFileOfTheProgramIncludesCli11) {
+  for (const fs::path& file : sources("tools/altiplan")) {
+    EXPECT_TRUE(file.filename() == "command_line.cpp" ||
+                forbidden({file}, std::regex("^CLI/")).empty())
+        << file;
+  }
+}
+
 TEST(Structure, EveryPluginFolderIsWhole) {
   const std::vector<PluginFolder> folders = plugin_folders();
   EXPECT_GE(folders.size(), 8u);

@@ -137,7 +137,11 @@ void add_violations(PlanReport& report, const CheckResult& verdict, const Reques
       cure_of_leg->second =
           cure(report.imported.route, violation, request, report.follows_ground());
     }
-    finding.cure = cure_of_leg->second;
+    const auto& cured = cure_of_leg->second;
+    const auto& items = report.imported.items;
+    if (cured && !(cured->waypoint < items.size() && items[cured->waypoint].kind == Kind::land)) {
+      finding.cure = cured;  // a landing has no height of its own
+    }
     report.findings.push_back(std::move(finding));
   }
 }
