@@ -16,6 +16,8 @@ using Action = std::function<int()>;
 
 // Each adds its subcommand, which sets the action when it is called.
 void add_run(App& app, Action& action);
+void add_go(App& app, Action& action);
+void add_info(App& app, Action& action);
 void add_validate(App& app, Action& action);
 void add_explain(App& app, Action& action);
 void add_check(App& app, Action& action);

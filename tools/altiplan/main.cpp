@@ -142,6 +142,8 @@ int main_checked(int argc, char** argv) {
       ->type_name("LEVEL");
   set_example(app, "altiplan run configs/pipelines/ridge_crossing.yaml");
   Action action;
+  add_go(app, action);
+  add_info(app, action);
   add_run(app, action);
   add_validate(app, action);
   add_explain(app, action);

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <cstdio>
-#include <filesystem>
-#include <iostream>
 
 #include "commands.hpp"
 #include "flight_text.hpp"
+#include "guarded_run.hpp"
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
-#include "host/run/pipeline.hpp"
-#include "interrupt.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -126,23 +121,6 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
   }
 }
 
-/// Printed if a plugin ends the process: the result as of the call of that plugin.
-host::ProcessGuard::CrashReport crash_report(const RunArguments& arguments,
-                                             const host::Config& config,
-                                             const host::RunResult& result) {
-  host::ProcessGuard::CrashReport words;
-  words.for_user = "altiplan: " + result.message + "\n";
-  words.exit_code = result.exit_code();
-  if (arguments.out || arguments.json) {
-    words.result = host::file_text(host::result_json(config, result));
-  }
-  words.on_stdout = arguments.json;
-  if (arguments.out) {
-    words.file = std::filesystem::absolute(*arguments.out);
-  }
-  return words;
-}
-
 int run(const RunArguments& arguments) {
   expect_writable(arguments.out, "--out");
   expect_writable(arguments.trace, "--trace");
@@ -159,33 +137,12 @@ int run(const RunArguments& arguments) {
   options.timeout_s = arguments.timeout_s;
   options.threads = arguments.threads;
   options.trace = arguments.trace;
-  options.stop = interrupt.token();
-  std::optional<host::ProcessGuard> process(std::in_place);
-  options.process = &*process;
-  options.on_call = [&](const host::RunResult& result) {
-    process->set_crash_report(crash_report(arguments, config, result));
+  const HandOut to = [&](std::FILE* out, const host::RunResult& result) {
+    hand_out(out, arguments, config, result, interrupt);
   };
-  options.on_stuck = [&](const host::RunResult& result) {
-    // The plugin is still running and may print: its stdout stays redirected.
-    if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
-      try {
-        hand_out(out, arguments, config, result, interrupt);
-      } catch (const Error& error) {
-        std::cerr << "altiplan: " << error.what() << std::endl;
-      }
-      std::fclose(out);
-    }
-    _exit(interrupt.happened() ? kInterrupted : result.exit_code());
-  };
-  const host::RunResult result = host::run(config, options);
-  process.reset();
-  for (const std::string& warning : result.warnings) {
-    warn(warning);
-  }
-  for (const std::string& note : result.notes) {
-    info(note);
-  }
-  hand_out(stdout, arguments, config, result, interrupt);
+  const host::RunResult result =
+      guarded_run(config, options, {arguments.out, arguments.json}, interrupt, to);
+  to(stdout, result);
   if (!result.trace_error.empty()) {
     throw Error(result.trace_error);
   }

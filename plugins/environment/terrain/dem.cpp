@@ -156,6 +156,8 @@ void read_crs(const Params& params, void* dataset, Dem& dem) {
            "crs");
   }
   dem.crs_name = api().OSRGetName(dem.crs.get());
+  const char* code = api().OSRGetAuthorityCode(dem.crs.get(), nullptr);
+  dem.crs_code = code != nullptr ? std::string("EPSG:") + code : "";
   dem.geographic = api().OSRIsGeographic(dem.crs.get()) != 0;
   if (!dem.geographic && !api().OSRIsProjected(dem.crs.get())) {
     refuse(params, "expected a geographic or projected coordinate system, found " + dem.crs_name,

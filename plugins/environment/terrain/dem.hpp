@@ -65,6 +65,7 @@ struct Dem {
   std::array<double, 2> step;        ///< between posts, likewise
   gdal::Reference crs;
   std::string crs_name;
+  std::string crs_code;     ///< "EPSG:32632", "" if the file gives none
   bool geographic = false;  ///< degrees; otherwise lengths of `unit_m`
   double unit_m = 1;
 

@@ -64,6 +64,7 @@ struct Api {
   X(OSRIsSameGeogCS)                    \
   X(OSRGetLinearUnits)                  \
   X(OSRGetName)                         \
+  X(OSRGetAuthorityCode)                \
   X(OCTNewCoordinateTransformation)     \
   X(OCTDestroyCoordinateTransformation) \
   X(OCTTransform)

@@ -271,8 +271,19 @@ class Terrain final : public Environment, public Ground {
     notes.push_back(
         text("scale error at most %.2g %% in ", 100 * layout.frame.scale_error(bounds_)) +
         layout.frame.crs());
+    notes.push_back(own_extent(model_.dem()));
     notes.push_back(extent(layout.frame));
     return notes;
+  }
+
+  /// "in EPSG:32632 (WGS 84 / UTM zone 32N): x 562125 to 624875, y 5134250 to 5182500"
+  static std::string own_extent(const terrain::Dem& dem) {
+    const char* range =
+        dem.geographic ? "x %.6f to %.6f, y %.6f to %.6f" : "x %.2f to %.2f, y %.2f to %.2f";
+    const auto& [x, y] = dem.south_west;
+    return "in " +
+           (dem.crs_code.empty() ? dem.crs_name : dem.crs_code + " (" + dem.crs_name + ")") + ": " +
+           text(range, x, x + (dem.columns - 1) * dem.step[0], y, y + (dem.rows - 1) * dem.step[1]);
   }
 
   /// Of the posts, in local metres and in degrees.

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/corridor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+#include "altiplan/ground.hpp"
+#include "altiplan/height_field.hpp"
+#include "altiplan/world.hpp"
+#include "host/base/words.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Scale error above which lengths count as wrong, as build_mission has it.
+constexpr double kMaxScaleError = 0.005;
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+/// EPSG code of the zone of the Universal Transverse Mercator system.
+std::string utm(double lon, double lat) {
+  const int zone = std::clamp(int(std::floor((lon + 180) / 6)) + 1, 1, 60);
+  return "EPSG:" + std::to_string((lat < 0 ? 32700 : 32600) + zone);
+}
+}  // namespace
+
+Corridor::Corridor(const RouteWish& wish, Registry& registry)
+    : registry_(registry),
+      tiles_(read_tiles(wish, registry)),
+      wished_(wish.points),
+      turn_radius_m_(wish.turn_radius_m.value_or(0)) {
+  for (const WishedPoint& point : wished_) {
+    expect_covered(tiles_, point);
+  }
+  const WishedPoint& from = wished_.front();
+  std::stable_partition(tiles_.begin(), tiles_.end(),
+                        [&](const Tile& tile) { return tile.holds(from.lon, from.lat); });
+  choose_frame();
+  for (const WishedPoint& point : wished_) {
+    const auto [x, y] = frame_.to_local(point.lon, point.lat);
+    points_.emplace_back(x, y, 0);
+    length_m_ += points_.size() > 1 ? (points_.back() - points_[points_.size() - 2]).norm() : 0;
+  }
+  if (length_m_ < 1) {
+    throw Error("--to: start and goal are the same point: give two that are apart");
+  }
+}
+
+/// A geographic model is scaled for the latitude of the flight. A projected one keeps its own axes
+/// unless they are so far off that it is resampled to those of UTM, which rounds summits.
+void Corridor::choose_frame() {
+  Box degrees = Box::empty();
+  for (const WishedPoint& point : wished_) {
+    degrees = degrees.with({point.lon, point.lat, 0});
+  }
+  const Vec3 middle = (degrees.min + degrees.max) / 2;
+  const auto is_geographic = [](const Tile& tile) { return tile.is_geographic(); };
+  if (std::all_of(tiles_.begin(), tiles_.end(), is_geographic)) {
+    const double lon = rounded(middle.x(), 1e-3);
+    const double lat = rounded(middle.y(), 1e-3);
+    frame_ = Frame::geographic(lon, lat, lat);
+    frame_line_ =
+        "frame: {origin_lonlat: [" + with_digits(lon, 7) + ", " + with_digits(lat, 7) + "]}";
+    return;
+  }
+  frame_ = tiles_.front().frame;
+  Box box = Box::empty();
+  for (const WishedPoint& point : wished_) {
+    const auto [x, y] = frame_.to_local(point.lon, point.lat);
+    box = box.with({x, y, 0});
+  }
+  if (frame_.scale_error(box.grown(1)) > kMaxScaleError) {
+    const World empty;
+    Site site;
+    site.before = &empty;
+    site.frame_crs = crs_ = utm(middle.x(), middle.y());
+    frame_ = build_model(tiles_.front(), site, registry_)->info().frame.value();
+    frame_line_ = "frame: {crs: " + crs_ + "}";
+  }
+}
+
+std::string Corridor::frame_in_words() const {
+  return crs_.empty() ? frame_.crs() : crs_ + ", resampled from " + tiles_.front().frame.crs();
+}
+
+/// The rectangle between the images of the model's edges.
+Box Corridor::in_frame(const Tile& tile) const {
+  const Vec3& low = tile.bounds.min;
+  const Vec3& high = tile.bounds.max;
+  Box inner;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const double x = low.x() + share * (high.x() - low.x());
+    const double y = low.y() + share * (high.y() - low.y());
+    const auto at = [&](double own_x, double own_y) {
+      const auto [lon, lat] = tile.frame.to_lonlat(own_x, own_y);
+      return frame_.to_local(lon, lat);
+    };
+    inner.min.x() = std::max(inner.min.x(), at(low.x(), y)[0]);
+    inner.max.x() = std::min(inner.max.x(), at(high.x(), y)[0]);
+    inner.min.y() = std::max(inner.min.y(), at(x, low.y())[1]);
+    inner.max.y() = std::min(inner.max.y(), at(x, high.y())[1]);
+  }
+  return inner;
+}
+
+std::vector<Tile> Corridor::tiles(const Box& box) const {
+  std::vector<Tile> within;
+  std::copy_if(tiles_.begin(), tiles_.end(), std::back_inserter(within), [&](const Tile& tile) {
+    const Box own = in_frame(tile);
+    return own.min.x() < box.max.x() && own.max.x() > box.min.x() && own.min.y() < box.max.y() &&
+           own.max.y() > box.min.y();
+  });
+  return within;
+}
+
+Box Corridor::box(int width) const {
+  // Of the points' distance, metres, and turn radii.
+  static constexpr double kMargins[kWidths][3] = {{0.15, 1000, 6}, {0.5, 4000, 15}, {2, 20000, 50}};
+  const auto& [share, metres, radii] = kMargins[width];
+  const double margin = std::max({share * length_m_, metres, radii * turn_radius_m_});
+  Box box = Box::empty();
+  for (const Vec3& p : points_) {
+    box = box.with(p);
+  }
+  box = box.grown(margin);
+  Box all = Box::empty();
+  for (const Tile& tile : tiles_) {
+    const Box own = in_frame(tile);
+    all.min = all.min.cwiseMin(own.min);
+    all.max = all.max.cwiseMax(own.max);
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    // Rounded, so that the scenario has the same numbers.
+    box.min[axis] = std::ceil(std::max(box.min[axis], all.min[axis]) * 10) / 10;
+    box.max[axis] = std::floor(std::min(box.max[axis], all.max[axis]) * 10) / 10;
+  }
+  for (const Vec3& p : points_) {  // on the very edge
+    box.min.head<2>() = box.min.head<2>().cwiseMin(p.head<2>());
+    box.max.head<2>() = box.max.head<2>().cwiseMax(p.head<2>());
+  }
+  box.min.z() = -1000;
+  box.max.z() = 10000;
+  const auto [low, high] = ground(box);
+  box.min.z() = std::floor(low);
+  box.max.z() = std::ceil(high);
+  return box;
+}
+
+std::array<double, 2> Corridor::ground(const Box& box) const {
+  std::array<double, 2> range{kInfinity, -kInfinity};
+  const World empty;
+  Site site;
+  site.volume = box;
+  site.frame = frame_;
+  site.before = &empty;
+  for (const Tile& tile : tiles(box)) {
+    const auto layer = build_model(tile, site, registry_);
+    const HeightField& field = *layer->ground()->height_field();
+    const auto index = [&](double at, int axis, int posts) {
+      return int(std::clamp((at - field.origin()[axis]) / field.spacing()[axis], 0.0, posts - 1.0));
+    };
+    const int last_i = index(box.max.x() + field.spacing()[0], 0, field.columns());
+    const int last_j = index(box.max.y() + field.spacing()[1], 1, field.rows());
+    for (int j = index(box.min.y(), 1, field.rows()); j <= last_j; ++j) {
+      for (int i = index(box.min.x(), 0, field.columns()); i <= last_i; ++i) {
+        range[0] = std::min(range[0], double(field.post(i, j)));
+        range[1] = std::max(range[1], double(field.post(i, j)));
+      }
+    }
+  }
+  return range;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/first_route/tiles.hpp"
+
+namespace altiplan::host {
+
+/// Where routes between the points are sought: a frame, the models, and boxes that grow.
+class Corridor {
+ public:
+  /// Throws Error for points outside the models.
+  Corridor(const RouteWish& wish, Registry& registry);
+
+  /// Boxes from the narrowest to all of the models; heights are those of the ground within.
+  static constexpr int kWidths = 3;
+  Box box(int width) const;
+
+  /// "frame: {origin_lonlat: [8.5, 46.5]}", or "" for the first model's own.
+  const std::string& frame_line() const { return frame_line_; }
+  std::string frame_in_words() const;
+  /// Models within the box, the start's first.
+  std::vector<Tile> tiles(const Box& box) const;
+  double length_m() const { return length_m_; }
+  double spacing_m() const { return tiles_.front().spacing_m; }
+
+ private:
+  void choose_frame();
+  Box in_frame(const Tile& tile) const;
+  /// Lowest and highest ground.
+  std::array<double, 2> ground(const Box& box) const;
+
+  Registry& registry_;
+  std::vector<Tile> tiles_;
+  std::vector<WishedPoint> wished_;
+  double turn_radius_m_ = 0;
+  std::string frame_line_;
+  std::string crs_;  ///< "" unless the models are brought into it
+  Frame frame_;
+  std::vector<Vec3> points_;  ///< without heights
+  double length_m_ = 0;
+};
+}  // namespace altiplan::host

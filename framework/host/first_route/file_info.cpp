@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/file_info.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "altiplan/error.hpp"
+#include "altiplan/ground.hpp"
+#include "altiplan/height_field.hpp"
+#include "altiplan/kit/formats/geojson.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/world.hpp"
+#include "host/base/words.hpp"
+#include "host/config/yaml.hpp"
+#include "host/first_route/search.hpp"
+#include "host/first_route/zones.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+/// Layers that an extension tells.
+struct LayerKind {
+  const char* ending;
+  const char* plugin;
+  const char* kind;
+};
+constexpr LayerKind kLayers[] = {{".3dmap", "voxel_map", "voxel map"},
+                                 {".map", "grid_map", "grid map"},
+                                 {".bt", "octomap", "octree"},
+                                 {".ot", "octomap", "octree"},
+                                 {".stl", "mesh", "mesh"},
+                                 {".obj", "mesh", "mesh"},
+                                 {".city.json", "city", "city model"},
+                                 {".csv", "city", "city model"}};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// The layer in a world of its own.
+std::unique_ptr<Environment> build(const char* plugin, const fs::path& file,
+                                   const std::string& parameters, Registry& registry) {
+  const World empty;
+  Site site;
+  site.before = &empty;
+  const Value value =
+      parse_yaml("{file: " + Json(file.string()).dump() + parameters + "}", file.string());
+  try {
+    return registry.get("environment", plugin).environment(&value, site);
+  } catch (const ConfigError& error) {
+    throw Error(error.problems().front().message);
+  }
+}
+
+std::string entry(const char* plugin, const fs::path& file, const std::string& parameters) {
+  return std::string("  - ") + plugin + ": {file: " + Json(file.string()).dump() + parameters + "}";
+}
+
+std::string corner(const Vec3& p) {
+  return "[" + with_digits(p.x(), 8) + ", " + with_digits(p.y(), 8) + ", " + with_digits(p.z(), 6) +
+         "]";
+}
+
+/// `volume` and `cell_m` for a layer that bounds them.
+void add_volume(const Environment& layer, double spacing_m, FileInfo& info) {
+  constexpr double kAbove = 200;
+  Box box = layer.bounds();
+  if (const Ground* ground = layer.ground(); ground != nullptr && ground->height_field()) {
+    box.min.z() = std::floor(ground->height_field()->min_height());
+    box.max.z() = std::ceil(ground->height_field()->max_height()) + kAbove;
+  }
+  if (box.is_empty() || !box.is_bounded()) {
+    return;
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    box.min[axis] = std::ceil(box.min[axis] * 10) / 10;
+    box.max[axis] = std::floor(box.max[axis] * 10) / 10;
+  }
+  info.scenario.push_back("volume: {min_m: " + corner(box.min) + ", max_m: " + corner(box.max) +
+                          "}");
+  if (const auto& cells = layer.info().native_grid) {
+    info.scenario.push_back("# planners use its own cells: cell_m: " + corner(cells->cell));
+  } else {
+    info.scenario.push_back("# planners: cell_m: " + open_cells({box, 0, spacing_m, 1}));
+  }
+}
+
+FileInfo layer_info(const LayerKind& kind, const fs::path& file, Registry& registry) {
+  const auto layer = build(kind.plugin, file, "", registry);
+  FileInfo info{kind.kind, layer->info().notes, {"environment:", entry(kind.plugin, file, "")}};
+  if (const auto& cells = layer->info().native_grid) {
+    info.facts.push_back(std::to_string(cells->counts[0]) + " x " +
+                         std::to_string(cells->counts[1]) + " x " +
+                         std::to_string(cells->counts[2]) + " cells of its own");
+  }
+  add_volume(*layer, 0, info);
+  return info;
+}
+
+FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& registry) {
+  const Tile tile = read_tile(file, crs, registry);
+  const std::string parameters =
+      (tile.crs.empty() ? "" : ", crs: " + tile.crs) + ", voids: neighbours";
+  const auto layer = build("terrain", file, parameters, registry);
+  FileInfo info{"elevation model",
+                layer->info().notes,
+                {"environment:", entry("terrain", file, parameters),
+                 "# frame, if not given: " + tile.frame.crs() + ", origin at its south-west post"}};
+  if (!tile.crs.empty()) {
+    info.facts.push_back("names no coordinate system: read as " + tile.crs);
+  }
+  add_volume(*layer, tile.spacing_m, info);
+  return info;
+}
+
+FileInfo zones_info(const fs::path& file, const std::optional<kit::Airspace>& airspace,
+                    Registry& registry) {
+  const std::string parameters = zone_parameters(file, false);
+  const auto layer = build("zones", file, parameters, registry);
+  FileInfo info{airspace ? "published airspace" : "zones", layer->info().notes, {}};
+  if (airspace) {
+    const std::vector<std::string> more = facts_of(*airspace);
+    info.facts.insert(info.facts.end(), more.begin(), more.end());
+  }
+  if (const Box box = layer->bounds(); layer->info().frame && !box.is_empty()) {
+    const Vec3 middle = (box.min + box.max) / 2;
+    const auto [lon, lat] = layer->info().frame->to_lonlat(middle.x(), middle.y());
+    if (std::isfinite(lon + lat)) {
+      info.scenario.push_back("frame: {origin_lonlat: [" + with_digits(lon, 7) + ", " +
+                              with_digits(lat, 7) + "]}  # without a terrain");
+    }
+  }
+  info.scenario.insert(info.scenario.end(), {"environment:", entry("zones", file, parameters)});
+  return info;
+}
+
+/// Footprints with heights are buildings.
+FileInfo features_info(const fs::path& file, Registry& registry) {
+  const kit::GeoJson json = kit::read_geojson(file.string());
+  std::map<std::string, std::size_t> properties;
+  for (const kit::GeoFeature& feature : json.features) {
+    for (const auto& [name, value] : feature.properties) {
+      ++properties[name];
+    }
+  }
+  FileInfo info{
+      "GeoJSON", {counted(json.features.size(), "polygon") + ", " + json.skipped_text()}, {}};
+  if (properties.count("height") > 0) {
+    info.kind = "buildings";
+    info.scenario = {"environment:", entry("city", file, "")};
+  } else if (!json.features.empty()) {
+    info = zones_info(file, std::nullopt, registry);
+  }
+  std::string list;
+  for (const auto& [name, count] : properties) {
+    list += (list.empty() ? "" : ", ") + name + " (" + std::to_string(count) + ")";
+  }
+  if (!list.empty()) {
+    info.facts.push_back("properties: " + list);
+  }
+  return info;
+}
+
+/// A text file is one of several kinds, which its content tells.
+std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
+  std::string text;
+  try {
+    text = kit::read_file(file.string());
+  } catch (const kit::InputError&) {
+    return std::nullopt;  // too large for any of them
+  }
+  if (const auto airspace = kit::read_airspace(file.string(), text)) {
+    return zones_info(file, airspace, registry);
+  }
+  const std::string extension = file.extension();
+  if (kit::is_mission_file(file.string()) || extension == ".gpx" || extension == ".mission") {
+    return info_of(kit::read_mission(file.string(), text), file.string());
+  }
+  if (extension == ".geojson" || extension == ".json") {
+    return features_info(file, registry);
+  }
+  return std::nullopt;
+}
+}  // namespace
+
+FileInfo info_of(const fs::path& file, const std::string& crs, Registry& registry) {
+  if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+    throw Error(file.string() + ": " + why);
+  }
+  for (const LayerKind& kind : kLayers) {
+    if (ends_with(file.string(), kind.ending)) {
+      return layer_info(kind, file, registry);
+    }
+  }
+  if (const std::optional<FileInfo> info = text_info(file, registry)) {
+    return *info;
+  }
+  return terrain_info(file, crs, registry);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/first_route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "altiplan/error.hpp"
+#include "host/base/words.hpp"
+#include "host/first_route/zones.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kCopterSpeed = 10;
+constexpr double kBank = 30;  // degrees
+constexpr double kGravity = 9.80665;
+
+struct Try {
+  int width;
+  int fineness;
+};
+constexpr Try kTry[FirstRoute::kTries] = {{0, 1}, {1, 1}, {2, 1}, {1, 2}};
+
+/// As short as it is exact.
+std::string text_of(double value) {
+  const std::string text = Json(value).dump();
+  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+std::string whole(double value) { return with_digits(std::round(value), 9); }
+
+/// A file below the current folder is named from the new one, so that both can be moved together.
+std::string path_in(const fs::path& folder, const fs::path& file) {
+  const fs::path absolute = fs::absolute(file).lexically_normal();
+  const fs::path below = absolute.lexically_relative(fs::current_path());
+  if (below.empty() || *below.begin() == "..") {
+    return absolute.string();
+  }
+  return absolute.lexically_relative(fs::absolute(folder).lexically_normal()).string();
+}
+}  // namespace
+
+FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugin_path)
+    : wish_(wish),
+      heights_(heights_of(wish)),
+      registry_(std::make_shared<Registry>(Registry::search_path(plugin_path))),
+      corridor_(wish, *registry_) {}
+
+/// As slow as turns of the radius allow at the bank, rounded up.
+double FirstRoute::speed_mps() const {
+  if (!wish_.turn_radius_m) {
+    return kCopterSpeed;
+  }
+  const double speed = std::sqrt(*wish_.turn_radius_m * kGravity * std::tan(radians(kBank)));
+  return std::ceil(speed * 100) / 100;
+}
+
+Box FirstRoute::volume(int attempt) const {
+  Box box = corridor_.box(kTry[attempt].width);
+  double top = heights_.max_m.value_or(heights_.ends_m);
+  for (const WishedPoint& point : wish_.points) {
+    top = std::max(top, point.above_ground_m.value_or(0));
+  }
+  // Without a limit there is space to pass above the highest ground.
+  box.max.z() += std::ceil(top + (heights_.max_m ? 0 : 50 + wish_.turn_radius_m.value_or(0)));
+  return box;
+}
+
+bool FirstRoute::repeats(int attempt) const {
+  if (attempt == 0 || kTry[attempt].fineness != kTry[attempt - 1].fineness) {
+    return false;
+  }
+  const Box before = corridor_.box(kTry[attempt - 1].width);
+  const Box now = corridor_.box(kTry[attempt].width);
+  return before.min == now.min && before.max == now.max;
+}
+
+std::string FirstRoute::environment(const Box& volume, const fs::path& folder) const {
+  std::string text = "environment:\n";
+  for (const Tile& tile : corridor_.tiles(volume)) {
+    text += terrain_entry(tile, path_in(folder, tile.file));
+  }
+  // Zones with hours count if they are active while the flight may last.
+  const double horizon = std::ceil(3 * corridor_.length_m() / speed_mps() + 600);
+  std::set<std::string> ids;
+  for (const fs::path& file : wish_.avoid) {
+    std::string id = file.filename();
+    while (!ids.insert(id).second) {
+      id += "_";
+    }
+    text += "  - zones: {file: " + Json(path_in(folder, file)).dump() +
+            ", clip: true, horizon_s: " + text_of(horizon) +
+            zone_parameters(file, wish_.start_time.has_value()) + "}\n    id: " + Json(id).dump() +
+            "\n";
+  }
+  return text;
+}
+
+std::string FirstRoute::vehicle() const {
+  return wish_.turn_radius_m ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
+                                   ", bank_deg: " + text_of(kBank) + "}}"
+                             : "{radius_m: 1, speed_mps: " + text_of(speed_mps()) + "}";
+}
+
+std::string FirstRoute::point(const WishedPoint& at) const {
+  return "{at_lonlat: [" + text_of(at.lon) + ", " + text_of(at.lat) +
+         "], above_ground_m: " + text_of(at.above_ground_m.value_or(heights_.ends_m));
+}
+
+std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
+  const auto corner = [](const Vec3& p) {
+    return "[" + text_of(p.x()) + ", " + text_of(p.y()) + ", " + text_of(p.z()) + "]";
+  };
+  std::string text = "# The world of a first route, written by altiplan go.\naltiplan: 1\nname: " +
+                     Json(wish_.terrain.front().stem().string()).dump() + "\n" +
+                     environment(volume, folder) + corridor_.frame_line() +
+                     (corridor_.frame_line().empty() ? "" : "\n");
+  text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
+          "vehicle: " + vehicle() + "\nstart: " + point(wish_.points.front()) + "}\n";
+  if (wish_.points.size() > 2) {
+    text += "via:\n";
+    for (std::size_t i = 1; i + 1 < wish_.points.size(); ++i) {
+      text += "  - " + point(wish_.points[i]) + "}\n";
+    }
+  }
+  // Files of missions round points.
+  text += "goal: " + point(wish_.points.back()) + ", tolerance_m: 1}\n";
+  if (wish_.start_time) {
+    text += "start_time: " + Json(*wish_.start_time).dump() + "\n";
+  }
+  text += "constraints:\n  - ground_clearance: {min_m: " + text_of(heights_.min_m) + "}\n";
+  if (heights_.max_m) {
+    text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m) + "}\n";
+  }
+  return text;
+}
+
+std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,
+                                             const Search& search) const {
+  const std::vector<Tile> tiles = corridor_.tiles(volume);
+  const Tile& tile = tiles.front();
+  std::string ground = tile.file.filename().string() + ", " + tile.note;
+  if (tiles.size() > 1) {
+    ground += ", and " + counted(tiles.size() - 1, "tile") + " more";
+  }
+  if (!tile.crs.empty()) {
+    ground += ", read as " + tile.crs;
+  }
+  const Vec3 size = (volume.max - volume.min) / 1000;
+  static constexpr const char* kWidth[] = {"narrow", "wider", "widest"};
+  const std::string vehicle = wish_.turn_radius_m
+                                  ? "wing with turns of " + whole(*wish_.turn_radius_m) +
+                                        " m or more, " + text_of(speed_mps()) + " m/s"
+                                  : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s";
+  return {"terrain: " + ground + "; frame: " + corridor_.frame_in_words(),
+          "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) +
+              " km about the points (" + kWidth[kTry[attempt].width] + " corridor), " +
+              whole(volume.min.z()) + " to " + whole(volume.max.z()) + " m above sea level",
+          "heights: at least " + text_of(heights_.min_m) + " m above ground" +
+              (heights_.max_m ? ", at most " + text_of(*heights_.max_m) + " m" : "") +
+              ", points without a height at " + text_of(heights_.ends_m) + " m; " + vehicle,
+          "planner: " + search.words};
+}
+
+FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
+  const Box box = volume(attempt);
+  const Search search = choose_search(
+      wish_, heights_, {box, corridor_.length_m(), corridor_.spacing_m(), kTry[attempt].fineness},
+      *registry_);
+  return {scenario(box, folder),
+          "# The search of a first route, written by altiplan go.\naltiplan: 1\n"
+          "scenario: scenario.yaml\nsteps:\n" +
+              search.steps,
+          choices(attempt, box, search)};
+}
+}  // namespace altiplan::host

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/first_route/search.hpp"
+
+namespace altiplan::host {
+
+/// A scenario and a pipeline for a wish, and what was chosen, line by line.
+struct FirstFiles {
+  std::string scenario;
+  std::string pipeline;
+  std::vector<std::string> choices;
+};
+
+/// Chooses frame, volume, cells and planner for a wish: try after try in a wider corridor, in the
+/// end on smaller cells.
+class FirstRoute {
+ public:
+  /// Reads the models. Throws Error for what the wish contradicts itself in, or the models do not
+  /// cover.
+  FirstRoute(const RouteWish& wish, const std::vector<std::filesystem::path>& plugin_path);
+
+  static constexpr int kTries = 4;
+  /// The volume of a try; one equal to that of the try before is not worth another run.
+  Box volume(int attempt) const;
+  bool repeats(int attempt) const;
+  /// The files, to be written as scenario.yaml and pipeline.yaml in that folder.
+  FirstFiles files(int attempt, const std::filesystem::path& folder) const;
+
+ private:
+  std::string environment(const Box& volume, const std::filesystem::path& folder) const;
+  std::string vehicle() const;
+  std::string point(const WishedPoint& at) const;
+  std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
+  std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
+  double speed_mps() const;
+
+  RouteWish wish_;
+  WishedHeights heights_;
+  std::shared_ptr<Registry> registry_;
+  Corridor corridor_;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/tiles.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "altiplan/error.hpp"
+#include "altiplan/ground.hpp"
+#include "altiplan/height_field.hpp"
+#include "altiplan/world.hpp"
+#include "host/base/words.hpp"
+#include "host/config/yaml.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::host {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kLonLat = "EPSG:4326";
+
+/// Extensions of the terrain plugin's formats, for files of a folder.
+bool may_be_model(const fs::path& file) {
+  static const std::set<std::string> kExtensions{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
+                                                 ".dt2", ".asc",  ".bil", ".img"};
+  std::string extension = file.extension();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return kExtensions.count(extension) > 0;
+}
+
+std::vector<fs::path> files_of(const fs::path& given) {
+  if (given.extension() == ".vrt") {
+    throw Error("--terrain: " + given.string() +
+                " is a VRT, which may read any file: give the tiles themselves, or their folder");
+  }
+  if (!fs::is_directory(given)) {
+    return {given};
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(given)) {
+    if (entry.is_regular_file() && may_be_model(entry.path())) {
+      files.push_back(entry.path());
+    }
+  }
+  if (files.empty()) {
+    throw Error("--terrain: the folder " + given.string() +
+                " holds no elevation model (.tif, .hgt, .dt1, .asc, …)");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// So small a volume that little of a large model is read.
+Site probing_site(const World& empty) {
+  Site site;
+  site.volume = {{0, 0, -1000}, {1, 1, 10000}};
+  site.before = &empty;
+  return site;
+}
+
+/// Without heights, which are those of the part that was read.
+std::string short_note(const std::string& note) {
+  const std::string voids = note.substr(note.rfind(", "));
+  return note.substr(0, note.find(", ")) + (voids == ", no voids" ? "" : voids);
+}
+
+Tile probe(Tile tile, Registry& registry) {
+  const World empty;
+  const auto layer = build_model(tile, probing_site(empty), registry);
+  tile.frame = layer->info().frame.value();
+  tile.bounds = layer->bounds();
+  const auto& spacing = layer->ground()->height_field()->spacing();
+  tile.spacing_m = std::max(spacing[0], spacing[1]);
+  tile.note = short_note(layer->info().notes.at(0));
+  return tile;
+}
+
+std::string lonlat(double lon, double lat) {
+  return with_digits(lon, 9) + "," + with_digits(lat, 9);
+}
+
+bool is_held(const std::vector<Tile>& tiles, double lon, double lat) {
+  return std::any_of(tiles.begin(), tiles.end(),
+                     [&](const Tile& tile) { return tile.holds(lon, lat); });
+}
+}  // namespace
+
+bool Tile::is_geographic() const { return frame.crs().rfind(kLonLat, 0) == 0; }
+
+bool Tile::holds(double lon, double lat) const {
+  if (std::abs(lat) > 90 || std::abs(lon) > 360) {
+    return false;
+  }
+  try {
+    const auto [x, y] = frame.to_local(lon, lat);
+    return x >= bounds.min.x() && x <= bounds.max.x() && y >= bounds.min.y() && y <= bounds.max.y();
+  } catch (const Error&) {
+    return false;  // so far away that its projection fails
+  }
+}
+
+Box Tile::degrees() const {
+  Box degrees = Box::empty();
+  for (const double u : {0.0, 0.5, 1.0}) {
+    for (const double v : {0.0, 0.5, 1.0}) {
+      const Vec3 p = bounds.min + (bounds.max - bounds.min).cwiseProduct(Vec3(u, v, 0));
+      const auto [lon, lat] = frame.to_lonlat(p.x(), p.y());
+      degrees = degrees.with({lon, lat, 0});
+    }
+  }
+  return degrees;
+}
+
+std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry) {
+  const Value parameters =
+      parse_yaml("{file: " + Json(tile.file.string()).dump() + ", voids: neighbours" +
+                     (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
+                 tile.file.string());
+  return registry.get("environment", "terrain").environment(&parameters, site);
+}
+
+std::string terrain_entry(const Tile& tile, const std::string& file) {
+  return "  - terrain: {file: " + Json(file).dump() +
+         (tile.crs.empty() ? "" : ", crs: " + tile.crs) +
+         ", voids: neighbours}\n    id: " + Json(tile.file.filename().string()).dump() + "\n";
+}
+
+Tile read_tile(const fs::path& file, const std::string& crs, Registry& registry) {
+  Tile tile;
+  tile.file = file;
+  try {
+    try {
+      return probe(tile, registry);
+    } catch (const ParameterError& error) {
+      if (error.key() != "crs") {
+        throw;
+      }
+      tile.crs = crs.empty() ? kLonLat : crs;
+      return probe(tile, registry);
+    }
+  } catch (const PluginError&) {
+    throw;
+  } catch (const ConfigError& error) {
+    throw Error(error.problems().front().message);
+  } catch (const Error& error) {
+    throw Error(error.what() +
+                std::string(tile.crs == kLonLat && crs.empty()
+                                ? ": the file names no coordinate system: give --crs EPSG:CODE"
+                                : ""));
+  }
+}
+
+std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
+  std::vector<Tile> tiles;
+  std::set<fs::path> read;
+  for (const fs::path& given : wish.terrain) {
+    for (const fs::path& file : files_of(given)) {
+      if (read.insert(fs::weakly_canonical(file)).second) {
+        try {
+          tiles.push_back(read_tile(file, wish.crs, registry));
+        } catch (const PluginError&) {
+          throw;
+        } catch (const Error& error) {
+          throw Error(std::string("--terrain: ") + error.what());
+        }
+      }
+    }
+  }
+  return tiles;
+}
+
+void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
+  const auto& [option, lon, lat, height] = point;
+  if (is_held(tiles, lon, lat)) {
+    return;
+  }
+  const std::string what = option + ": longitude " + with_digits(lon, 9) + ", latitude " +
+                           with_digits(lat, 9) + " is outside the elevation model";
+  for (const auto& [x, y] : {std::pair(lat, lon),
+                             {-lon, lat},
+                             {lon, -lat},
+                             {-lon, -lat},
+                             {-lat, lon},
+                             {lat, -lon},
+                             {-lat, -lon}}) {
+    if (is_held(tiles, x, y)) {
+      const bool is_swapped = std::abs(x) == std::abs(lat) && std::abs(y) == std::abs(lon);
+      throw Error(what + ", and " + lonlat(x, y) + " is inside: give longitude first" +
+                  (is_swapped ? "" : ", west and south negative"));
+    }
+  }
+  Box degrees = Box::empty();
+  for (const Tile& tile : tiles) {
+    degrees = degrees.united(tile.degrees());
+  }
+  const auto range = [](double low, double high) {
+    return with_digits(low, 7) + " to " + with_digits(high, 7);
+  };
+  throw Error(what + ", which covers longitude " + range(degrees.min.x(), degrees.max.x()) +
+              " and latitude " + range(degrees.min.y(), degrees.max.y()));
+}
+}  // namespace altiplan::host

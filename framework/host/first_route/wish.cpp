@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/wish.hpp"
+
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+#include "host/base/words.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// What a point without a height keeps from the lower limit, if the upper one leaves room.
+constexpr double kAboveMin = 10;
+
+std::string metres(double value) { return with_digits(value, 6) + " m"; }
+}  // namespace
+
+WishedHeights heights_of(const RouteWish& wish) {
+  WishedHeights heights;
+  heights.max_m = wish.max_above_ground_m;
+  const double max = heights.max_m.value_or(1e9);
+  heights.min_m = wish.min_above_ground_m.value_or(std::min(heights.min_m, max / 2));
+  if (heights.min_m >= max) {
+    throw Error("--max-agl: " + metres(max) + " leaves no height above --min-agl, " +
+                metres(heights.min_m) + ": raise it");
+  }
+  heights.ends_m =
+      std::min(std::max(heights.ends_m, heights.min_m + kAboveMin), (heights.min_m + max) / 2);
+  for (const WishedPoint& point : wish.points) {
+    const double height = point.above_ground_m.value_or(heights.ends_m);
+    if (height < heights.min_m || height > max) {
+      throw Error(point.option + ": " + metres(height) + " above ground is " +
+                  (height < heights.min_m ? "below --min-agl, " + metres(heights.min_m)
+                                          : "above --max-agl, " + metres(max)) +
+                  ": change one of the two");
+    }
+  }
+  return heights;
+}
+}  // namespace altiplan::host

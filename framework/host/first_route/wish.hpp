@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace altiplan::host {
+
+/// A point as the user gives it.
+struct WishedPoint {
+  std::string option;  ///< "--from", for messages
+  double lon = 0;      ///< degrees, WGS 84
+  double lat = 0;
+  std::optional<double> above_ground_m;
+};
+
+/// A route over an elevation model that is wished for without a scenario.
+struct RouteWish {
+  std::vector<std::filesystem::path> terrain;  ///< models, or folders of them
+  std::string crs;                             ///< of models that name none
+  std::vector<std::filesystem::path> avoid;    ///< files of zones
+  std::vector<WishedPoint> points;             ///< start, via points, goal
+  std::optional<double> min_above_ground_m;
+  std::optional<double> max_above_ground_m;
+  std::optional<double> turn_radius_m;  ///< of an aeroplane; none: a copter
+  std::string planner;                  ///< "": chosen
+  std::optional<std::string> start_time;
+};
+
+/// Heights above ground, metres.
+struct WishedHeights {
+  double min_m = 50;
+  std::optional<double> max_m;
+  double ends_m = 60;  ///< of points without a height
+};
+
+/// The heights with the defaults filled in; throws Error where they contradict each other.
+WishedHeights heights_of(const RouteWish& wish);
+}  // namespace altiplan::host

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/first_route/zones.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "altiplan/kit/formats/airspace.hpp"
+#include "altiplan/kit/formats/geojson.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/formats/mission_file.hpp"
+
+namespace altiplan::host {
+
+std::string zone_parameters(const std::filesystem::path& file, bool has_start_time) {
+  const std::string text = kit::read_file(file.string());
+  if (kit::read_airspace(file.string(), text)) {
+    return "";  // it says what its limits and hours are
+  }
+  if (kit::is_mission_file(file.string())) {
+    kit::read_mission(file.string(), text);
+    return "";
+  }
+  const kit::GeoJson json = kit::read_geojson(file.string());
+  std::string parameters;
+  for (const auto& [key, property, is_time] : {std::tuple("floor_property", "floor_m", false),
+                                               {"ceiling_property", "ceiling_m", false},
+                                               {"from_property", "from", true},
+                                               {"until_property", "until", true},
+                                               {"from_property", "timeBegin", true},
+                                               {"until_property", "timeEnd", true}}) {
+    const auto has = [property = property](const kit::GeoFeature& feature) {
+      return feature.properties.contains(property);
+    };
+    if ((!is_time || has_start_time) && parameters.find(key) == parameters.npos &&
+        std::any_of(json.features.begin(), json.features.end(), has)) {
+      parameters += std::string(", ") + key + ": " + property;
+    }
+  }
+  return parameters;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "guarded_run.hpp"
+#include "host/base/output_file.hpp"
+#include "host/first_route/first_route.hpp"
+#include "host/view/scene.hpp"
+#include "host/view/viewer_page.hpp"
+#include "route_export.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> terrain;
+  std::string from;
+  std::string to;
+  std::vector<std::string> via;
+  std::vector<std::string> avoid;
+  bool copter = false;
+  std::optional<std::string> out;
+  host::RouteWish wish;
+  host::Overrides overrides;
+};
+
+/// Numbers separated by commas; none if the text is anything else.
+std::optional<std::vector<double>> numbers(const std::string& text) {
+  std::vector<double> all;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) {
+      return std::nullopt;
+    }
+    all.push_back(value);
+    if (stop == end) {
+      return all;
+    }
+    if (*stop != ',') {
+      return std::nullopt;
+    }
+    at = stop + 1;
+  }
+}
+
+std::string point_problem(const std::string& text) {
+  const auto point = numbers(text);
+  return point && (point->size() == 2 || point->size() == 3)
+             ? ""
+             : "expected LON,LAT or LON,LAT,AGL (degrees; metres above ground), without spaces, "
+               "found '" +
+                   text + "'";
+}
+
+host::WishedPoint point_of(const char* option, const std::string& text) {
+  const std::vector<double> all = numbers(text).value();
+  return {option, all[0], all[1], all.size() > 2 ? std::optional(all[2]) : std::nullopt};
+}
+
+host::RouteWish wish_of(const Arguments& arguments) {
+  host::RouteWish wish = arguments.wish;
+  wish.terrain.assign(arguments.terrain.begin(), arguments.terrain.end());
+  wish.avoid.assign(arguments.avoid.begin(), arguments.avoid.end());
+  wish.points.push_back(point_of("--from", arguments.from));
+  for (const std::string& via : arguments.via) {
+    wish.points.push_back(point_of("--via", via));
+  }
+  wish.points.push_back(point_of("--to", arguments.to));
+  return wish;
+}
+
+/// The folder asked for, or one named after the model, numbered if there are others.
+fs::path folder_of(const Arguments& arguments) {
+  const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
+  const std::string stem = (model.has_filename() ? model : model.parent_path()).stem().string();
+  fs::path folder = arguments.out.value_or(stem);
+  for (int n = 2; !arguments.out && fs::exists(folder); ++n) {
+    folder = stem + "_" + std::to_string(n);
+  }
+  return folder;
+}
+
+void create(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::create_directory(folder, error)) {
+    throw Error("-o: '" + folder.string() + "' " +
+                (error ? "cannot be created: " + error.message()
+                       : "exists already: give the name of a new folder"));
+  }
+}
+
+/// The files of a try, run; the result is written beside them.
+host::RunResult run_in(const fs::path& folder, const host::FirstFiles& files,
+                       const host::Overrides& overrides, Interrupt& interrupt) {
+  host::write_file(folder / "scenario.yaml", files.scenario);
+  host::write_file(folder / "pipeline.yaml", files.pipeline);
+  const host::Config config = host::load_config(folder / "pipeline.yaml", overrides);
+  const std::string out = folder / "result.json";
+  const HandOut hand_out = [&](std::FILE* to, const host::RunResult& result) {
+    host::write_file(out, host::file_text(host::result_json(config, result)));
+    std::fprintf(to, "no route: %s\n", result.message.c_str());
+  };
+  host::RunResult result = guarded_run(config, {}, {out, false}, interrupt, hand_out);
+  host::write_file(out, host::file_text(host::result_json(config, result)));
+  return result;
+}
+
+/// True where another corridor or smaller cells may help.
+bool may_be_wider(const host::RunResult& result) {
+  return !result.accepted && (result.status == host::RunStatus::no_route ||
+                              result.status == host::RunStatus::timed_out);
+}
+
+void print(const host::RunResult& result) {
+  const host::StepResult& step = result.steps[*result.accepted];
+  double seconds = 0;
+  for (const host::StepResult& each : result.steps) {
+    seconds += each.time_s;
+  }
+  const Measures& m = step.measures.value();
+  std::printf(
+      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s s\n",
+      fixed(m.length_m / 1000, 3).c_str(), m.waypoints, fixed(m.min_ground_clearance_m, 1).c_str(),
+      fixed(seconds, 1).c_str());
+}
+
+/// The page, and the mission; false if the route would not be valid as a mission.
+bool write_views(const fs::path& folder, const Arguments& arguments) {
+  RouteExport route;
+  route.result = folder / "result.json";
+  route.overrides = arguments.overrides;
+  route.options.format = kit::MissionFile::Format::qgc_plan;
+  route.options.takeoff = route.options.land = !arguments.wish.turn_radius_m;
+  finish_options(route);
+  const host::Scene scene =
+      host::build_scene({host::read_result(route.result, arguments.overrides)});
+  host::write_file(folder / "page.html", host::viewer_page(scene.json));
+  const std::optional<host::Exported> plan = exported(route, std::nullopt);
+  if (plan) {
+    host::write_file(folder / "route.plan", *plan->text);
+  }
+  std::printf("written: %s/: page.html, %sresult.json, scenario.yaml, pipeline.yaml\n",
+              folder.c_str(), plan ? "route.plan, " : "");
+  return plan.has_value();
+}
+
+int go(const Arguments& arguments) {
+  const host::FirstRoute first(wish_of(arguments), arguments.overrides.plugin_path);
+  const fs::path folder = folder_of(arguments);
+  host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
+  create(folder);
+  Interrupt interrupt;
+  host::RunResult result;
+  for (int attempt = 0; attempt < host::FirstRoute::kTries; ++attempt) {
+    if (first.repeats(attempt)) {
+      continue;
+    }
+    files = first.files(attempt, folder);
+    result = run_in(folder, files, arguments.overrides, interrupt);
+    if (interrupt.happened() || !may_be_wider(result)) {
+      break;
+    }
+  }
+  interrupt.finish();
+  for (const std::string& line : files.choices) {
+    std::printf("%s\n", line.c_str());
+  }
+  if (interrupt.happened()) {
+    return kInterrupted;
+  }
+  if (!result.accepted) {
+    std::printf("no route: %s; %s/ holds scenario.yaml, pipeline.yaml and result.json\n",
+                result.message.c_str(), folder.c_str());
+    return result.exit_code();
+  }
+  print(result);
+  return write_views(folder, arguments) ? kDone : kNoRoute;
+}
+
+void add_points(App& command, Arguments& arguments) {
+  command
+      .add_option("--terrain", arguments.terrain,
+                  "elevation model, or a folder of its tiles; repeatable")
+      ->required()
+      ->one_at_a_time()
+      ->take_all()
+      ->type_name("DEM");
+  command.add_option("--from", arguments.from, "start: degrees, and metres above ground")
+      ->required()
+      ->type_name("LON,LAT[,AGL]")
+      ->check(point_problem);
+  command.add_option("--to", arguments.to, "goal")
+      ->required()
+      ->type_name("LON,LAT[,AGL]")
+      ->check(point_problem);
+  command.add_option("--via", arguments.via, "point to pass through, in order; repeatable")
+      ->one_at_a_time()
+      ->take_all()
+      ->type_name("LON,LAT[,AGL]")
+      ->check(point_problem);
+}
+
+void add_wishes(App& command, Arguments& arguments) {
+  host::RouteWish& wish = arguments.wish;
+  command
+      .add_option("--avoid", arguments.avoid,
+                  "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
+      ->one_at_a_time()
+      ->take_all()
+      ->type_name("FILE");
+  const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
+    return command.add_option(name, value, what)->type_name("METRES")->check(number_from(0, 1e5));
+  };
+  metres("--min-agl", wish.min_above_ground_m, "least height above ground (default 50)");
+  metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
+  auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
+  command.add_option("--wing", wish.turn_radius_m, "plan for an aeroplane with this turn radius")
+      ->type_name("RADIUS")
+      ->check(number_from(1, 1e5))
+      ->excludes(copter);
+  command.add_option("--planner", wish.planner, "planner (default: chosen)")->type_name("NAME");
+  command
+      .add_option("--start-time", wish.start_time,
+                  "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count")
+      ->type_name("TIME");
+  command.add_option("--crs", wish.crs, "coordinate system of a model that names none")
+      ->type_name("EPSG:CODE");
+  command.add_option("-o,--out", arguments.out, "new folder (default: the model's name)")
+      ->type_name("DIR");
+}
+}  // namespace
+
+void add_go(App& app, Action& action) {
+  App* command = app.add_subcommand("go", "a first route between two points, without YAML");
+  auto arguments = std::make_shared<Arguments>();
+  add_points(*command, *arguments);
+  add_wishes(*command, *arguments);
+  add_plugin_path(*command, arguments->overrides);
+  set_example(*command,
+              "altiplan go --terrain configs/data/jacksboro_fault.tif --from -84.38,36.48 "
+              "--to -84.12,36.70 --max-agl 120");
+  command->callback([&action, arguments] { action = [arguments] { return go(*arguments); }; });
+}
+}  // namespace altiplan::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "host/run/pipeline.hpp"
+#include "interrupt.hpp"
+
+namespace altiplan::cli {
+
+/// Where the result of a run goes if a plugin ends the process, besides the message on stderr.
+struct CrashOutput {
+  std::optional<std::string> file;
+  bool on_stdout = false;
+};
+
+/// Prints, and writes, a result.
+using HandOut = std::function<void(std::FILE* to, const host::RunResult& result)>;
+
+/// Runs a pipeline with the process guarded against its plugins; prints warnings and notes. If a
+/// plugin never returns, the result so far is handed out and the process ends.
+host::RunResult guarded_run(const host::Config& config, host::RunOptions options,
+                            const CrashOutput& crash, Interrupt& interrupt,
+                            const HandOut& hand_out);
+}  // namespace altiplan::cli
