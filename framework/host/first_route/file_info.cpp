@@ -46,8 +46,8 @@ std::unique_ptr<Environment> build(const char* plugin, const fs::path& file,
   const World empty;
   Site site;
   site.before = &empty;
-  const Value value =
-      parse_yaml("{file: " + Json(file.string()).dump() + parameters + "}", file.string());
+  // The name has no folder that the file would be relative to.
+  const Value value = parse_yaml("{file: " + Json(file.string()).dump() + parameters + "}", plugin);
   try {
     return registry.get("environment", plugin).environment(&value, site);
   } catch (const ConfigError& error) {

@@ -63,7 +63,7 @@ std::string pose_cells(const RouteWish& wish, const WishedHeights& heights,
 
 Search wing_search(const RouteWish& wish, const WishedHeights& heights, const SearchSpace& space) {
   const std::string poses = "with: " + pose_cells(wish, heights, space);
-  const char* budget = "within_iterations: 100000";
+  const char* budget = "within_iterations: 60000";
   if (wish.planner == "hybrid_astar" || (wish.planner.empty() && heights.max_m)) {
     return {"  - plan: hybrid_astar\n    " + poses + "\n    " + budget + "\n  - smooth: shortcut\n",
             "hybrid_astar " + poses.substr(6) + ", then shortcut"};

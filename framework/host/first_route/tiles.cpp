@@ -112,10 +112,11 @@ Box Tile::degrees() const {
 }
 
 std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry) {
+  // The name has no folder that the file would be relative to.
   const Value parameters =
       parse_yaml("{file: " + Json(tile.file.string()).dump() + ", voids: neighbours" +
                      (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
-                 tile.file.string());
+                 "terrain");
   return registry.get("environment", "terrain").environment(&parameters, site);
 }
 

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""go_test.py PROGRAM SOURCES: `altiplan go`, a first route without YAML.
+
+`python3 go_test.py PROGRAM SOURCES Go.test_a_wing` runs one case."""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SOURCES = sys.argv[1:3]
+TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
+ENDS = ["--from", "-84.38,36.48", "--to", "-84.20,36.62"]
+UTM = ('PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,'
+       '298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],'
+       'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
+       'PARAMETER["central_meridian",-117],PARAMETER["scale_factor",0.9996],'
+       'PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]]')
+
+
+def grid(columns, rows, west, south, cell, void=lambda i, j: False):
+    """Hills as an ESRI ASCII grid."""
+    def height(i, j):
+        return -9999 if void(i, j) else round(400 + 100 * math.sin(i / 4) * math.cos(j / 5), 1)
+    head = (f"ncols {columns}\nnrows {rows}\nxllcorner {west}\nyllcorner {south}\n"
+            f"cellsize {cell}\nNODATA_value -9999\n")
+    return head + "\n".join(" ".join(str(height(i, j)) for i in range(columns))
+                            for j in range(rows)) + "\n"
+
+
+class Go(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def call(self, *arguments, code=0):
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
+                             timeout=60)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run.stdout, run.stderr
+
+    def route(self, file):
+        return json.loads((self.folder / file).read_text())["route"]
+
+    def go(self, *options, folder):
+        """A route that the judge accepts, that its files give again, and whose plan passes."""
+        out, _ = self.call("go", *options)
+        self.assertEqual([line.split(":")[0] for line in out.splitlines()],
+                         ["terrain", "volume", "heights", "planner", "route", "written"])
+        self.assertEqual(sorted(file.name for file in (self.folder / folder).iterdir()),
+                         ["page.html", "pipeline.yaml", "result.json", "route.plan",
+                          "scenario.yaml"])
+        self.call("run", f"{folder}/pipeline.yaml", "--out", "again.json")
+        self.assertEqual(self.route("again.json"), self.route(f"{folder}/result.json"))
+        return out
+
+    def refused(self, said, *options, code=3):
+        _, err = self.call("go", *options, code=code)
+        self.assertIn(said, err)
+        self.assertEqual(list(self.folder.glob("*/")), [])
+
+    def test_a_copter(self):
+        for folder in ("jacksboro_fault", "jacksboro_fault_2"):  # none is overwritten
+            out = self.go("--terrain", TERRAIN, *ENDS, folder=folder)
+            self.assertIn("planner: astar", out)
+            self.call("check", f"{folder}/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
+        _, err = self.call("go", "--terrain", TERRAIN, *ENDS, "-o", "jacksboro_fault", code=3)
+        self.assertIn("exists already", err)
+
+    def test_a_band_above_ground(self):
+        self.go("--terrain", TERRAIN, *ENDS, "--max-agl", "120", "-o", "low", folder="low")
+        self.call("check", "low/route.plan", "--terrain", TERRAIN, "--min-agl", "50", "--max-agl",
+                  "120")
+
+    def test_a_wing(self):
+        out = self.go("--terrain", TERRAIN, *ENDS, "--wing", "80", "--via", "-84.30,36.58,150",
+                      "-o", "wing", folder="wing")
+        self.assertIn("wing with turns of 80 m", out)
+        self.call("check", "wing/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
+
+    def test_zones_at_their_hours(self):
+        ring = [[-84.5, 36.54], [-84.0, 36.54], [-84.0, 36.56], [-84.5, 36.56], [-84.5, 36.54]]
+        (self.folder / "wall.geojson").write_text(json.dumps({
+            "type": "FeatureCollection", "features": [{
+                "type": "Feature", "geometry": {"type": "Polygon", "coordinates": [ring]},
+                "properties": {"from": "2026-05-01T10:00:00Z", "until": "2026-05-01T18:00:00Z"}}]}))
+        options = ["--terrain", TERRAIN, *ENDS, "--avoid", "wall.geojson"]
+        out, _ = self.call("go", *options, code=1)
+        self.assertIn("no route: ", out)
+        self.go(*options, "--start-time", "2026-05-01T20:00:00Z", "-o", "later", folder="later")
+
+    def test_tiles_in_a_folder_and_voids(self):
+        (self.folder / "tiles").mkdir()
+        for name, west in (("west", 8.0), ("east", 8.06)):
+            text = grid(60, 60, west, 46.0, 0.001, lambda i, j: 10 < i < 14 and 30 < j < 50)
+            (self.folder / "tiles" / f"{name}.asc").write_text(text)
+        out = self.go("--terrain", "tiles", "--from", "8.012,46.02", "--to", "8.11,46.04",
+                      "-o", "both", folder="both")
+        self.assertIn("and 1 tile more", out)
+        self.assertIn("filled from their neighbours", out)
+        self.assertIn("read as EPSG:4326", out)
+        self.assertIn("../tiles/west.asc", (self.folder / "both/scenario.yaml").read_text())
+
+    def test_a_projected_model(self):
+        (self.folder / "utm.asc").write_text(grid(120, 90, 400000, 3790000, 30))
+        (self.folder / "utm.prj").write_text(UTM)
+        self.go("--terrain", "utm.asc", "--from", "-118.080,34.252", "--to", "-118.055,34.268",
+                folder="utm")
+        self.call("check", "utm/route.plan", "--terrain", "utm.asc", "--min-agl", "50")
+
+    def test_points_that_are_no_good(self):
+        terrain = ["--terrain", TERRAIN]
+        for given, said in (("36.48,-84.38", "-84.38,36.48 is inside: give longitude first\n"),
+                            ("84.38,36.48", "-84.38,36.48 is inside"),
+                            ("-84,38", "covers longitude -84.41333 to -84.07833 and latitude 36.4"),
+                            ("-84.38,36.48,20", "--from: 20 m above ground is below --min-agl")):
+            self.refused(said, *terrain, "--from", given, *ENDS[2:])
+        for given in ("-84.38", "-84.38,36.48,1,1", "-84.38, 36.48", "x,y", "nan,36"):
+            self.refused("expected LON,LAT", *terrain, "--from", given, *ENDS[2:], code=2)
+        self.refused("the same point", *terrain, *ENDS[:2], "--to", "-84.38,36.48")
+        self.refused("leaves no height", *terrain, *ENDS, "--min-agl", "90", "--max-agl", "80")
+
+    def test_files_that_are_no_good(self):
+        (self.folder / "tiles.vrt").write_text("<VRTDataset/>")
+        (self.folder / "word.dat").write_text("word")
+        self.refused("is a VRT", "--terrain", "tiles.vrt", *ENDS)
+        self.refused("--terrain: word.dat: expected an elevation model", "--terrain", "word.dat",
+                     *ENDS)
+        self.refused("none.json", "--terrain", TERRAIN, *ENDS, "--avoid", "none.json")
+        self.refused("no_planner", "--terrain", TERRAIN, *ENDS, "--planner", "no_planner")
+
+
+unittest.main(argv=sys.argv[:1] + sys.argv[3:])

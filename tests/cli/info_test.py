@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""info_test.py PROGRAM SOURCES: `altiplan info`, what a file holds."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SOURCES = sys.argv[1:3]
+TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
+OPENAIR = """AC R
+AN Test
+AL 300m MSL
+AH 900m MSL
+DP 46:10:00 N 008:10:00 E
+DP 46:20:00 N 008:10:00 E
+DP 46:20:00 N 008:20:00 E
+"""
+
+
+class Info(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def info(self, *files, code=0):
+        run = subprocess.run([PROGRAM, "info", *files], cwd=self.folder, capture_output=True,
+                             text=True, timeout=60)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run.stdout if code == 0 else run.stdout + run.stderr
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def test_an_elevation_model(self):
+        out = self.info(TERRAIN)
+        for said in (": elevation model\n", "403 x 344 posts", "236 to 1076 m, no voids",
+                     "in EPSG:4326 (WGS 84): x -84.4", "longitude -84.4133 to -84.0783",
+                     "- terrain: {file: ", "volume: {min_m: [0, 0, 236]", "cell_m: [200, 200, 30]"):
+            self.assertIn(said, out)
+
+    def test_what_it_suggests_is_a_scenario(self):
+        lines = self.info(TERRAIN).split("in a scenario:\n")[1].splitlines()
+        text = "altiplan: 1\n" + "\n".join(line[4:] for line in lines) + """
+start: {at_lonlat: [-84.38, 36.48], above_ground_m: 60}
+goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
+"""
+        self.write("scenario.yaml", text)
+        run = subprocess.run([PROGRAM, "validate", "scenario.yaml"], cwd=self.folder, text=True,
+                             capture_output=True, timeout=60)
+        self.assertEqual(run.returncode, 0, run.stderr)
+
+    def test_airspace(self):
+        out = self.info(self.write("zones.txt", OPENAIR))
+        for said in ("zones.txt: published airspace", "OpenAir: 1 zones", "keep out (closed): 1 R",
+                     "lower limits: 1 above sea level", "0 zones with hours",
+                     "longitude 8.166667 to 8.333333", '- zones: {file: "zones.txt"}'):
+            self.assertIn(said, out)
+
+    def test_features(self):
+        ring = [[8, 46], [8.1, 46], [8.1, 46.1], [8, 46]]
+
+        def features(**properties):
+            return json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": properties,
+                 "geometry": {"type": "Polygon", "coordinates": [ring]}}]})
+        out = self.info(self.write("zones.geojson", features(floor_m=100)))
+        self.assertIn("zones.geojson: zones", out)
+        self.assertIn("floor_property: floor_m", out)
+        self.assertIn("buildings", self.info(self.write("town.geojson", features(height=9))))
+
+    def test_maps_and_missions(self):
+        out = self.info(self.write("a.map", "type octile\nheight 2\nwidth 3\nmap\n..@\n...\n"))
+        self.assertIn("a.map: grid map", out)
+        self.assertIn("3 x 2 x 1 cells of its own", out)
+        line = "1\t0\t3\t16\t0\t0\t0\t0\t46.1\t8.1\t50\t1\n"
+        home = "0\t1\t0\t16\t0\t0\t0\t0\t46\t8\t400\t1\n"
+        out = self.info(self.write("m.waypoints", "QGC WPL 110\n" + home + line))
+        for said in ("m.waypoints: mission", "1 item: 1 waypoints", "50 to 50 m above home",
+                     'mission: "m.waypoints"'):
+            self.assertIn(said, out)
+
+    def test_files_of_other_kinds(self):
+        out = self.info("none.tif", self.write("word.dat", "word"), TERRAIN, code=3)
+        self.assertIn("altiplan: none.tif: there is no such file", out)
+        self.assertIn("altiplan: word.dat: expected an elevation model", out)
+        self.assertIn("403 x 344 posts", out)  # the others are read all the same
+
+
+unittest.main(argv=sys.argv[:1] + sys.argv[3:])
