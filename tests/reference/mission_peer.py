@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 import zones_peer
 
 TAKEOFF, LAND, WAYPOINT, LOITER = (22, 84), (21, 85), (16, 82), (17, 18, 19, 31)
-RETURN = 20
+RETURN, SPLINE = 20, 82
 # Fly the vehicle somewhere, but to no position that is known.
 MOVES = (RETURN, 23, 24, 25, 30, 32, 33, 34, 35, 36, 81, 83, 92, 94, 176, 177, 192, 601)
 KINDS = {**dict.fromkeys(TAKEOFF, "take-off"), **dict.fromkeys(LAND, "landing"),
@@ -58,6 +58,8 @@ class Mission:
             self.items[-1].loiter = abs(params[1 if command == 31 else 2] or 0)
         if command == 18 and params[3] == 1 and params[2]:
             self.items[-1].circle = params[2]
+        if command == SPLINE:  # nobody knows its curve
+            self.moves.append(("item %d (spline)" % number, command, len(self.items)))
 
     def end_at_home(self):
         """A return that ends the mission is a landing at home."""
@@ -66,7 +68,6 @@ class Mission:
         name, command, before = self.moves[-1]
         if command == RETURN and before == len(self.items) and self.items[-1].kind != "landing":
             self.moves.pop()
-            name = name.replace("return to launch", "landing")
             self.items.append(Item(name, "landing", *self.home, "sea"))
 
 

@@ -114,6 +114,8 @@ class Case:
                 limits["radius"] = self.radius(lows, beside)
         for key in limits:
             limits[key] = min(max(limits[key], 0), 1e4)
+        if limits.get("min_agl", 0) >= limits.get("max_agl", math.inf):
+            del limits["min_agl"]  # refused
         for _ in range(rng.choice([0, 0, 1, 1, 2])):
             self.zones.append(rng.choice(self.world.zones))
         if rng.random() < 0.35:

@@ -124,6 +124,8 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
   };
   command.add_option("--airspace", plan.airspace, "zones over it; repeatable")
       ->type_name("FILE")
+      ->take_all()
+      ->one_at_a_time()
       ->needs(terrain);
   command
       .add_flag("--permission", plan.has_permission,
@@ -170,6 +172,32 @@ std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
 bool is_plan(const Arguments& arguments) {
   return arguments.result && (arguments.plan.terrain || arguments.plan.scenario);
 }
+
+/// Throws UsageError for options that do not fit together.
+void expect_fitting(const Arguments& arguments, const std::vector<Option*>& outputs) {
+  if (!arguments.result && !arguments.route) {
+    throw UsageError{
+        "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
+  }
+  if (arguments.result && !is_plan(arguments) && kit::is_mission_file(*arguments.result)) {
+    throw UsageError{*arguments.result + " is a mission: add --terrain DEM or --scenario FILE"};
+  }
+  if (arguments.plan.start_time && (arguments.plan.start_time->find('T') == std::string::npos ||
+                                    !kit::parse_iso_time(*arguments.plan.start_time))) {
+    throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
+                     *arguments.plan.start_time + "'"};
+  }
+  const auto& [low, high] =
+      std::pair(arguments.plan.min_above_ground_m, arguments.plan.max_above_ground_m);
+  if (low && high && !(*low < *high)) {
+    throw UsageError{"--min-agl: expected less than --max-agl"};
+  }
+  for (const Option* output : outputs) {
+    if (output->count() > 0 && !is_plan(arguments)) {
+      throw UsageError{output->name() + " requires a mission and --terrain or --scenario"};
+    }
+  }
+}
 }  // namespace
 
 void add_check(App& app, Action& action) {
@@ -204,23 +232,7 @@ void add_check(App& app, Action& action) {
   command->add_flag("--json", arguments->plan.json, "print as JSON");
   set_example(*command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
   command->callback([&action, arguments, outputs] {
-    if (!arguments->result && !arguments->route) {
-      throw UsageError{
-          "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
-    }
-    if (arguments->result && !is_plan(*arguments) && kit::is_mission_file(*arguments->result)) {
-      throw UsageError{*arguments->result + " is a mission: add --terrain DEM or --scenario FILE"};
-    }
-    if (arguments->plan.start_time && (arguments->plan.start_time->find('T') == std::string::npos ||
-                                       !kit::parse_iso_time(*arguments->plan.start_time))) {
-      throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
-                       *arguments->plan.start_time + "'"};
-    }
-    for (const Option* output : outputs) {
-      if (output->count() > 0 && !is_plan(*arguments)) {
-        throw UsageError{output->name() + " requires a mission and --terrain or --scenario"};
-      }
-    }
+    expect_fitting(*arguments, outputs);
     arguments->plan.plan = arguments->result.value_or("");
     action = [arguments] {
       return is_plan(*arguments) ? check_plan(arguments->plan, arguments->overrides)

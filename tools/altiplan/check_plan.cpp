@@ -33,6 +33,8 @@ constexpr double kSpeed = 5;
 constexpr double kClosed = 10'000;
 /// Of a mission that ends in a loiter without end.
 constexpr double kLongest = 86400;
+/// The scenario that options describe, in messages.
+constexpr const char* kWorld = "the world of --terrain";
 
 /// Quoted, absolute; JSON's strings are YAML's.
 std::string path_text(const std::string& file) {
@@ -42,6 +44,16 @@ std::string path_text(const std::string& file) {
 /// Seconds in which the mission is flown, for zones with hours.
 double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
   return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
+}
+
+/// A message about a file, without its place in the scenario that nobody has written.
+std::string about_file(const std::string& message) {
+  constexpr std::string_view kKey = ".file: ";
+  const std::size_t key = message.find(kKey);
+  const bool is_one = message.find('\n') == std::string::npos;
+  return is_one && message.starts_with(kWorld) && key != std::string::npos
+             ? message.substr(key + kKey.size())
+             : message;
 }
 
 std::string name_of(const std::string& file) {
@@ -115,10 +127,24 @@ std::string cure_of(const Finding& finding, const PlanReport& report) {
   return finding.cure ? in_words(*finding.cure, report.name_of(finding.cure->waypoint)) : "";
 }
 
+/// "not judged: airspace, heights above ground", for what the options leave out; "" for nothing.
+std::string left_out(const PlanCheck& plan) {
+  if (plan.scenario) {
+    return "";
+  }
+  const bool has_heights =
+      plan.min_above_ground_m || plan.max_above_ground_m || plan.max_ground_distance_m;
+  const std::string airspace = plan.airspace.empty() ? "airspace (--airspace)" : "";
+  const std::string heights =
+      has_heights ? "" : "limits of height above ground (--min-agl, --max-agl)";
+  const std::string all = airspace + (airspace.empty() || heights.empty() ? "" : ", ") + heights;
+  return all.empty() ? "" : "not judged: " + all;
+}
+
 void print(const PlanReport& report, const host::Mission& world) {
   std::printf("%s: %s, %zu waypoints, %s km, at least %s m above ground\n",
-              report.passed() ? "pass" : "fail", report.file.c_str(), report.measures.waypoints,
-              fixed(report.measures.length_m / 1000, 3).c_str(),
+              report.passed() ? "pass" : "fail", host::printable(report.file).c_str(),
+              report.measures.waypoints, fixed(report.measures.length_m / 1000, 3).c_str(),
               fixed(report.measures.min_ground_clearance_m, 1).c_str());
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
@@ -130,7 +156,7 @@ void print(const PlanReport& report, const host::Mission& world) {
     }
   }
   for (const std::string& note : report.notes) {
-    std::printf("  read: %s\n", note.c_str());
+    std::printf("  note: %s\n", host::printable(note).c_str());
   }
 }
 
@@ -209,21 +235,25 @@ std::vector<host::ChangedItem> changes_of(const PlanReport& report, const host::
   const Route& route = report.imported.route;
   request.start.position = route.front();
   request.goal = {route.back()};
-  const host::FollowsGround follows = report.follows_ground();
-  const std::optional<Route> better = host::cured(route, request, follows);
+  const host::Bonds bonds = report.bonds();
+  const std::optional<Route> better = host::cured(route, request, bonds);
+  const std::size_t count = report.imported.items.size() - (bonds.last_is_led ? 1 : 0);
   std::vector<host::ChangedItem> changes;
-  for (std::size_t i = 0; better && i < report.imported.items.size(); ++i) {
+  for (std::size_t i = 0; better && i < count; ++i) {
     Vec3 by = (*better)[i] - route[i];
     if (by.norm() == 0) {
       continue;
     }
-    const auto [lon, lat] = world.truth.frame().to_lonlat((*better)[i].x(), (*better)[i].y());
-    if (follows[i]) {  // its height above the ground
+    if (bonds.follows_ground[i]) {  // its height above the ground
       by.z() -= world.truth.ground((*better)[i].x(), (*better)[i].y()).value_or(0) -
                 world.truth.ground(route[i].x(), route[i].y()).value_or(0);
     }
     by.z() = std::round(by.z() * 10) / 10;
-    changes.push_back({report.imported.items[i].place, lon, lat, by.z()});
+    host::ChangedItem change{report.imported.items[i].place, {}, by.z()};
+    if (by.head<2>().norm() > 0) {
+      change.lonlat = world.truth.frame().to_lonlat((*better)[i].x(), (*better)[i].y());
+    }
+    changes.push_back(std::move(change));
     for (const Vec3& part : {Vec3(0, 0, by.z()), Vec3(by.x(), by.y(), 0)}) {
       if (part.norm() > 0) {
         words += "  " + in_words(host::Cure{i, part}, report.name_of(i)) + "\n";
@@ -278,13 +308,13 @@ void add_notes(PlanReport& report, const host::Mission& world) {
 }
 
 /// Throws Error if what is to be written cannot be, or is read, or written twice.
-void expect_outputs(const PlanCheck& plan, const host::Config& config) {
+void expect_outputs(const PlanCheck& plan, const std::vector<std::filesystem::path>& read) {
   std::vector<std::string> others{plan.plan};
   others.insert(others.end(), plan.airspace.begin(), plan.airspace.end());
   for (const auto& file : {plan.scenario, plan.terrain}) {
     others.insert(others.end(), file.value_or(plan.plan));
   }
-  for (const std::filesystem::path& file : config.files) {
+  for (const std::filesystem::path& file : read) {
     others.push_back(file.string());
   }
   for (const auto& [file, option] : {std::pair(&plan.certificate, "--certificate"),
@@ -319,22 +349,25 @@ void expect_files(const PlanCheck& plan) {
 }
 }  // namespace
 
-int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
-  expect_files(plan);
+namespace {
+
+int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
+           const host::Overrides& overrides) {
   const std::string text = kit::read_file(plan.plan);
   const kit::MissionFile mission = kit::read_mission(plan.plan, text);
   if (plan.fixed) {
     static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
   }
   host::expect_route(plan.plan, mission);
-  const host::Config config = plan.scenario
-                                  ? host::load_scenario(*plan.scenario, overrides)
-                                  : host::load_scenario_text(scenario_text(plan, mission),
-                                                             "the world of --terrain", overrides);
-  expect_outputs(plan, config);
-  const host::Mission world = host::build_mission(config, 1);
+  const host::Mission world = host::build_mission(
+      scenario ? *scenario
+               : host::load_scenario_text(scenario_text(plan, mission), kWorld, overrides),
+      1);
   PlanReport report = host::judge_plan(plan.plan, mission, world, !plan.scenario);
   add_notes(report, world);
+  if (const std::string words = left_out(plan); !words.empty()) {
+    report.notes.insert(report.notes.begin(), words);
+  }
   if (plan.certificate) {
     host::write_file(*plan.certificate, certificate(report, world, basis_of(plan, mission)));
   }
@@ -346,5 +379,28 @@ int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
     fix(plan, report, text, mission, world);
   }
   return report.passed() ? kDone : kNoRoute;
+}
+}  // namespace
+
+int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
+  expect_files(plan);
+  std::optional<host::Config> scenario;
+  if (plan.scenario) {
+    scenario = host::load_scenario(*plan.scenario, overrides);
+  }
+  expect_outputs(plan, scenario ? scenario->files : decltype(scenario->files){});
+  try {
+    return judged(plan, scenario, overrides);
+  } catch (const Error& error) {
+    const std::string message = about_file(error.what());
+    // What an earlier call wrote would be taken for this one's verdict.
+    if (plan.junit) {
+      host::write_file(*plan.junit, host::junit_of_error(plan.plan, message));
+    }
+    if (message == error.what()) {
+      throw;
+    }
+    throw Error(message);
+  }
 }
 }  // namespace altiplan::cli

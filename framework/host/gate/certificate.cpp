@@ -92,6 +92,23 @@ std::string legs(const PlanReport& report, const Request& request) {
   return html + "</table>\n";
 }
 
+/// The numbers of the items, or of the points where the file numbers nothing.
+std::vector<std::string> labels_of(const PlanReport& report) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < report.imported.route.size(); ++i) {
+    const auto& items = report.imported.items;
+    const int number = i < items.size() ? items[i].number : 0;
+    labels.push_back(std::to_string(number > 0 ? std::size_t(number) : i + 1));
+  }
+  return labels;
+}
+
+std::string suite(const std::string& counts, const std::string& cases) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
+         ">\n  <testsuite name=\"altiplan check\"" + counts + ">\n" + cases +
+         "  </testsuite>\n</testsuites>\n";
+}
+
 std::string list(const std::vector<std::string>& notes) {
   std::string html;
   for (const std::string& note : notes) {
@@ -128,6 +145,7 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
                             " m above ground, " + metres(measures.min_clearance_m) +
                             " m from obstacles"});
   html += "</table>\n" + violations(report, request);
+  html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);
   return html + legs(report, request) + list(report.notes) + "</body>\n</html>\n";
 }
@@ -174,8 +192,12 @@ std::string junit(const PlanReport& report) {
   }
   const std::string counts =
       " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
-         ">\n  <testsuite name=\"altiplan check\"" + counts + ">\n" + cases +
-         "  </testsuite>\n</testsuites>\n";
+  return suite(counts, cases);
+}
+
+std::string junit_of_error(const std::string& file, const std::string& message) {
+  return suite(" tests=\"1\" errors=\"1\"", "    <testcase classname=\"" + xml_text(file) +
+                                                "\" name=\"all\">\n      <error message=\"" +
+                                                xml_text(message) + "\"/>\n    </testcase>\n");
 }
 }  // namespace altiplan::host

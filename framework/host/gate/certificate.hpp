@@ -17,9 +17,11 @@ using Basis = std::vector<std::pair<std::string, std::string>>;
 std::string place_in_words(const Vec3& p, const Request& request);
 
 /// The verdict as a page of HTML without scripts: what it rests on, the violations with their
-/// cures, the height profile, and heights leg by leg.
+/// cures, a map, the height profile, and heights leg by leg.
 std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis);
 
 /// The verdict as JUnit XML: one test case a leg, climb and descent.
 std::string junit(const PlanReport& report);
+/// The same where there is no verdict.
+std::string junit_of_error(const std::string& file, const std::string& message);
 }  // namespace altiplan::host

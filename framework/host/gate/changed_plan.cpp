@@ -38,8 +38,10 @@ std::string changed_json(const std::string& text, const std::vector<ChangedItem>
     const bool old_form = item.contains("coordinate");
     Json& place = old_form ? item.at("coordinate") : item.at("params");
     const std::size_t first = old_form ? 0 : 4;
-    place.at(first) = of_degrees(change.lat);
-    place.at(first + 1) = of_degrees(change.lon);
+    if (change.lonlat) {
+      place.at(first) = of_degrees(change.lonlat->at(1));
+      place.at(first + 1) = of_degrees(change.lonlat->at(0));
+    }
     raise(place.at(first + 2), change.raised_by_m);
     for (const char* key : {"Altitude", "AMSLAltAboveTerrain"}) {  // the ground station's own
       if (item.contains(key)) {
@@ -67,10 +69,11 @@ std::string changed_line(const std::string& line, const ChangedItem& change) {
     double altitude = 0;
     std::from_chars(word.data(), word.data() + word.size(), altitude);
     result += line.substr(at, begin - at);
-    result += column == 8    ? number(change.lat, 7)
-              : column == 9  ? number(change.lon, 7)
-              : column == 10 ? number(altitude + change.raised_by_m, 3)
-                             : word;
+    const bool is_moved = change.lonlat && (column == 8 || column == 9);
+    const bool is_raised = column == 10 && change.raised_by_m != 0;
+    result += is_moved    ? number(change.lonlat->at(column == 8 ? 1 : 0), 7)
+              : is_raised ? number(altitude + change.raised_by_m, 3)
+                          : word;
     at = end;
   }
   return result;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +12,8 @@ namespace altiplan::host {
 
 /// An item's new position; its frame of altitude stays.
 struct ChangedItem {
-  std::string place;  ///< as MissionItem has it
-  double lon = 0;
-  double lat = 0;
+  std::string place;                            ///< as MissionItem has it
+  std::optional<std::array<double, 2>> lonlat;  ///< none: only its height changes
   double raised_by_m = 0;
 };
 

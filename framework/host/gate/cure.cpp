@@ -19,16 +19,17 @@ std::optional<Approach> after(const std::optional<Approach>& before, const Vec3&
   return a == b ? before : onward(before, a);
 }
 
-/// A route with the heights of some waypoints bound to the ground.
+/// A route with the heights of some waypoints bound to the ground, or the last one's to the height
+/// of the waypoint before it.
 struct Subject {
   Polyline points;
-  const FollowsGround& follows;
+  const Bonds& bonds;
   const Request& request;
   std::vector<std::optional<Approach>> before;  ///< each leg
 
-  Subject(const Polyline& route, const FollowsGround& their_follows, const Request& their_request)
+  Subject(const Polyline& route, const Bonds& their_bonds, const Request& their_request)
       : points(route),
-        follows(their_follows),
+        bonds(their_bonds),
         request(their_request),
         before{request.before_start(points.front())} {
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -48,10 +49,19 @@ struct Subject {
     return leg;
   }
 
+  /// True for a waypoint that only moves with another, in height.
+  bool is_led(std::size_t i) const { return bonds.last_is_led && i + 1 == points.size(); }
+
+  /// The last waypoint that moves with this one.
+  std::size_t last_with(std::size_t i) const { return is_led(i + 1) ? i + 1 : i; }
+
   /// A waypoint moved by so much.
   Vec3 moved(std::size_t i, const Vec3& by) const {
+    if (is_led(i)) {
+      return points[i] + Vec3(0, 0, by.z());
+    }
     Vec3 p = points[i] + by;
-    if (i < follows.size() && follows[i]) {
+    if (i < bonds.follows_ground.size() && bonds.follows_ground[i]) {
       const World& world = *request.world;
       const auto left = world.ground(points[i].x(), points[i].y());
       const auto reached = world.ground(p.x(), p.y());
@@ -131,8 +141,11 @@ std::optional<Change> least_change(const Subject& subject, std::size_t leg, bool
   std::optional<Change> best;
   int least = kMost;
   for (const std::size_t waypoint : {leg, leg + 1}) {
+    if (subject.is_led(waypoint)) {
+      continue;
+    }
     const std::size_t first = both ? leg : waypoint;
-    const std::size_t last = both ? leg + 1 : waypoint;
+    const std::size_t last = subject.last_with(both ? leg + 1 : waypoint);
     const std::size_t first_leg = both ? leg : std::max<std::size_t>(waypoint, 1) - 1;
     const std::size_t last_leg = both ? leg : std::min(waypoint, subject.points.size() - 2);
     for (const Vec3& direction : directions) {
@@ -168,11 +181,11 @@ std::optional<Change> of_one_waypoint(const Subject& subject, std::size_t leg) {
 }  // namespace
 
 std::optional<Cure> cure(const Route& route, const Violation& violation, const Request& request,
-                         const FollowsGround& follows) {
+                         const Bonds& bonds) {
   if (!route.is_straight() || violation.at >= route.leg_count()) {
     return std::nullopt;
   }
-  const Subject subject(route.waypoints(), follows, request);
+  const Subject subject(route.waypoints(), bonds, request);
   const auto change = of_one_waypoint(subject, violation.at);
   return change ? std::optional(Cure{change->first, change->by}) : std::nullopt;
 }
@@ -194,12 +207,11 @@ std::string in_words(const Cure& cure, const std::string& item) {
   return "move " + item + " by " + metres + toward;
 }
 
-std::optional<Route> cured(const Route& route, const Request& request,
-                           const FollowsGround& follows) {
+std::optional<Route> cured(const Route& route, const Request& request, const Bonds& bonds) {
   if (!route.is_straight()) {
     return std::nullopt;
   }
-  Subject subject(route.waypoints(), follows, request);
+  Subject subject(route.waypoints(), bonds, request);
   Polyline& points = subject.points;
   const std::size_t most_rounds = 20 * points.size();
   std::size_t leg = 0;

@@ -22,6 +22,7 @@ double foot_of(const Vec3& top, const std::optional<MissionPoint>& home, const W
 
 std::string type_of(const MissionItem& item) {
   return item.kind == Kind::takeoff  ? "take-off"
+         : item.returns              ? "return to launch"
          : item.kind == Kind::land   ? "landing"
          : item.kind == Kind::loiter ? "loiter"
                                      : "waypoint";
@@ -37,6 +38,7 @@ void end_at_home(kit::MissionFile& plan) {
       plan.items.back().kind != Kind::land) {
     MissionItem landing{Kind::land, *plan.home, 0, last.place};
     landing.number = last.number;
+    landing.returns = true;
     plan.items.push_back(std::move(landing));
     plan.moves.pop_back();
   }
@@ -152,6 +154,7 @@ std::string name_of_item(const MissionItem& item) {
 
 std::string name_of_move(const kit::MissionMove& move) {
   const std::string what = move.command == kit::MissionMove::kReturn ? "return to launch"
+                           : move.command == 82                      ? "spline"
                            : move.command == 177                     ? "jump"
                            : move.command == 0                       ? "complex item"
                                                : "command " + std::to_string(move.command);

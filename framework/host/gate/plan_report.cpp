@@ -117,32 +117,37 @@ Finding finding_of(const Violation& violation, const PlanReport& report, const R
   return finding;
 }
 
-/// One finding a leg and rule; a leg into the ground is told once.
+/// True if a leg into the ground has been told already.
+bool is_told(const PlanReport& report, const Violation& violation, const Request& request) {
+  return violation.constraint == "clearance" &&
+         std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& other) {
+           return other.violation.at == violation.at &&
+                  other.violation.constraint == "ground_clearance" && other.violation.value < 0 &&
+                  is_ground(violation, request);
+         });
+}
+
+/// One finding a leg and rule, the first legs with a cure.
 void add_violations(PlanReport& report, const CheckResult& verdict, const Request& request) {
+  constexpr std::size_t kMostCures = 50;             // each may judge thousands of legs
   std::map<std::size_t, std::optional<Cure>> cures;  // of legs
+  const Bonds bonds = report.bonds();
   for (const Violation& violation : verdict.violations) {
-    const bool is_told =
-        violation.constraint == "clearance" &&
-        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& other) {
-          return other.violation.at == violation.at &&
-                 other.violation.constraint == "ground_clearance" && other.violation.value < 0 &&
-                 is_ground(violation, request);
-        });
-    if (is_told) {
+    if (is_told(report, violation, request)) {
       continue;
     }
     Finding finding = finding_of(violation, report, request);
-    const auto [cure_of_leg, is_new] = cures.try_emplace(violation.at);
-    if (is_new) {
-      cure_of_leg->second =
-          cure(report.imported.route, violation, request, report.follows_ground());
+    if (cures.size() < kMostCures && !cures.contains(violation.at)) {
+      cures[violation.at] = cure(report.imported.route, violation, request, bonds);
     }
-    const auto& cured = cure_of_leg->second;
-    const auto& items = report.imported.items;
-    if (cured && !(cured->waypoint < items.size() && items[cured->waypoint].kind == Kind::land)) {
-      finding.cure = cured;  // a landing has no height of its own
+    if (const auto found = cures.find(violation.at); found != cures.end()) {
+      finding.cure = found->second;
     }
     report.findings.push_back(std::move(finding));
+  }
+  if (cures.size() == kMostCures && cures.rbegin()->first < verdict.violations.back().at) {
+    report.notes.push_back("cures are searched for the first " + std::to_string(kMostCures) +
+                           " legs that are violated");
   }
 }
 
@@ -218,10 +223,12 @@ void add_home(PlanReport& report, const kit::MissionFile& plan, const World& wor
   violation.constraint = "home";
   violation.value = plan.home->altitude_m;
   violation.limit = *ground;
-  violation.message = "home is at " + with_digits(std::round(plan.home->altitude_m), 6) +
-                      " m in the mission, where the ground is at " +
-                      with_digits(std::round(*ground), 6) + " m: the heights of " +
-                      counted(std::size_t(relative), "item") + " are relative to it";
+  violation.message =
+      "home is at " + with_digits(std::round(plan.home->altitude_m), 6) +
+      " m in the mission, where the ground is at " + with_digits(std::round(*ground), 6) + " m: " +
+      (relative == 0 ? "no height is"
+                     : "the heights of " + counted(std::size_t(relative), "item") + " are") +
+      " relative to it";
   if (relative > 0) {
     report.findings.insert(report.findings.begin(), {violation, {"home"}, Vec3(x, y, *ground), {}});
   } else {
@@ -257,12 +264,14 @@ std::string PlanReport::name_of(std::size_t waypoint) const {
                                           : "waypoint " + std::to_string(waypoint);
 }
 
-FollowsGround PlanReport::follows_ground() const {
-  FollowsGround follows;
-  for (const MissionItem& item : imported.items) {
-    follows.push_back(item.at.frame == kit::AltitudeFrame::ground);
+Bonds PlanReport::bonds() const {
+  const std::vector<MissionItem>& items = imported.items;
+  Bonds bonds;
+  for (const MissionItem& item : items) {
+    bonds.follows_ground.push_back(item.at.frame == kit::AltitudeFrame::ground);
   }
-  return follows;
+  bonds.last_is_led = items.size() > 1 && items.back().kind == Kind::land;
+  return bonds;
 }
 
 void expect_route(const std::string& file, const kit::MissionFile& plan) {

@@ -36,7 +36,7 @@ struct PlanReport {
   /// "item 3 (waypoint)" as ground stations number it, "point 3" where the file numbers nothing,
   /// "waypoint 3" where the route has other points than the file.
   std::string name_of(std::size_t waypoint) const;
-  FollowsGround follows_ground() const;
+  Bonds bonds() const;
 };
 
 /// Throws Error, beginning with `file`, naming what a mission without a route holds instead.

@@ -87,9 +87,12 @@ gdal::Dataset open(const Params& params) {
     name = close.files->name_of(files.front());
   }
   const char* const drivers[] = {"GTiff", "SRTMHGT", "AAIGrid", "DTED", "ENVI", nullptr};
-  gdal::Dataset dataset(api().GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
-                                         drivers, nullptr, nullptr),
-                        std::move(close));
+  // In a grid of text whose first numbers are whole, GDAL would read "nan" as 0.
+  const char* const as_reals[] = {"DATATYPE=Float32", nullptr};
+  gdal::Dataset dataset(
+      api().GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, drivers,
+                       fs::path(file).extension() == ".asc" ? as_reals : nullptr, nullptr),
+      std::move(close));
   if (!dataset) {
     refuse(params,
            "expected an elevation model (GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid, ENVI); " +
@@ -164,6 +167,21 @@ void read_crs(const Params& params, void* dataset, Dem& dem) {
            "crs");
   }
   dem.unit_m = dem.geographic ? 1 : api().OSRGetLinearUnits(dem.crs.get(), nullptr);
+}
+
+/// Refuses heights that are not above sea level.
+void read_datum(const Params& params, Dem& dem) {
+  const char* name = api().OSRGetAttrValue(dem.crs.get(), "VERT_CS", 0);
+  dem.datum = name != nullptr ? name : "";
+  std::string words = dem.datum;
+  std::transform(words.begin(), words.end(), words.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  for (const char* other : {"ellips", "depth"}) {
+    if (words.find(other) != std::string::npos) {
+      refuse(params, "expected heights above sea level, found '" + dem.datum +
+                         "': convert them (gdalwarp -t_srs EPSG:4326+5773)");
+    }
+  }
 }
 
 // Places the posts at the cells' centres; returns true if the file's rows run from the north.
@@ -262,6 +280,7 @@ Dem read_dem(const Params& params, bool may_read_a_part) try {
   }
   dem.band = read_band(params, dataset);
   read_crs(params, dataset, dem);
+  read_datum(params, dem);
   dem.from_north = read_position(params, dataset, dem);
   read_meaning(params, dem);
   return dem;

@@ -66,6 +66,7 @@ struct Dem {
   gdal::Reference crs;
   std::string crs_name;
   std::string crs_code;     ///< "EPSG:32632", "" if the file gives none
+  std::string datum;        ///< of the heights: "EGM96 height", "" if the file names none
   bool geographic = false;  ///< degrees; otherwise lengths of `unit_m`
   double unit_m = 1;
 

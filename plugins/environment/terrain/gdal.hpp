@@ -65,6 +65,7 @@ struct Api {
   X(OSRGetLinearUnits)                  \
   X(OSRGetName)                         \
   X(OSRGetAuthorityCode)                \
+  X(OSRGetAttrValue)                    \
   X(OCTNewCoordinateTransformation)     \
   X(OCTDestroyCoordinateTransformation) \
   X(OCTTransform)

@@ -271,6 +271,9 @@ class Terrain final : public Environment, public Ground {
     notes.push_back(
         text("scale error at most %.2g %% in ", 100 * layout.frame.scale_error(bounds_)) +
         layout.frame.crs());
+    if (const std::string& datum = model_.dem().datum; !datum.empty()) {
+      notes.push_back("heights above the zero of '" + datum + "'");
+    }
     notes.push_back(own_extent(model_.dem()));
     notes.push_back(extent(layout.frame));
     return notes;

@@ -119,6 +119,30 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
   EXPECT_EQ(refusal(undeclared, "nodata: -9999, voids: neighbours"), "");
 }
 
+TEST_F(MadeFiles, WhatIsNoNumberIsAVoidAmongWholeNumbersToo) {
+  const auto file = grid("10 10 10 10 10\n10 nan 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n");
+  EXPECT_SAYS(refusal(file), "1 of 20 posts");
+}
+
+TEST_F(MadeFiles, HeightsAreAboveSeaLevel) {
+  const auto of = [&](const std::string& vertical) {
+    const auto file = grid(kFlat);
+    std::ifstream in(folder_ / "made.prj");
+    const std::string plane((std::istreambuf_iterator<char>(in)), {});
+    write("made.prj", "COMPD_CS[\"both\"," + plane + ",VERT_CS[\"" + vertical +
+                          "\",VERT_DATUM[\"a datum\",2005],UNIT[\"metre\",1],"
+                          "AXIS[\"Up\",UP]]]");
+    return file;
+  };
+  EXPECT_SAYS(refusal(of("Ellipsoidal height")), "expected heights above sea level");
+  EXPECT_SAYS(refusal(of("Depth")), "expected heights above sea level");
+  const Made layer = make_environment("terrain", file_yaml(of("EGM96 height")));
+  const auto& notes = layer->info().notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note == "heights above the zero of 'EGM96 height'";
+  }));
+}
+
 TEST_F(MadeFiles, PipesAreNeverWaitedFor) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe.tif").c_str(), 0600), 0);
   EXPECT_SAYS(refusal(folder_ / "pipe.tif"), "is a pipe, expected a file");

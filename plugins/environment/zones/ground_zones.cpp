@@ -65,7 +65,7 @@ GroundZones::Zone GroundZones::zone_of(const World& ground, GroundPrism&& prism)
   zone.bounds.max.z() = std::isfinite(prism.above_ceiling)
                             ? highest_ground(ground) + prism.above_ceiling
                             : prism.prism.ceiling;
-  zone.slope = ground.ground_slope(zone.area);
+  zone.slope = prism.slope;
   zone.steepness = std::hypot(1, zone.slope);
   zone.limits = std::move(prism);
   return zone;
@@ -214,16 +214,17 @@ double GroundZones::over_approximation(double r) const {
   return most;
 }
 
-Shape drawn(const World& ground, const GroundPrism& prism) {
+Shape GroundZones::drawn(std::size_t zone) const {
   constexpr int kPoints = 16;
-  const Box area = bounds(Shape(prism.prism));
+  const GroundPrism& prism = zones_[zone].limits;
+  const Box area = altiplan::bounds(Shape(prism.prism));
   double low = kInfinity;
   double high = -kInfinity;
   for (int i = 0; i <= kPoints; ++i) {
     for (int j = 0; j <= kPoints; ++j) {
       const double x = area.min.x() + (area.max.x() - area.min.x()) * i / kPoints;
       const double y = area.min.y() + (area.max.y() - area.min.y()) * j / kPoints;
-      if (const auto height = ground.ground(x, y)) {
+      if (const auto height = ground_.ground(x, y)) {
         low = std::min(low, *height);
         high = std::max(high, *height);
       }

@@ -15,6 +15,7 @@ struct GroundPrism {
   Prism prism;
   double above_floor = -kInfinity;
   double above_ceiling = kInfinity;
+  double slope = 0;  ///< of the ground over its bounding rectangle, at most
 };
 
 /// Zones with limits above the ground, which is known all over their bounding rectangles.
@@ -44,6 +45,8 @@ class GroundZones {
   void rasterize(VoxelGrid& grid) const;
   /// How much farther than r a zone may be that blocks: none at radius 0.
   double over_approximation(double r) const;
+  /// A zone between the lowest and the highest of its limits, for a picture.
+  Shape drawn(std::size_t zone) const;
 
  private:
   struct Zone {
@@ -66,7 +69,4 @@ class GroundZones {
   kit::ObstacleSet outlines_;
   Box bounds_ = Box::empty();
 };
-
-/// Floor and ceiling of a picture: the lowest and highest of the zone's limits.
-Shape drawn(const World& ground, const GroundPrism& prism);
 }  // namespace altiplan::zones

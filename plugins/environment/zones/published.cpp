@@ -22,9 +22,21 @@ using Use = PublishedRules::Use;
 // Edges are straight in longitude and latitude to this, metres, where the frame's map bends them.
 constexpr double kStraight = 0.5;
 
+/// True if the map bends the edge by less than that wherever it lies: a parallel is bent by
+/// tan(latitude) / R in a conformal map, and by four times that in no map that is used.
+bool is_short(const Point2& p, const Point2& q, const Point2& local_p, const Point2& local_q) {
+  constexpr double kEarth = 6'371'000;
+  const double length = std::hypot(local_q[0] - local_p[0], local_q[1] - local_p[1]);
+  const double lat = radians(std::max(std::abs(p[1]), std::abs(q[1])));
+  return length * length / 8 * 4 * (1 + std::tan(lat)) / kEarth <= kStraight;
+}
+
 void add_edge(const Frame& frame, const Point2& p, const Point2& q, const Point2& local_p,
               const Point2& local_q, int depth, Ring& to) {
   constexpr int kMaxDepth = 12;
+  if (is_short(p, q, local_p, local_q)) {
+    return;
+  }
   const Point2 middle{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
   const Point2 local = frame.to_local(middle[0], middle[1]);
   const double off = std::hypot(local[0] - (local_p[0] + local_q[0]) / 2,
@@ -38,13 +50,16 @@ void add_edge(const Frame& frame, const Point2& p, const Point2& q, const Point2
 }
 
 Ring local(const Frame& frame, const Ring& lonlat) {
+  Ring corners;
+  for (const Point2& p : lonlat) {
+    corners.push_back(frame.to_local(p[0], p[1]));
+  }
   Ring ring;
   for (std::size_t n = 0; n < lonlat.size(); ++n) {
     const Point2& p = lonlat[n];
     const Point2& q = lonlat[n + 1 < lonlat.size() ? n + 1 : 0];
-    const Point2 local_p = frame.to_local(p[0], p[1]);
-    ring.push_back(local_p);
-    add_edge(frame, p, q, local_p, frame.to_local(q[0], q[1]), 0, ring);
+    ring.push_back(corners[n]);
+    add_edge(frame, p, q, corners[n], corners[n + 1 < corners.size() ? n + 1 : 0], 0, ring);
   }
   return ring;
 }
@@ -146,9 +161,11 @@ class Converter {
     }
     const Parts parts = split(limits.prism, ground_);
     for (const Prism& within : parts.within) {
-      if (std::isfinite(site_.before->ground_slope(bounds(Shape(within))))) {
+      const double slope = site_.before->ground_slope(bounds(Shape(within)));
+      if (std::isfinite(slope)) {
         GroundPrism above = limits;
         above.prism = within;
+        above.slope = slope;
         zones.push_back({name, {}, std::move(above), true});
       } else {
         ++without_ground_;

@@ -145,6 +145,23 @@ TEST_F(ZoneFile, APolygonWithoutAnAreaIsSkippedByName) {
   }
 }
 
+TEST_F(ZoneFile, PointsAloneAreNoZone) {
+  const std::string point =
+      R"({"type": "Feature", "geometry": {"type": "Point", "coordinates": [25, 60]}})";
+  EXPECT_NE(refusal("p.geojson", collection({point})).find("contains no zone"), std::string::npos);
+  EXPECT_EQ(refusal("none.geojson", collection({})), "");  // none is active today
+}
+
+TEST_F(ZoneFile, CoordinatesAreLongitudeAndLatitude) {
+  const auto with = [](const std::string& crs) {
+    return R"({"crs": {"type": "name", "properties": {"name": ")" + crs + R"("}}, )" +
+           collection({feature("A", 25.0, "{}")}).substr(1);
+  };
+  EXPECT_EQ(refusal("f.geojson", with("urn:ogc:def:crs:OGC:1.3:CRS84")), "");
+  const std::string said = refusal("f.geojson", with("urn:ogc:def:crs:EPSG::3857"));
+  EXPECT_NE(said.find("crs: expected longitude and latitude of WGS 84"), std::string::npos) << said;
+}
+
 TEST_F(ZoneFile, OfAMultiPolygonThePartsWithAnAreaCount) {
   const std::string square = "[[[25, 60], [25.1, 60], [25.1, 60.1], [25, 60.1], [25, 60]]]";
   const auto layer = zones(

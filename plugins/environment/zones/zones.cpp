@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <mutex>
 
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
@@ -129,6 +130,7 @@ class Zones final : public Environment {
     std::optional<Frame> frame;
     std::vector<Shape> shapes[2];  // by kind
     std::vector<GroundPrism> above_ground;
+    std::vector<std::string> above_ground_names;
     Drawing drawing;
     std::size_t inactive = 0;
     std::vector<std::string> notes;
@@ -239,9 +241,8 @@ class Zones final : public Environment {
       inactive += published.inactive;
       for (PublishedZone& zone : published.zones) {
         if (zone.on_ground) {
-          drawing.shapes.push_back(
-              {drawn(*site.before, zone.above), Drawn::Role::keep_out, zone.name});
           above_ground.push_back(std::move(zone.above));
+          above_ground_names.push_back(zone.name);
         } else {
           add(Kind::keep_out, zone.prism, zone.name);
         }
@@ -303,6 +304,7 @@ class Zones final : public Environment {
         above_ground_(*reader.site.before, std::move(reader.above_ground)),
         over_approximation_(above_ground_.over_approximation(reader.site.vehicle.radius_m)),
         drawing_(std::move(reader.drawing)),
+        above_ground_names_(std::move(reader.above_ground_names)),
         info_{std::move(reader.frame), {}, std::move(reader.threats), std::move(reader.notes)} {}
 
   Box do_bounds() const override {
@@ -340,7 +342,16 @@ class Zones final : public Environment {
   }
   double do_over_approximation() const override { return over_approximation_; }
   const LayerInfo& do_info() const override { return info_; }
-  std::optional<Drawing> do_drawing() const override { return drawing_; }
+  std::optional<Drawing> do_drawing() const override {
+    // Limits above ground take thousands of heights, which few calls need.
+    std::call_once(is_drawn_, [this] {
+      for (std::size_t n = 0; n < above_ground_names_.size(); ++n) {
+        drawing_.shapes.push_back(
+            {above_ground_.drawn(n), Drawn::Role::keep_out, above_ground_names_[n]});
+      }
+    });
+    return drawing_;
+  }
   bool do_meets(const SweptVolume& volume) const override {
     return keep_out_.meets(volume) || above_ground_.meets(volume) ||
            (!keep_in_.empty() && keep_in_.meets(volume));
@@ -350,7 +361,9 @@ class Zones final : public Environment {
   KeepIn keep_in_;
   GroundZones above_ground_;
   double over_approximation_;
-  Drawing drawing_;
+  mutable Drawing drawing_;
+  mutable std::once_flag is_drawn_;
+  std::vector<std::string> above_ground_names_;
   LayerInfo info_;
 };
 }  // namespace

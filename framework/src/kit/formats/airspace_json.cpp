@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// ED-269 and ED-318 (EUROCAE: UAS geographical zones) and the UAS facility maps of the FAA.
+// Features of ED-269 and ED-318 (EUROCAE: UAS geographical zones) and of the UAS facility maps of
+// the FAA.
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "airspace_parts.hpp"
 #include "altiplan/geometry.hpp"
@@ -63,7 +64,13 @@ Point2 position(const JsonNode& node) {
 Outline ring_outline(const JsonNode& node) {
   Ring ring;
   for (std::size_t n = 0; n < node.size(); ++n) {
-    ring.push_back(position(node.at(n)));
+    const Json& point = node.json()[n];
+    const bool is_read = point.is_array() && point.size() >= 2 && point[0].is_number() &&
+                         point[1].is_number() && std::abs(point[0].get<double>()) <= 180 &&
+                         std::abs(point[1].get<double>()) <= 90;
+    // A node's place in the file takes longer to write down than its numbers to read.
+    ring.push_back(is_read ? Point2{point[0].get<double>(), point[1].get<double>()}
+                           : position(node.at(n)));
   }
   if (ring.size() < 4 || ring.front() != ring.back()) {
     node.wrong("a ring of four positions or more that ends where it starts");
@@ -286,54 +293,10 @@ void read_faa(const JsonNode& feature, const Target& to) {
   }
   to.add_polygons(geometry, lower_limit(ceiling, to.zone.label(), to.doubts), {});
 }
+}  // namespace
 
-bool has_any(const Json& object, std::initializer_list<const char*> keys) {
-  return object.is_object() && std::any_of(keys.begin(), keys.end(),
-                                           [&](const char* key) { return object.contains(key); });
-}
-
-std::optional<Format> format_of_feature(const Json& feature) {
-  static const Json kNone;
-  const auto part = [&](const char* key) -> const Json& {
-    return has_any(feature, {key}) ? feature[key] : kNone;
-  };
-  const Json& geometry = part("geometry");
-  const Json& properties = part("properties");
-  if (geometry.is_array() || has_any(feature, {"uomDimensions", "applicability"})) {
-    return Format::ed269;
-  }
-  if (has_any(geometry, {"layer", "extent"}) ||
-      has_any(properties, {"limitedApplicability", "restrictionConditions", "zoneAuthority"})) {
-    return Format::ed318;
-  }
-  if (has_any(properties, {"CEILING", "APT1_ICAO", "APT1_LAANC", "APT1_NAME"}) &&
-      has_any(properties, {"MAP_EFF", "APT1_ICAO", "APT1_LAANC", "APT1_NAME", "ARPT_COUNT"})) {
-    return Format::faa;
-  }
-  return std::nullopt;
-}
-
-/// The list of features, and its key; null if there is none.
-std::pair<const Json*, const char*> features_of(const Json& document) {
-  for (const char* key : {"features", "UASZoneList"}) {
-    if (has_any(document, {key}) && document[key].is_array()) {
-      return {&document[key], key};
-    }
-  }
-  return {nullptr, ""};
-}
-
-std::optional<Format> format_of(const Json& document, const Json& features) {
-  for (const Json& feature : features) {
-    if (const auto format = format_of_feature(feature)) {
-      return format;
-    }
-  }
-  const bool is_geojson = document.contains("type");
-  return is_geojson || features.empty() ? std::nullopt : std::optional(Format::ed269);
-}
-
-void read_feature(const JsonNode& feature, Format format, Airspace& to, Doubts& doubts) {
+void read_json_feature(const JsonNode& feature, Airspace::Format format, Airspace& to,
+                       Doubts& doubts) {
   AirspaceZone zone;
   zone.name = feature.place();  // unless it has one
   const Target target{zone, doubts};
@@ -358,31 +321,5 @@ void read_feature(const JsonNode& feature, Format format, Airspace& to, Doubts& 
   }
   zone.restriction = restriction_of(zone.type, zone.label(), doubts);
   to.zones.push_back(std::move(zone));
-}
-}  // namespace
-
-std::optional<Airspace> read_airspace_json(const std::string& file, const std::string& text) {
-  const Json document = parse_json(file, text);
-  const auto [features, key] = features_of(document);
-  const auto format = features == nullptr ? std::nullopt : format_of(document, *features);
-  if (!format) {
-    return std::nullopt;
-  }
-  Airspace airspace;
-  airspace.format = *format;
-  Doubts doubts;
-  for (std::size_t n = 0; n < features->size(); ++n) {
-    try {
-      const JsonNode feature((*features)[n], std::string(key) + "." + std::to_string(n));
-      if (!feature.json().is_object()) {
-        feature.wrong("a feature");
-      }
-      read_feature(feature, *format, airspace, doubts);
-    } catch (const Error& error) {
-      throw Error(file + ": " + error.what());
-    }
-  }
-  airspace.notes = doubts.notes();
-  return airspace;
 }
 }  // namespace altiplan::kit

@@ -14,6 +14,8 @@
 /// \file Common parts of the readers of airspace.
 namespace altiplan::kit {
 
+class JsonNode;
+
 inline constexpr double kFoot = 0.3048;
 inline constexpr double kNauticalMile = 1852;
 inline constexpr double kFlightLevel = 100 * kFoot;
@@ -106,4 +108,7 @@ bool is_aixm(const std::string& text);
 Airspace read_aixm(const std::string& file, const std::string& text);
 /// None if it is JSON of another kind.
 std::optional<Airspace> read_airspace_json(const std::string& file, const std::string& text);
+/// Adds the feature's zone.
+void read_json_feature(const JsonNode& feature, Airspace::Format format, Airspace& to,
+                       Doubts& doubts);
 }  // namespace altiplan::kit

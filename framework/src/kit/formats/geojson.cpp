@@ -192,6 +192,11 @@ GeoJson read_geojson(const std::string& file) {
   } else {
     throw Error(file + ": expected a GeoJSON FeatureCollection or Feature, found " + type);
   }
+  try {
+    expect_wgs84(document);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
   GeoJson result;
   for (std::size_t n = 0; n < list.size(); ++n) {
     const Json& feature = list[n];

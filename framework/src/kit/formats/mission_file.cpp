@@ -18,6 +18,8 @@ namespace {
 constexpr double kMaxAltitude = 100'000;
 constexpr double kMaxRadius = 100'000;  // of a circle
 constexpr double kMaxTurns = 1000;      // more than an autopilot stores
+/// NAV_SPLINE_WAYPOINT, reached on a curve through its neighbours that autopilots lay differently.
+constexpr int kSpline = 82;
 
 std::string number_text(double value) {
   char text[32];
@@ -31,7 +33,7 @@ std::optional<MissionItem::Kind> kind_of(int command) {
   using Kind = MissionItem::Kind;
   switch (command) {
     case 16:  // NAV_WAYPOINT
-    case 82:  // NAV_SPLINE_WAYPOINT
+    case kSpline:
       return Kind::waypoint;
     case 17:  // NAV_LOITER_UNLIM
     case 18:  // NAV_LOITER_TURNS
@@ -233,9 +235,12 @@ void CommandList::add(const Command& command) {
     if (moves_vehicle(command.number)) {
       mission_.moves.push_back(
           {command.number, command.place, command.item, mission_.items.size()});
+      ++moves_;
+      moves_numbers_.insert(command.number);
+    } else {
+      ++skipped_;
+      skipped_numbers_.insert(command.number);
     }
-    ++skipped_;
-    skipped_numbers_.insert(command.number);
     return;
   }
   const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
@@ -249,6 +254,9 @@ void CommandList::add(const Command& command) {
     item.turns = turns_of(command);
   }
   mission_.items.push_back(std::move(item));
+  if (command.number == kSpline) {
+    mission_.moves.push_back({kSpline, command.place, command.item, mission_.items.size()});
+  }
 }
 
 void CommandList::skip_complex(const std::string& place) {
@@ -257,14 +265,17 @@ void CommandList::skip_complex(const std::string& place) {
 }
 
 void CommandList::finish() {
-  if (skipped_ > 0) {
-    std::string numbers;
-    for (const int number : skipped_numbers_) {
-      numbers += (numbers.empty() ? "" : ", ") + std::to_string(number);
+  const auto note = [&](std::size_t count, const char* what, const std::set<int>& numbers) {
+    std::string list;
+    for (const int number : numbers) {
+      list += (list.empty() ? "" : ", ") + std::to_string(number);
     }
-    mission_.notes.push_back(std::to_string(skipped_) +
-                             " commands that are not waypoints skipped (" + numbers + ")");
-  }
+    if (count > 0) {
+      mission_.notes.push_back(std::to_string(count) + what + " (" + list + ")");
+    }
+  };
+  note(moves_, " commands that fly to no position of their own", moves_numbers_);
+  note(skipped_, " commands that fly nowhere skipped", skipped_numbers_);
   if (taken_ > 0) {
     mission_.notes.push_back(std::to_string(taken_) + " commands taken out of survey items");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "json_node.hpp"
 #include "mission_parts.hpp"
+#include "text_file.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -56,6 +57,7 @@ void read_line(const Node& feature, MissionFile& mission) {
 }  // namespace
 
 MissionFile read_geojson_route(const nlohmann::json& json) {
+  expect_wgs84(json);
   const JsonNode root(json, "");
   MissionFile mission;
   mission.format = MissionFile::Format::geojson;

@@ -66,6 +66,8 @@ class CommandList {
   MissionFile& mission_;
   double speed_mps_ = 0;
   double hold_s_ = 0;  ///< before the first position
+  std::size_t moves_ = 0;
+  std::set<int> moves_numbers_;
   std::size_t skipped_ = 0;
   std::set<int> skipped_numbers_;
   std::size_t complex_ = 0;

@@ -48,6 +48,10 @@ void read_complex_item(const Node& item, CommandList& commands) {
     return;
   }
   const Node items = item.at("TransectStyleComplexItem").at("Items");
+  if (items.size() == 0) {  // the ground station has not made them yet
+    commands.skip_complex(item.place());
+    return;
+  }
   for (std::size_t n = 0; n < items.size(); ++n) {
     read_simple_item(items.at(n), commands);
   }

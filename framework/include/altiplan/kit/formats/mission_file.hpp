@@ -46,6 +46,7 @@ struct MissionItem {
   double loiter_m = 0;   ///< radius of a loiter of any kind; 0 where the file gives none
   double turns = 0;      ///< full circles of a loiter
   int number = 0;        ///< as ground stations show it; 0: the format numbers nothing
+  bool returns = false;  ///< a landing at home, after a return to launch
 };
 
 /// A command that moves the vehicle otherwise than to a position: a return, a jump, a scan.
@@ -82,7 +83,7 @@ struct MissionFile {
   std::string route_problem;       ///< why the items are not a route, "" where they are
   std::vector<MissionZone> zones;
   std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
-  /// Skipped parts, one per line ("4 commands that are not waypoints skipped: 177, 178").
+  /// Skipped parts, one per line ("4 commands that fly nowhere skipped (178, 203)").
   std::vector<std::string> notes;
 };
 
