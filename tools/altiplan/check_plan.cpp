@@ -6,7 +6,6 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
-#include <set>
 
 #include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
@@ -15,10 +14,10 @@
 #include "host/base/utf8.hpp"
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
-#include "host/gate/flight_time.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "plan_world.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -26,94 +25,6 @@ namespace {
 using host::Finding;
 using host::Json;
 using host::PlanReport;
-
-/// Where neither the file nor an option gives one: slow, so that more zones' hours count.
-constexpr double kSpeed = 5;
-/// Height of the ground where it is unknown, metres.
-constexpr double kClosed = 10'000;
-/// Of a mission that ends in a loiter without end.
-constexpr double kLongest = 86400;
-/// The scenario that options describe, in messages.
-constexpr const char* kWorld = "the world of --terrain";
-
-/// Quoted, absolute; JSON's strings are YAML's.
-std::string path_text(const std::string& file) {
-  return Json(std::filesystem::absolute(file).lexically_normal().string()).dump();
-}
-
-/// Seconds in which the mission is flown, for zones with hours.
-double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
-  return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
-}
-
-/// A message about a file, without its place in the scenario that nobody has written.
-std::string about_file(const std::string& message) {
-  constexpr std::string_view kKey = ".file: ";
-  const std::size_t key = message.find(kKey);
-  const bool is_one = message.find('\n') == std::string::npos;
-  return is_one && message.starts_with(kWorld) && key != std::string::npos
-             ? message.substr(key + kKey.size())
-             : message;
-}
-
-std::string name_of(const std::string& file) {
-  return std::filesystem::path(file).filename().string();
-}
-
-/// True if the mission has a fence for the autopilot; of other formats polygons are areas of work.
-bool has_fence(const kit::MissionFile& mission) {
-  using Format = kit::MissionFile::Format;
-  return !mission.zones.empty() &&
-         (mission.format == Format::qgc_plan || mission.format == Format::waypoints);
-}
-
-std::string point_text(const char* key, const kit::MissionItem& item) {
-  return std::string(key) + ": {at_lonlat: [" + Json(item.at.lon).dump() + ", " +
-         Json(item.at.lat).dump() + ", 0]}\n";
-}
-
-/// The scenario that the options describe.
-std::string scenario_text(const PlanCheck& plan, const kit::MissionFile& mission) {
-  // A void is closed: whatever flies over it flies into the ground.
-  const std::string voids =
-      plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
-  std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
-                     ", " + voids + "}\n";
-  std::set<std::string> ids{"terrain"};
-  const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
-    while (!ids.insert(name).second) {
-      name += "'";  // of another folder
-    }
-    text +=
-        "  - zones: {file: " + path_text(file) + more + "}\n    id: " + Json(name).dump() + "\n";
-  };
-  for (const std::string& file : plan.airspace) {
-    add_zones(file, name_of(file),
-              ", horizon_s: " + Json(flown_s(plan, mission)).dump() +
-                  (plan.has_permission ? ", ask: skip" : ""));
-  }
-  if (has_fence(mission)) {
-    add_zones(plan.plan, "fence of the mission", "");
-  }
-  // The ground and the zones alone bound a mission.
-  text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";
-  text += "vehicle: {radius_m: " + Json(plan.radius_m).dump() + "}\n";
-  // Heights are the mission's own; the judge is told.
-  text += point_text("start", mission.items.front()) + point_text("goal", mission.items.back());
-  if (plan.start_time) {
-    text += "start_time: " + Json(*plan.start_time).dump() + "\n";
-  }
-  std::string constraints;
-  const auto add = [&](const char* words, const std::optional<double>& metres) {
-    if (metres) {
-      constraints += std::string("  - ") + words + ": " + Json(*metres).dump() + "}\n";
-    }
-  };
-  add("ground_clearance: {min_m", plan.min_above_ground_m);
-  add("altitude: {datum: ground, max_m", plan.max_above_ground_m);
-  add("ground_distance: {max_m", plan.max_ground_distance_m);
-  return text + "constraints:\n" + (constraints.empty() ? "  []\n" : constraints);
-}
 
 std::string items_of(const Finding& finding) {
   std::string text;
@@ -359,10 +270,8 @@ int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
     static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
   }
   host::expect_route(plan.plan, mission);
-  const host::Mission world = host::build_mission(
-      scenario ? *scenario
-               : host::load_scenario_text(scenario_text(plan, mission), kWorld, overrides),
-      1);
+  const host::Mission world =
+      host::build_mission(scenario ? *scenario : world_of(plan, mission, overrides), 1);
   PlanReport report = host::judge_plan(plan.plan, mission, world, !plan.scenario);
   add_notes(report, world);
   if (const std::string words = left_out(plan); !words.empty()) {

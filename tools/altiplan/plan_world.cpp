@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_world.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "host/gate/flight_time.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using host::Json;
+
+/// Where neither the file nor an option gives one: slow, so that more zones' hours count.
+constexpr double kSpeed = 5;
+/// Height of the ground where it is unknown, metres.
+constexpr double kClosed = 10'000;
+/// Of a mission that ends in a loiter without end.
+constexpr double kLongest = 86400;
+/// The scenario that options describe, in messages.
+constexpr std::string_view kWorld = "the world of --terrain";
+
+/// Quoted, absolute; JSON's strings are YAML's.
+std::string path_text(const std::string& file) {
+  return Json(std::filesystem::absolute(file).lexically_normal().string()).dump();
+}
+
+std::string name_of(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
+/// True if the mission has a fence for the autopilot; of other formats polygons are areas of work.
+bool has_fence(const kit::MissionFile& mission) {
+  using Format = kit::MissionFile::Format;
+  return !mission.zones.empty() &&
+         (mission.format == Format::qgc_plan || mission.format == Format::waypoints);
+}
+
+std::string point_text(const char* key, const kit::MissionItem& item) {
+  return std::string(key) + ": {at_lonlat: [" + Json(item.at.lon).dump() + ", " +
+         Json(item.at.lat).dump() + ", 0]}\n";
+}
+
+/// The scenario that the options describe.
+std::string world_text(const PlanCheck& plan, const kit::MissionFile& mission) {
+  // A void is closed: whatever flies over it flies into the ground.
+  const std::string voids =
+      plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
+  std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
+                     ", " + voids + "}\n";
+  std::set<std::string> ids{"terrain"};
+  const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
+    while (!ids.insert(name).second) {
+      name += "'";  // of another folder
+    }
+    text +=
+        "  - zones: {file: " + path_text(file) + more + "}\n    id: " + Json(name).dump() + "\n";
+  };
+  for (const std::string& file : plan.airspace) {
+    add_zones(file, name_of(file),
+              ", horizon_s: " + Json(flown_s(plan, mission)).dump() +
+                  (plan.has_permission ? ", ask: skip" : ""));
+  }
+  if (has_fence(mission)) {
+    add_zones(plan.plan, "fence of the mission", "");
+  }
+  // The ground and the zones alone bound a mission.
+  text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";
+  text += "vehicle: {radius_m: " + Json(plan.radius_m).dump() + "}\n";
+  // Heights are the mission's own; the judge is told.
+  text += point_text("start", mission.items.front()) + point_text("goal", mission.items.back());
+  if (plan.start_time) {
+    text += "start_time: " + Json(*plan.start_time).dump() + "\n";
+  }
+  std::string constraints;
+  const auto add = [&](const char* words, const std::optional<double>& metres) {
+    if (metres) {
+      constraints += std::string("  - ") + words + ": " + Json(*metres).dump() + "}\n";
+    }
+  };
+  add("ground_clearance: {min_m", plan.min_above_ground_m);
+  add("altitude: {datum: ground, max_m", plan.max_above_ground_m);
+  add("ground_distance: {max_m", plan.max_ground_distance_m);
+  return text + "constraints:\n" + (constraints.empty() ? "  []\n" : constraints);
+}
+}  // namespace
+
+double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
+  return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
+}
+
+std::string about_file(const std::string& message) {
+  constexpr std::string_view kKey = ".file: ";
+  const std::size_t key = message.find(kKey);
+  const bool is_one = message.find('\n') == std::string::npos;
+  return is_one && message.starts_with(kWorld) && key != std::string::npos
+             ? message.substr(key + kKey.size())
+             : message;
+}
+
+host::Config world_of(const PlanCheck& plan, const kit::MissionFile& mission,
+                      const host::Overrides& overrides) {
+  return host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);
+}
+}  // namespace altiplan::cli
