@@ -50,8 +50,9 @@ class Mutant:
         self.home, self.vehicle, self.rows = commands(text)
         self.fence = None
         keeps = rng.random() < 0.15  # commands that are not judged
-        if keeps and rng.random() < 0.2:
-            rng.choice(self.rows)[0] = mission_peer.SPLINE
+        waypoints = [r for r in self.rows if r[0] == 16 and is_placed(r)]
+        if keeps and waypoints and rng.random() < 0.2:
+            rng.choice(waypoints)[0] = mission_peer.SPLINE
         self.rows = [r for r in self.rows if keeps or r[0] == 20 or r[0] not in mission_peer.MOVES]
         self.shorten()
         self.place()
