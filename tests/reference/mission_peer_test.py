@@ -114,7 +114,7 @@ class Case:
                 limits["radius"] = self.radius(lows, beside)
         for key in limits:
             limits[key] = min(max(limits[key], 0), 1e4)
-        if limits.get("min_agl", 0) >= limits.get("max_agl", math.inf):
+        if limits.get("min_agl", -1) >= limits.get("max_agl", math.inf):
             del limits["min_agl"]  # refused
         for _ in range(rng.choice([0, 0, 1, 1, 2])):
             self.zones.append(rng.choice(self.world.zones))
@@ -238,7 +238,7 @@ def expected(case):
         if low is not None:
             state = min(state, status(low, BLOCKED_TIE_M), key=ORDER.index)
         states[rule, (item,)], files[rule, (item,)] = state, may | {"terrain"}
-    least = [leg.lowest for leg in legs]
+    least = [leg.lowest for leg in legs or beside]  # of a single position it is a point's
     return states, files, values, None if None in least else min(least, default=None), close
 
 

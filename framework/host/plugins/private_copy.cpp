@@ -8,10 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "altiplan/error.hpp"
@@ -36,6 +38,23 @@ bool copy(int from, int to) {
   }
   return got == 0;
 }
+
+/// True if nobody can change the file any more; otherwise errno holds the reason.
+bool seal(int file) {
+  constexpr int kSeals = F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL;
+  constexpr int kTries = 20;
+  for (int n = 0; n < kTries; ++n) {
+    if (::fcntl(file, F_ADD_SEALS, kSeals) == 0) {
+      return true;
+    }
+    if (errno != EBUSY && errno != EINTR) {
+      return false;
+    }
+    // On a loaded machine the kernel itself may hold a page of it for a while.
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
 }  // namespace
 
 PrivateCopy::PrivateCopy(const fs::path& file) {
@@ -55,9 +74,7 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
   }
   const std::string name = file.filename().string().substr(0, 200);
   kit::Descriptor to(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (to.number() < 0 || !copy(from.number(), to.number()) ||
-      ::fcntl(to.number(), F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL) !=
-          0) {
+  if (to.number() < 0 || !copy(from.number(), to.number()) || !seal(to.number())) {
     if (errno == EFBIG) {  // RLIMIT_FSIZE applies to memory files too: fall back to the file itself
       descriptor_ = std::move(from);
       return;
