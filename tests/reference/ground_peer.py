@@ -293,8 +293,9 @@ class Model:
         if found[order[0]] - slope * np.linalg.norm(self.step) / 24 > r:
             return r
         best = r
-        for k in (order[0], order[5], order[20]):
-            at, half = (s[k], w[k]), 1 / 6
+        below = [np.clip(end[:2] / self.step - cell, 0, 1) for end in (a, b)]
+        for at in [(s[k], w[k]) for k in (order[0], order[5], order[20])] + below:
+            half = 1 / 6
             while half > 1e-9:
                 near, u, v = tries(*at, half)
                 k = near.argmin()

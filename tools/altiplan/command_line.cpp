@@ -2,10 +2,13 @@
 #include "command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <map>
 
+#include "altiplan/error.hpp"
 #include "guarded.hpp"
 
 namespace altiplan::cli {
@@ -13,19 +16,53 @@ namespace {
 
 const std::map<std::string, std::string> kRenamedOptions{{"--patience", "--timeout"}};
 
+/// "; did you mean 'run'?" of the nearest word, or of the only one that begins so; "" if there is
+/// none.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  std::vector<std::string> longer;
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(longer),
+               [&](const std::string& each) { return word.size() > 1 && each.starts_with(word); });
+  const std::string near = longer.size() == 1 ? longer.front() : nearest_name(word, candidates);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+/// The options of the command that was called, with their dashes.
+std::vector<std::string> options_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) {
+        names.push_back("--" + name);
+      }
+    }
+  }
+  return names;
+}
+
 /// Prints the reason.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   // CLI11 would only report a missing command.
   const std::vector<std::string> rest = app.remaining();
   if (error.get_name() == "RequiredError" && app.get_subcommands().empty() && !rest.empty()) {
-    std::cerr << "altiplan: unknown command '" << rest.front()
-              << "' (altiplan --help lists the commands)\n";
+    std::vector<std::string> commands;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) {
+      commands.push_back(command->get_name());
+    }
+    std::cerr << "altiplan: unknown command '" << rest.front() << "'"
+              << did_you_mean(rest.front(), commands) << " (altiplan --help lists the commands)\n";
     return kUsage;
   }
+  const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   for (const std::string& argument : app.remaining(true)) {
     const auto renamed = kRenamedOptions.find(argument.substr(0, argument.find('=')));
     if (renamed != kRenamedOptions.end()) {
       std::cerr << "altiplan: " << renamed->first << " is now " << renamed->second << '\n';
+      return kUsage;
+    }
+    if (is_extra && argument.starts_with("--")) {
+      const std::string name = argument.substr(0, argument.find('='));
+      std::cerr << "altiplan: unknown option '" << name << "'"
+                << did_you_mean(name, options_of(app)) << " (--help lists the options)\n";
       return kUsage;
     }
   }
@@ -43,7 +80,18 @@ Check::Check(const std::function<std::string(const std::string&)>& problem,
 
 Check Check::between(std::int64_t low, std::int64_t high) { return Check(CLI::Range(low, high)); }
 
-Check Check::one_of(const std::vector<std::string>& words) { return Check(CLI::IsMember(words)); }
+Check Check::one_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) {
+    list += (list.empty() ? "" : ",") + word;
+  }
+  const auto problem = [words, list](const std::string& text) {
+    return std::find(words.begin(), words.end(), text) != words.end()
+               ? ""
+               : "expected one of " + list + ", found '" + text + "'" + did_you_mean(text, words);
+  };
+  return Check(problem, "{" + list + "}");
+}
 
 Option* Option::required() {
   option_->required();

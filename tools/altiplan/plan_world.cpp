@@ -102,6 +102,9 @@ std::string about_file(const std::string& message) {
 
 host::Config world_of(const PlanCheck& plan, const kit::MissionFile& mission,
                       const host::Overrides& overrides) {
-  return host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);
+  host::Config config =
+      host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);
+  config.is_only_judged = true;
+  return config;
 }
 }  // namespace altiplan::cli

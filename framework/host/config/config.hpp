@@ -34,6 +34,8 @@ struct Config {
   std::vector<std::filesystem::path> files;  ///< all files that the run reads, in order
   std::shared_ptr<Registry> registry;
   std::vector<std::string> notes;  ///< what was ignored while reading the files
+  /// Nothing is planned in this world: its volume stays as given, and ends may lie outside it.
+  bool is_only_judged = false;
 };
 
 /// Reads and checks both files; throws ConfigError with every problem of both. Reuses `shared` if

@@ -52,6 +52,15 @@ void VolumeEntry::describe(Fields& f) {
   f("max_m", max_m).unit("m").doc("upper corner; default: that of the bounded layers' box");
   f.check(!min_m || !max_m || (min_m->array() <= max_m->array()).all(),
           "expected min_m below max_m on each axis");
+  f("floor_m", floor_m).unit("m").doc("lower limit alone, where the layers bound the sides");
+  f("ceiling_m", ceiling_m).unit("m").doc("upper limit alone");
+  f("corridor_m", corridor_m)
+      .unit("m")
+      .greater_than(0)
+      .doc("sides: so far from the rectangle around start, via points and goal");
+  f.check(!min_m || !(floor_m || corridor_m), "expected min_m, or floor_m and corridor_m");
+  f.check(!max_m || !(ceiling_m || corridor_m), "expected max_m, or ceiling_m and corridor_m");
+  f.check(!floor_m || !ceiling_m || *floor_m <= *ceiling_m, "expected floor_m below ceiling_m");
 }
 
 void SpeedNearEntry::describe(Fields& f) {
@@ -210,7 +219,10 @@ void VehicleEntry::describe(Fields& f) {
 
 void FrameEntry::describe(Fields& f) {
   f("crs", crs)
-      .doc("coordinate system to plan in (EPSG:32617, …); elevation models are warped to it");
+      .doc(
+          "coordinate system to plan in (EPSG:32617, …), or auto: a projected model's own, else "
+          "UTM; "
+          "elevation models are warped to it");
   f("origin_lonlat", origin_lonlat)
       .unit("deg")
       .doc("longitude and latitude of the origin, if no layer is georeferenced");
@@ -271,7 +283,8 @@ void ScenarioFile::describe(Fields& f) {
   f("plugins", plugins).doc("additional folders of plugin libraries");
   f("frame", frame).doc("georeference of the world");
   f("environment", environment).doc("layers of the world, in order");
-  f("volume", volume).doc("volume that routes may use; default: the bounded layers' box");
+  f("volume", volume)
+      .doc("volume that routes may use; default: the bounded layers' box; cut to the ground");
   f("vehicle", vehicle).doc("the vehicle");
   f("level_flight_at_m", level_flight_at_m).unit("m").doc("plan in the plane, at this height");
   f("start_time", start_time).doc("UTC, ISO 8601: 2026-05-01T10:00:00Z");

@@ -56,6 +56,9 @@ struct GoalEntry {
 struct VolumeEntry {
   std::optional<Vec3> min_m;
   std::optional<Vec3> max_m;
+  std::optional<double> floor_m;
+  std::optional<double> ceiling_m;
+  std::optional<double> corridor_m;
   void describe(Fields& f);
 };
 

@@ -7,6 +7,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
+#include "altiplan/kit/layers/utm.hpp"
 #include "altiplan/world.hpp"
 #include "host/base/words.hpp"
 
@@ -17,12 +18,6 @@ namespace {
 constexpr double kMaxScaleError = 0.005;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
-
-/// EPSG code of the zone of the Universal Transverse Mercator system.
-std::string utm(double lon, double lat) {
-  const int zone = std::clamp(int(std::floor((lon + 180) / 6)) + 1, 1, 60);
-  return "EPSG:" + std::to_string((lat < 0 ? 32700 : 32600) + zone);
-}
 }  // namespace
 
 Corridor::Corridor(const RouteWish& wish, Registry& registry)
@@ -74,7 +69,7 @@ void Corridor::choose_frame() {
     const World empty;
     Site site;
     site.before = &empty;
-    site.frame_crs = crs_ = utm(middle.x(), middle.y());
+    site.frame_crs = crs_ = kit::utm_crs(middle.x(), middle.y());
     frame_ = build_model(tiles_.front(), site, registry_)->info().frame.value();
     frame_line_ = "frame: {crs: " + crs_ + "}";
   }

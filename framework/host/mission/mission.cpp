@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <tuple>
 
 #include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
@@ -12,54 +11,13 @@
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/shapes.hpp"
+#include "host/mission/coverage.hpp"
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
+#include "host/mission/volume.hpp"
 
 namespace altiplan::host {
 namespace {
-
-/// The volume; missing corners come from the layers' box.
-Box volume_of(const Config& config, const World& truth, const std::optional<double>& level) {
-  const VolumeEntry& entry = config.scenario.volume;
-  Box box = truth.bounds();
-  if (entry.min_m) {
-    box.min = *entry.min_m;
-  }
-  if (entry.max_m) {
-    box.max = *entry.max_m;
-  }
-  if (level) {
-    box.min.z() = *level;
-    box.max.z() = *level;
-  }
-  static constexpr const char* kAxes[] = {"x", "y", "z"};
-  const Location where = place_of(config.scenario_tree, "volume");
-  std::vector<Problem> problems;
-  for (const auto& [key, side, corner] : {std::tuple("volume.min_m", "below", box.min),
-                                          std::tuple("volume.max_m", "above", box.max)}) {
-    std::string axes;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(corner[axis])) {
-        axes += (axes.empty() ? "" : ", ") + std::string(kAxes[axis]);
-      }
-    }
-    if (!axes.empty()) {
-      problems.push_back({where, key,
-                          std::string("no layer bounds the volume from ") + side + " on " + axes +
-                              ": give " + key});
-    }
-  }
-  if (!problems.empty()) {
-    throw ConfigError(std::move(problems));
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (box.min[axis] > box.max[axis]) {
-      throw ConfigError(where, "volume",
-                        std::string("the volume is empty on the ") + kAxes[axis] + " axis");
-    }
-  }
-  return box;
-}
 
 std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, const Box& volume,
                                       bool level) {
@@ -139,7 +97,11 @@ Vec3 resolve_point(const Point& point, const Site& site, const std::optional<dou
     }
     return p;
   } catch (const Error& error) {
-    throw ConfigError(where, key, error.what());
+    const std::string why =
+        site.before == nullptr
+            ? ""
+            : beside(point, site.frame, "the elevation model", ground_area(*site.before));
+    throw ConfigError(where, key, why.empty() ? error.what() : why);
   }
 }
 
@@ -195,6 +157,21 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
 }
 
 namespace {
+/// Start, via points and goal; none if one of them depends on a layer that is not built yet.
+std::vector<Vec3> maybe_points(const ScenarioFile& file, const Site& site) {
+  std::vector<const Point*> all{&file.start.point, &file.goal.point};
+  for (const GoalEntry& via : file.via) {
+    all.push_back(&via.point);
+  }
+  std::vector<Vec3> points;
+  for (const Point* point : all) {
+    if (const auto placed = maybe_point(*point, site, file.level_flight_at_m)) {
+      points.push_back(*placed);
+    }
+  }
+  return points.size() == all.size() ? points : std::vector<Vec3>{};
+}
+
 /// Builds the layers in order, each with access to those before it.
 void build_layers(const Config& config, Mission& mission, const Calling& calling,
                   const NoteSink& on_note) {
@@ -208,6 +185,7 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     site.before = &truth;
     site.start = maybe_point(file.start.point, site, level);
     site.goal = maybe_point(file.goal.point, site, level);
+    site.volume = asked_volume(file, maybe_points(file, site));
     const std::string key = "environment." + std::to_string(i) + "." + entry.plugin;
     calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
     Layer layer =
@@ -273,12 +251,6 @@ Site site_of(const Config& config) {
     site.start_time_s = kit::parse_iso_time(*file.start_time).value();  // checked on reading
     site.has_start_time = true;
   }
-  if (file.volume.min_m) {
-    site.volume.min = *file.volume.min_m;
-  }
-  if (file.volume.max_m) {
-    site.volume.max = *file.volume.max_m;
-  }
   return site;
 }
 
@@ -288,6 +260,24 @@ std::optional<double> heading_of(const std::optional<double>& compass_deg) {
 
 std::optional<Loiter> loiter_of(const std::optional<LoiterEntry>& entry) {
   return entry ? std::optional(Loiter{entry->radius_m, entry->left ? 1 : -1}) : std::nullopt;
+}
+
+/// Throws ConfigError for a point given in degrees that lies outside the volume.
+void expect_within(const Config& config, const Mission& mission) {
+  const ScenarioFile& file = config.scenario;
+  const Value& tree = config.scenario_tree;
+  const auto expect = [&](const Point& point, const Location& where, const std::string& key) {
+    const std::string why =
+        beside(point, mission.site.frame, "the volume", mission.site.volume.grown(1));
+    if (!why.empty()) {
+      throw ConfigError(where, key, why);
+    }
+  };
+  expect(file.start.point, place_of(tree, "start"), "start");
+  expect(file.goal.point, place_of(tree, "goal"), "goal");
+  for (std::size_t i = 0; i < file.via.size(); ++i) {
+    expect(file.via[i].point, tree.find("via")->items[i].where, item("via", i));
+  }
 }
 
 /// Resolves start, goal and via points, in the frame that is now known.
@@ -343,19 +333,22 @@ Mission build_mission(const Config& config, int threads, const Calling& told,
   const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();
   site.before = &truth;
-  site.volume = volume_of(config, truth, level);
+  Request& request = mission.request;
+  request.vehicle = site.vehicle;
+  request.wind = wind_of(file.wind);
+  place_points(config, mission);
+  site.volume = volume_of(config, mission, maybe_points(file, site), on_note);
+  if (!config.is_only_judged) {
+    expect_within(config, mission);
+  }
   note_scale(mission, on_note);
   warn_of_distant_layers(mission);
   truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
 
-  Request& request = mission.request;
-  request.vehicle = site.vehicle;
-  request.wind = wind_of(file.wind);
   request.volume = site.volume;
   request.level_m = level;
   request.threads = threads;
   request.random = site.random;
-  place_points(config, mission);
   mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
   const std::vector<NamedConstraint> constraints = constraints_of(config, calling);

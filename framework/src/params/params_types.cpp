@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "altiplan/params.hpp"
@@ -201,12 +203,24 @@ void Fields::read(const Value& value, std::array<double, 2>& t, const std::strin
   }
 }
 
+namespace {
+
+/// "; did you mean [50, 50, 50]?" for one length in place of three.
+std::string thrice(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, number);
+  const bool is_length = error == std::errc() && at == end && number > 0 && std::isfinite(number);
+  return is_length ? "; did you mean [" + text + ", " + text + ", " + text + "]?" : "";
+}
+}  // namespace
+
 void Fields::read(const Value& value, Vec3& t, const std::string& key, std::size_t field) {
   if (value.kind != Value::Kind::list || value.items.size() != 3) {
     problem(value, key,
             "expected three numbers, found " +
                 (value.kind == Value::Kind::list ? "a list of " + std::to_string(value.items.size())
-                                                 : value.what()));
+                                                 : value.what() + thrice(value.text)));
     return;
   }
   for (int i = 0; i < 3; ++i) {

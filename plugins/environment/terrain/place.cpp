@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/utm.hpp"
 
 namespace terrain {
 namespace {
@@ -57,13 +58,17 @@ class MapProjection final : public altiplan::Projection {
   double unit_m_;
 };
 
+XY middle_of(const Dem& dem) {
+  return {dem.south_west[0] + (dem.columns - 1) * dem.step[0] / 2,
+          dem.south_west[1] + (dem.rows - 1) * dem.step[1] / 2};
+}
+
 /// Longitude and latitude of another datum are shifted as a whole, by the shift at the centre.
 XY datum_shift(const Dem& dem) {
   if (gdal::api().OSRIsSameGeogCS(dem.crs.get(), gdal::reference("EPSG:4326").get())) {
     return {0, 0};
   }
-  const XY middle{dem.south_west[0] + (dem.columns - 1) * dem.step[0] / 2,
-                  dem.south_west[1] + (dem.rows - 1) * dem.step[1] / 2};
+  const XY middle = middle_of(dem);
   const XY there = ToWgs84(dem.crs).lonlat(middle);
   return {there[0] - middle[0], there[1] - middle[1]};
 }
@@ -189,7 +194,7 @@ Frame asked_frame(const Dem& dem, const std::string& crs) {
   const gdal::Reference reference = gdal::reference(crs);
   if (!reference || !gdal::api().OSRIsProjected(reference.get())) {
     throw altiplan::Error(
-        "frame.crs: expected EPSG: and the code of a projected coordinate system "
+        "frame.crs: expected auto, or EPSG: and the code of a projected coordinate system "
         "(EPSG:32616), found " +
         crs);
   }
@@ -201,18 +206,39 @@ Frame asked_frame(const Dem& dem, const std::string& crs) {
   const XY origin{print.low[0] / unit_m, print.low[1] / unit_m};
   return Frame::projected(std::make_shared<MapProjection>(map, origin, unit_m), crs);
 }
+/// `crs: auto`: the zone of UTM that the model's middle lies in.
+std::string utm_of(const Dem& dem) {
+  const auto [lon, lat] = ToWgs84(dem.crs).lonlat(middle_of(dem));
+  return altiplan::kit::utm_crs(lon, lat);
+}
+
+/// True for a projected model whose lengths are right in its own axes: warping would round summits.
+bool is_true_to_scale(const Dem& dem) {
+  constexpr double kMaxError = 0.005;
+  if (dem.geographic) {
+    return false;
+  }
+  const Layout own = in_own_frame(dem);
+  const altiplan::Vec3 size((dem.columns - 1) * own.spacing[0], (dem.rows - 1) * own.spacing[1], 0);
+  return own.frame.scale_error({altiplan::Vec3(0, 0, 0), size}) <= kMaxError;
+}
 }  // namespace
 
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params) {
   if (site.frame.has_position()) {
     return in_frame(dem, site.frame, params);
   }
-  const gdal::Reference asked = gdal::reference(site.frame_crs);
-  if (site.frame_crs.empty() ||
+  const bool is_auto = site.frame_crs == "auto";
+  if (is_auto && is_true_to_scale(dem)) {
+    return in_own_frame(dem);
+  }
+  const std::string crs = is_auto ? utm_of(dem) : site.frame_crs;
+  const gdal::Reference asked = gdal::reference(crs);
+  if (crs.empty() ||
       (asked && gdal::api().OSRIsSame(asked.get(), dem.crs.get()) && !dem.geographic)) {
     return in_own_frame(dem);
   }
-  return in_frame(dem, asked_frame(dem, site.frame_crs), params);
+  return in_frame(dem, asked_frame(dem, crs), params);
 }
 
 /// Exact positions are computed every kNet posts and interpolated between: over so few posts a

@@ -78,7 +78,7 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
                            {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
   }
   expect_limits_read(file, json, rules);
-  if (json.features.empty() && json.skipped > 0) {
+  if (json.features.empty() && !json.flat.empty()) {
     throw Error(file + ": contains no zone: " + json.skipped_text());
   }
   FileZones result;

@@ -145,13 +145,6 @@ TEST_F(ZoneFile, APolygonWithoutAnAreaIsSkippedByName) {
   }
 }
 
-TEST_F(ZoneFile, PointsAloneAreNoZone) {
-  const std::string point =
-      R"({"type": "Feature", "geometry": {"type": "Point", "coordinates": [25, 60]}})";
-  EXPECT_NE(refusal("p.geojson", collection({point})).find("contains no zone"), std::string::npos);
-  EXPECT_EQ(refusal("none.geojson", collection({})), "");  // none is active today
-}
-
 TEST_F(ZoneFile, CoordinatesAreLongitudeAndLatitude) {
   const auto with = [](const std::string& crs) {
     return R"({"crs": {"type": "name", "properties": {"name": ")" + crs + R"("}}, )" +

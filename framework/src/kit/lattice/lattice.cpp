@@ -24,33 +24,19 @@ Box room(const Request& request) {
   }
   return box;
 }
-}  // namespace
 
-Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neighbourhood,
-                 const LatticeMemory& memory)
-    : level_m_(request.level_m), neighbourhood_(neighbourhood) {
-  const Box box = room(request);
-  const std::optional<GridSpec> native = request.world->native_grid();
-  spec_.cell = native ? native->cell : cell_m;
-  const Vec3 anchor = native ? native->centre({0, 0, 0}) : request.start.position;
-  double total = 1;
-  std::array<double, 3> counts{1, 1, 1};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double edge = spec_.cell[axis];
-    double first = std::ceil((box.min[axis] - anchor[axis]) / edge - rounding(edge));
-    double last = std::floor((box.max[axis] - anchor[axis]) / edge + rounding(edge));
-    if (axis == 2 && level_m_) {
-      first = last = native ? std::floor((*level_m_ - anchor.z()) / edge + 0.5) : 0;
-    }
-    if (!(last >= first)) {
-      throw ParameterError("cell_m", "no cell of " + std::to_string(edge) +
-                                         " m has its centre within the volume on axis " +
-                                         "xyz"[axis]);
-    }
-    spec_.origin[axis] = anchor[axis] + (first - 0.5) * edge;
-    counts[std::size_t(axis)] = last - first + 1;
-    total *= counts[std::size_t(axis)];
+void expect_fitting(const Vec3& cell, const Box& box) {
+  const Vec3 size = box.max - box.min;
+  if (size.head<2>().maxCoeff() > 0 && cell.x() > size.x() && cell.y() > size.y()) {
+    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
+    throw ParameterError("cell_m", "a cell of " + whole(cell.x()) + " x " + whole(cell.y()) +
+                                       " m is larger than the volume of " + whole(size.x()) +
+                                       " x " + whole(size.y()) + " m");
   }
+}
+
+void expect_few(const std::array<double, 3>& counts, const LatticeMemory& memory) {
+  const double total = counts[0] * counts[1] * counts[2];
   const double bytes = total * double(memory.bytes_per_cell);
   if (!(bytes <= double(memory.max_bytes)) || total > 4e9) {
     const double mb = 1.0 / (1024 * 1024);
@@ -67,6 +53,36 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
             " MB; allowed are " + allowed +
             " MB and 4e9 cells: choose larger cells or a smaller volume");
   }
+}
+}  // namespace
+
+Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neighbourhood,
+                 const LatticeMemory& memory)
+    : level_m_(request.level_m), neighbourhood_(neighbourhood) {
+  const Box box = room(request);
+  const std::optional<GridSpec> native = request.world->native_grid();
+  spec_.cell = native ? native->cell : cell_m;
+  const Vec3 anchor = native ? native->centre({0, 0, 0}) : request.start.position;
+  std::array<double, 3> counts{1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = spec_.cell[axis];
+    double first = std::ceil((box.min[axis] - anchor[axis]) / edge - rounding(edge));
+    double last = std::floor((box.max[axis] - anchor[axis]) / edge + rounding(edge));
+    if (axis == 2 && level_m_) {
+      first = last = native ? std::floor((*level_m_ - anchor.z()) / edge + 0.5) : 0;
+    }
+    if (!(last >= first)) {
+      throw ParameterError("cell_m", "no cell of " + std::to_string(edge) +
+                                         " m has its centre within the volume on axis " +
+                                         "xyz"[axis]);
+    }
+    spec_.origin[axis] = anchor[axis] + (first - 0.5) * edge;
+    counts[std::size_t(axis)] = last - first + 1;
+  }
+  if (!native && !level_m_) {
+    expect_fitting(spec_.cell, box);
+  }
+  expect_few(counts, memory);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     spec_.counts[axis] = int(counts[axis]);
   }

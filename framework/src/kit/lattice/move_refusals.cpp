@@ -71,4 +71,20 @@ std::string MoveRules::refusals() const {
   return text.empty() || steps_refused_by_.empty() ? text + steps_refused_by_
                                                    : text + "; " + steps_refused_by_;
 }
+
+std::string MoveRules::lower_cells(int ruled_out) const {
+  int vertical = 0;
+  for (int d = 0; d < kDirections; ++d) {
+    vertical += (lattice_.steps() >> d & 1) != 0 && !has_heading(lattice_.step(d));
+  }
+  if (ruled_out <= vertical) {
+    return "";
+  }
+  const Vec3& cell = lattice_.spec().cell;
+  const double height = std::min(cell.x(), cell.y()) * std::tan(request_.limits.max_slope());
+  char text[64];
+  std::snprintf(text, sizeof text, " (with cells at most %.3g m high %d)",
+                std::floor(height * 100) / 100, vertical);
+  return text;
+}
 }  // namespace altiplan::kit

@@ -199,7 +199,7 @@ DirectionMask MoveRules::directions_kept() {
            " directions";
   };
   if (climb > 0) {
-    steps_refused_by_ += sentence("climb_angle", climb);
+    steps_refused_by_ += sentence("climb_angle", climb) + lower_cells(climb);
   }
   if (leg > 0) {
     steps_refused_by_ += sentence("leg_length", leg);

@@ -180,6 +180,8 @@ class ALTIPLAN_API MoveRules {
     rule_count
   };
   DirectionMask directions_kept();
+  /// The height of cells whose climbing steps the climb limit would keep, if it rules some out.
+  std::string lower_cells(int ruled_out) const;
   void find_turns();
   Vec3 heading_vector(int step) const;
   bool keeps_limits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
