@@ -44,7 +44,6 @@ function(altiplan_man_page target component sentence)
   add_custom_target(${target}_man_page ALL DEPENDS ${packages}/${target}.done)
   install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
 endfunction()
-altiplan_man_page(altiplan_cli program "plans and judges routes for unmanned aircraft")
 altiplan_man_page(altiplan_bench bench "runs published benchmarks of planners")
 
 set(CPACK_GENERATOR DEB)

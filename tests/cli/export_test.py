@@ -267,6 +267,17 @@ class Zones(Flight):
             self.assertIn("2 keep-out and 1 keep-in zones", out)
             self.assertIn(name + ": " + ("mission.items.0" if name == "z.plan" else "point 1"), out)
 
+    def test_a_fence_file_of_its_own(self):
+        fence = os.path.join(self.folder, "fence.waypoints")
+        _, _, err = altiplan("export", self.result, "--to", "waypoints", "--fence", fence)
+        self.assertIn("in the fence at every height", err)
+        rows = [line.split("\t") for line in text_of(fence).splitlines()]
+        self.assertEqual([row[3] for row in rows[1:]], ["5004", "5002", "5002", "5002"] + 4 * ["5001"])
+        self.assertEqual([int(float(row[4])) for row in rows[1:]], [300, 3, 3, 3, 4, 4, 4, 4])
+        back = ZONES[:ZONES.index("      list:")] + "      file: fence.waypoints\n" + ZONES[ZONES.index("volume:"):]
+        _, out, _ = altiplan("explain", os.path.join(self.folder, "p.yaml"), "--scenario", self.file("b.yaml", back))
+        self.assertIn("2 keep-out and 1 keep-in zones", out)
+
 
 WING = """altiplan: 1
 frame: {origin_lonlat: [25.0, 60.0]}

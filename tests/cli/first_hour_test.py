@@ -83,6 +83,28 @@ class FirstHour(unittest.TestCase):
         said = self.run_with(1, climb=1)
         self.assertIn("climb_angle rules out 18 of 26 directions (with cells at most 1.74 m high 2)", said)
 
+    def test_validate_builds_on_request(self):
+        self.run_with(0)
+        self.assertEqual(self.call("validate", "--build", "p.yaml", "s.yaml", code=0).count("can be built"), 2)
+        self.run_with(3, start="[36.48, -84.38]")
+        self.call("validate", "s.yaml", code=0)
+        self.assertIn("give longitude first", self.call("validate", "--build", "s.yaml", code=3))
+
+    def test_a_trace_is_bounded(self):
+        self.run_with(0)
+        text = (self.folder / "p.yaml").read_text().replace("cell_m", "weight_h: 0, cell_m")
+        (self.folder / "p.yaml").write_text(text)
+        said = self.call("run", "p.yaml", "--trace", "t.jsonl", "--trace-limit", "1", code=0)
+        self.assertRegex(said, r"the trace is full at 1 MB: \d+ events are left out; --trace-limit sets")
+        self.assertLess((self.folder / "t.jsonl").stat().st_size, 1_001_000)
+
+    def test_a_time_out_names_the_key_to_change(self):
+        self.run_with(0)
+        text = (self.folder / "p.yaml").read_text().replace("- plan: astar", "- plan: astar\n    within_s: 0.001")
+        (self.folder / "p.yaml").write_text(text.replace("cell_m: [100, 100, 20]", "weight_h: 0, cell_m: [40, 40, 20]"))
+        said = self.call("run", "p.yaml", code=1)
+        self.assertIn("steps.0.within_s is 0.001 s", said)
+
     def test_nearest_words(self):
         self.assertIn("unknown command 'rnu'; did you mean 'run'?", self.call("rnu", "p.yaml", code=2))
         self.assertIn("unknown option '--sede'; did you mean '--seed'?",

@@ -117,6 +117,17 @@ TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
   EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
 }
 
+TEST_F(RegistryTest, NamesTheFilesOfANameThatIsOfferedTwice) {
+  const auto rename = [](Manifest& m) {
+    EXPECT_STREQ(m.file, "two_plugins.cpp");
+    std::strcpy(m.kind, "constraint");
+    std::strcpy(m.name, "beta");
+    std::strcpy(m.file, "copied.cpp");
+  };
+  EXPECT_EQ(examine_library(edited("twice.so", rename)).refused,
+            "offers the constraint 'beta' twice: in two_plugins.cpp and in copied.cpp");
+}
+
 TEST_F(RegistryTest, RefusesARecordThatDoesNotFitItsChecksum) {
   const auto damage = [](Manifest& m) {
     m.sentence[3] ^= 4;

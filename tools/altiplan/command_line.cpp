@@ -90,7 +90,9 @@ Check Check::one_of(const std::vector<std::string>& words) {
                ? ""
                : "expected one of " + list + ", found '" + text + "'" + did_you_mean(text, words);
   };
-  return Check(problem, "{" + list + "}");
+  Check check(problem, "{" + list + "}");
+  check.words_ = words;
+  return check;
 }
 
 Option* Option::required() {
@@ -105,6 +107,7 @@ Option* Option::type_name(const std::string& name) {
 
 Option* Option::check(const Check& check) {
   option_->check(*check.validator_);
+  words_ = check.words_;
   return this;
 }
 
@@ -151,6 +154,25 @@ Option* Option::hide() {
 std::size_t Option::count() const { return option_->count(); }
 
 std::string Option::name() const { return option_->get_name(); }
+
+OptionText Option::text() const {
+  OptionText text;
+  text.is_positional = option_->get_positional();
+  for (const std::string& name : option_->get_snames()) {
+    text.names.push_back("-" + name);
+  }
+  for (const std::string& name : option_->get_lnames()) {
+    text.names.push_back("--" + name);
+  }
+  if (text.is_positional) {
+    text.names = {option_->get_name(true)};
+  }
+  text.takes_value = option_->get_items_expected_max() > 0;
+  text.type = text.takes_value ? option_->get_type_name() : "";
+  text.words = words_;
+  text.sentence = option_->get_description();
+  return text;
+}
 
 App::App(const std::string& description, const std::string& name)
     : own_(std::make_unique<CLI::App>(description, name)), app_(own_.get()) {
@@ -208,6 +230,26 @@ Option* App::add_option_function(const std::string& name,
 
 Option* App::add_flag(const std::string& names, bool& value, const std::string& description) {
   return keep(app_->add_flag(names, value, description));
+}
+
+CommandText App::text() const {
+  CommandText text{app_->get_name(), app_->get_description(), app_->get_footer(), {}};
+  for (const auto& option : options_) {
+    text.options.push_back(option->text());
+  }
+  text.options.push_back({{"-h", "--help"}, false, false, "", {}, "print the help"});
+  if (own_) {
+    text.options.push_back({{"--version"}, false, false, "", {}, "print the version"});
+  }
+  return text;
+}
+
+std::vector<CommandText> App::texts() const {
+  std::vector<CommandText> all{text()};
+  for (const auto& subcommand : subcommands_) {
+    all.push_back(subcommand->text());
+  }
+  return all;
 }
 
 void App::footer(const std::string& text) { app_->footer(text); }

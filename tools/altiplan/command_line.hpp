@@ -23,6 +23,24 @@ struct UsageError {
   std::string message;
 };
 
+/// An option or a positional argument, for what describes the commands.
+struct OptionText {
+  std::vector<std::string> names;  ///< with dashes; of a positional argument its name
+  bool is_positional = false;
+  bool takes_value = false;
+  std::string type;                ///< of the value: "FILE"
+  std::vector<std::string> words;  ///< the only values, if they are few
+  std::string sentence;
+};
+
+/// A command, or the program.
+struct CommandText {
+  std::string name;
+  std::string sentence;
+  std::string footer;
+  std::vector<OptionText> options;
+};
+
 /// What an option's text must be.
 class Check {
  public:
@@ -36,6 +54,7 @@ class Check {
   friend class Option;
   explicit Check(CLI::Validator validator);
   std::shared_ptr<CLI::Validator> validator_;
+  std::vector<std::string> words_;
 };
 
 class Option {
@@ -61,9 +80,11 @@ class Option {
   Option* hide();
   std::size_t count() const;
   std::string name() const;
+  OptionText text() const;
 
  private:
   CLI::Option* option_;
+  std::vector<std::string> words_;
 };
 
 class App {
@@ -86,6 +107,9 @@ class App {
   /// Called when the subcommand has been parsed.
   void callback(const std::function<void()>& call);
 
+  /// The program, then its commands in order; hidden options are left out.
+  std::vector<CommandText> texts() const;
+
   /// Calls the subcommand's callback, or prints what is wrong, or what was asked for (--help), and
   /// returns the exit code.
   std::optional<int> parse(int argc, char** argv);
@@ -93,6 +117,7 @@ class App {
  private:
   explicit App(CLI::App* subcommand);
   Option* keep(CLI::Option* option);
+  CommandText text() const;
 
   std::unique_ptr<CLI::App> own_;
   CLI::App* app_;

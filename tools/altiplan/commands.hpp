@@ -37,6 +37,9 @@ void add_report(App& app, Action& action);
 void add_tune(App& app, Action& action);
 void add_new(App& app, Action& action);
 void add_check_plugin(App& app, Action& action);
+void add_completion(App& app, Action& action);
+/// Last: it knows the names of the others.
+void add_man(App& app, Action& action);
 
 /// Adds --plugin-path.
 void add_plugin_path(App& command, host::Overrides& overrides);

@@ -15,6 +15,7 @@ struct Arguments {
   RouteExport route;
   std::string to;
   std::optional<std::string> out;
+  std::optional<std::string> fence;
 };
 
 const std::map<std::string, std::optional<Format>>& formats() {
@@ -25,18 +26,38 @@ const std::map<std::string, std::optional<Format>>& formats() {
   return kAll;
 }
 
+/// The zones in a file of their own; false if there are none.
+bool write_fence(const LoadedRoute& route, const std::string& file) {
+  const host::Exported fence = host::export_fence(route.mission, route.source.route);
+  for (const std::string& message : fence.messages) {
+    warn(file + ": " + message);
+  }
+  if (fence.text) {
+    host::write_file(file, *fence.text);
+  }
+  return fence.text.has_value();
+}
+
 int export_result(const Arguments& arguments) {
   expect_writable(arguments.out, "-o");
-  const std::optional<host::Exported> written = exported(arguments.route, arguments.out);
+  expect_writable(arguments.fence, "--fence");
+  const std::optional<LoadedRoute> route = loaded(arguments.route, arguments.out);
+  const std::optional<host::Exported> written =
+      route ? exported(*route, arguments.route) : std::nullopt;
   if (!written) {
     return kNoRoute;
+  }
+  if (arguments.fence) {
+    std::vector<std::string> others = files_of(route->stored);
+    others.push_back(arguments.out.value_or(""));
+    expect_apart(arguments.fence, "--fence", others);
   }
   if (arguments.out) {
     host::write_file(*arguments.out, *written->text);
   } else {
     std::cout << *written->text;
   }
-  return kDone;
+  return !arguments.fence || write_fence(*route, *arguments.fence) ? kDone : kNoRoute;
 }
 }  // namespace
 
@@ -50,6 +71,10 @@ void add_export(App& app, Action& action) {
       ->type_name("FORMAT")
       ->check(Check::one_of({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
   command->add_option("-o,--out", arguments->out, "output file (default: stdout)")
+      ->type_name("FILE");
+  command
+      ->add_option("--fence", arguments->fence,
+                   "also write the zones as a fence file for Mission Planner (QGC WPL 110)")
       ->type_name("FILE");
   add_route_export(*command, arguments->route);
   command->add_flag("--flight", arguments->route.flight,

@@ -164,6 +164,8 @@ int main_checked(int argc, char** argv) {
   add_tune(app, action);
   add_new(app, action);
   add_check_plugin(app, action);
+  add_completion(app, action);
+  add_man(app, action);
   if (const std::optional<int> code = app.parse(argc, argv)) {
     return *code;
   }

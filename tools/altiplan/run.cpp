@@ -15,6 +15,7 @@ struct RunArguments {
   host::Overrides overrides;
   int threads = 1;
   std::optional<std::string> trace;
+  std::size_t trace_limit_mb = host::kDefaultTraceMb;
   std::optional<std::string> out;
   bool json = false;
   double timeout_s = host::kDefaultStepSeconds;
@@ -137,6 +138,7 @@ int run(const RunArguments& arguments) {
   options.timeout_s = arguments.timeout_s;
   options.threads = arguments.threads;
   options.trace = arguments.trace;
+  options.trace_limit_mb = arguments.trace_limit_mb;
   const HandOut to = [&](std::FILE* out, const host::RunResult& result) {
     hand_out(out, arguments, config, result, interrupt);
   };
@@ -161,6 +163,11 @@ void add_run(App& app, Action& action) {
       ->check(Check::between(1, 1024));
   command->add_option("--trace", arguments->trace, "write a search trace to this file")
       ->type_name("FILE");
+  command
+      ->add_option("--trace-limit", arguments->trace_limit_mb,
+                   "most that the trace may take (MB, default 64)")
+      ->type_name("MB")
+      ->check(Check::between(1, 1'000'000));
   command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
       ->type_name("FILE");
   command

@@ -16,28 +16,38 @@ struct Arguments {
   std::vector<std::string> files;
   host::Overrides overrides;
   bool json = false;
+  bool builds = false;
 };
 
-void validate_one(const std::string& file, const host::Overrides& overrides) {
-  switch (host::kind_of(host::load_yaml(file))) {
-    case host::FileKind::pipeline:
-      host::load_config(file, overrides);
-      break;
-    case host::FileKind::scenario:
-      host::load_scenario(file, overrides);
-      break;
-    case host::FileKind::study:
-      study::load_study(file, {}, overrides.plugin_path);
-      break;
+/// Builds the world, whose layers read their files, and prints its warnings.
+void build(const host::Config& config) {
+  for (const std::string& warning : host::build_mission(config, 1).warnings) {
+    warn(warning);
   }
+}
+
+/// Returns what was checked, for the user.
+std::string validate_one(const std::string& file, const Arguments& arguments) {
+  const host::FileKind kind = host::kind_of(host::load_yaml(file));
+  if (kind == host::FileKind::study) {
+    study::load_study(file, {}, arguments.overrides.plugin_path);
+    return arguments.builds ? "valid; the worlds of a study are not built" : "valid";
+  }
+  const host::Config config = kind == host::FileKind::pipeline
+                                  ? host::load_config(file, arguments.overrides)
+                                  : host::load_scenario(file, arguments.overrides);
+  if (arguments.builds) {
+    build(config);
+  }
+  return arguments.builds ? "valid, and its world can be built" : "valid";
 }
 
 int validate(const Arguments& arguments) {
   int code = kDone;
   for (const std::string& file : arguments.files) {
     try {
-      validate_one(file, arguments.overrides);
-      std::cout << file << ": valid\n";
+      const std::string verdict = validate_one(file, arguments);
+      std::cout << file << ": " << verdict << '\n';
     } catch (const ConfigError& error) {
       for (const Problem& problem : error.problems()) {
         std::cerr << problem.text() << '\n';
@@ -100,6 +110,8 @@ void add_validate(App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("files", arguments->files, "pipeline, scenario and study files (YAML)")
       ->required();
+  command->add_flag("--build", arguments->builds,
+                    "also build the world, so that the contents of its files are checked");
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan validate configs/*/*.yaml");
   command->callback(

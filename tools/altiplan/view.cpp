@@ -7,6 +7,7 @@
 #include "host/view/scene.hpp"
 #include "host/view/screenshot.hpp"
 #include "host/view/viewer_page.hpp"
+#include "progress_line.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -93,7 +94,10 @@ int view(const Arguments& arguments) {
     files.push_back(arguments.png.value_or(""));
     expect_apart(arguments.svg, "--svg", files);
   }
+  ProgressLine line;
+  line.show("reading the world, and the traces of searches");
   const host::Scene scene = host::build_scene(results);
+  line.clear();
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }

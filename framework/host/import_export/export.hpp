@@ -47,4 +47,7 @@ struct Exported {
 /// asked for.
 Exported export_route(const Mission& mission, const ExportSource& source,
                       const ExportOptions& options);
+
+/// The zones as a fence file for Mission Planner (QGC WPL 110); no text where there are none.
+Exported export_fence(const Mission& mission, const Route& route);
 }  // namespace altiplan::host

@@ -88,6 +88,19 @@ kit::MissionPoint home_of(const Plan& plan) {
   const PlanItem& first = plan.items.front();
   return {first.params[5], first.params[4], 0};
 }
+
+/// A line of QGC WPL 110: twelve columns.
+std::string row(const PlanItem& item, std::size_t number, bool is_current,
+                const Decimals& decimals) {
+  std::string line = std::to_string(number) + (is_current ? "\t1\t" : "\t0\t") +
+                     std::to_string(item.frame) + "\t" + std::to_string(item.command);
+  for (std::size_t n = 0; n < item.params.size(); ++n) {
+    const double value = std::isnan(item.params[n]) ? 0 : item.params[n];
+    const bool is_degrees = n == 4 || n == 5;
+    line += "\t" + rounded_text(value, is_degrees ? decimals.degrees : decimals.metres);
+  }
+  return line + (item.continues ? "\t1\n" : "\t0\n");
+}
 }  // namespace
 
 std::string plan_text(const Plan& plan) {
@@ -118,28 +131,22 @@ std::string plan_text(const Plan& plan) {
 }
 
 std::string waypoints_text(const Plan& plan) {
-  const Decimals& decimals = plan.decimals;
-  std::string result = "QGC WPL 110\n";
-  std::size_t number = 0;
-  const auto add = [&](const PlanItem& item) {
-    result += std::to_string(number) + (number == 0 ? "\t1\t" : "\t0\t") +
-              std::to_string(item.frame) + "\t" + std::to_string(item.command);
-    for (std::size_t n = 0; n < item.params.size(); ++n) {
-      const double value = std::isnan(item.params[n]) ? 0 : item.params[n];
-      const bool is_degrees = n == 4 || n == 5;
-      result += "\t" + rounded_text(value, is_degrees ? decimals.degrees : decimals.metres);
-    }
-    result += item.continues ? "\t1\n" : "\t0\n";
-    ++number;
-  };
   const kit::MissionPoint home = home_of(plan);
   PlanItem first;
   first.params[4] = home.lat;
   first.params[5] = home.lon;
   first.params[6] = home.altitude_m;
-  add(first);
-  for (const PlanItem& item : plan.items) {
-    add(item);
+  std::string result = "QGC WPL 110\n" + row(first, 0, true, plan.decimals);
+  for (std::size_t n = 0; n < plan.items.size(); ++n) {
+    result += row(plan.items[n], n + 1, false, plan.decimals);
+  }
+  return result;
+}
+
+std::string fence_text(const Plan& plan) {
+  std::string result = "QGC WPL 110\n";
+  for (std::size_t n = 0; n < plan.fence.size(); ++n) {
+    result += row(plan.fence[n], n, false, plan.decimals);
   }
   return result;
 }

@@ -52,4 +52,6 @@ Plan plan_of(const MissionText& mission);
 std::string plan_text(const Plan& plan);
 /// The `QGC WPL 110` text of its mission.
 std::string waypoints_text(const Plan& plan);
+/// That of its fence, as Mission Planner loads it.
+std::string fence_text(const Plan& plan);
 }  // namespace altiplan::host

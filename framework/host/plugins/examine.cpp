@@ -74,7 +74,8 @@ std::string mismatch(const Manifest& plugin) {
 /// Adds the record to the library; throws ElfError if it is invalid.
 void take_record(const Manifest& record, Library& library) {
   if (!ends_with_nul(record.compiler) || !ends_with_nul(record.kind) ||
-      !ends_with_nul(record.name) || !ends_with_nul(record.sentence)) {
+      !ends_with_nul(record.name) || !ends_with_nul(record.sentence) ||
+      !ends_with_nul(record.file)) {
     throw ElfError("damaged manifest: an unterminated text");
   }
   if (std::find(kKinds.begin(), kKinds.end(), record.kind) == kKinds.end()) {
@@ -87,7 +88,8 @@ void take_record(const Manifest& record, Library& library) {
   }
   for (const Manifest& other : library.plugins) {
     if (std::strcmp(other.kind, record.kind) == 0 && std::strcmp(other.name, record.name) == 0) {
-      throw ElfError("offers the " + std::string(record.kind) + " '" + record.name + "' twice");
+      throw ElfError("offers the " + std::string(record.kind) + " '" + record.name +
+                     "' twice: in " + other.file + " and in " + record.file);
     }
   }
   library.plugins.push_back(record);

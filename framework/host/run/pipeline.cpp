@@ -2,6 +2,7 @@
 #include "host/run/pipeline.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 
 #include "altiplan/error.hpp"
@@ -18,7 +19,7 @@ Run::Run(const Config& config, const RunOptions& options)
                 [&options] { return options.process ? options.process->kept_mb() : 0; }),
       interrupt_(options.stop, [this] { watchdog_.stop_now(); }) {
   if (options.trace) {
-    trace_ = std::make_unique<TraceFile>(*options.trace);
+    trace_ = std::make_unique<TraceFile>(*options.trace, options.trace_limit_mb * 1'000'000);
     result_.trace = options.trace->string();
     if (options.process != nullptr) {
       options.process->keep_as_it_is(trace_->file().beside(), trace_->file().absolute_place());
@@ -64,6 +65,12 @@ RunResult Run::operator()() {
   }
   conclude();
   if (trace_) {
+    if (trace_->left_out() > 0) {
+      result_.warnings.push_back(
+          "the trace is full at " + std::to_string(options_.trace_limit_mb) +
+          " MB: " + std::to_string(trace_->left_out()) +
+          " events are left out; --trace-limit sets how many MB it may take");
+    }
     try {
       trace_->close();
     } catch (const Error& error) {  // do not lose the result
@@ -133,7 +140,7 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
     step.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     step.budget_hit = true;
     if (!watchdog_.out_of_memory()) {
-      step.message = "time budget exhausted (" + step.message + ")";
+      step.message = "time budget exhausted: " + time_budget(entry) + " (" + step.message + ")";
     }
   }
   const std::lock_guard lock(mutex_);
@@ -142,6 +149,12 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
     result_.accepted = result_.steps.size() - 1;
   }
   return step.accepted;
+}
+
+std::string Run::time_budget(const StepEntry& entry) const {
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%g s", entry.within_s.value_or(options_.timeout_s));
+  return (entry.within_s ? entry.path + ".within_s" : std::string("--timeout")) + " is " + seconds;
 }
 
 void Run::set_budget(Budget& budget, const StepEntry& entry) {

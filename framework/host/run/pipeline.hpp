@@ -19,9 +19,12 @@ struct RealFlight {
   FlownVehicle& vehicle;
 };
 
+inline constexpr std::uintmax_t kDefaultTraceMb = 64;
+
 struct RunOptions {
   int threads = 1;
   std::optional<std::filesystem::path> trace;
+  std::uintmax_t trace_limit_mb = kDefaultTraceMb;
   /// Called from the watchdog's thread with the result so far if a step never stops; must not
   /// return.
   std::function<void(const RunResult&)> on_stuck;

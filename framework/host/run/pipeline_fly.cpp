@@ -109,7 +109,8 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
     flight.status = RunStatus::not_reached;
     flight.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     flight.message =
-        (watchdog_.out_of_memory() ? "memory budget exhausted: " : "time budget exhausted: ") +
+        (watchdog_.out_of_memory() ? "memory budget exhausted: "
+                                   : "time budget exhausted: " + time_budget(entry) + ": ") +
         flight.message;
   }
   step.accepted = flight.status == RunStatus::solved;

@@ -44,6 +44,8 @@ class Run {
   StepResult begin_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   bool one_attempt(const StepEntry& entry, std::optional<std::string> instead_of);
   static void set_budget(Budget& budget, const StepEntry& entry);
+  /// The time that the step may take, by the name that changes it.
+  std::string time_budget(const StepEntry& entry) const;
   /// The mission's request with the step's budget, random stream and trace.
   Request request_for(const StepEntry& entry, std::uint64_t index);
   /// Sets the plugin now at work, for the watchdog and the crash report.

@@ -36,8 +36,8 @@ const char* kind_name(TraceEvent::Kind kind) {
 }
 }  // namespace
 
-TraceFile::TraceFile(std::filesystem::path file)
-    : file_(std::move(file)), lines_("{\"altiplan_trace\": 1}\n") {}
+TraceFile::TraceFile(std::filesystem::path file, std::uintmax_t most_bytes)
+    : file_(std::move(file)), lines_("{\"altiplan_trace\": 1}\n"), most_bytes_(most_bytes) {}
 
 void TraceFile::flush() {
   try {
@@ -51,6 +51,10 @@ void TraceFile::flush() {
 }
 
 void TraceFile::add(const TraceEvent& event) {
+  if (bytes_ >= most_bytes_ && event.kind != TraceEvent::Kind::iteration) {
+    ++left_out_;
+    return;
+  }
   std::string line = "{\"step\": " + nlohmann::json(step_).dump() + ", \"kind\": \"" +
                      kind_name(event.kind) + "\", \"node\": " + std::to_string(event.node) +
                      ", \"parent\": " + std::to_string(event.parent) + ", \"at\": [";
@@ -67,6 +71,7 @@ void TraceFile::add(const TraceEvent& event) {
   }
   line += "}\n";
   lines_ += line;
+  bytes_ += line.size();
   constexpr std::size_t kBlock = 4096;
   if (lines_.size() >= kBlock) {
     flush();

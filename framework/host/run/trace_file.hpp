@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "altiplan/trace.hpp"
@@ -10,15 +11,18 @@ namespace altiplan::host {
 
 /// Writes a run's search events as lines of JSON: first {"altiplan_trace": 1}, then for each event
 /// {"step", "kind", "node", "parent", "at": [x, y, z], "value"}, with "mean" and "alive" for
-/// iterations of a population (docs/reference/result.md). The file is moved to its place on close.
-/// Throws Error if it cannot be written.
+/// iterations of a population (docs/reference/result.md). Of a search that goes on beyond the limit
+/// only iterations are written, which are few. The file is moved to its place on close. Throws
+/// Error if it cannot be written.
 class TraceFile final : public Trace {
  public:
-  explicit TraceFile(std::filesystem::path file);
+  TraceFile(std::filesystem::path file, std::uintmax_t most_bytes);
   void begin_step(std::string id) { step_ = std::move(id); }
   void add(const TraceEvent& event) override;
   /// Throws Error if something could not be written.
   void close();
+  /// Events beyond the limit.
+  std::uintmax_t left_out() const { return left_out_; }
   /// The file, for keeping an incomplete trace if the process ends prematurely.
   const OutputFile& file() const { return file_; }
 
@@ -29,5 +33,8 @@ class TraceFile final : public Trace {
   std::string lines_;  ///< not yet written; whole lines, so that an incomplete file ends with one
   std::string error_;  ///< why writing stopped; "" if it has not
   std::string step_;
+  std::uintmax_t most_bytes_;
+  std::uintmax_t bytes_ = 0;
+  std::uintmax_t left_out_ = 0;
 };
 }  // namespace altiplan::host

@@ -53,6 +53,7 @@ struct Manifest {
   char kind[24];
   char name[64];
   char sentence[256];
+  char file[64];           ///< the source file, without its folder
   std::uint32_t checksum;  ///< checksum_of the record; detects a damaged file before it is trusted
 };
 
@@ -85,7 +86,8 @@ constexpr std::uint32_t checksum_of(const Manifest& m) {
 
 /// The manifest of a plugin with the settings of this compilation.
 template <class Interface>
-static consteval Manifest make_manifest(const char* kind, const char* name, const char* sentence) {
+static consteval Manifest make_manifest(const char* kind, const char* name, const char* sentence,
+                                        const char* file = __builtin_FILE()) {
   Manifest m{};
   const auto copy = [](char* to, std::size_t size, const char* from) {
     for (std::size_t i = 0; i + 1 < size && from[i] != '\0'; ++i) {
@@ -132,6 +134,10 @@ static consteval Manifest make_manifest(const char* kind, const char* name, cons
   copy(m.kind, sizeof m.kind, kind);
   copy(m.name, sizeof m.name, name);
   copy(m.sentence, sizeof m.sentence, sentence);
+  for (const char* at = file; *at != '\0'; ++at) {
+    file = *at == '/' ? at + 1 : file;
+  }
+  copy(m.file, sizeof m.file, file);
   m.checksum = checksum_of(m);
   return m;
 }
