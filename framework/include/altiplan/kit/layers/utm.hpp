@@ -13,9 +13,8 @@ namespace altiplan::kit {
 inline std::string utm_crs(double lon, double lat) {
   constexpr double kNorth = 84;
   constexpr double kSouth = -80;
-  const int zone = lat > kNorth || lat < kSouth
-                       ? 61
-                       : std::clamp(int(std::floor((lon + 180) / 6)) + 1, 1, 60);
+  const int zone =
+      lat > kNorth || lat < kSouth ? 61 : std::clamp(int(std::floor((lon + 180) / 6)) + 1, 1, 60);
   return "EPSG:" + std::to_string((lat < 0 ? 32700 : 32600) + zone);
 }
 }  // namespace altiplan::kit
