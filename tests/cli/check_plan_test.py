@@ -94,6 +94,16 @@ class CheckPlan(PlanCase):
         out, _ = self.call(*options, code=1)
         self.assertIn("item 1 (take-off): the way from home: ", out)
 
+    def test_items_beside_a_circle_keep_their_names(self):
+        points = [item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)]
+        points[1].update(command=18, params=[1000, 0, 200, 1, *points[1]["params"][4:]])  # tangentially left
+        points[2]["params"][6] = 300
+        self.write(points)
+        out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
+        self.assertIn("item 2 (loiter) to item 3 (waypoint): ", out)
+        self.assertNotIn("a figure of the turn", out)
+        self.assertNotIn("waypoint 1", out)
+
     def test_an_aeroplane_does_not_land_through_a_ridge(self):
         landing = dict(item([-84.22, 36.48, 0], 2), command=21)
         self.write([item([-84.38, 36.48, 900], 1), item([-84.37, 36.48, 900], 2), landing],
@@ -198,7 +208,11 @@ class CheckPlan(PlanCase):
         self.write([item([8.002, 47.005, 300], 1), item([8.037, 47.005, 300], 2)])
         self.call(*options, code=0)
         self.write([item([8.002, 47.02, 300], 1), item([8.037, 47.02, 300], 2)])
-        self.call(*options, code=1)
+        out, _ = self.call(*options, code=1)
+        self.assertIn("fail: mission.plan, 2 waypoints, 2.6", out)
+        self.assertIn("over unknown ground", out)
+        self.assertIn("item 1 (waypoint) to item 2 (waypoint): passes over a void of the elevation model", out)
+        self.assertNotIn("m above ground", out)
         self.call(*options, "--fill-voids", code=0)
 
     def test_zones_of_permission(self):

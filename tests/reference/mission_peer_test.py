@@ -318,8 +318,9 @@ def main():
     counts, failed = collections.Counter(), 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        places = worlds(data, folder, rng)
         for number in range(total):
+            if number % 1000 == 0:
+                places = worlds(data, folder, rng)
             source = data / "missions" / mission_mutants.ROUTES[number % len(mission_mutants.ROUTES)]
             seed = rng.randrange(2**40)
             case = Case(source, places[number % len(places)], folder, random.Random(seed))

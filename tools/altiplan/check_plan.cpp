@@ -53,10 +53,9 @@ std::string left_out(const PlanCheck& plan) {
 }
 
 void print(const PlanReport& report, const host::Mission& world) {
-  std::printf("%s: %s, %zu waypoints, %s km, at least %s m above ground\n",
-              report.passed() ? "pass" : "fail", host::printable(report.file).c_str(),
-              report.measures.waypoints, fixed(report.measures.length_m / 1000, 3).c_str(),
-              fixed(report.measures.min_ground_clearance_m, 1).c_str());
+  std::printf("%s: %s, %zu waypoints, %s km, %s\n", report.passed() ? "pass" : "fail",
+              host::printable(report.file).c_str(), report.measures.waypoints,
+              fixed(report.measures.length_m / 1000, 3).c_str(), report.height_in_words().c_str());
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     if (finding.at) {

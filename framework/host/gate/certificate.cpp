@@ -141,9 +141,8 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
   }
   const Measures& measures = report.measures;
   html += row({"route", counted(measures.waypoints, "waypoint") + ", " + metres(measures.length_m) +
-                            " m, at least " + metres(measures.min_ground_clearance_m) +
-                            " m above ground, " + metres(measures.min_clearance_m) +
-                            " m from obstacles"});
+                            " m, " + report.height_in_words() + ", " +
+                            metres(measures.min_clearance_m) + " m from obstacles"});
   html += "</table>\n" + violations(report, request);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "altiplan/error.hpp"
@@ -103,6 +104,35 @@ void name_zone(Finding& finding, const Request& request) {
   }
 }
 
+/// Tells a void of the elevation model from ground.
+void name_void(Finding& finding, const Request& request) {
+  const World& world = *request.world;
+  const std::optional<double> ground =
+      finding.at ? world.ground(finding.at->x(), finding.at->y()) : std::nullopt;
+  const std::string& rule = finding.violation.constraint;
+  const bool is_of_ground = rule == "ground_clearance" || rule == "altitude" ||
+                            rule == "ground_distance" || is_ground(finding.violation, request);
+  if (is_of_ground && ground && *ground >= kUnknownGround) {
+    finding.is_over_void = true;
+    finding.violation.message =
+        "passes over a void of the elevation model, where the ground is unknown (--fill-voids)";
+  }
+}
+
+/// The place of a turn where it is lowest above ground, else its middle.
+Vec3 lowest_place(const Leg& leg, const World& world) {
+  Vec3 lowest = leg.at(0.5);
+  double least = kInfinity;
+  for (const Vec3& p : leg.chords(kChordTolerance)) {
+    const std::optional<double> ground = world.ground(p.x(), p.y());
+    if (ground && p.z() - *ground < least) {
+      least = p.z() - *ground;
+      lowest = p;
+    }
+  }
+  return lowest;
+}
+
 Finding finding_of(const Violation& violation, const PlanReport& report, const Request& request) {
   const Route& route = report.imported.route;
   Finding finding{violation, {report.name_of(violation.at)}, {}, {}};
@@ -114,6 +144,7 @@ Finding finding_of(const Violation& violation, const PlanReport& report, const R
     finding.at = route.back();
   }
   name_zone(finding, request);
+  name_void(finding, request);
   return finding;
 }
 
@@ -175,11 +206,12 @@ void add_ways(PlanReport& report, const Request& request) {
   for (const Way& way : report.ways) {
     for (Violation violation : leg_violations(std::nullopt, way.leg, request, 0)) {
       violation.message = way.what + ": " + violation.message;
-      Finding finding{violation, {way.item}, way.leg.at(0.5), {}};
+      Finding finding{violation, {way.item}, lowest_place(way.leg, *request.world), {}};
       if (way.leg.kind() == Leg::Kind::straight) {
         finding.at = worst_place(way.leg.from, way.leg.to, violation, request);
       }
       name_zone(finding, request);
+      name_void(finding, request);
       report.findings.push_back(std::move(finding));
     }
   }
@@ -262,6 +294,17 @@ void expect_on_ground(const kit::MissionFile& plan, const World& world) {
 std::string PlanReport::name_of(std::size_t waypoint) const {
   return waypoint < imported.items.size() ? name_of_item(imported.items[waypoint])
                                           : "waypoint " + std::to_string(waypoint);
+}
+
+std::string PlanReport::height_in_words() const {
+  const bool is_unknown = std::any_of(findings.begin(), findings.end(),
+                                      [](const Finding& finding) { return finding.is_over_void; });
+  char text[48];
+  std::snprintf(text, sizeof text, "at least %.1f m above ground",
+                measures.min_ground_clearance_m.value_or(0));
+  return is_unknown                        ? "over unknown ground"
+         : measures.min_ground_clearance_m ? text
+                                           : "height above ground unknown";
 }
 
 Bonds PlanReport::bonds() const {

@@ -18,9 +18,12 @@ struct Finding {
   std::vector<std::string> items;  ///< as ground stations name them: one, or the two of a leg
   std::optional<Vec3> at;          ///< where it is worst, within a metre, if anywhere
   std::optional<Cure> cure;        ///< of one waypoint
+  bool is_over_void = false;       ///< there the elevation model has no height
 };
 
 inline constexpr double kHomeTolerance = 10;  ///< metres
+/// A ground at least as high stands for a void of the elevation model, which is closed.
+inline constexpr double kUnknownGround = 9'000;
 
 /// The verdict on a mission of a ground station.
 struct PlanReport {
@@ -37,6 +40,8 @@ struct PlanReport {
   /// "waypoint 3" where the route has other points than the file.
   std::string name_of(std::size_t waypoint) const;
   Bonds bonds() const;
+  /// "at least 52.4 m above ground", of the route.
+  std::string height_in_words() const;
 };
 
 /// Throws Error, beginning with `file`, naming what a mission without a route holds instead.

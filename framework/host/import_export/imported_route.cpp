@@ -53,8 +53,8 @@ void undo_rounding(Vec3& p, const Vec3& centre, const std::optional<Loiter>& loi
 }
 
 /// The route past the items; reports those whose circle cannot be flown tangentially.
-Route join(const std::vector<MissionPlace>& places, const Request& request,
-           std::vector<std::string>& notes) {
+JoinedRoute join(const std::vector<MissionPlace>& places, const Request& request,
+                 std::vector<std::string>& notes) {
   std::optional<double> heading;
   if (has_heading(request.start.velocity)) {
     heading = std::atan2(request.start.velocity.y(), request.start.velocity.x());
@@ -67,7 +67,7 @@ Route join(const std::vector<MissionPlace>& places, const Request& request,
     notes.push_back(std::to_string(joined.unjoined) +
                     " loiters read as positions: no tangent leads to their circle or from it");
   }
-  return std::move(joined.route);
+  return joined;
 }
 
 void note_frames(const std::vector<MissionItem>& items, std::vector<std::string>& notes) {
@@ -144,9 +144,10 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
     of_end(places[1], request.start);
     of_end(places[places.size() - 2], request.goal);
   }
-  result.route = join(places, request, result.notes);
-  if (result.route.size() == items.size()) {
-    result.items = std::move(items);
+  JoinedRoute joined = join(places, request, result.notes);
+  result.route = std::move(joined.route);
+  for (const std::size_t place : joined.places) {
+    result.items.push_back(items[place]);
   }
   return result;
 }

@@ -15,7 +15,7 @@ namespace altiplan::host {
 struct ImportedRoute {
   Route route;
   std::vector<std::string> notes;  ///< what was ignored, how heights were interpreted
-  /// Of a mission without circles: the item of each waypoint.
+  /// Of a mission: the item of each waypoint; a circle may have two.
   std::vector<kit::MissionItem> items{};
 };
 

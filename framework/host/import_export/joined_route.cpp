@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/joined_route.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace altiplan::host {
 namespace {
@@ -66,6 +68,7 @@ class Joining {
         ++result_.unjoined;
         straight_to(places_[i].at);
       }
+      result_.places.resize(result_.route.size(), i + (i >= dropped_ ? 1 : 0));
     }
     return std::move(result_);
   }
@@ -86,6 +89,7 @@ class Joining {
     const auto entry = tangent(before.at, signed_radius(before), last.at, radius);
     if (entry && (point_at(last.at, radius, *entry) - places_[count - 2].at).norm() < kSameEntry) {
       places_.erase(places_.end() - 2);
+      dropped_ = count - 2;
     }
   }
 
@@ -164,7 +168,9 @@ class Joining {
     const double first = full_turn(circle.sense * (exit - entry));
     const double least =
         circle.until == Until::turns ? 2 * kPi * circle.turns : least_turn(climb, circle.radius_m);
-    const double circles = std::ceil((least - kExitTolerance - first) / (2 * kPi));
+    // More circles than a leg may have are the same circle.
+    const double most = std::floor((kMaxTurn - first) / (2 * kPi));
+    const double circles = std::min(std::ceil((least - kExitTolerance - first) / (2 * kPi)), most);
     const double angle = first + 2 * kPi * circles;
     heading_ = exit;
     if (angle <= 0) {  // it has the heading of the exit when it enters
@@ -183,6 +189,7 @@ class Joining {
   }
 
   std::vector<MissionPlace> places_;
+  std::size_t dropped_ = std::numeric_limits<std::size_t>::max();  ///< index of the place left out
   std::optional<double> heading_;  ///< on reaching the end of the route so far
   const Limits& limits_;
   JoinedRoute result_;

@@ -5,6 +5,7 @@
 #include <boost/geometry/algorithms/convert.hpp>
 #include <boost/geometry/algorithms/correct.hpp>
 #include <boost/geometry/algorithms/difference.hpp>
+#include <boost/geometry/algorithms/for_each.hpp>
 #include <boost/geometry/algorithms/intersection.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -72,6 +73,17 @@ bool is_inside(const Box& box, const Box& bounds) {
 }
 }  // namespace
 
+namespace {
+
+/// Corners that rounding has put beyond the box.
+void keep_in(Polygon& polygon, const Box& box) {
+  bg::for_each_point(polygon, [&](Point& p) {
+    p.x(std::clamp(p.x(), box.min.x(), box.max.x()));
+    p.y(std::clamp(p.y(), box.min.y(), box.max.y()));
+  });
+}
+}  // namespace
+
 Parts split(const Prism& prism, const Box& box) {
   const Box area = bounds(Shape(prism));
   if (is_inside(area, box)) {
@@ -91,6 +103,9 @@ Parts split(const Prism& prism, const Box& box) {
   bg::intersection(polygon, rectangle, within);
   bg::difference(polygon, rectangle, beyond);
   Parts parts;
+  for (Polygon& part : within) {
+    keep_in(part, cut);
+  }
   return add_prisms(within, prism, parts.within) && add_prisms(beyond, prism, parts.beyond)
              ? parts
              : Parts{{}, {prism}};

@@ -248,6 +248,20 @@ TEST_F(Published, IsClosedWithoutGround) {
   EXPECT_FALSE(partly->blocked({1600, 700, 9000}, {1600, 700, 9000}, 0));
 }
 
+TEST_F(Published, CutAtTheEdgeOfTheGroundAZoneStillFollowsIt) {
+  RandomStream random(7);
+  for (int n = 0; n < 200; ++n) {
+    Corners corners;
+    const double turn = random.uniform(0, 2);
+    for (int k = 0; k < 3; ++k) {
+      corners.push_back(
+          {1800 + 400 * std::cos(turn + 2.1 * k), 900 + 500 * std::sin(turn + 2.1 * k)});
+    }
+    const auto layer = zones(openair("R", "Zone", "50 m AGL", "100 m AGL", corners));
+    ASSERT_FALSE(says(*layer, "has holes")) << turn;
+  }
+}
+
 TEST_F(Published, ClassesAreMappedAndPrinted) {
   const std::string text = openair("P", "Out", "GND", "UNL", {{0, 0}, {100, 0}, {100, 100}}) +
                            openair("CTR", "Ask", "GND", "UNL", {{200, 0}, {300, 0}, {300, 100}}) +
