@@ -19,7 +19,7 @@ struct MissionPlace {
 struct JoinedRoute {
   Route route;
   std::vector<std::size_t> places;  ///< of each waypoint: the place that it belongs to
-  std::size_t circles = 0;   ///< that became turns
+  std::size_t circles = 0;          ///< that became turns
   std::size_t unjoined = 0;  ///< without a tangent from the place before or to the one after: read
                              ///< as waypoints
 };
