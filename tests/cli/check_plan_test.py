@@ -268,6 +268,10 @@ class CheckPlan(PlanCase):
         out, _ = self.call(*options, "150", code=0)
         self.assertIn("at least 150.0 m", out)
         self.call(*options, "150.1", code=1)
+        (self.folder / "utm.prj").unlink()
+        _, err = self.call(*options, "150", code=3)
+        self.assertIn("names no coordinate system", err)
+        self.call(*options, "150", "--crs", "EPSG:32611", code=0)
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[3:])

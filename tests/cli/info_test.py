@@ -42,6 +42,11 @@ class Info(unittest.TestCase):
                      "- terrain: {file: ", "volume: {min_m: [0, 0, 236]", "cell_m: [200, 200, 30]"):
             self.assertIn(said, out)
 
+    def test_json(self):
+        found = json.loads(self.info("--json", TERRAIN, self.write("zones.txt", OPENAIR)))
+        self.assertEqual([one["kind"] for one in found], ["elevation model", "published airspace"])
+        self.assertTrue(any("403 x 344 posts" in fact for fact in found[0]["facts"]))
+
     def test_what_it_suggests_is_a_scenario(self):
         lines = self.info(TERRAIN).split("in a scenario:\n")[1].splitlines()
         text = "altiplan: 1\n" + "\n".join(line[4:] for line in lines) + """

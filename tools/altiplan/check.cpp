@@ -127,6 +127,9 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
       ->take_all()
       ->one_at_a_time()
       ->needs(terrain);
+  command.add_option("--crs", plan.crs, "coordinate system of a model that names none")
+      ->type_name("EPSG:CODE")
+      ->needs(terrain);
   command
       .add_flag("--permission", plan.has_permission,
                 "zones that take a permission are open, because you have it")

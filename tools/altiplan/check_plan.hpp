@@ -14,6 +14,7 @@ struct PlanCheck {
   std::string plan;
   std::optional<std::string> scenario;
   std::optional<std::string> terrain;
+  std::string crs;  ///< of a model that names none
   std::vector<std::string> airspace;
   bool fills_voids = false;     ///< from their neighbours, else they are closed
   bool has_permission = false;  ///< for zones that take one

@@ -3,7 +3,9 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "host/base/utf8.hpp"
 #include "host/first_route/file_info.hpp"
+#include "host/result/result_json.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -11,33 +13,47 @@ namespace {
 struct Arguments {
   std::vector<std::string> files;
   std::string crs;
+  bool json = false;
   host::Overrides overrides;
 };
+
+void print(const std::string& file, const host::FileInfo& info) {
+  std::printf("%s: %s\n", host::printable(file).c_str(), info.kind.c_str());
+  for (const std::string& fact : info.facts) {
+    std::printf("  %s\n", fact.c_str());
+  }
+  if (!info.scenario.empty()) {
+    std::printf("  in a scenario:\n");
+  }
+  for (const std::string& line : info.scenario) {
+    std::printf("    %s\n", line.c_str());
+  }
+}
 
 int info_of(const Arguments& arguments) {
   host::Registry registry(host::Registry::search_path(arguments.overrides.plugin_path));
   int code = kDone;
+  host::Json all = host::Json::array();
   for (const std::string& file : arguments.files) {
-    host::FileInfo info;
     try {
-      info = host::info_of(file, arguments.crs, registry);
+      const host::FileInfo info = host::info_of(file, arguments.crs, registry);
+      if (arguments.json) {
+        all.push_back({{"file", host::printable(file)},
+                       {"kind", info.kind},
+                       {"facts", info.facts},
+                       {"scenario", info.scenario}});
+      } else {
+        print(file, info);
+      }
     } catch (const PluginError&) {
       throw;
     } catch (const Error& error) {  // the files that follow may be good
-      std::cerr << "altiplan: " << error.what() << '\n';
+      std::cerr << "altiplan: " << host::printable(error.what(), true) << '\n';
       code = kBadFile;
-      continue;
     }
-    std::printf("%s: %s\n", file.c_str(), info.kind.c_str());
-    for (const std::string& fact : info.facts) {
-      std::printf("  %s\n", fact.c_str());
-    }
-    if (!info.scenario.empty()) {
-      std::printf("  in a scenario:\n");
-    }
-    for (const std::string& line : info.scenario) {
-      std::printf("    %s\n", line.c_str());
-    }
+  }
+  if (arguments.json) {
+    std::cout << host::file_text(all);
   }
   return code;
 }
@@ -50,6 +66,7 @@ void add_info(App& app, Action& action) {
   command->add_option("files", arguments->files, "files")->required();
   command->add_option("--crs", arguments->crs, "coordinate system of a model that names none")
       ->type_name("EPSG:CODE");
+  command->add_flag("--json", arguments->json, "print as JSON");
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan info configs/data/jacksboro_fault.tif");
   command->callback([&action, arguments] { action = [arguments] { return info_of(*arguments); }; });

@@ -49,7 +49,8 @@ std::string world_text(const PlanCheck& plan, const kit::MissionFile& mission) {
   const std::string voids =
       plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
   std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
-                     ", " + voids + "}\n";
+                     (plan.crs.empty() ? "" : ", crs: " + Json(plan.crs).dump()) + ", " + voids +
+                     "}\n";
   std::set<std::string> ids{"terrain"};
   const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
     while (!ids.insert(name).second) {
