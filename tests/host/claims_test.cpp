@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace altiplan::host {
@@ -300,6 +301,40 @@ TEST(Claims, AreReproducible) {
   EXPECT_NE(other.interval->low, once.interval->low);  // two claims do not share their luck
   study.data().file.seed = 5;
   EXPECT_NE(study.judge("mean(b.length_m / a.length_m)", "<= 1").interval->low, once.interval->low);
+}
+
+TEST(Undecidable, IsWhatNoRunsCouldDecide) {
+  const std::vector<std::string> names{"a", "b"};
+  for (int scenarios = 1; scenarios <= 12; ++scenarios) {
+    SCOPED_TRACE(scenarios);
+    std::vector<std::size_t> groups(std::size_t(scenarios), 0);
+    std::iota(groups.begin(), groups.end(), 0);
+    const auto why = [&](const std::string& that, const std::string& is) {
+      return why_undecidable({"claim", that, is, 0.95}, names, groups);
+    };
+    Study all(scenarios, 1, 0.5);
+    Study none(scenarios, 1, 0.5);
+    for (std::size_t s = 0; s < groups.size(); ++s) {
+      none.fail(s, 0);
+    }
+    const auto is_decided = [](const JudgedClaim& judged) {
+      return judged.verdict == Verdict::holds || judged.verdict == Verdict::fails;
+    };
+    const std::string mean = "mean(b.length_m / a.length_m)";
+    EXPECT_EQ(why(mean, "<= 0.9").empty(), is_decided(all.judge(mean, "<= 0.9")));
+    EXPECT_EQ(why("max(a.length_m)", "<= 9"), "");
+    for (const std::string is : {">= 0.5", ">= 0.9", "0.2..0.3"}) {
+      const bool may_be = is_decided(all.judge("share(a.solved)", is)) ||
+                          is_decided(none.judge("share(a.solved)", is));
+      EXPECT_EQ(why("share(a.solved)", is).empty(), may_be) << is;
+    }
+  }
+  EXPECT_EQ(why_undecidable({"claim", "mean(a.length_m)", "<= 9", 0.95}, names,
+                            std::vector<std::size_t>{0, 1}),
+            "too few scenarios: at least 6 for 95 %");
+  EXPECT_EQ(why_undecidable({"claim", "share(a.solved)", ">= 0.5", 0.95}, names,
+                            std::vector<std::size_t>{0, 0}),
+            "too few repetitions: at least 4 for 95 %");
 }
 }  // namespace
 }  // namespace altiplan::host

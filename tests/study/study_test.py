@@ -123,6 +123,11 @@ class Study(StudyCase):
         self.assertEqual(len(self.rows()), 4)
         self.assertIn("selected 20, stored 4, to do 16", self.call("--dry-run"))
 
+    def test_claims_that_so_few_runs_cannot_decide(self):
+        self.study("claims: [{id: long, that: mean(straight.length_m), is: '>= 5'}]\n")
+        said = self.call("--dry-run")
+        self.assertIn("claim long will be undecided: too few scenarios: at least 6 for 95 %", said)
+
     def test_gate(self):
         self.study("claims: [{id: c, that: share(straight.solved), is: '>= 0.5'}]\n")
         self.assertIn("claim c: Holds", self.call("--gate"))

@@ -11,6 +11,7 @@
 #include "progress_line.hpp"
 #include "study/claims/claims.hpp"
 #include "study/model/study_data.hpp"
+#include "study/plan/undecidable.hpp"
 #include "study/report/analysis.hpp"
 #include "study/run/study_run.hpp"
 #include "study/store/load_study.hpp"
@@ -105,6 +106,9 @@ int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
                 duration(estimate.run_s).c_str(),
                 estimate.is_probed ? "a trial run of each pipeline"
                                    : (std::to_string(estimate.measured) + " stored runs").c_str());
+  }
+  for (const std::string& sentence : study::undecidable_claims(plan)) {
+    std::printf("  %s\n", sentence.c_str());
   }
   return kDone;
 }

@@ -8,6 +8,7 @@
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "study/plan/study_plan.hpp"
+#include "study/plan/undecidable.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -30,7 +31,10 @@ void build(const host::Config& config) {
 std::string validate_one(const std::string& file, const Arguments& arguments) {
   const host::FileKind kind = host::kind_of(host::load_yaml(file));
   if (kind == host::FileKind::study) {
-    study::load_study(file, {}, arguments.overrides.plugin_path);
+    const auto plan = study::load_study(file, {}, arguments.overrides.plugin_path);
+    for (const std::string& sentence : study::undecidable_claims(plan)) {
+      warn(file + ": " + sentence);
+    }
     return arguments.builds ? "valid; the worlds of a study are not built" : "valid";
   }
   const host::Config config = kind == host::FileKind::pipeline

@@ -139,9 +139,9 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
     step.status = RunStatus::timed_out;
     step.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
     step.budget_hit = true;
-    if (!watchdog_.out_of_memory()) {
-      step.message = "time budget exhausted: " + time_budget(entry) + " (" + step.message + ")";
-    }
+  }
+  if (step.status == RunStatus::timed_out && step.reason == Reason::deadline) {
+    step.message = "time budget exhausted: " + time_budget(entry) + " (" + step.message + ")";
   }
   const std::lock_guard lock(mutex_);
   result_.steps.back() = step;
@@ -256,6 +256,10 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
     if (step.status == RunStatus::solved && request.budget.stop.stop_requested() &&
         !interrupted()) {
       step.budget_hit = true;
+    }
+    if (step.status == RunStatus::timed_out && request.budget.deadline &&
+        Clock::now() >= *request.budget.deadline) {
+      step.reason = Reason::deadline;
     }
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,12 @@ std::string wanted(const ClaimEntry& claim);
 /// Evaluates the claim on the study's runs. A value counts if its run has it and solved the
 /// problem; values that describe failures (is_of_every_run) count in every run that has them.
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
+
+/// Why the claim stays undecided whatever the runs will give, and how many would do ("too few
+/// scenarios: at least 6 for 95 %"); "" if it may be decided. `groups` has the scenario of each
+/// pair (scenario, repetition) that is to be run.
+std::string why_undecidable(const ClaimEntry& claim, const std::vector<std::string>& pipelines,
+                            std::span<const std::size_t> groups);
 
 /// Values that are 0 or 1: solved, flight.reached, steps.ID.accepted and steps.ID.budget_hit.
 bool is_yes_or_no(std::string_view value);

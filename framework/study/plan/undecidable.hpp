@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/plan/study_plan.hpp"
+
+namespace altiplan::study {
+
+/// A sentence for each claim that the selected runs cannot decide, whatever they give.
+std::vector<std::string> undecidable_claims(const StudyPlan& plan);
+}  // namespace altiplan::study
