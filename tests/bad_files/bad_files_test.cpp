@@ -2,6 +2,7 @@
 // Every mistake of expected.tsv in the valid files beside it. A row names the file, the text that
 // is replaced ('*': all of it), what stands there instead, and a problem that must be reported:
 // line:column, key, and how its message starts. Rows without a file add problems to the one above.
+// Files without a mistake that reading alone finds have their world built.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/config/config.hpp"
+#include "host/mission/mission.hpp"
 #include "study/plan/study_plan.hpp"
 #include "support/folders.hpp"
 
@@ -103,7 +105,7 @@ class BadFiles : public testing::Test {
       if (file == "study.yaml") {
         load_study(folder_ / file, {}, overrides_.plugin_path);
       } else {
-        load_config(folder_ / "pipeline.yaml", overrides_);
+        build_mission(load_config(folder_ / "pipeline.yaml", overrides_), 1);
       }
     } catch (const ConfigError& error) {
       return error.problems();

@@ -16,12 +16,11 @@ import xml.etree.ElementTree
 import ground_station
 
 PROGRAM, SOURCES = sys.argv[1:3]
-DATA = os.environ.get("ALTIPLAN_TEST_DATA", os.path.join(SOURCES, "..", "shared", "data"))
-MISSIONS = os.path.join(DATA, "missions")
 SCENARIO = os.path.join(SOURCES, "configs", "scenarios", "jacksboro_ridge.yaml")
 FORMATS = {"qgc-plan": "plan", "waypoints": "waypoints", "kml": "kml", "geojson": "geojson",
            "gpx": "gpx", "csv": "csv"}
 KML = "{http://www.opengis.net/kml/2.2}"
+SPEED = 178  # MAV_CMD_DO_CHANGE_SPEED: slower near obstacles
 GPX = "{http://www.topografix.com/GPX/1/1}"
 
 
@@ -79,10 +78,11 @@ class Export(Flight):
             with self.subTest(altitude):
                 plan = ground_station.plan(self.export("qgc-plan", "--altitude", altitude))
                 items = plan["mission"]["items"]
-                self.assertEqual({item["frame"] for item in items}, {frame})
-                self.assertEqual({item["AltitudeMode"] for item in items}, {mode})
                 self.assertEqual([item["doJumpId"] for item in items],
                                  list(range(1, len(items) + 1)))
+                items = [item for item in items if item["command"] != SPEED]
+                self.assertEqual({item["frame"] for item in items}, {frame})
+                self.assertEqual({item["AltitudeMode"] for item in items}, {mode})
                 home = plan["mission"]["plannedHomePosition"]
                 above = {"sea": 0, "home": home[2]}
                 if altitude in above:
@@ -97,12 +97,15 @@ class Export(Flight):
             rows = ground_station.waypoints(self.export("waypoints", "--altitude", altitude))
             self.assertEqual(rows[0][1:4], [1, 0, 16])  # home
             above = rows[0][10] if altitude == "home" else 0
-            self.hold([(row[9], row[8], row[10] + above) for row in rows[1:]])
+            self.hold([(row[9], row[8], row[10] + above) for row in rows[1:]
+                       if row[3] != SPEED])
 
     def test_commands(self):
         plan = ground_station.plan(self.export("qgc-plan", "--takeoff", "--land"))
         commands = [item["command"] for item in plan["mission"]["items"]]
-        self.assertEqual(commands, [22] + [16] * (len(self.route) - 1) + [21])
+        self.assertIn(SPEED, commands)
+        self.assertEqual([c for c in commands if c != SPEED],
+                         [22] + [16] * (len(self.route) - 1) + [21])
         rows = ground_station.waypoints(self.export("waypoints", "--takeoff", "--land"))
         self.assertEqual([row[3] for row in rows[1:]], commands)
 
@@ -366,34 +369,6 @@ class Turns(unittest.TestCase):
         for leg in (1, 2):
             self.assertNotIn(f"waypoint {leg}, turn_radius", out)
         self.assertNotIn("climb", out)
-
-
-@unittest.skipUnless(os.path.isdir(MISSIONS), "no test data: set ALTIPLAN_TEST_DATA")
-class OfOthers(unittest.TestCase):
-    """ground_station.py accepts and rejects files of other programs correctly."""
-
-    def test_valid(self):
-        plans = 0
-        for name in sorted(os.listdir(MISSIONS)):
-            if name.endswith(".plan") and not any(
-                    word in name for word in ("wrong_", "without_mission")):
-                ground_station.plan(text_of(os.path.join(MISSIONS, name)))
-                plans += 1
-            elif name.endswith(".waypoints"):
-                ground_station.waypoints(text_of(os.path.join(MISSIONS, name)))
-        self.assertEqual(plans, 6)
-
-    def test_invalid(self):
-        for name in ("qgroundcontrol_sample_without_mission.plan",
-                     "qgroundcontrol_sample_wrong_mission_version.plan",
-                     "qgroundcontrol_sample_wrong_overall_version.plan",
-                     "qgc_OldFileFormat.mission"):
-            with self.assertRaises(ground_station.Wrong, msg=name):
-                ground_station.plan(text_of(os.path.join(MISSIONS, name)))
-        for name in ("mavproxy_springvalley-foamy-fence.txt",
-                     "mavproxy_springvalley-foamy-rally.txt"):
-            with self.assertRaises(ground_station.Wrong, msg=name):
-                ground_station.waypoints(text_of(os.path.join(MISSIONS, name)))
 
 
 if __name__ == "__main__":

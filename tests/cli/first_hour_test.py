@@ -108,14 +108,6 @@ class FirstHour(unittest.TestCase):
             said = self.call("run", "p.yaml", code=1)
             self.assertIn(f"steps.0.within_s is {within_s:g} s", said)
 
-    def test_nearest_words(self):
-        self.assertIn("unknown command 'rnu'; did you mean 'run'?", self.call("rnu", "p.yaml", code=2))
-        self.assertIn("unknown option '--sede'; did you mean '--seed'?",
-                      self.call("run", "p.yaml", "--sede", "3", code=2))
-        (self.folder / "r.json").write_text("{}")
-        self.assertIn("found 'qgc'; did you mean 'qgc-plan'?",
-                      self.call("export", "r.json", "--to", "qgc", code=2))
-
     def test_files_in_a_folder_that_does_not_exist(self):
         (self.folder / "routes").mkdir()
         said = self.run_with(0)

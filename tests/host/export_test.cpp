@@ -286,7 +286,8 @@ TEST(Export, SaysWhatTheWorldLacks) {
   EXPECT_THROW(exported(nowhere, options_of(Format::kml)), Error);
   const Exported csv = exported(nowhere, options_of(std::nullopt, AltitudeFrame::home));
   ASSERT_TRUE(csv.text.has_value());
-  EXPECT_TRUE(csv.text->starts_with("x_m,y_m,z_m,altitude_m,altitude_frame\n50,50,300,180,home\n"));
+  EXPECT_TRUE(csv.text->starts_with(
+      "time_s,x_m,y_m,z_m,altitude_m,altitude_frame\n0,50,50,300,180,home\n"));
   Scene groundless(kAround, true, nullptr);
   groundless.mission.truth = groundless.mission.truth.without("ground");
   EXPECT_THROW(exported(groundless, options_of(Format::kml, AltitudeFrame::ground)), Error);

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/sha256.hpp"
@@ -70,7 +71,23 @@ void print(const PlanReport& report, const host::Mission& world) {
   }
 }
 
-Json to_json(const PlanReport& report, const host::Mission& world) {
+/// When the vehicle is expected at each waypoint of the route, seconds from take-off.
+std::vector<double> arrivals_of(const PlanCheck& plan, const kit::MissionFile& mission,
+                                const PlanReport& report) {
+  const std::vector<double> times = flown_times(plan, mission);
+  std::vector<double> arrivals;
+  std::size_t n = 0;
+  for (const kit::MissionItem& item : report.imported.items) {
+    while (n < times.size() && mission.items[n].place != item.place) {
+      ++n;
+    }
+    arrivals.push_back(n < times.size() ? times[n] : kInfinity);
+  }
+  return arrivals;
+}
+
+Json to_json(const PlanReport& report, const host::Mission& world,
+             const std::vector<double>& arrivals) {
   Json all = Json::array();
   for (const Finding& finding : report.findings) {
     const Violation& violation = finding.violation;
@@ -91,9 +108,15 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
     }
     all.push_back(std::move(one));
   }
+  Json times = Json::array();
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const bool ends = std::isfinite(arrivals[i]);
+    times.push_back({{"item", report.name_of(i)}, {"time_s", ends ? Json(arrivals[i]) : Json()}});
+  }
   return Json{{"plan", report.file},
               {"passed", report.passed()},
               {"violations", all},
+              {"arrivals", times},
               {"metrics", host::to_json(report.measures)},
               {"notes", report.notes}};
 }
@@ -130,10 +153,8 @@ host::Basis basis_of(const PlanCheck& plan, const kit::MissionFile& mission) {
   basis.emplace_back("hours", plan.start_time ? *plan.start_time + " and " +
                                                     duration(flown_s(plan, mission)) + " on"
                                               : "any: zones count at all hours");
-  char now[32];
-  const std::time_t seconds = std::time(nullptr);
-  std::strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&seconds));
-  basis.emplace_back("judged", std::string(now) + " by altiplan " ALTIPLAN_VERSION);
+  basis.emplace_back("judged",
+                     kit::iso_time(double(std::time(nullptr))) + " by altiplan " ALTIPLAN_VERSION);
   return basis;
 }
 
@@ -276,13 +297,16 @@ int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
   if (const std::string words = left_out(plan); !words.empty()) {
     report.notes.insert(report.notes.begin(), words);
   }
+  const std::vector<double> arrivals = arrivals_of(plan, mission, report);
   if (plan.certificate) {
-    host::write_file(*plan.certificate, certificate(report, world, basis_of(plan, mission)));
+    host::write_file(*plan.certificate,
+                     certificate(report, world, basis_of(plan, mission), arrivals));
   }
   if (plan.junit) {
     host::write_file(*plan.junit, junit(report));
   }
-  plan.json ? void(std::cout << host::file_text(to_json(report, world))) : print(report, world);
+  plan.json ? void(std::cout << host::file_text(to_json(report, world, arrivals)))
+            : print(report, world);
   if (plan.fixed) {
     fix(plan, report, text, mission, world);
   }

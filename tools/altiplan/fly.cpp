@@ -43,6 +43,19 @@ std::vector<Vec3> places_of(const host::MissionText& text, const LoadedRoute& lo
   return places;
 }
 
+/// That of each item that the vehicle holds: a command before it flies to the same place.
+std::vector<Vec3> by_number(const host::Plan& plan, const std::vector<Vec3>& places) {
+  std::vector<Vec3> numbered;
+  std::size_t place = 0;
+  for (const host::PlanItem& item : plan.items) {
+    if (place < places.size()) {
+      numbered.push_back(places[place]);
+      place += item.command == host::Command::kChangeSpeed ? 0 : 1;
+    }
+  }
+  return numbered;
+}
+
 /// The pipeline with a flight at its end.
 host::Config with_flight(host::Config config) {
   if (config.steps.back().verb != host::Verb::fly) {
@@ -95,16 +108,17 @@ host::RunResult flown(const host::Config& config, const std::vector<Vec3>& place
 }
 
 int fly(const Arguments& arguments, const LoadedRoute& loaded, const host::Exported& written,
-        Connection& connection) {
+        const host::Plan& plan, Connection& connection) {
   const host::Config config = with_flight(loaded.config);
+  const std::vector<Vec3> places = places_of(written.mission, loaded);
   link::LinkedFlight flight;
-  flight.items = places_of(written.mission, loaded);
+  flight.items = by_number(plan, places);
   flight.arm = arguments.arm;
   flight.command = arguments.command;
   flight.say = [](const std::string& message) { std::cerr << "altiplan: " + message + "\n"; };
   link::LinkedVehicle vehicle(connection.link, connection.vehicle, loaded.mission.known, flight,
                               connection.stop);
-  host::RunResult result = flown(config, flight.items, vehicle, connection.stop);
+  host::RunResult result = flown(config, places, vehicle, connection.stop);
   if (result.flight) {
     result.flight->link = arguments.link.address;
     print_flight(stdout, *result.flight, false);
@@ -139,7 +153,7 @@ int fly_result(const Arguments& arguments) {
   }
   return connected(arguments.link, [&](Connection& connection) {
     return upload_plan(connection, plan, !arguments.no_fence)
-               ? fly(arguments, *source, *written, connection)
+               ? fly(arguments, *source, *written, plan, connection)
                : kNoRoute;
   });
 }

@@ -88,6 +88,10 @@ std::string world_text(const PlanCheck& plan, const kit::MissionFile& mission) {
 }
 }  // namespace
 
+std::vector<double> flown_times(const PlanCheck& plan, const kit::MissionFile& mission) {
+  return host::item_times(mission, plan.speed_mps.value_or(kSpeed));
+}
+
 double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
   return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
 }

@@ -16,6 +16,8 @@ host::Config world_of(const PlanCheck& plan, const kit::MissionFile& mission,
 /// A message about a file of that scenario, without its place in text that nobody has written.
 std::string about_file(const std::string& message);
 
+/// Seconds from take-off to the end of each item, at the mission's own speed, else the given one.
+std::vector<double> flown_times(const PlanCheck& plan, const kit::MissionFile& mission);
 /// Seconds in which the mission is flown, for zones with hours.
 double flown_s(const PlanCheck& plan, const kit::MissionFile& mission);
 }  // namespace altiplan::cli

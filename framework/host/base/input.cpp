@@ -9,7 +9,7 @@ namespace altiplan::host {
 std::string file_problem(const std::filesystem::path& file) {
   std::error_code error;  // why_unreadable reports it
   if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) {
-    return "file not found: '" + file.string() + "'";
+    return "file not found: '" + file.string() + "'" + kit::nearest_beside(file.string(), false);
   }
   const std::string why = kit::why_unreadable(file.string());
   if (why.empty()) {

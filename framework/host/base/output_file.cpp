@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/utf8.hpp"
 
 namespace altiplan::host {
@@ -47,20 +48,6 @@ bool is_of_the_kernel(const fs::path& folder) {
 
 fs::path folder_of(const fs::path& place) {
   return place.has_parent_path() ? place.parent_path() : fs::path(".");
-}
-
-/// "; did you mean 'routes'?" of the folders beside one that does not exist.
-std::string nearest_beside(const fs::path& missing) {
-  std::vector<std::string> names;
-  std::error_code unlisted;
-  for (const auto& entry : fs::directory_iterator(folder_of(missing), unlisted)) {
-    std::error_code unknown;
-    if (entry.is_directory(unknown)) {
-      names.push_back(entry.path().filename().string());
-    }
-  }
-  const std::string near = nearest_name(missing.filename().string(), names);
-  return near.empty() ? "" : "; did you mean '" + printable(near) + "'?";
 }
 }  // namespace
 
@@ -101,7 +88,7 @@ std::string output_problem(const fs::path& place) {
   if (::stat(folder.c_str(), &found) != 0) {
     const int reason = errno;
     return "cannot write into the folder '" + folder.string() + "': " + std::strerror(reason) +
-           (reason == ENOENT ? nearest_beside(folder) : "");
+           (reason == ENOENT ? kit::nearest_beside(folder.string(), true) : "");
   }
   if (!S_ISDIR(found.st_mode)) {
     return "cannot write into the folder '" + folder.string() + "': " + std::strerror(ENOTDIR);

@@ -194,7 +194,22 @@ void BodyEntry::describe(Fields& f) {
   f.check(yaw == Yaw::fixed || !fixed_deg, "expected yaw: fixed with fixed_deg");
 }
 
+VehicleType VehicleEntry::flown_as() const {
+  if (type != VehicleType::by_wing) {
+    return type;
+  }
+  return wing ? VehicleType::plane : VehicleType::copter;
+}
+
 void VehicleEntry::describe(Fields& f) {
+  f("type", type,
+    {{"by_wing", VehicleType::by_wing},
+     {"copter", VehicleType::copter},
+     {"plane", VehicleType::plane},
+     {"vtol", VehicleType::vtol}})
+      .doc(
+          "how it takes off and lands in exported missions; by_wing: plane with a wing, else "
+          "copter");
   f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the vehicle's safety sphere");
   f("speed_mps", speed_mps).unit("m/s").greater_than(0).doc("speed away from obstacles");
   f("sensing_m", sensing_m)
@@ -208,6 +223,7 @@ void VehicleEntry::describe(Fields& f) {
   f("body", body).doc("a body instead of the sphere: it is checked in its attitude along all legs");
   f.check(!body || radius_m == 0, "expected radius_m or body, not both");
   f("wing", wing).doc("an aeroplane: it turns by banking at a constant airspeed");
+  f.check(!wing || type != VehicleType::copter, "a copter has no wing: expected plane or vtol");
   f.check(!wing || !turns_on_the_spot, "an aeroplane cannot turn on the spot");
   f.check(!wing || speed_near.empty(), "an aeroplane has one airspeed: remove speed_near");
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");

@@ -130,7 +130,11 @@ struct BodyEntry {
   void describe(Fields& f);
 };
 
+/// What an autopilot flies, which says how it takes off and lands.
+enum class VehicleType { by_wing, copter, plane, vtol };
+
 struct VehicleEntry {
+  VehicleType type = VehicleType::by_wing;
   double radius_m = 0;
   double speed_mps = 15;
   std::optional<double> sensing_m;
@@ -139,6 +143,8 @@ struct VehicleEntry {
   std::optional<WingEntry> wing;
   std::optional<BodyEntry> body;
   void describe(Fields& f);
+  /// The given type; else plane with a wing, copter without.
+  VehicleType flown_as() const;
 };
 
 struct FrameEntry {

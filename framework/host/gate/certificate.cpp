@@ -62,11 +62,19 @@ std::string violations(const PlanReport& report, const Request& request) {
   return html + "</table>\n";
 }
 
-std::string legs(const PlanReport& report, const Request& request) {
+std::string minutes(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%d:%02d", int(std::lround(seconds)) / 60,
+                int(std::lround(seconds)) % 60);
+  return std::isfinite(seconds) ? text : "–";
+}
+
+std::string legs(const PlanReport& report, const Request& request,
+                 const std::vector<double>& arrivals) {
   const Route& route = report.imported.route;
   std::string html = "<h2>Legs</h2>\n<table>\n" +
                      row({"from", "to", "which is at", "length, m", "lowest above ground, m",
-                          "highest above ground, m", "verdict"},
+                          "highest above ground, m", "time, min", "verdict"},
                          "th");
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const auto [lowest, highest] = leg_heights(route.leg(i), *request.world);
@@ -74,9 +82,11 @@ std::string legs(const PlanReport& report, const Request& request) {
         std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
           return finding.items.size() == 2 && finding.violation.at == i;
         });
-    html += row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)),
-                 place_in_words(route[i + 1], request), metres(route.leg(i).length()),
-                 metres(lowest), metres(highest), fails ? "fails" : "valid"});
+    html +=
+        row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)),
+             place_in_words(route[i + 1], request), metres(route.leg(i).length()), metres(lowest),
+             metres(highest), i + 1 < arrivals.size() ? minutes(arrivals[i + 1]) : "",
+             fails ? "fails" : "valid"});
   }
   for (const Passage& passage : report.passages) {
     const bool fails =
@@ -87,7 +97,7 @@ std::string legs(const PlanReport& report, const Request& request) {
     const Vec3& end = passage.is_climb ? passage.top : passage.foot;
     html += row({passage.is_climb ? "the ground" : "above", xml_text(passage.item),
                  place_in_words(end, request), metres((passage.top - passage.foot).norm()), "", "",
-                 fails ? "fails" : "valid"});
+                 "", fails ? "fails" : "valid"});
   }
   return html + "</table>\n";
 }
@@ -128,7 +138,8 @@ std::string place_in_words(const Vec3& p, const Request& request) {
   return in_degrees(lat, 'N', 'S') + ", " + in_degrees(lon, 'E', 'W') + ", " + height;
 }
 
-std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis) {
+std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis,
+                        const std::vector<double>& arrivals) {
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
   const std::string verdict = report.passed() ? "pass" : "fail";
@@ -146,7 +157,7 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
   html += "</table>\n" + violations(report, request);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);
-  return html + legs(report, request) + list(report.notes) + "</body>\n</html>\n";
+  return html + legs(report, request, arrivals) + list(report.notes) + "</body>\n</html>\n";
 }
 
 std::string junit(const PlanReport& report) {

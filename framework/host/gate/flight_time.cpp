@@ -9,7 +9,7 @@ namespace altiplan::host {
 
 using kit::MissionItem;
 
-double flight_time(const kit::MissionFile& plan, double speed_mps) {
+std::vector<double> item_times(const kit::MissionFile& plan, double speed_mps) {
   constexpr double kVertical = 1;  // m/s
   constexpr double kMetresPerDegree = 111195;
   const double home = plan.home ? plan.home->altitude_m : 0;
@@ -18,6 +18,7 @@ double flight_time(const kit::MissionFile& plan, double speed_mps) {
            : item.at.frame == kit::AltitudeFrame::sea ? item.at.altitude_m - home
                                                       : item.at.altitude_m;
   };
+  std::vector<double> times;
   double seconds = 0;
   if (!plan.items.empty() && plan.items.front().kind == MissionItem::Kind::takeoff) {
     seconds += std::abs(height(plan.items.front())) / kVertical;
@@ -33,7 +34,13 @@ double flight_time(const kit::MissionFile& plan, double speed_mps) {
     seconds += std::hypot(north, east) / speed +
                std::abs(height(item) - height(before)) / kVertical + item.hold_s;
     seconds += 2 * kPi * item.loiter_m * (item.turns + 1) / speed;
+    times.push_back(seconds);
   }
-  return seconds;
+  return times;
+}
+
+double flight_time(const kit::MissionFile& plan, double speed_mps) {
+  const std::vector<double> times = item_times(plan, speed_mps);
+  return times.empty() ? 0 : times.back();
 }
 }  // namespace altiplan::host

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "altiplan/kit/formats/mission_file.hpp"
+#include "host/config/scenario_file.hpp"
 
 namespace altiplan::host {
 
@@ -17,8 +20,12 @@ struct Decimals {
 struct MissionText {
   kit::MissionFile mission;  ///< its format is the one to write; all items have one altitude frame
   double speed_mps = 15;
-  bool is_wing = false;  ///< the vehicle: an aeroplane, else a multirotor
+  VehicleType vehicle = VehicleType::copter;
+  double climb_deg = 10;  ///< of an aeroplane's take-off
   Decimals decimals;
+  /// Expected time at each item, seconds since the route's start; empty: unknown.
+  std::vector<double> times_s;
+  std::optional<double> start_time_s;  ///< of the route, since 1970-01-01 UTC
 };
 
 // Each writes one format; what it cannot hold is left out, and reported by the caller.

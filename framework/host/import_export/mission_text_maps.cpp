@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "host/import_export/mission_text.hpp"
 
 namespace altiplan::host {
@@ -144,6 +145,17 @@ Json zone_json(const MissionZone& zone, const Decimals& decimals) {
 }
 }  // namespace
 
+namespace {
+
+/// When the route is at its n-th item, UTC; "" where no start time is given.
+std::string iso_time(const MissionText& text, std::size_t n) {
+  if (!text.start_time_s || n >= text.times_s.size()) {
+    return "";
+  }
+  return kit::iso_time(*text.start_time_s + text.times_s[n]);
+}
+}  // namespace
+
 std::string kml_text(const MissionText& text) { return KmlWriter(text).text(); }
 
 std::string gpx_text(const MissionText& text) {
@@ -154,10 +166,13 @@ std::string gpx_text(const MissionText& text) {
       "xmlns=\"http://www.topografix.com/GPX/1/1\">\n<rte>\n  <name>" +
       escaped(text.mission.name) +
       "</name>\n  <desc>ele is in metres above mean sea level</desc>\n";
-  for (const MissionItem& item : text.mission.items) {
+  for (std::size_t n = 0; n < text.mission.items.size(); ++n) {
+    const MissionItem& item = text.mission.items[n];
+    const std::string time = iso_time(text, n);
     out += "  <rtept lat=\"" + rounded_text(item.at.lat, decimals.degrees) + "\" lon=\"" +
            rounded_text(item.at.lon, decimals.degrees) + "\"><ele>" +
-           rounded_text(item.at.altitude_m, decimals.metres) + "</ele></rtept>\n";
+           rounded_text(item.at.altitude_m, decimals.metres) + "</ele>" +
+           (time.empty() ? "" : "<time>" + time + "</time>") + "</rtept>\n";
   }
   return out + "</rte>\n</gpx>\n";
 }
@@ -175,6 +190,14 @@ std::string geojson_text(const MissionText& text) {
                   {"role", "route"},
                   {"altitude_frame", name(frame)},
                   {"altitudes", std::string("metres ") + words_of(frame)}};
+  Json times = Json::array();
+  for (const double time_s : text.times_s) {
+    times.push_back(rounded(time_s, 3));
+  }
+  properties["times_s"] = times;
+  if (const std::string time = iso_time(text, 0); !time.empty()) {
+    properties["start_time"] = time;
+  }
   if (frame == AltitudeFrame::home) {
     const MissionPoint& home = mission.home.value();
     properties["home"] = {rounded(home.lon, decimals.degrees), rounded(home.lat, decimals.degrees),

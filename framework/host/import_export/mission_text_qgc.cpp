@@ -25,15 +25,16 @@ Json item_json(const PlanItem& item, std::size_t number) {
   for (const double value : item.params) {
     params.push_back(std::isnan(value) ? Json() : Json(value));
   }
-  return {{"type", "SimpleItem"},
-          {"autoContinue", item.continues},
-          {"command", item.command},
-          {"doJumpId", number},
-          {"frame", item.frame},
-          {"AMSLAltAboveTerrain", nullptr},
-          {"Altitude", item.params[6]},
-          {"AltitudeMode", altitude_mode(item.frame)},
-          {"params", params}};
+  Json json{{"type", "SimpleItem"},    {"autoContinue", item.continues},
+            {"command", item.command}, {"doJumpId", number},
+            {"frame", item.frame},     {"params", params}};
+  constexpr int kWithoutPlace = 2;  // MAV_FRAME_MISSION
+  if (item.frame != kWithoutPlace) {
+    json["AMSLAltAboveTerrain"] = nullptr;
+    json["Altitude"] = item.params[6];
+    json["AltitudeMode"] = altitude_mode(item.frame);
+  }
+  return json;
 }
 
 Json lat_lon(const PlanItem& item) { return {item.params[4], item.params[5]}; }

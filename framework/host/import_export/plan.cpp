@@ -11,13 +11,14 @@ namespace {
 using kit::MissionItem;
 using kit::MissionZone;
 
-int command_of(const MissionItem& item) {
+int command_of(const MissionItem& item, VehicleType vehicle) {
   using Until = kit::MissionCircle::Until;
+  const bool is_vtol = vehicle == VehicleType::vtol;
   switch (item.kind) {
     case MissionItem::Kind::takeoff:
-      return Command::kTakeoff;
+      return is_vtol ? Command::kVtolTakeoff : Command::kTakeoff;
     case MissionItem::Kind::land:
-      return Command::kLand;
+      return is_vtol ? Command::kVtolLand : Command::kLand;
     case MissionItem::Kind::loiter:
       return !item.circle || item.circle->until == Until::forever ? Command::kLoiterForever
              : item.circle->until == Until::turns                 ? Command::kLoiterTurns
@@ -42,13 +43,16 @@ double radius_of(const kit::MissionCircle& circle, int decimals) {
 
 /// The first four parameters. Circles are left when heading for the next item, toward it from that
 /// place ("xtrack" 1).
-std::array<double, 4> params_of(const MissionItem& item, int decimals) {
+std::array<double, 4> params_of(const MissionItem& item, const MissionText& text) {
   using Until = kit::MissionCircle::Until;
   const double unset = std::nan("");
+  if (item.kind == MissionItem::Kind::takeoff && text.vehicle == VehicleType::plane) {
+    return {text.climb_deg, 0, 0, unset};  // pitch
+  }
   if (!item.circle) {
     return {0, 0, 0, unset};  // hold time, acceptance radius, pass-by distance, heading
   }
-  const double radius = radius_of(*item.circle, decimals);
+  const double radius = radius_of(*item.circle, text.decimals.metres);
   switch (item.circle->until) {
     case Until::turns:
       return {item.circle->turns, 1, radius, 1};
@@ -60,9 +64,19 @@ std::array<double, 4> params_of(const MissionItem& item, int decimals) {
   return {0, 0, radius, unset};
 }
 
-PlanItem item_of(const MissionItem& item, const Decimals& decimals) {
-  PlanItem result{command_of(item), frame_of(item.at.frame)};
-  const std::array<double, 4> params = params_of(item, decimals.metres);
+PlanItem speed_item(double speed_mps, int decimals) {
+  constexpr int kMissionFrame = 2;  // MAV_FRAME_MISSION: without a place
+  constexpr double kOverGround = 1;
+  constexpr double kSameThrottle = -1;
+  return {Command::kChangeSpeed,
+          kMissionFrame,
+          {kOverGround, rounded(speed_mps, decimals), kSameThrottle}};
+}
+
+PlanItem item_of(const MissionItem& item, const MissionText& text) {
+  const Decimals& decimals = text.decimals;
+  PlanItem result{command_of(item, text.vehicle), frame_of(item.at.frame)};
+  const std::array<double, 4> params = params_of(item, text);
   for (std::size_t n = 0; n < params.size(); ++n) {
     result.params[n] = std::isnan(params[n]) ? params[n] : rounded(params[n], decimals.metres);
   }
@@ -108,13 +122,21 @@ std::vector<PlanItem> fence_of(const std::vector<MissionZone>& zones, const Deci
 Plan plan_of(const MissionText& text) {
   constexpr int kFixedWing = 1;
   constexpr int kQuadrotor = 2;
+  constexpr int kVtol = 20;  // as QGroundControl calls any of them
   Plan plan;
-  plan.vehicle = text.is_wing ? kFixedWing : kQuadrotor;
+  plan.vehicle = text.vehicle == VehicleType::plane  ? kFixedWing
+                 : text.vehicle == VehicleType::vtol ? kVtol
+                                                     : kQuadrotor;
   plan.speed_mps = text.speed_mps;
   plan.decimals = text.decimals;
   plan.home = text.mission.home;
+  double speed_mps = text.speed_mps;
   for (const MissionItem& item : text.mission.items) {
-    plan.items.push_back(item_of(item, text.decimals));
+    if (item.speed_mps > 0 && item.speed_mps != speed_mps) {
+      speed_mps = item.speed_mps;
+      plan.items.push_back(speed_item(speed_mps, text.decimals.metres));
+    }
+    plan.items.push_back(item_of(item, text));
   }
   plan.fence = fence_of(text.mission.zones, text.decimals);
   return plan;

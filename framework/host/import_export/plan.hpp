@@ -18,6 +18,9 @@ struct Command {
   static constexpr int kLand = 21;
   static constexpr int kTakeoff = 22;
   static constexpr int kLoiterToAltitude = 31;
+  static constexpr int kVtolTakeoff = 84;
+  static constexpr int kVtolLand = 85;
+  static constexpr int kChangeSpeed = 178;      ///< parameters 1: 1, over the ground; 2: m/s
   static constexpr int kFencePolygonIn = 5001;  ///< a corner; parameter 1: number of corners
   static constexpr int kFencePolygonOut = 5002;
   static constexpr int kFenceCircleIn = 5003;  ///< parameter 1: radius
@@ -46,6 +49,7 @@ struct Plan {
   Decimals decimals;  ///< of its texts
 };
 
+/// The items; before one with a speed of its own stands the command for that speed.
 Plan plan_of(const MissionText& mission);
 
 /// QGroundControl's `.plan`.

@@ -99,4 +99,24 @@ Polyline read_route_csv(const std::string& file, const std::string& text) {
   }
   return route;
 }
+
+std::string route_csv_text(const std::vector<CsvRow>& rows, bool has_position,
+                           const Decimals& decimals) {
+  constexpr int kMilliseconds = 3;
+  std::string out = std::string("time_s,x_m,y_m,z_m") +
+                    (has_position ? ",longitude_deg,latitude_deg" : "") +
+                    ",altitude_m,altitude_frame\n";
+  for (const auto& [time_s, local, at] : rows) {
+    out += rounded_text(time_s, kMilliseconds);
+    for (const double metres : local) {
+      out += "," + rounded_text(metres, decimals.metres);
+    }
+    if (has_position) {
+      out += "," + rounded_text(at.lon, decimals.degrees) + "," +
+             rounded_text(at.lat, decimals.degrees);
+    }
+    out += "," + rounded_text(at.altitude_m, decimals.metres) + "," + name(at.frame) + "\n";
+  }
+  return out;
+}
 }  // namespace altiplan::host

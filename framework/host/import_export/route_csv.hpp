@@ -4,10 +4,21 @@
 #include <string>
 
 #include "altiplan/route.hpp"
+#include "host/import_export/mission_text.hpp"
 
 namespace altiplan::host {
 
 /// Reads the columns x_m, y_m and z_m of a table whose first line names its columns; ignores
 /// others. Throws Error with file and line.
 Polyline read_route_csv(const std::string& file, const std::string& text);
+
+struct CsvRow {
+  double time_s = 0;
+  Vec3 local{0, 0, 0};
+  kit::MissionPoint at;  ///< its degrees count in a world with a georeference
+};
+
+/// The table of these columns and others; with degrees if `has_position`.
+std::string route_csv_text(const std::vector<CsvRow>& rows, bool has_position,
+                           const Decimals& decimals);
 }  // namespace altiplan::host

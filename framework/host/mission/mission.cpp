@@ -318,6 +318,7 @@ Mission build_mission(const Config& config, int threads, const Calling& told,
   mission.notes = config.notes;
   std::for_each(mission.notes.begin(), mission.notes.end(), on_note);
   mission.site = site_of(config);
+  mission.vehicle_type = file.vehicle.flown_as();
   Site& site = mission.site;
   if (file.frame.origin_lonlat) {
     const auto [lon, lat] = *file.frame.origin_lonlat;

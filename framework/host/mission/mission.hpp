@@ -20,6 +20,7 @@ struct Mission {
   /// The same with those that apply to tracks.
   Request track_request;
   std::vector<Goal> via;
+  VehicleType vehicle_type = VehicleType::copter;
   std::vector<std::string> notes;     ///< notes of the layers
   std::vector<std::string> warnings;  ///< for the user to check
   double setup_time_s = 0;            ///< wall time of building the layers

@@ -7,6 +7,8 @@
 #include <ctime>
 #include <fstream>
 
+#include "altiplan/kit/formats/iso_time.hpp"
+
 namespace altiplan::study {
 namespace {
 
@@ -24,12 +26,7 @@ std::string processor() {
 
 StoredSession this_session() {
   StoredSession session;
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  session.started = text;
+  session.started = kit::iso_time(double(std::time(nullptr)));
   session.version = ALTIPLAN_VERSION;
   utsname system{};
   uname(&system);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <vector>
 
 #include "altiplan/kit/formats/descriptor.hpp"
 
@@ -25,8 +27,8 @@ std::string why_irregular(const struct stat& found) {
   return *what == '\0' ? "" : "is " + std::string(what) + ", expected a file";
 }
 
-std::string why_not_opened(int error) {
-  return error == ENOENT ? "there is no such file"
+std::string why_not_opened(const std::string& file, int error) {
+  return error == ENOENT ? "there is no such file" + nearest_beside(file, false)
                          : std::string("cannot be opened: ") + std::strerror(error);
 }
 
@@ -34,7 +36,7 @@ std::string why_not_opened(int error) {
 Descriptor open_regular(const std::string& file, std::string& why) {
   struct stat found {};
   if (::stat(file.c_str(), &found) != 0) {
-    why = why_not_opened(errno);
+    why = why_not_opened(file, errno);
     return Descriptor(-1);
   }
   // Checked before opening too, as opening a device has side effects.
@@ -43,10 +45,10 @@ Descriptor open_regular(const std::string& file, std::string& why) {
   }
   Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (opened.number() < 0) {
-    why = why_not_opened(errno);
+    why = why_not_opened(file, errno);
     return opened;
   }
-  why = ::fstat(opened.number(), &found) != 0 ? why_not_opened(errno) : why_irregular(found);
+  why = ::fstat(opened.number(), &found) != 0 ? why_not_opened(file, errno) : why_irregular(found);
   return opened;
 }
 
@@ -94,6 +96,24 @@ std::string in_mega(std::uintmax_t bytes) {
                             : std::to_string(bytes >> 20) + " MiB";
 }
 }  // namespace
+
+std::string nearest_beside(const std::string& missing, bool is_folder) {
+  namespace fs = std::filesystem;
+  const fs::path path(missing);
+  std::vector<std::string> names;
+  std::error_code unlisted;
+  for (const auto& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", unlisted)) {
+    std::error_code unknown;
+    if (is_folder ? entry.is_directory(unknown) : entry.is_regular_file(unknown)) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  const std::string near = nearest_name(path.filename().string(), names);
+  const bool is_printable =
+      std::all_of(near.begin(), near.end(), [](unsigned char c) { return c >= ' ' && c < 127; });
+  return near.empty() || !is_printable ? "" : "; did you mean '" + near + "'?";
+}
 
 InputError::~InputError() = default;
 

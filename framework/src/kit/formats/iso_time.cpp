@@ -3,6 +3,8 @@
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
+#include <ctime>
 
 namespace altiplan::kit {
 namespace {
@@ -105,5 +107,14 @@ std::optional<double> parse_iso_time(std::string_view text) {
     return std::nullopt;
   }
   return seconds;
+}
+
+std::string iso_time(double seconds) {
+  const auto time = static_cast<std::time_t>(std::llround(seconds));
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  char text[40];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
 }
 }  // namespace altiplan::kit

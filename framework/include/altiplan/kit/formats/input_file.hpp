@@ -23,9 +23,13 @@ class ALTIPLAN_API InputError : public Error {
   std::string why_;
 };
 
-/// Why a name cannot be read as a file: "there is no such file", "is a folder, expected a file"; ""
-/// for a regular file that may be opened. Never blocks: reading a pipe, a socket or a device may
-/// never end, so these and links to them are refused.
+/// "; did you mean 'b.tif'?" of the files, or folders, beside one that does not exist; "" if none
+/// has a similar name.
+ALTIPLAN_API std::string nearest_beside(const std::string& missing, bool is_folder);
+
+/// Why a name cannot be read as a file: "there is no such file", with the nearest name, "is a
+/// folder, expected a file"; "" for a regular file that may be opened. Never blocks: reading a
+/// pipe, a socket or a device may never end, so these and links to them are refused.
 ALTIPLAN_API std::string why_unreadable(const std::string& file);
 
 /// A regular file as a stream of bytes. Opening it, and reading from it, throws InputError.

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/import_export/export_attempt.hpp"
+
+#include "altiplan/error.hpp"
+#include "host/import_export/export_notes.hpp"
+#include "host/import_export/imported_route.hpp"
+#include "host/import_export/route_csv.hpp"
+#include "host/judge/judge.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using kit::MissionItem;
+using Format = kit::MissionFile::Format;
+
+/// The first suits autopilots, which store degrees to seven decimals (1 cm); the last matches the
+/// judge's tolerance.
+constexpr Decimals kDecimals[] = {{7, 3}, {9, 5}, {13, 8}};
+
+/// Of points that stand for turns: finer where an obstacle or the ground is too near beside them.
+constexpr double kTolerances[] = {kArcTolerance, kArcTolerance / 5, kArcTolerance / 25};
+
+std::vector<MissionItem> items_of(const std::vector<MissionPlace>& places, const Mission& mission,
+                                  const Placing& place, const ExportOptions& options,
+                                  const std::vector<PlaceTiming>& timing) {
+  std::vector<MissionItem> items;
+  for (const auto& [at, circle] : places) {
+    const auto kind = circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
+    items.push_back({kind, place(at), 0, "", circle});
+  }
+  if (options.takeoff) {
+    if (items.front().circle) {
+      throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
+    }
+    items.front().kind = MissionItem::Kind::takeoff;
+  }
+  if (options.land) {
+    const Vec3 down = landing(mission, {places.back().at}, place);
+    items.push_back({MissionItem::Kind::land, place(down), 0, ""});
+  }
+  for (std::size_t n = 0; n < timing.size(); ++n) {
+    items[n].speed_mps = timing[n].speed_mps;
+  }
+  return items;
+}
+
+/// The request without what a turn satisfies and the legs between its points do not: those have
+/// corners, and are a little longer.
+Request beside_turns(Request request) {
+  Limits& limits = request.limits;
+  limits.min_turn_radius = limits.min_leg = 0;
+  limits.max_turn_horizontal = limits.max_turn_space = kPi;
+  limits.max_climb = kPi / 2;
+  limits.max_sink.reset();
+  limits.max_route_length = kInfinity;
+  request.start.velocity = Vec3::Zero();
+  request.goal.heading.reset();
+  return request;
+}
+
+/// The request with the ends of a route that lie on its loiter circles: a file has no tangents.
+Request ending_with(Request request, const Route& route) {
+  if (request.start.loiter && request.start.starts_at(route.front())) {
+    request.start = {0, route.front(), Vec3::Zero(), std::nullopt};
+  }
+  if (request.goal.loiter && request.goal.reached_at(route.back())) {
+    request.goal = {route.back(), 0, std::nullopt, std::nullopt};
+  }
+  return request;
+}
+
+const char* file_name(const std::optional<Format>& format) {
+  if (!format) {
+    return "route.csv";
+  }
+  switch (*format) {
+    case Format::qgc_plan:
+      return "route.plan";
+    case Format::waypoints:
+      return "route.waypoints";
+    case Format::kml:
+      return "route.kml";
+    case Format::gpx:
+      return "route.gpx";
+    case Format::geojson:
+      break;
+  }
+  return "route.geojson";
+}
+}  // namespace
+
+Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
+  Vec3 down = route.back();
+  down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
+  return down;
+}
+
+std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
+                       const Request& request) {
+  CheckResult check;
+  if (source.times.empty()) {
+    check = judge(route, request, mission.via);
+  } else {
+    Track track;
+    for (std::size_t n = 0; n < route.size(); ++n) {
+      track.emplace_back(source.times[n], route[n]);
+    }
+    FlightSetup setup;
+    setup.request = mission.track_request;
+    setup.truth = mission.truth;
+    setup.events = source.events;
+    setup.telemetry = source.telemetry;
+    check = judge_track(track, setup).check;
+  }
+  if (check.ok()) {
+    return "";
+  }
+  const Violation& first = check.violations.front();
+  return "point " + std::to_string(first.at) + ", " + first.constraint + ": " + first.message;
+}
+
+namespace {
+
+WrittenRoute places_of(const Mission& mission, const Route& route, const ExportOptions& options,
+                       double tolerance) {
+  return written_route(route, {options.loiters, tolerance}, mission.via, mission.request);
+}
+
+/// Of a flight, its own times; its speeds are what the vehicle made of them.
+std::vector<PlaceTiming> timing_of(const WrittenRoute& written, const Mission& mission,
+                                   const ExportSource& source) {
+  std::vector<PlaceTiming> timing;
+  for (const double time_s : source.times) {
+    timing.push_back({time_s});
+  }
+  return timing.empty() ? timing_of(written.places, mission) : timing;
+}
+
+std::size_t item_count(const WrittenRoute& written, const std::vector<PlaceTiming>& timing,
+                       const Mission& mission, const ExportOptions& options) {
+  return written.places.size() + speed_changes(timing, mission.request.vehicle.speed_mps) +
+         (options.land ? 1 : 0);
+}
+
+}  // namespace
+
+std::size_t item_count(const ExportSource& source, const Mission& mission,
+                       const ExportOptions& options) {
+  const WrittenRoute written = places_of(mission, source.route, options, kArcTolerance);
+  return item_count(written, timing_of(written, mission, source), mission, options);
+}
+
+namespace {
+
+/// The route as text, in the ways that may be tried.
+struct Attempt {
+  const Mission& mission;
+  const ExportSource& source;
+  const Placing& place;
+  const ExportOptions& options;
+  MissionText text;  ///< without items
+  WrittenRoute written;
+  std::vector<PlaceTiming> timing;  ///< one per place of that
+  std::string problem;              ///< of the last one; "" before the first
+
+  /// Writes with as few decimals as make the route, read back, satisfy the request.
+  std::optional<std::string> with_decimals(const Request& request, bool without_tangents,
+                                           Decimals& decimals) {
+    for (const Decimals& each : kDecimals) {
+      decimals = text.decimals = each;
+      const std::string now = as_text();
+      const ImportedRoute read =
+          read_imported_route(file_name(options.format), now, mission.truth, mission.request);
+      const std::string problem_now =
+          problem_of(mission, source, read.route,
+                     without_tangents ? ending_with(request, read.route) : request);
+      if (problem_now.empty()) {
+        return now;
+      }
+      problem = problem_now;
+    }
+    return std::nullopt;
+  }
+
+  std::string as_text() {
+    if (!options.format) {
+      return route_csv_text(csv_rows(), mission.truth.frame().has_position(), text.decimals);
+    }
+    text.mission.items = items_of(written.places, mission, place, options, timing);
+    return mission_text(text);
+  }
+
+  std::vector<CsvRow> csv_rows() const {
+    std::vector<CsvRow> rows;
+    for (std::size_t n = 0; n < timing.size(); ++n) {
+      const Vec3& at = written.places[n].at;
+      rows.push_back({timing[n].time_s, at, place(at)});
+    }
+    return rows;
+  }
+
+  Exported exported(std::string now, const Decimals& decimals) const {
+    const std::size_t points = written.places.size() - written.loiters;
+    Exported result;
+    result.messages.push_back(
+        std::to_string(points) + " points" +
+        (written.loiters > 0 ? " and " + counted(written.loiters, "loiter") : "") +
+        (options.land ? " and a landing" : "") + ", " + place.in_words() +
+        "; read back and judged: valid with " + std::to_string(decimals.degrees) +
+        " decimals of a degree and " + std::to_string(decimals.metres) + " of a metre" +
+        (problem.empty() ? "" : " (with fewer: " + problem + ")"));
+    result.text = std::move(now);
+    result.mission = text;
+    return result;
+  }
+};
+
+}  // namespace
+
+Exported written_soundly(const Mission& mission, const ExportSource& source, const Placing& place,
+                         const ExportOptions& options, MissionText text) {
+  Attempt attempt{mission, source, place, options, std::move(text), {}, {}, ""};
+  Decimals decimals;
+  for (const double tolerance : kTolerances) {
+    attempt.written = places_of(mission, source.route, options, tolerance);
+    const WrittenRoute& written = attempt.written;
+    attempt.timing = timing_of(written, mission, source);
+    if (options.max_items &&
+        item_count(written, attempt.timing, mission, options) > *options.max_items) {
+      break;
+    }
+    attempt.text.times_s.clear();
+    for (const PlaceTiming& each : attempt.timing) {
+      attempt.text.times_s.push_back(each.time_s);
+    }
+    std::optional<std::string> now = attempt.with_decimals(mission.request, false, decimals);
+    const bool as_turns = !now && written.turns > 0;
+    if (!now) {
+      attempt.problem.clear();
+      now = attempt.with_decimals(as_turns ? beside_turns(mission.request) : mission.request, true,
+                                  decimals);
+    }
+    if (now) {
+      Exported result = attempt.exported(std::move(*now), decimals);
+      for (std::string& note :
+           notes_on(written, options, tolerance, as_turns, mission.request.vehicle)) {
+        result.messages.push_back(std::move(note));
+      }
+      return result;
+    }
+    if (written.turns == 0) {
+      break;
+    }
+  }
+  return {std::nullopt,
+          {"not written: rounded to the format's precision, the route is not valid: " +
+           attempt.problem}};
+}
+}  // namespace altiplan::host

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "host/import_export/export.hpp"
+#include "host/import_export/place_timing.hpp"
+#include "host/import_export/placing.hpp"
+#include "host/import_export/written_route.hpp"
+
+namespace altiplan::host {
+
+/// The end point of the landing below the last point.
+Vec3 landing(const Mission& mission, const Route& route, const Placing& place);
+
+/// The first violation of the route as written and read back; "" if it is valid.
+std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
+                       const Request& request);
+
+/// The number of items that the route takes, with the commands that set speeds.
+std::size_t item_count(const ExportSource& source, const Mission& mission,
+                       const ExportOptions& options);
+
+/// Writes the route so that it is valid when read back; returns the text and its messages. `text`
+/// has no items yet.
+Exported written_soundly(const Mission& mission, const ExportSource& source, const Placing& place,
+                         const ExportOptions& options, MissionText text);
+}  // namespace altiplan::host
