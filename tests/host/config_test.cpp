@@ -263,6 +263,7 @@ TEST_F(ConfigTest, TellsWhatAFileIs) {
   EXPECT_EQ(kind_of(parse_yaml("{altiplan: 1, steps: []}", "")), FileKind::pipeline);
   EXPECT_EQ(kind_of(parse_yaml("{altiplan: 1, goal: {}}", "")), FileKind::scenario);
   EXPECT_EQ(kind_of(parse_yaml("{altiplan: 1, scenarios: []}", "")), FileKind::study);
+  EXPECT_EQ(kind_of(parse_yaml("{altiplan: 1, tables: []}", "")), FileKind::paper);
   EXPECT_EQ(load_scenario(folder_ / "s.yaml", overrides_).scenario.goal.point.at[0], 900);
 }
 

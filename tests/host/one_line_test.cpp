@@ -6,6 +6,7 @@
 #include "host/describe/describe.hpp"
 #include "host/describe/schema.hpp"
 #include "study/model/study_file.hpp"
+#include "study/reproduce/paper_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
@@ -48,7 +49,8 @@ struct OneLine : ::testing::TestWithParam<bool> {
 
 TEST_P(OneLine, SchemaAndReference) {
   Registry registry({library()});
-  const Json schema = any_file_schema(choices_of(registry), fields_of<StudyFile>());
+  const Json schema =
+      any_file_schema(choices_of(registry), fields_of<StudyFile>(), fields_of<PaperFile>());
   const Json& properties = schema["definitions"]["planner_one_line"]["properties"];
   ASSERT_TRUE(properties.contains("first_m")) << schema["definitions"];
   ASSERT_EQ(properties.contains("extra_m"), GetParam());

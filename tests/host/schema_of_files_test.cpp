@@ -9,6 +9,7 @@
 #include "host/config/config.hpp"
 #include "host/describe/schema.hpp"
 #include "study/model/study_file.hpp"
+#include "study/reproduce/paper_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 #include "support/support.hpp"
@@ -29,7 +30,7 @@ class SchemaOfFiles : public ::testing::Test {
       GTEST_SKIP() << "no python3-jsonschema to validate with";
     }
     Registry registry({kPlugins});
-    schema_ = any_file_schema(choices_of(registry), fields_of<StudyFile>());
+    schema_ = any_file_schema(choices_of(registry), fields_of<StudyFile>(), fields_of<PaperFile>());
   }
   /// Whether the reader takes the document for a pipeline, or for a scenario.
   bool reads(const Json& document) const {
@@ -82,7 +83,7 @@ void for_each_node(const Json& node, const Pointer& at,
 
 TEST_F(SchemaOfFiles, EveryFileOfConfigsFits) {
   std::vector<std::pair<bool, Json>> cases;
-  for (const char* folder : {"pipelines", "scenarios"}) {
+  for (const char* folder : {"pipelines", "scenarios", "studies", "papers"}) {
     for (const auto& entry : fs::directory_iterator(configs() / folder)) {
       cases.emplace_back(true, yaml_as_json(entry.path()));
     }

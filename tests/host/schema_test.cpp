@@ -5,6 +5,7 @@
 
 #include "host/describe/describe.hpp"
 #include "study/model/study_file.hpp"
+#include "study/reproduce/paper_file.hpp"
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
@@ -131,19 +132,27 @@ TEST_F(SchemaTest, Scenario) {
       "");
 }
 
-TEST_F(SchemaTest, StudyAndTheThreeTogether) {
+TEST_F(SchemaTest, StudyPaperAndAllTogether) {
   const std::string study =
       R"json({"altiplan": 1, "scenarios": [{"file": "s.yaml", "set": {"a.b": "0..9"}}],
           "pipelines": [{"id": "p", "file": "p.yaml"}], "claims":
           [{"id": "c", "that": "share(p.solved)", "is": ">= 0.9"}]
 })json";
   const std::string no_pipelines = R"({"altiplan": 1, "scenarios": [{"file": "s.yaml"}]})";
+  const auto paper = [](const std::string& figure) {
+    return R"json({"altiplan": 1, "runs": [{"id": "r", "study": "s.yaml", "cpu_ms": {"p": 1}}],
+        "tables": [{"heading": "h", "runs": "r", "columns": [{"name": "n", "of": "mean(ROW.x)"}],
+                    "rows": [{"id": "p", "what": "w", "documentation": [)json" +
+           figure + "]}]}]}";
+  };
   EXPECT_EQ(check(study_schema(fields_of<StudyFile>()), {{true, study}, {false, no_pipelines}}),
             "");
   EXPECT_EQ(
-      check(any_file_schema(made_up, fields_of<StudyFile>()),
+      check(any_file_schema(made_up, fields_of<StudyFile>(), fields_of<PaperFile>()),
             {{true, study},
              {false, no_pipelines},
+             {true, paper("4.5, \"1,231\", \"54/100\"")},
+             {false, paper("true")},
              {true, R"({"altiplan": 1, "steps": [{"plan": "astar"}]})"},
              {false, R"({"altiplan": 1, "steps": [{"plan": "none"}]})"},
              {true, R"({"altiplan": 1, "start": {"at_m": [0, 0]}, "goal": {"at_m": [1, 1]}})"},
@@ -156,7 +165,7 @@ TEST_F(SchemaTest, OfThePluginsOfThisBuild) {
                      altiplan::folders::build() / "tests/broken_plugins"});
   const Choices choices = choices_of(registry);
   EXPECT_EQ(
-      check(any_file_schema(choices, fields_of<StudyFile>()),
+      check(any_file_schema(choices, fields_of<StudyFile>(), fields_of<PaperFile>()),
             {{true, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"min_m": 2}}]})"},
              {false, R"({"altiplan": 1, "steps": [{"plan": "alpha", "with": {"min_m": 0}}]})"}}),
       "")

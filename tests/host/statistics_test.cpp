@@ -199,6 +199,9 @@ TEST(Bootstrap, NeedsAsManyUnitsAsCarryIt) {
   EXPECT_EQ(fewest_units(0.95), 6U);
   EXPECT_EQ(fewest_units(0.99), 8U);
   EXPECT_EQ(fewest_units(1), 0U);
+  EXPECT_EQ(fewest_units(0.95, 0.95), 59U) << "0.95^58 is 0.051";
+  EXPECT_EQ(fewest_units(0.95, 0.05), 59U);
+  EXPECT_EQ(fewest_units(0.999, 0.95), 135U);
   const RandomStream stream(1);
   const auto of_units = [&](std::size_t units, std::size_t repetitions, double confidence) {
     Sample sample;

@@ -34,6 +34,7 @@ void add_compare(App& app, Action& action);
 void add_slurm(App& app, Action& action);
 void add_study(App& app, Action& action, const std::string& command_line);
 void add_report(App& app, Action& action);
+void add_reproduce(App& app, Action& action, const std::string& command_line);
 void add_tune(App& app, Action& action);
 void add_new(App& app, Action& action);
 void add_check_plugin(App& app, Action& action);

@@ -161,6 +161,7 @@ int main_checked(int argc, char** argv) {
   add_slurm(app, action);
   add_study(app, action, command_line(argc, argv));
   add_report(app, action);
+  add_reproduce(app, action, command_line(argc, argv));
   add_tune(app, action);
   add_new(app, action);
   add_check_plugin(app, action);

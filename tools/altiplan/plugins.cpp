@@ -7,6 +7,7 @@
 #include "host/describe/schema.hpp"
 #include "host/result/result_json.hpp"
 #include "study/model/study_file.hpp"
+#include "study/reproduce/paper_file.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -54,8 +55,9 @@ int describe(const Arguments& arguments) {
 
 int schema(const Arguments& arguments) {
   host::Registry registry = registry_of(arguments);
-  std::cout << host::file_text(
-      host::any_file_schema(host::choices_of(registry), host::fields_of<study::StudyFile>()));
+  std::cout << host::file_text(host::any_file_schema(host::choices_of(registry),
+                                                     host::fields_of<study::StudyFile>(),
+                                                     host::fields_of<study::PaperFile>()));
   return kDone;
 }
 

@@ -9,6 +9,7 @@
 #include "host/result/result_json.hpp"
 #include "study/plan/study_plan.hpp"
 #include "study/plan/undecidable.hpp"
+#include "study/reproduce/paper.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -36,6 +37,10 @@ std::string validate_one(const std::string& file, const Arguments& arguments) {
       warn(file + ": " + sentence);
     }
     return arguments.builds ? "valid; the worlds of a study are not built" : "valid";
+  }
+  if (kind == host::FileKind::paper) {
+    study::read_paper(file);
+    return arguments.builds ? "valid; the worlds of a paper are not built" : "valid";
   }
   const host::Config config = kind == host::FileKind::pipeline
                                   ? host::load_config(file, arguments.overrides)
@@ -110,9 +115,9 @@ int explain(const Arguments& arguments) {
 
 void add_validate(App& app, Action& action) {
   App* command = app.add_subcommand(
-      "validate", "check pipeline, scenario and study files without running them");
+      "validate", "check pipeline, scenario, study and paper files without running them");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("files", arguments->files, "pipeline, scenario and study files (YAML)")
+  command->add_option("files", arguments->files, "pipeline, scenario, study and paper files (YAML)")
       ->required();
   command->add_flag("--build", arguments->builds,
                     "also build the world, so that the contents of its files are checked");

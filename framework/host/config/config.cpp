@@ -43,10 +43,14 @@ void expect_kind(const Value& tree, FileKind expected) {
     throw ConfigError(tree.where, "",
                       "expected keys with values ('altiplan: 1', …), found " + tree.what());
   }
+  const std::string wanted = expected == FileKind::scenario ? "scenario" : "pipeline";
   if (kind_of(tree) == FileKind::study) {
     throw ConfigError(tree.where, "",
-                      std::string("this is a study (altiplan study runs it), expected a ") +
-                          (expected == FileKind::scenario ? "scenario" : "pipeline"));
+                      "this is a study (altiplan study runs it), expected a " + wanted);
+  }
+  if (kind_of(tree) == FileKind::paper) {
+    throw ConfigError(tree.where, "",
+                      "this is a paper (altiplan reproduce runs it), expected a " + wanted);
   }
   const bool has_steps = tree.find("steps") != nullptr;
   if (expected == FileKind::scenario && has_steps && kind_of(tree) == FileKind::pipeline) {
@@ -118,6 +122,9 @@ const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string
 }
 
 FileKind kind_of(const Value& tree) {
+  if (tree.find("tables") != nullptr && tree.find("steps") == nullptr) {
+    return FileKind::paper;
+  }
   if (tree.find("steps") == nullptr &&
       (tree.find("pipelines") != nullptr || tree.find("scenarios") != nullptr)) {
     return FileKind::study;

@@ -51,7 +51,7 @@ Config load_scenario_text(const std::string& text, const std::string& name,
                           const Overrides& overrides);
 
 /// Kind of a file, determined by its keys.
-enum class FileKind { pipeline, scenario, study };
+enum class FileKind { pipeline, scenario, study, paper };
 FileKind kind_of(const Value& tree);
 
 /// The plugin of that kind and name: built in, or from a library. Throws as Registry::get.

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "host/config/config.hpp"
-#include "host/config/shapes.hpp"
-#include "host/describe/describe.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -297,52 +294,21 @@ Json study_body(Writer& writer, const std::vector<FieldSpec>& study) {
   return body;
 }
 
+/// Figures are text for the reader, but numbers for YAML unless they are quoted.
+Json paper_body(Writer& writer, const std::vector<FieldSpec>& paper) {
+  Json body = writer.object(paper);
+  const Json figure = {{"type", {"string", "number"}}};
+  Json& table = body["properties"]["tables"]["items"]["properties"];
+  Json& row = table["rows"]["items"]["properties"];
+  Json& claim = table["claims"]["items"]["properties"];
+  row["paper"]["items"] = row["documentation"]["items"] = figure;
+  claim["paper"].update(figure);
+  claim["measured"].update(figure);
+  return body;
+}
+
 const Choices kNothing = [](std::string_view) { return std::vector<Choice>{}; };
-
-std::vector<FieldSpec> specs_of(const ParamReport& report) {
-  std::vector<FieldSpec> specs;
-  for (const BoundField& field : report.fields) {
-    specs.push_back(field.spec);
-  }
-  return specs;
-}
 }  // namespace
-
-Choices choices_of(Registry& registry) {
-  std::set<std::string> usable;
-  for (const Library& library : examine_all(registry)) {
-    for (const Manifest& entry : library.plugins) {
-      if (library.refused.empty()) {
-        usable.insert(std::string(entry.kind) + " " + entry.name);
-      }
-    }
-  }
-  return [&registry, usable](std::string_view kind) {
-    std::vector<Choice> all;
-    if (kind == "moving") {
-      for (const std::string& shape : moving_shapes()) {
-        all.push_back({shape, specs_of(describe_moving(shape)(nullptr, ""))});
-      }
-      all.push_back({"random", fields_of<RandomMoving>()});
-      return all;
-    }
-    std::set<std::string> names;
-    for (const std::string& name : registry.names(kind)) {
-      if (usable.contains(std::string(kind) + " " + name)) {
-        names.insert(name);
-      }
-    }
-    if (kind == "environment") {
-      for (const PluginEntry& entry : built_in_environments()) {
-        names.insert(entry.name);
-      }
-    }
-    for (const std::string& name : names) {
-      all.push_back({name, specs_of(plugin(registry, kind, name).describe(nullptr, ""))});
-    }
-    return all;
-  };
-}
 
 Json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices) {
   Writer writer(choices);
@@ -368,7 +334,8 @@ Json study_schema(const std::vector<FieldSpec>& study) {
   return file_schema("altiplan study", study_body(writer, study), writer);
 }
 
-Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study) {
+Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study,
+                     const std::vector<FieldSpec>& paper) {
   Writer writer(choices);
   // The same keys as in kind_of determine a file's kind.
   const Json is_study = {{"anyOf", Json::array({{{"required", Json::array({"pipelines"})}},
@@ -379,7 +346,9 @@ Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study
                                                    {{"required", Json::array({"mission"})}}})}};
   const Json other = {
       {"if", is_scenario}, {"then", scenario_body(writer)}, {"else", pipeline_body(writer)}};
-  Json body = {{"if", is_study}, {"then", study_body(writer, study)}, {"else", other}};
-  return file_schema("altiplan file: pipeline, scenario or study", body, writer);
+  Json body = {{"if", {{"required", Json::array({"tables"})}}},
+               {"then", paper_body(writer, paper)},
+               {"else", {{"if", is_study}, {"then", study_body(writer, study)}, {"else", other}}}};
+  return file_schema("altiplan file: pipeline, scenario, study or paper", body, writer);
 }
 }  // namespace altiplan::host

@@ -39,8 +39,9 @@ std::vector<FieldSpec> fields_of() {
 nlohmann::ordered_json scenario_schema(const Choices& choices);
 nlohmann::ordered_json pipeline_schema(const Choices& choices);
 nlohmann::ordered_json study_schema(const std::vector<FieldSpec>& study);
-/// One schema for all three: the keys identify the kind of file.
-nlohmann::ordered_json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study);
+/// One schema for all, and for papers: the keys identify the kind of file.
+nlohmann::ordered_json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study,
+                                       const std::vector<FieldSpec>& paper);
 /// Schema of a map with these fields; the parameters of plugins that it may name are in
 /// `definitions`.
 nlohmann::ordered_json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,8 @@ struct StudySelection {
   std::string filter;            ///< regular expression on "PIPELINE SCENARIO #REPETITION"
   int shard = 1;                 ///< of `shards`, from 1
   int shards = 1;
+  std::set<std::string> pipelines = {};  ///< names of variants; empty: all
+  std::string scenarios = {};            ///< Variant::of; "": all
 };
 
 /// Reads and checks the study, and every pair of pipeline and scenario in it; throws ConfigError

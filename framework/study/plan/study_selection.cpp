@@ -68,7 +68,13 @@ std::vector<PlannedRun> all_runs(const StudyPlan& plan) {
 }
 
 std::vector<PlannedRun> selected_runs(const StudyPlan& plan, const StudySelection& selection) {
-  const std::vector<PlannedRun> all = all_runs(plan);
+  std::vector<PlannedRun> all = all_runs(plan);
+  std::erase_if(all, [&](const PlannedRun& run) {
+    return (!selection.scenarios.empty() &&
+            plan.scenarios[run.scenario].of != selection.scenarios) ||
+           (!selection.pipelines.empty() &&
+            !selection.pipelines.contains(plan.pipelines[run.pipeline].name));
+  });
   const std::string study = std::to_string(plan.file.seed) + "\n";
   std::vector<std::pair<std::int64_t, std::size_t>> order;
   const Filter filter(selection.filter);

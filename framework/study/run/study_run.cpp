@@ -50,7 +50,7 @@ class Study {
     row.peak_memory_mb = ended.peak_memory_mb;
     row.place = ended.place;
     row.session = session;
-    row.result = outcome.result;
+    row.result = options_.results ? outcome.result : "";
     row.trace = outcome.trace;
     row.values = outcome.values;
     for (const auto& value :

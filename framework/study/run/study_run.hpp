@@ -25,6 +25,7 @@ struct StudyOptions {
   int reuse = 1;
   bool fresh = false;
   bool traces = false;  ///< store traces of the searches
+  bool results = true;  ///< store result.json, not its values alone
   std::vector<std::filesystem::path> plugin_path;
   std::string command;  ///< the command line
   std::function<void(const StudyProgress&)> progress;

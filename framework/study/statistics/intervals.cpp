@@ -107,12 +107,12 @@ std::vector<std::size_t> resample(std::span<const std::size_t> groups, const Ran
 
 std::size_t resampled_units(std::span<const std::size_t> groups) { return Groups(groups).count(); }
 
-std::size_t fewest_units(double confidence) {
+std::size_t fewest_units(double confidence, double q) {
   if (!is_confidence(confidence)) {
     return 0;
   }
   std::size_t units = 1;
-  while (1 - std::ldexp(1.0, 1 - int(units)) < confidence) {
+  while (1 - std::pow(q, double(units)) - std::pow(1 - q, double(units)) < confidence) {
     ++units;
   }
   return units;

@@ -108,8 +108,9 @@ std::vector<std::size_t> resample(std::span<const std::size_t> groups, const Ran
 std::size_t resampled_units(std::span<const std::size_t> groups);
 /// The minimum number of units for an interval of a median: all n units lie on one side of the true
 /// median with probability 2^(1 - n), so that even the range from minimum to maximum covers it only
-/// with probability 1 - 2^(1 - n). 6 for 95 %; 0 for a confidence not in (0, 1).
-std::size_t fewest_units(double confidence);
+/// with probability 1 - 2^(1 - n). 6 for 95 %; 0 for a confidence not in (0, 1). Likewise of
+/// another quantile q, in (0, 1): on one side of it with probability q^n + (1 - q)^n.
+std::size_t fewest_units(double confidence, double q = 0.5);
 
 /// bootstrap_interval over that many resamples; nothing for fewer than fewest_units as well.
 std::optional<Interval> bootstrap_interval(std::span<const double> sample,
