@@ -194,6 +194,8 @@ class Reproduce(case.StudyCase):
                  "expected a figure as 303, 1,231, 0.45, 92.6 %, 54/100"),
                 ("[40/40, 1.234]", "[1, 2, 3, 4, 5]", "21:73: tables.0.rows.1.documentation",
                  "expected at most 4 figures, one for each column, found 5"),
+                ("[40/40, 1.234]", "[\"\", \"\"]", "21:73: tables.0.rows.1.documentation",
+                 "expected at least one figure, found none"),
                 ("id: greedy,", "id: octile,", "21:10: tables.0.rows.1.id", "the id 'octile' is taken"),
                 ("runs: cities\n    claims", "runs: citie\n    claims", "23:5: tables.1.runs",
                  "there are no runs 'citie'; did you mean 'cities'?"),

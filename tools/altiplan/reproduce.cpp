@@ -126,6 +126,7 @@ class Reproduction {
     options_.done = [&](const study::ReproducedRuns& done) {
       line_.clear();
       counts.add(done);
+      all_.add(done);
       cpu_s += done.cpu_s;
       if (!done.failures.empty()) {
         warn(paper.name.text() + ", " + done.runs->id + ": runs that failed: " + done.failures);
@@ -150,13 +151,13 @@ class Reproduction {
     return true;
   }
 
-  bool differs() const { return differs_; }
+  /// Of all papers.
+  const MarkCounts& counts() const { return all_; }
   const host::Json& papers() const { return papers_; }
 
  private:
   void finish(const study::Paper& paper, const MarkCounts& counts, host::Json rows, double wall_s,
               double cpu_s) {
-    differs_ = differs_ || counts.of(study::Mark::differs) > 0;
     papers_.push_back({{"number", paper.name.number},
                        {"name", paper.name.name},
                        {"title", paper.title},
@@ -177,7 +178,7 @@ class Reproduction {
   study::ReproduceOptions options_;
   ProgressLine line_;
   host::Json papers_ = host::Json::array();
-  bool differs_ = false;
+  MarkCounts all_;
 };
 
 int reproduce(const Arguments& arguments) {
@@ -200,8 +201,10 @@ int reproduce(const Arguments& arguments) {
   }
   if (arguments.json) {
     std::cout << host::file_text(reproduction.papers());
+  } else if (papers.size() > 1) {
+    std::cout << papers.size() << " papers: " << reproduction.counts().text() << '\n';
   }
-  return reproduction.differs() ? kNoRoute : kDone;
+  return reproduction.counts().of(study::Mark::differs) > 0 ? kNoRoute : kDone;
 }
 }  // namespace
 

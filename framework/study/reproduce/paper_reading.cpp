@@ -154,6 +154,11 @@ class Reading {
     const Value& columns = *table_at.find("columns");
     const std::string path = host::item(table_path + ".rows", index);
     check_id(entry.id, at, path);
+    if (std::all_of(entry.documentation.begin(), entry.documentation.end(),
+                    [](const std::string& text) { return text.empty(); })) {
+      problems_.add(host::place_of(at, "documentation"), path + ".documentation",
+                    "expected at least one figure, found none");
+    }
     for (const auto& [list, key] :
          {std::pair(&entry.paper, "paper"), std::pair(&entry.documentation, "documentation")}) {
       if (list->size() > table.columns.size()) {
