@@ -139,7 +139,7 @@ class Reproduction {
       }
     };
     if (!arguments_.json) {
-      std::cout << paper.name.text() << ": " << paper.title << " (" << paper.page << ")\n";
+      std::cout << title_text(paper);
     }
     const bool is_whole = study::reproduce(paper, rows, options_);
     line_.clear();

@@ -127,6 +127,11 @@ std::string MarkCounts::text() const {
                         : std::to_string(differ) + " DIFFER");
 }
 
+std::string title_text(const study::Paper& paper) {
+  return paper.name.text() + (paper.title.empty() ? "" : ": " + paper.title) +
+         (paper.page.empty() ? "" : " (" + paper.page + ")") + "\n";
+}
+
 std::string reproduced_text(const study::ReproducedRuns& done) {
   const Widths widths = widths_of(done);
   std::string text;
@@ -175,8 +180,7 @@ std::string list_text(const study::Paper& paper) {
                         const std::string& what) {
     return "  " + left(id, width) + right(quick, 9) + right(full, 9) + "  " + what + "\n";
   };
-  std::string text = paper.name.text() + ": " + paper.title + " (" + paper.page + ")\n" +
-                     line("row", "--quick", "full", "processor time, of");
+  std::string text = title_text(paper) + line("row", "--quick", "full", "processor time, of");
   for (const study::ReproducibleRow& row : paper.rows) {
     text += line(row.id, duration(paper.cpu_s({&row}, true)), duration(paper.cpu_s({&row}, false)),
                  row.what);

@@ -22,6 +22,8 @@ class MarkCounts {
   std::array<std::size_t, 5> counts_{};
 };
 
+/// "002 fusion_astar: Fusion of A* and potential field (docs/papers/fusion_astar.md)"
+std::string title_text(const study::Paper& paper);
 /// The tables of these runs: paper, documentation and this machine side by side.
 std::string reproduced_text(const study::ReproducedRuns& done);
 host::Json reproduced_json(const study::ReproducedRuns& done);
