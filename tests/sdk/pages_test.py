@@ -23,7 +23,6 @@ NOT_RUN = {
     r"altiplan-bench\b":
         "minutes of measuring, or on published maps; the tests bench_… run such programs",
     r"altiplan tune\b": "minutes; tests/tune tunes less",
-    r"altiplan study configs/studies/(?!quick)": "minutes to hours; study_every_study runs a part of each",
     r"altiplan report (?!quick\.db)": "of those studies",
     r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.":
         "study.yaml is the reader's; tests/study",
