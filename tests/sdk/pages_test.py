@@ -23,7 +23,7 @@ NOT_RUN = {
     r"altiplan-bench\b":
         "minutes of measuring, or on published maps; the tests bench_… run such programs",
     r"altiplan tune\b": "minutes; tests/tune tunes less",
-    r"altiplan report (?!quick\.db)": "of those studies",
+    r"altiplan report (?!quick\.db)": "of studies of minutes to hours, or of the reader's",
     r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.":
         "study.yaml is the reader's; tests/study",
     r"altiplan (fly result|view result\.flown)": "needs a vehicle; tests/link flies such results",
