@@ -1,64 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/claims/claims.hpp"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <numeric>
-#include <stdexcept>
+
+#include "claim_study.hpp"
 
 namespace altiplan::host {
 using namespace study;
 namespace {
-
-/// Two pipelines, `a` and `b`, over scenarios and repetitions; a's lengths are 100, 101, …
-class Study {
- public:
-  Study(int scenarios, int repetitions, double ratio) {
-    data_.columns = {"expanded", "flight.collisions", "length_m", "peak_memory_mb", "plan_time_s"};
-    data_.pipelines = {{"a", "a", "", {}}, {"b", "b", "", {}}};
-    data_.file.repetitions = repetitions;
-    for (std::size_t s = 0; s < std::size_t(scenarios); ++s) {
-      data_.scenarios.push_back({"s" + std::to_string(s), "s", "", {}});
-      for (const std::size_t pipeline : {0U, 1U}) {
-        for (int r = 0; r < repetitions; ++r) {
-          const double length = 100 + double(s) + 0.01 * r;
-          // b's ratio to a varies a little from pair to pair.
-          const double varied = ratio * (1 + 0.01 * std::sin(double(7 * s) + r));
-          RunRow row;
-          row.scenario = s;
-          row.pipeline = pipeline;
-          row.repetition = r;
-          row.outcome = "solved";
-          row.values = {10, 0, pipeline == 0 ? length : length * varied, 50, 0.1};
-          data_.rows.push_back(row);
-        }
-      }
-    }
-  }
-
-  StudyData& data() { return data_; }
-  RunRow& row(std::size_t scenario, std::size_t pipeline, int repetition = 0) {
-    for (RunRow& row : data_.rows) {
-      if (row.scenario == scenario && row.pipeline == pipeline && row.repetition == repetition) {
-        return row;
-      }
-    }
-    throw std::out_of_range("no such row");
-  }
-  /// The run did not solve, and has no values of its route.
-  void fail(std::size_t scenario, std::size_t pipeline, const std::string& outcome = "timed_out") {
-    RunRow& run = row(scenario, pipeline);
-    run.outcome = outcome;
-    run.values = {10, kNone, kNone, 80, 1};
-  }
-  JudgedClaim judge(const std::string& that, const std::string& is) const {
-    return judge_claim(data_, {"claim", that, is, 0.95});
-  }
-
- private:
-  StudyData data_;
-};
 
 TEST(Claims, TheWholeIntervalDecides) {
   const Study study(40, 1, 0.9);
@@ -301,40 +248,6 @@ TEST(Claims, AreReproducible) {
   EXPECT_NE(other.interval->low, once.interval->low);  // two claims do not share their luck
   study.data().file.seed = 5;
   EXPECT_NE(study.judge("mean(b.length_m / a.length_m)", "<= 1").interval->low, once.interval->low);
-}
-
-TEST(Undecidable, IsWhatNoRunsCouldDecide) {
-  const std::vector<std::string> names{"a", "b"};
-  for (int scenarios = 1; scenarios <= 12; ++scenarios) {
-    SCOPED_TRACE(scenarios);
-    std::vector<std::size_t> groups(std::size_t(scenarios), 0);
-    std::iota(groups.begin(), groups.end(), 0);
-    const auto why = [&](const std::string& that, const std::string& is) {
-      return why_undecidable({"claim", that, is, 0.95}, names, groups);
-    };
-    Study all(scenarios, 1, 0.5);
-    Study none(scenarios, 1, 0.5);
-    for (std::size_t s = 0; s < groups.size(); ++s) {
-      none.fail(s, 0);
-    }
-    const auto is_decided = [](const JudgedClaim& judged) {
-      return judged.verdict == Verdict::holds || judged.verdict == Verdict::fails;
-    };
-    const std::string mean = "mean(b.length_m / a.length_m)";
-    EXPECT_EQ(why(mean, "<= 0.9").empty(), is_decided(all.judge(mean, "<= 0.9")));
-    EXPECT_EQ(why("max(a.length_m)", "<= 9"), "");
-    for (const std::string is : {">= 0.5", ">= 0.9", "0.2..0.3"}) {
-      const bool may_be = is_decided(all.judge("share(a.solved)", is)) ||
-                          is_decided(none.judge("share(a.solved)", is));
-      EXPECT_EQ(why("share(a.solved)", is).empty(), may_be) << is;
-    }
-  }
-  EXPECT_EQ(why_undecidable({"claim", "mean(a.length_m)", "<= 9", 0.95}, names,
-                            std::vector<std::size_t>{0, 1}),
-            "too few scenarios: at least 6 for 95 %");
-  EXPECT_EQ(why_undecidable({"claim", "share(a.solved)", ">= 0.5", 0.95}, names,
-                            std::vector<std::size_t>{0, 0}),
-            "too few repetitions: at least 4 for 95 %");
 }
 }  // namespace
 }  // namespace altiplan::host

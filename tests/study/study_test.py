@@ -127,6 +127,15 @@ class Study(StudyCase):
         self.study("claims: [{id: long, that: mean(straight.length_m), is: '>= 5'}]\n")
         said = self.call("--dry-run")
         self.assertIn("claim long will be undecided: too few scenarios: at least 6 for 95 %", said)
+        self.assertEqual(said.count("will be"), 1)
+        said = self.call("--dry-run", "--filter", "^none ")
+        self.assertIn("claim long will have no data: no selected pair has runs of straight", said)
+        self.study("claims: [{id: often, that: share(straight.solved), is: '>= 0.9'}]\n", repetitions=1,
+                   radii="1..40")
+        self.assertNotIn("claim", self.call("--dry-run"))
+        self.assertNotIn("claim", self.call("--dry-run", "--shard", "1/8"), "the shards decide together")
+        said = self.call("--dry-run", "--sample", "50%")
+        self.assertIn("claim often cannot hold: too few scenarios: 35 would do for 95 %", said)
 
     def test_gate(self):
         self.study("claims: [{id: c, that: share(straight.solved), is: '>= 0.5'}]\n")

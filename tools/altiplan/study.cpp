@@ -107,7 +107,7 @@ int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
                 estimate.is_probed ? "a trial run of each pipeline"
                                    : (std::to_string(estimate.measured) + " stored runs").c_str());
   }
-  for (const std::string& sentence : study::undecidable_claims(plan)) {
+  for (const std::string& sentence : study::undecidable_claims(plan, arguments.selection)) {
     std::printf("  %s\n", sentence.c_str());
   }
   return kDone;

@@ -33,7 +33,7 @@ std::string validate_one(const std::string& file, const Arguments& arguments) {
   const host::FileKind kind = host::kind_of(host::load_yaml(file));
   if (kind == host::FileKind::study) {
     const auto plan = study::load_study(file, {}, arguments.overrides.plugin_path);
-    for (const std::string& sentence : study::undecidable_claims(plan)) {
+    for (const std::string& sentence : study::undecidable_claims(plan, {})) {
       warn(file + ": " + sentence);
     }
     return arguments.builds ? "valid; the worlds of a study are not built" : "valid";

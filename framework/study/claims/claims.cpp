@@ -140,36 +140,6 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
   return judged;
 }
 
-std::string why_undecidable(const ClaimEntry& claim, const std::vector<std::string>& pipelines,
-                            std::span<const std::size_t> groups) {
-  const ClaimQuantity quantity = read_quantity(claim.that, pipelines);
-  if (quantity.function == Function::min || quantity.function == Function::max) {
-    return "";
-  }
-  if (quantity.function != Function::share) {
-    return why_no_bootstrap(groups, claim.confidence);
-  }
-  const ClaimRange range = read_range(claim.is);
-  // If all units agree, the interval is the narrowest.
-  const auto decides = [&](std::size_t units, bool succeed) {
-    const auto n = std::int64_t(units);
-    const auto interval = wilson(succeed ? n : 0, n, claim.confidence);
-    return interval && (!range.meets(interval->low, interval->high) ||
-                        (range.contains(interval->low) && range.contains(interval->high)));
-  };
-  constexpr std::size_t kMost = 100'000;
-  const Units units = units_of(groups);
-  std::size_t enough = std::max<std::size_t>(units.count, 1);
-  while (enough < kMost && !decides(enough, true) && !decides(enough, false)) {
-    ++enough;
-  }
-  if (enough == units.count || enough == kMost) {
-    return "";
-  }
-  return std::string("too few ") + (units.of_scenarios ? "scenarios" : "repetitions") +
-         ": at least " + std::to_string(enough) + " for " + host::per_cent(claim.confidence);
-}
-
 bool is_yes_or_no(std::string_view value) {
   const bool is_of_step = value.starts_with("steps.");
   return value == "solved" || value == "flight.reached" ||

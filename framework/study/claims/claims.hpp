@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "study/claims/claim_text.hpp"
 #include "study/model/study_data.hpp"
 #include "study/statistics/statistics.hpp"
 
@@ -45,11 +46,11 @@ std::string wanted(const ClaimEntry& claim);
 /// problem; values that describe failures (is_of_every_run) count in every run that has them.
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
 
-/// Why the claim stays undecided whatever the runs will give, and how many would do ("too few
-/// scenarios: at least 6 for 95 %"); "" if it may be decided. `groups` has the scenario of each
-/// pair (scenario, repetition) that is to be run.
-std::string why_undecidable(const ClaimEntry& claim, const std::vector<std::string>& pipelines,
-                            std::span<const std::size_t> groups);
+/// What so few runs keep from the claim even if every pair counts: "will be undecided: too few
+/// scenarios: at least 6 for 95 %", "cannot hold: …"; "" if it may hold. `groups` has the scenario
+/// of each pair (scenario, repetition) that is to be run.
+std::string shortfall(const ClaimEntry& claim, const ClaimQuantity& quantity,
+                      std::span<const std::size_t> groups);
 
 /// Values that are 0 or 1: solved, flight.reached, steps.ID.accepted and steps.ID.budget_hit.
 bool is_yes_or_no(std::string_view value);

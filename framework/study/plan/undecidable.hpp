@@ -8,6 +8,7 @@
 
 namespace altiplan::study {
 
-/// A sentence for each claim that the selected runs cannot decide, whatever they give.
-std::vector<std::string> undecidable_claims(const StudyPlan& plan);
+/// A sentence for each claim that the selected runs cannot decide, or that cannot hold, whatever
+/// they give. Of shards, all count.
+std::vector<std::string> undecidable_claims(const StudyPlan& plan, StudySelection selection);
 }  // namespace altiplan::study
