@@ -247,6 +247,15 @@ void answers_again(const PlannerBench& bench, Report& report) {
     same(first_a, beside_a, a, "an answer with a second thread running");
     same(first_b, beside_b, b, "an answer with a second thread running");
   }
+  Scene watched = a;
+  SearchProgress progress;
+  watched.request.budget.progress = &progress;
+  same(first_a, planner->plan(watched.request), watched, "the answer with its progress watched");
+  report.expect(progress.expanded <= std::uint64_t(counter(first_a.counters, "expanded")),
+                kPlannerPure, [&] {
+                  return watched.name + ": the progress shows " +
+                         std::to_string(progress.expanded) + " expanded, of " + text(first_a);
+                });
   Scene many = b;
   many.name += ", with 4 threads";
   many.request.threads = 4;

@@ -46,5 +46,29 @@ TEST(BudgetWatch, IterationsAreComparedEveryTime) {
   EXPECT_TRUE(watch.spent(1001));
   EXPECT_FALSE(watch.cancelled());
 }
+
+TEST(BudgetWatch, ShowsItsCountsToWhoeverWatches) {
+  SearchProgress progress;
+  Budget budget;
+  budget.progress = &progress;
+  BudgetWatch watch(budget);
+  watch.spent(0, 5);
+  EXPECT_EQ(progress.open, 0U) << "a count of 0 is that of a phase without one";
+  for (std::uint64_t n = 1; n <= 3000; ++n) {
+    watch.spent(n, 2 * n);
+    EXPECT_LE(progress.expanded, n);
+    EXPECT_GE(progress.expanded + 512, n);
+    EXPECT_EQ(progress.open, 2 * progress.expanded);
+  }
+  const Budget copy = budget;
+  copy.show_best(12.5);
+  copy.show_iteration(3);
+  EXPECT_EQ(progress.best, 12.5);
+  EXPECT_EQ(progress.iteration, 3U);
+  const Budget unwatched;
+  unwatched.show_best(1);
+  unwatched.show_iteration(1);
+  EXPECT_EQ(progress.best, 12.5);
+}
 }  // namespace
 }  // namespace altiplan

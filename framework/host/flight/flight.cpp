@@ -88,6 +88,9 @@ void Flight::fly_to_the_end() {
   end_on_contact(state_.position, state_.time_s, state_.position, state_.time_s);
   meet_events();
   while (!ended_ && !passes_goal_ && !request_.goal.reached_at(state_.position)) {
+    if (setup_.flown_s != nullptr) {
+      setup_.flown_s->store(state_.time_s, std::memory_order_relaxed);
+    }
     const bool late = state_.time_s >= end;
     if (late || ++steps_ > kMaxSteps) {
       end_flight(RunStatus::not_reached, late ? Reason::deadline : Reason::iterations,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -72,6 +73,7 @@ struct FlightSetup {
   std::optional<double> replan_within_s;   ///< wall-time limit of one replan
   std::optional<double> max_time_s;        ///< default: ten times the route's duration
   FlownVehicle* vehicle = nullptr;         ///< null: flown in simulated time
+  std::atomic<double>* flown_s = nullptr;  ///< shows the time of the flight; null: to nobody
   bool telemetry = false;  ///< the track is what a vehicle reports: judged by as_telemetry()
 };
 

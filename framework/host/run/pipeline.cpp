@@ -124,6 +124,9 @@ StepResult Run::begin_attempt(const StepEntry& entry, std::optional<std::string>
   if (trace_) {
     trace_->begin_step(entry.id);
   }
+  if (options_.progress != nullptr) {
+    options_.progress->begin_step();
+  }
   return step;
 }
 
@@ -240,6 +243,9 @@ Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
   request.random = mission_.request.random.sub("step:" + entry.id, index);
   request.trace = trace_.get();
   set_budget(request.budget, entry);
+  if (options_.progress != nullptr) {
+    request.budget.progress = &options_.progress->search;
+  }
   name_caller(named(entry));
   request.budget.stop = arm(entry.within_s.value_or(options_.timeout_s), entry.within_mb);
   return request;
@@ -361,6 +367,12 @@ int RunResult::exit_code() const {
     return step.status == RunStatus::failed;
   });
   return !accepted && (failed || status == RunStatus::failed) ? 4 : 1;
+}
+
+void RunProgress::begin_step() {
+  search.expanded = search.open = search.iteration = 0;
+  search.best = kInfinity;
+  flown_s = 0;
 }
 
 RunResult run(const Config& config, const RunOptions& options) { return Run(config, options)(); }

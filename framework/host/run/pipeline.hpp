@@ -21,6 +21,14 @@ struct RealFlight {
 
 inline constexpr std::uintmax_t kDefaultTraceMb = 64;
 
+/// How far the running step is, for another thread.
+struct RunProgress {
+  SearchProgress search;
+  std::atomic<double> flown_s{0};  ///< of a flight, in its time
+
+  void begin_step();
+};
+
 struct RunOptions {
   int threads = 1;
   std::optional<std::filesystem::path> trace;
@@ -35,6 +43,7 @@ struct RunOptions {
   ProcessGuard* process = nullptr;  ///< guards the process state; unguarded if null
   /// Timeout of steps without `within_s` and of work without a budget: constructors, judging.
   double timeout_s = kDefaultStepSeconds;
+  RunProgress* progress = nullptr;  ///< null where nobody watches
   /// If set, no step is done but the first attempt of the flight, without a time budget.
   std::optional<RealFlight> real;
 };

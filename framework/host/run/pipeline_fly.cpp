@@ -62,6 +62,8 @@ FlightSetup Run::flight_setup(const StepEntry& entry, FlightPlugins& plugins) {
   Request request = request_for(entry, result_.steps.size());
   request.limits = mission_.track_request.limits;
   request.constraints = mission_.track_request.constraints;
+  request.budget.progress = nullptr;  // a pilot's searches are short: the flight's time tells more
+  setup.flown_s = options_.progress != nullptr ? &options_.progress->flown_s : nullptr;
   setup.request = request;
   setup.route_request = mission_.request;
   setup.route_request.random = request.random;

@@ -28,6 +28,7 @@ class VoxelGrid;
 class World;
 struct Limits;
 struct Request;
+struct SearchProgress;
 struct PlanResult;
 struct Observation;
 struct PilotStep;
@@ -38,7 +39,7 @@ struct Vehicle;
 /// on a mismatch, refuses the library and prints both; compiler and optimisation are informative.
 struct Manifest {
   static constexpr char kMagic[16] = "altiplan plugin";
-  static constexpr std::size_t kLayouts = 21;
+  static constexpr std::size_t kLayouts = 22;
 
   char magic[16];
   std::uint32_t struct_size;
@@ -58,10 +59,10 @@ struct Manifest {
 };
 
 inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
-    "Vec3",      "Box",        "std::string", "std::vector", "std::function", "Value",
-    "FieldSpec", "BoundField", "Point",       "Frame",       "Site",          "Nearby",
-    "VoxelGrid", "World",      "Limits",      "Request",     "PlanResult",    "Observation",
-    "PilotStep", "Vehicle",    "LayerInfo"};
+    "Vec3",      "Box",        "std::string", "std::vector",   "std::function", "Value",
+    "FieldSpec", "BoundField", "Point",       "Frame",         "Site",          "Nearby",
+    "VoxelGrid", "World",      "Limits",      "Request",       "PlanResult",    "Observation",
+    "PilotStep", "Vehicle",    "LayerInfo",   "SearchProgress"};
 
 /// Size × 64 + alignment; 0 for a struct that the plugin of this interface does not include, and so
 /// cannot depend on. Static, since that may differ between two files of a plugin.
@@ -129,7 +130,7 @@ static consteval Manifest make_manifest(const char* kind, const char* name, cons
   add.template
   operator()<Vec3, Box, std::string, std::vector<int>, std::function<void()>, Value, FieldSpec,
              BoundField, Point, Frame, Site, Nearby, VoxelGrid, World, Limits, Request, PlanResult,
-             Observation, PilotStep, Vehicle, LayerInfo>();
+             Observation, PilotStep, Vehicle, LayerInfo, SearchProgress>();
   copy(m.compiler, sizeof m.compiler, __VERSION__);
   copy(m.kind, sizeof m.kind, kind);
   copy(m.name, sizeof m.name, name);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
+#include "altiplan/budget.hpp"
 #include "altiplan/constraint.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/trace.hpp"
@@ -30,47 +27,6 @@ struct Goal {
     return loiter ? loiter->passes(position, p)
                   : (p - position).norm() <= tolerance_m + kLengthTolerance;
   }
-};
-
-/// Limits on what a call may use. One iteration is one unit of the planner's `expanded` counter.
-struct Budget {
-  using Clock = std::chrono::steady_clock;
-  std::optional<Clock::time_point> deadline;
-  std::uint64_t max_iterations = ~std::uint64_t{0};
-  std::size_t max_memory_bytes = ~std::size_t{0};
-  std::stop_token stop;
-};
-
-/// Budget check, called once per iteration. The iteration limit is checked on every call; the stop
-/// token and the clock on every call while iterations take a millisecond or more, else on down to
-/// every 512th. Once spent, a budget stays spent.
-class BudgetWatch {
- public:
-  explicit BudgetWatch(const Budget& budget) : budget_(budget) {}
-  bool spent(std::uint64_t iterations) {
-    if (iterations >= budget_.max_iterations) {
-      return true;
-    }
-    if (--calls_left_ > 0) {
-      return false;
-    }
-    const Budget::Clock::time_point now = Budget::Clock::now();
-    cancelled_ = budget_.stop.stop_requested();
-    const bool ended = cancelled_ || (budget_.deadline && now >= *budget_.deadline);
-    every_ = ended || now - asked_ >= std::chrono::milliseconds(1) ? 1 : std::min(2 * every_, 512);
-    calls_left_ = every_;
-    asked_ = now;
-    return ended;
-  }
-  /// True if the stop token ended it, not a limit.
-  bool cancelled() const { return cancelled_; }
-
- private:
-  const Budget& budget_;
-  Budget::Clock::time_point asked_ = Budget::Clock::now();
-  int every_ = 1;
-  int calls_left_ = 1;
-  bool cancelled_ = false;
 };
 
 /// A planning problem: the complete input of a planner, local planner or smoother.

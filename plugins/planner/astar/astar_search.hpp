@@ -52,7 +52,7 @@ class Search : kit::GoalSearch {
       if (node.closed) {
         continue;
       }
-      if (watch_.spent(progress_.expanded) || memory_full()) {
+      if (watch_.spent(progress_.expanded, open_.size()) || memory_full()) {
         status = ended();
         break;
       }

@@ -178,7 +178,7 @@ class CellSearch {
       if ((closed_[closed_at / 64] & closed_mask) != 0) {
         continue;
       }
-      if (watch_.spent(progress_.expanded) || memory_full()) {
+      if (watch_.spent(progress_.expanded, open_.size()) || memory_full()) {
         result.budget_hit = true;
         result.status = watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
         break;

@@ -41,7 +41,8 @@ class TwoSidedSearch : kit::LatticeSearch {
       if (is_settled(*side, entry.node) || leads_nowhere(*side, entry.node)) {
         continue;
       }
-      if (watch_.spent(progress_.expanded) || memory_full()) {
+      if (watch_.spent(progress_.expanded, open_[forward].size() + open_[backward].size()) ||
+          memory_full()) {
         status = ended();
         break;
       }
@@ -145,6 +146,7 @@ class TwoSidedSearch : kit::LatticeSearch {
       const Arrival& away = side == forward ? others[at] : arrival;
       if (join(to, away, here)) {
         best_cost_ = cost;
+        request_.budget.show_best(cost);
         meeting_ = {side == forward ? index : at, side == forward ? at : index};
       }
     }

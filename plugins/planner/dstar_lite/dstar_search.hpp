@@ -308,7 +308,7 @@ class Search {
   }
 
   bool spent() {
-    ended_ = ended_ || watch_->spent(progress_.expanded) || memory_full();
+    ended_ = ended_ || watch_->spent(progress_.expanded, open_.size()) || memory_full();
     return ended_;
   }
   bool memory_full() const { return open_.bytes() + raised_.bytes() > max_list_bytes_; }

@@ -11,6 +11,7 @@ template <class Entry>
 class Heap {
  public:
   bool empty() const { return entries_.empty(); }
+  std::size_t size() const { return entries_.size(); }
   const Entry& top() const { return entries_.front(); }
 
   void push(const Entry& entry) {

@@ -119,7 +119,7 @@ class Search {
   void expand() {
     while (!open_.empty() && open_.top().f < best_ * (1 - kTie) && !is_hopeless()) {
       const auto [f, at] = open_.top();
-      if (watch_.spent(expanded_) || bytes() > settings_.max_bytes) {
+      if (watch_.spent(expanded_, open_.size()) || bytes() > settings_.max_bytes) {
         ended_ = true;
         return;
       }
@@ -225,6 +225,7 @@ class Search {
       const auto path = steering_.path(node.pose, goals_[k]);
       if (path && is_free(at, path->legs)) {
         best_ = node.g + path->length;
+        request_.budget.show_best(best_);
         best_node_ = at;
         best_legs_ = path->legs;
         if (request_.trace != nullptr) {

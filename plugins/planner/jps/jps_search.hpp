@@ -49,7 +49,7 @@ class Search {
       if (nodes_[index] != word) {
         continue;  // reached by a shorter path in the meantime
       }
-      if (watch_.spent(expanded_) || memory_full()) {
+      if (watch_.spent(expanded_, open_.size()) || memory_full()) {
         return ended(watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out);
       }
       expand(index, word, f);

@@ -50,7 +50,7 @@ class PoseGrowth {
 
  private:
   bool next_iteration() {
-    if (!route_.empty() || watch_.spent(iterations_) ||
+    if (!route_.empty() || watch_.spent(iterations_, tree_.size()) ||
         tree_.size() * kBytesPerNode > request_.budget.max_memory_bytes) {
       is_spent_ = route_.empty();
       return false;

@@ -73,7 +73,7 @@ class Growth {
 
   /// Counts an iteration; false if none is left.
   bool next_iteration() {
-    if (watch_->spent(iterations_) ||
+    if (watch_->spent(iterations_, tree_.size()) ||
         tree_.size() * Tree::kBytesPerNode > request_.budget.max_memory_bytes) {
       stopped_ = watch_->cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     } else if (iterations_ == settings_.max_iterations) {

@@ -73,7 +73,8 @@ class TwoTrees {
 
   /// Checked before each extension.
   bool may_go_on() {
-    ended_ = ended_ || watch_.spent(expanded_) || expanded_ >= settings_.max_iterations;
+    const std::size_t nodes = tree(kStart).legs.size() + tree(kGoal).legs.size();
+    ended_ = ended_ || watch_.spent(expanded_, nodes) || expanded_ >= settings_.max_iterations;
     return !ended_;
   }
 

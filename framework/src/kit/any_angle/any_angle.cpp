@@ -64,7 +64,7 @@ std::optional<PlanStatus> AnyAngleSearch::search() {
     if (is_closed(s) || entry.from != g(s)) {
       continue;  // stale entry: a leg was refused, and the path became longer
     }
-    if (watch_.spent(progress_.expanded) || memory_full()) {
+    if (watch_.spent(progress_.expanded, open_.size()) || memory_full()) {
       return watch_.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     }
     ++progress_.expanded;

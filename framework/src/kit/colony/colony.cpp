@@ -136,6 +136,7 @@ PlanResult Colony::run() {
 /// One iteration; false if a budget ended it.
 bool Colony::send_out(Crew& crew, std::size_t iteration) {
   max_steps_ = request_.budget.max_iterations - expanded_;
+  request_.budget.show_iteration(iteration + 1);
   next_ant_ = 0;
   walked_ = 0;
   crew.all_do([&](std::size_t n) { send_out(walkers_[n], iteration); });
@@ -161,6 +162,7 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
     walker.random = request_.random.sub("ant", iteration * ants_.size() + n);
     walk(walker);
     walked_ += walker.ant->steps;
+    request_.budget.show_expanded(expanded_ + walked_, 0);
     if (iteration == 0 && n == 0) {
       first_refused_ = walker.rules.refusals();
     }
@@ -194,6 +196,7 @@ bool Colony::collect() {
       sum += ant.length;
       if (best_.way.empty() || ant.length < best_.length) {
         best_ = ant;
+        request_.budget.show_best(ant.length);
       }
     }
   }

@@ -59,7 +59,6 @@ class StarGrowth {
   /// Of the last length: triggers the removal of useless nodes.
   static constexpr double kForgetBelow = 0.99;
   static constexpr std::size_t kMaxShots = 64;
-
   using State = typename Motion::State;
   using Node = LegTree::Node;
   struct Candidate {
@@ -70,7 +69,8 @@ class StarGrowth {
   };
 
   bool may_go_on() {
-    budget_ended_ = watch_.spent(expanded_) || memory_.legs.size() >= max_nodes_;
+    budget_ended_ =
+        watch_.spent(expanded_, memory_.legs.size()) || memory_.legs.size() >= max_nodes_;
     return !budget_ended_ && expanded_ < settings_.max_iterations &&
            best_ > least_route_ * (1 + 1e-9);
   }
@@ -329,17 +329,17 @@ class StarGrowth {
       return;
     }
     known_ = best_;
+    request_.budget.show_best(best_);
     ++improved_;
     first_at_ = first_at_ == 0 ? std::int64_t(expanded_) : first_at_;
     if (request_.trace != nullptr) {
       request_.trace->add({TraceEvent::Kind::iteration, std::int64_t(expanded_), -1,
                            request_.goal.position, best_});
     }
-    if (!settings_.bounded) {
-      return;
+    if (settings_.bounded) {
+      set_.set_length(motion_.reach(best_));
     }
-    set_.set_length(motion_.reach(best_));
-    if (best_ < kForgetBelow * forgotten_at_) {
+    if (settings_.bounded && best_ < kForgetBelow * forgotten_at_) {
       forgotten_at_ = best_;
       memory_.points.forget_if(
           [&](std::size_t number) { return !set_.contains(memory_.points.point(number)); });

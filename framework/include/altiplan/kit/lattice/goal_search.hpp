@@ -35,6 +35,7 @@ class GoalSearch : protected LatticeSearch {
         if (const double at_goal = g + link_cost(here, goal_, link->length); at_goal < goal_g_) {
           goal_g_ = at_goal;
           goal_parent_ = node;
+          request_.budget.show_best(std::min(at_goal, best_cost_));
           open_.push(settings_.weight_g * (at_goal + costs_.at(goal_)), at_goal, kGoal);
         }
         return;

@@ -65,7 +65,7 @@ class HeadingSearch : GoalSearch {
       if (nothing_left(cell, arrivals_[index])) {
         continue;
       }
-      if (watch_.spent(progress_.expanded) || memory_full()) {
+      if (watch_.spent(progress_.expanded, open_.size()) || memory_full()) {
         status = ended();
         break;
       }

@@ -248,18 +248,19 @@ PlanResult improve(const SearchSettings& settings, const Request& request, const
   int searches = 0;
   for (const double inflation : {16.0, 4.0, 2.0, 1.4, 1.0}) {
     SearchSettings inflated = settings;
+    request.budget.show_iteration(std::uint64_t(++searches));
     inflated.weight_h *= inflation;
     const bool can_improve = best && best->at_goal;
     SearchResult found =
         once(inflated, after(request, spent), can_improve ? best->cost : kInfinity);
     add(spent, found.result.counters);
-    ++searches;
     const bool cut_short = found.result.budget_hit || found.result.status == PlanStatus::cancelled;
     // A route that ends within the tolerance counts only once the goal is known to be unreachable:
     // otherwise more budget could give a longer route.
     const bool counts = found.result.status == PlanStatus::solved && (found.at_goal || !cut_short);
     if (counts && (!best || found.cost < best->cost)) {
       best = std::move(found);
+      request.budget.show_best(best->cost);
     } else if (!best && (cut_short || found.result.proved || inflation == 1)) {
       found.result.counters = spent;
       return without_route(std::move(found.result));
