@@ -85,7 +85,7 @@ class Page(Both, Bodies, Colony, Cut, CutIn3, Signs, Case):
         left, top = self.run_js("const r = document.getElementById('stage')"
                                 ".getBoundingClientRect(); return [r.left, r.top]")
         color = self.pixel(left + place["x"], top + place["y"])
-        self.assertLess(math.dist(color, [230, 159, 0]), 30)
+        self.assertLess(math.dist(color, [79, 70, 6]), 30)
 
     def test_stretching_moves_the_picture_and_not_the_data(self):
         before = self.mark("goal")

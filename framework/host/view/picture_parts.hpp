@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -15,6 +14,7 @@
 #include "host/base/base64.hpp"
 #include "host/base/xml_text.hpp"
 #include "host/result/result_json.hpp"
+#include "host/view/series_colors.hpp"
 
 // The parts of the top view, one file each. Lengths are pixels from the top left.
 
@@ -24,11 +24,8 @@ inline constexpr std::string_view kInk = "#1a2027";
 inline constexpr std::string_view kFaint = "#5b6672";
 inline constexpr std::string_view kPaper = "#ffffff";
 
-/// Okabe and Ito's palette, distinguishable with every kind of colour vision.
 inline std::string_view route_color(std::size_t result) {
-  constexpr std::array<std::string_view, 6> kColors{"#0072b2", "#e69f00", "#009e73",
-                                                    "#56b4e9", "#f0e442", "#000000"};
-  return kColors[result % kColors.size()];
+  return kSeriesColors[result % kSeriesColors.size()].light;
 }
 inline std::string_view role_color(std::string_view role) {
   return role == "keep_out"  ? "#cc79a7"

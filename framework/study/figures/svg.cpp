@@ -7,23 +7,13 @@
 #include <cstdio>
 #include <map>
 
+#include "host/view/series_colors.hpp"
 #include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {
 
-/// Okabe and Ito's colours except yellow, which is too pale on paper; the second is for dark.
-struct Color {
-  const char* light;
-  const char* dark;
-};
-constexpr std::array<Color, 7> kSeries{{{"#0072b2", "#4fa8e0"},
-                                        {"#d55e00", "#f0823c"},
-                                        {"#009e73", "#2cc79b"},
-                                        {"#cc79a7", "#e39ac3"},
-                                        {"#e69f00", "#f0b429"},
-                                        {"#56b4e9", "#8fd0f7"},
-                                        {"#1b2430", "#e6eaef"}}};
+using host::kSeriesColors;
 constexpr std::array<const char*, 4> kDashes{"", "6 3", "2 2.5", "8 3 2 3"};
 
 constexpr const char* kInk = "#1b2430";
@@ -100,16 +90,18 @@ std::string pixels(double value) {
 }
 
 std::string series_line(std::size_t series, double width) {
-  const std::size_t color = series % kSeries.size();
-  const char* dash = kDashes[series / kSeries.size() % kDashes.size()];
+  const std::size_t color = series % kSeriesColors.size();
+  const char* dash = kDashes[series / kSeriesColors.size() % kDashes.size()];
   return attribute("class", "s" + std::to_string(color)) + attribute("fill", "none") +
-         attribute("stroke", kSeries[color].light) + attribute("stroke-width", pixels(width)) +
+         attribute("stroke", kSeriesColors[color].light) +
+         attribute("stroke-width", pixels(width)) +
          (*dash != '\0' ? attribute("stroke-dasharray", dash) : "");
 }
 
 std::string series_fill(std::size_t series) {
-  const std::size_t color = series % kSeries.size();
-  return attribute("class", "f" + std::to_string(color)) + attribute("fill", kSeries[color].light);
+  const std::size_t color = series % kSeriesColors.size();
+  return attribute("class", "f" + std::to_string(color)) +
+         attribute("fill", kSeriesColors[color].light);
 }
 
 std::string series_fill_pale(std::size_t series) {
@@ -193,16 +185,16 @@ std::string figure_style() {
       "stroke-width:4px;stroke-linejoin:round}\n";
   const auto colors = [](bool dark) {
     std::string rules;
-    for (std::size_t at = 0; at < kSeries.size(); ++at) {
-      rules +=
-          "--c" + std::to_string(at) + ":" + (dark ? kSeries[at].dark : kSeries[at].light) + ";";
+    for (std::size_t at = 0; at < kSeriesColors.size(); ++at) {
+      rules += "--c" + std::to_string(at) + ":" +
+               (dark ? kSeriesColors[at].dark : kSeriesColors[at].light) + ";";
     }
     return rules + (dark ? "--fi:#e6eaef;--fq:#9aa5b1;--fh:#2f3741;--fp:#14181d"
                          : "--fi:#1b2430;--fq:#5d6875;--fh:#dde1e6;--fp:#ffffff");
   };
   out += "svg.figure{" + colors(false) + "}\n@media (prefers-color-scheme: dark){svg.figure{" +
          colors(true) + "}}\n";
-  for (std::size_t at = 0; at < kSeries.size(); ++at) {
+  for (std::size_t at = 0; at < kSeriesColors.size(); ++at) {
     const std::string n = std::to_string(at);
     out += ".figure .s" + n + "{stroke:var(--c" + n + ")}.figure .f" + n + "{fill:var(--c" + n +
            ")}\n";

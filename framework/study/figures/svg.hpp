@@ -51,8 +51,8 @@ class Canvas {
 /// One decimal, enough for a screen.
 std::string pixels(double value);
 
-// Paints: attributes of an element. Series have colour-blind-safe colours, and dashes and marks as
-// well.
+// Paints: attributes of an element. Series have colours of host::kSeriesColors, then the same
+// dashed, and marks.
 std::string series_line(std::size_t series, double width = 1.8);
 std::string series_fill(std::size_t series);
 std::string series_fill_pale(std::size_t series);

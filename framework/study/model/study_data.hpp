@@ -28,10 +28,16 @@ struct StudyData {
   std::vector<std::string> stores;
   std::vector<StoredVariant> scenarios;
   std::vector<StoredVariant> pipelines;
+  /// Of each pipeline its place among all that the study plans, by which it is coloured; empty: its
+  /// index.
+  std::vector<std::size_t> series;
   std::vector<StoredSession> sessions;
   std::vector<std::string> columns;  ///< names of values, sorted
   std::vector<RunRow> rows;          ///< sorted by scenario, pipeline, repetition; keys unique
 
+  std::size_t series_of(std::size_t pipeline) const {
+    return pipeline < series.size() ? series[pipeline] : pipeline;
+  }
   /// Index of the column; columns.size() if there is none.
   std::size_t column(std::string_view name) const;
 };

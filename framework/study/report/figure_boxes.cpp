@@ -70,13 +70,13 @@ std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis
   if (!sample.box) {
     return 0;
   }
-  draw_box(canvas, *sample.box, axis, y + 15, p);
+  draw_box(canvas, *sample.box, axis, y + 15, data.series_of(p));
   const std::vector<std::size_t> shown = shown_points(sample);
   for (const std::size_t at : shown) {
     // Spread over the height of the box by the run's index, so that equal values stay visible.
     const double shift = double(at * 7 % 11) - 5;
     const RunRow& row = data.rows[sample.rows[at]];
-    canvas.point(axis(sample.values[at]), y + 15 + shift, p, sample.rows[at],
+    canvas.point(axis(sample.values[at]), y + 15 + shift, data.series_of(p), sample.rows[at],
                  run_name(data, row) + ": " + with_unit(metric, sample.values[at], 6));
   }
   const bool all = sample.values.size() <= kFew;

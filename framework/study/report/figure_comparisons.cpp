@@ -73,13 +73,14 @@ void draw_names(Canvas& canvas, const StudyData& data, const Comparison& row, bo
   canvas.text(kRight, y, effect_text(row), "quiet", Anchor::end);
 }
 
-void draw_effect(Canvas& canvas, const PairedEffect& effect, const Axis& axis, double y) {
+void draw_effect(Canvas& canvas, const PairedEffect& effect, const Axis& axis, double y,
+                 std::size_t series) {
   if (effect.interval) {
     canvas.path("M" + pixels(axis(effect.interval->low)) + " " + pixels(y) + "H" +
                     pixels(axis(effect.interval->high)),
                 ink_line(2));
   }
-  canvas.mark(axis(effect.median), y, 0, 4);
+  canvas.mark(axis(effect.median), y, series, 4);
 }
 
 Grid numbers_of(const StudyData& data, const MetricAnalysis& metric) {
@@ -140,7 +141,7 @@ Figure comparison_figure(const StudyData& data, const MetricAnalysis& metric) {
     const double none = axis(ratio ? 1 : 0);
     canvas.line(none, y + more + 5, none, y + more + 26,
                 "reference");  // without crossing the texts
-    draw_effect(canvas, row->effect, axis, y + more + 15);
+    draw_effect(canvas, row->effect, axis, y + more + 15, data.series_of(row->pipeline));
     y += kRow + more;
   }
   const std::string title = metric_title(metric.metric) + ", pipeline against pipeline";

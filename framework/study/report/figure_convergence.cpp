@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/view/series_colors.hpp"
 #include "study/figures/text.hpp"
 #include "study/report/figures.hpp"
 
@@ -116,6 +117,8 @@ std::string caption_of(const Convergence& convergence) {
 
 Figure convergence_figure(const StudyData& data, const Convergence& convergence) {
   const bool is_population = convergence.is_population;
+  const std::size_t best = data.series_of(convergence.pipeline);
+  const std::size_t mean = best + host::kSeriesColors.size();  // the same colour, dashed
   const double last = convergence.iterations.back();
   const double first = convergence.iterations.front();
   const Axis along(first, std::max(last, first + 1), false, kLeft, kRight);
@@ -127,19 +130,19 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
   const double bottom = is_population ? kAliveBottom : kBottom;
   draw_bottom(canvas, along, kTop, bottom, "Iteration, number");
   if (is_population) {
-    draw(canvas, band_of(convergence, convergence.mean), along, up, 1);
+    draw(canvas, band_of(convergence, convergence.mean), along, up, mean);
     double most = 1;
     for (const Spread& spread : convergence.alive) {
       most = std::max(most, spread.high);
     }
     const Axis alive(0, 1.04 * most, false, kAliveBottom, kAliveTop);
     draw_left(canvas, alive, kLeft, kRight, kAliveTop, "Found a route in the iteration, number");
-    draw(canvas, band_of(convergence, convergence.alive), along, alive, 2);
+    draw(canvas, band_of(convergence, convergence.alive), along, alive, best);
   }
-  draw(canvas, band_of(convergence, convergence.best), along, up, 0);
+  draw(canvas, band_of(convergence, convergence.best), along, up, best);
   double y = bottom + kAxisHeight + 20;
-  y = draw_key(canvas, kLeft, y, 0, "best so far");
-  y = is_population ? draw_key(canvas, kLeft, y, 1, "mean of the iteration") : y;
+  y = draw_key(canvas, kLeft, y, best, "best so far");
+  y = is_population ? draw_key(canvas, kLeft, y, mean, "mean of the iteration") : y;
   const std::string step = convergence.is_only_step ? "" : ", step " + printable(convergence.step);
   return {"convergence-" + slug(data.pipelines[convergence.pipeline].name) +
               (step.empty() ? "" : "-" + slug(convergence.step)),

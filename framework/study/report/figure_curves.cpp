@@ -54,7 +54,8 @@ double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curv
   draw_shares(canvas, kLeft, kRight, kTop, kBottom);
   draw_bottom(canvas, axis, kTop, kBottom, label);
   for (std::size_t p = 0; p < curves.size(); ++p) {
-    draw_steps(canvas, curves[p], axis, up, p);
+    const std::size_t series = data.series_of(p);
+    draw_steps(canvas, curves[p], axis, up, series);
     // Marks distinguish the curves without colours; each curve has them at different positions.
     for (int n = 0; n < 4; ++n) {
       const double share = (n + 0.35 + 0.6 * double(p % 7) / 7) / 4;
@@ -63,13 +64,13 @@ double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curv
       const double high = axis.logarithmic() ? std::log(axis.high()) : axis.high();
       const double place = low + share * (high - low);
       const double at = axis.logarithmic() ? std::exp(place) : place;
-      canvas.mark(px, up(share_at(curves[p], at)), p, 3.2);
+      canvas.mark(px, up(share_at(curves[p], at)), series, 3.2);
     }
   }
   double y = kBottom + kAxisHeight + 20;
   for (std::size_t p = 0; p < curves.size(); ++p) {
-    canvas.path("M" + pixels(kLeft) + " " + pixels(y - 4) + "h26", series_line(p));
-    canvas.mark(kLeft + 13, y - 4, p, 3.4);
+    canvas.path("M" + pixels(kLeft) + " " + pixels(y - 4) + "h26", series_line(data.series_of(p)));
+    canvas.mark(kLeft + 13, y - 4, data.series_of(p), 3.4);
     canvas.text(kLeft + 34, y, pipeline_label(data, p, 34), "ink");
     canvas.text(kRight, y, percent(end_of(curves[p])) + ends, "quiet", Anchor::end);
     y += 18;

@@ -70,7 +70,7 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
     const double y = below + 18 + kRow * double(left ? at : order.size() - 1 - at);
     canvas.path("M" + pixels(x) + " " + pixels(kAxisY) + "V" + pixels(y) + "H" +
                     pixels(left ? 0 : kFigureWidth),
-                series_line(order[at], 1.3));
+                series_line(data.series_of(order[at]), 1.3));
     const double room = (left ? x : kFigureWidth - x) - 8;
     const std::string rank = readable(ranks[order[at]], 3);
     const std::string name =

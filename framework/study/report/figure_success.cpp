@@ -95,7 +95,7 @@ Figure success_figure(const StudyData& data, const Analysis& analysis) {
     const Interval interval = success.interval.interval.value_or(Interval{kNone, kNone});
     if (success.runs > 0) {
       canvas.rectangle(kLeft, y + 6, axis(100 * share) - kLeft, kBar,
-                       outcome_fill("solved") + " fill-opacity=\"0.75\"");
+                       series_fill(data.series_of(p)) + " fill-opacity=\"0.5\"");
     }
     if (success.interval.interval) {
       const double low = axis(100 * interval.low);

@@ -90,6 +90,11 @@ StudyData in_order(StudyData data, bool times) {
   };
   const std::vector<std::size_t> pipeline = sort_variants(data.pipelines, by_entry);
   const std::vector<std::size_t> scenario = sort_variants(data.scenarios, by_name);
+  std::size_t beyond = places.size();  // pipelines that the study does not plan
+  for (const StoredVariant& variant : data.pipelines) {
+    const auto found = places.find(variant.name);
+    data.series.push_back(found == places.end() ? beyond++ : found->second);
+  }
   for (RunRow& row : data.rows) {
     row.pipeline = pipeline[row.pipeline];
     row.scenario = scenario[row.scenario];

@@ -90,6 +90,7 @@ std::string page_data(const Content& content, const Table& scenarios) {
   host::Json json;
   json["pipelines"] = names(data.pipelines);
   json["scenarios"] = names(data.scenarios);
+  json["series"] = data.series;
   json["columns"] = host::Json::array();
   const std::vector<std::size_t> columns = shown_columns(content);
   for (const std::size_t at : columns) {

@@ -103,6 +103,7 @@ std::string scene_text(const StudyData& data, const std::vector<std::size_t>& ro
     const RunRow& row = data.rows[rows[at]];
     scene["results"][at]["name"] = data.pipelines[row.pipeline].name;
     scene["results"][at]["file"] = run_name(data, row);
+    scene["results"][at]["series"] = data.series_of(row.pipeline);
   }
   const RunRow& first = data.rows[rows.front()];
   scene["title"] = data.scenarios[first.scenario].name + " #" + std::to_string(first.repetition);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {read_scene} from './scene.js';
+import {set_series} from './colors.js';
 import {by_id} from './dom.js';
 import {Store} from './store.js';
 import {Frame, hidden_at_first, lines_of} from './world.js';
@@ -61,6 +62,7 @@ function still(view, store) {
 
 function start() {
   const scene = read_scene(by_id('scene').textContent);
+  set_series(scene.results);
   const lines = lines_of(scene.results);
   const world = {scene, frame: new Frame(scene.box), lines};
   const store = new Store(first_state(scene, lines));

@@ -71,7 +71,8 @@ function number(value, unit) {
 
 /** A placeholder in the scene's list for a run without anything to draw, instead of another's profile. */
 function without_route(data, run) {
-  return {name: data.pipelines[run.pipeline], file: run_name(data, run), status: run.outcome,
+  return {name: data.pipelines[run.pipeline], series: data.series[run.pipeline],
+    file: run_name(data, run), status: run.outcome,
     message: data.why_not.get(run.index) ?? run.message, seed: run.seed, metrics: null, check: null,
     steps: [], route: null, limits: null, profile: null, flight: null, trace: null};
 }
