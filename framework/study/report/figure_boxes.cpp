@@ -4,6 +4,7 @@
 
 #include "study/figures/text.hpp"
 #include "study/report/figures.hpp"
+#include "study/report/panels.hpp"
 
 namespace altiplan::study::report {
 namespace {
@@ -12,6 +13,8 @@ constexpr double kLeft = 12;
 constexpr double kRight = kFigureWidth - 16;
 constexpr double kRow = 44;
 constexpr double kFirst = 16;
+constexpr double kTitle = 24;    // of a panel
+constexpr double kBetween = 14;  // panels
 /// Up to that many runs are all shown as points.
 constexpr std::size_t kFew = 40;
 /// Maximum number of points of a box; more would smear.
@@ -60,8 +63,7 @@ std::string with_unit(const MetricAnalysis& metric, double value, int digits) {
 
 /// Draws one pipeline's row; returns the number of outliers without a point.
 std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis& metric,
-                     std::size_t p, const Axis& axis, double y) {
-  const Sample& sample = metric.samples[p];
+                     std::size_t p, const Sample& sample, const Axis& axis, double y) {
   const std::string right = sample.box ? "median " + with_unit(metric, sample.box->median, 4) +
                                              "  ·  n = " + grouped(sample.values.size())
                                        : "no solved run has a value";
@@ -70,77 +72,145 @@ std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis
   if (!sample.box) {
     return 0;
   }
-  draw_box(canvas, *sample.box, axis, y + 15, data.series_of(p));
+  const std::size_t series = data.series_of(p);
+  draw_box(canvas, *sample.box, axis, y + 15, series);
   const std::vector<std::size_t> shown = shown_points(sample);
   for (const std::size_t at : shown) {
     // Spread over the height of the box by the run's index, so that equal values stay visible.
     const double shift = double(at * 7 % 11) - 5;
     const RunRow& row = data.rows[sample.rows[at]];
-    canvas.point(axis(sample.values[at]), y + 15 + shift, data.series_of(p), sample.rows[at],
+    canvas.point(axis(sample.values[at]), y + 15 + shift, series, sample.rows[at],
                  run_name(data, row) + ": " + with_unit(metric, sample.values[at], 6));
   }
   const bool all = sample.values.size() <= kFew;
   return all ? 0 : sample.box->outliers.size() - shown.size();
 }
 
-Grid box_numbers(const StudyData& data, const MetricAnalysis& metric) {
-  Grid grid{{"pipeline", "part", "value", "scenario", "repetition"}, {}};
-  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
-    const std::string& name = data.pipelines[p].name;
-    const Sample& sample = metric.samples[p];
-    grid.rows.push_back({name, "n", std::to_string(sample.values.size()), "", ""});
-    if (!sample.box) {
-      continue;
-    }
-    const BoxPlot& box = *sample.box;
-    for (const auto& [part, value] : {std::pair("low_whisker", box.low_whisker),
-                                      {"q1", box.q1},
-                                      {"median", box.median},
-                                      {"q3", box.q3},
-                                      {"high_whisker", box.high_whisker}}) {
-      grid.rows.push_back({name, part, exact(value), "", ""});
-    }
-    for (const std::size_t at : box.outliers) {
-      const RunRow& row = data.rows[sample.rows[at]];
-      grid.rows.push_back({name, "outlier", exact(sample.values[at]),
-                           data.scenarios[row.scenario].name, std::to_string(row.repetition)});
-    }
+void add_numbers(Grid& grid, const StudyData& data, const std::string& name, const Sample& sample,
+                 const std::string& panel) {
+  grid.rows.push_back({name, "n", std::to_string(sample.values.size()), "", "", panel});
+  if (!sample.box) {
+    return;
   }
-  return grid;
+  const BoxPlot& box = *sample.box;
+  for (const auto& [part, value] : {std::pair("low_whisker", box.low_whisker),
+                                    {"q1", box.q1},
+                                    {"median", box.median},
+                                    {"q3", box.q3},
+                                    {"high_whisker", box.high_whisker}}) {
+    grid.rows.push_back({name, part, exact(value), "", "", panel});
+  }
+  for (const std::size_t at : box.outliers) {
+    const RunRow& row = data.rows[sample.rows[at]];
+    grid.rows.push_back({name, "outlier", exact(sample.values[at]),
+                         data.scenarios[row.scenario].name, std::to_string(row.repetition), panel});
+  }
 }
-}  // namespace
 
-Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
-  std::vector<double> values;
-  std::size_t runs = 0;
-  for (const Sample& sample : metric.samples) {
-    for (const double value : sample.values) {
-      values.push_back(
-          without_noise(metric.metric, value));  // otherwise the axis spans 1e-13 degrees
+/// The values in the panel's scenarios.
+Sample part_of(const StudyData& data, const Sample& sample, const Panel& panel) {
+  Sample part;
+  for (std::size_t at = 0; at < sample.values.size(); ++at) {
+    if (panel.has[data.rows[sample.rows[at]].scenario]) {
+      part.values.push_back(sample.values[at]);
+      part.rows.push_back(sample.rows[at]);
     }
-    runs += sample.values.size();
   }
-  const Axis axis = Axis::around(values, kLeft, kRight);
-  Canvas canvas;
-  const double bottom = kFirst + kRow * double(data.pipelines.size()) - 10;
-  draw_bottom(canvas, axis, kFirst + 4, bottom, axis_label(metric_label(metric.metric), axis));
-  std::size_t hidden = 0;
-  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
-    hidden += draw_row(canvas, data, metric, p, axis, kFirst + kRow * double(p));
+  part.box = box_plot(part.values);
+  return part;
+}
+
+/// A box for each pipeline, of the values in the panel's scenarios.
+class BoxPanel {
+ public:
+  BoxPanel(const StudyData& data, const MetricAnalysis& metric, Panel panel)
+      : data_(data), metric_(metric), panel_(std::move(panel)) {
+    for (const Sample& sample : metric.samples) {
+      samples_.push_back(part_of(data, sample, panel_));
+      runs_ += samples_.back().values.size();
+    }
   }
+
+  std::size_t runs() const { return runs_; }
+  std::size_t hidden() const { return hidden_; }
+
+  /// Returns the y below it.
+  double draw(Canvas& canvas, double y) {
+    if (!panel_.title.empty()) {
+      canvas.text(kLeft, y + kFirst, panel_.title);
+      y += kTitle;
+    }
+    std::vector<double> values;
+    for (const Sample& sample : samples_) {
+      for (const double value : sample.values) {
+        // Otherwise the axis spans 1e-13 degrees.
+        values.push_back(without_noise(metric_.metric, value));
+      }
+    }
+    const Axis axis = Axis::around(values, kLeft, kRight);
+    const double bottom = y + kFirst + kRow * double(samples_.size()) - 10;
+    draw_bottom(canvas, axis, y + kFirst + 4, bottom,
+                axis_label(metric_label(metric_.metric), axis));
+    for (std::size_t p = 0; p < samples_.size(); ++p) {
+      hidden_ +=
+          draw_row(canvas, data_, metric_, p, samples_[p], axis, y + kFirst + kRow * double(p));
+    }
+    return bottom + kAxisHeight;
+  }
+
+  void add_to(Grid& grid) const {
+    for (std::size_t p = 0; p < samples_.size(); ++p) {
+      add_numbers(grid, data_, data_.pipelines[p].name, samples_[p], panel_.title);
+    }
+  }
+
+ private:
+  const StudyData& data_;
+  const MetricAnalysis& metric_;
+  Panel panel_;
+  std::vector<Sample> samples_;  ///< one per pipeline
+  std::size_t runs_ = 0;
+  std::size_t hidden_ = 0;
+};
+
+std::string caption_of(std::size_t panels, std::size_t runs, std::size_t hidden) {
   std::string caption = counted(runs, "solved run") +
                         ". Box: quartiles and median; whiskers: the last value within 1.5 "
                         "interquartile ranges; points: outliers, or all of up to " +
                         std::to_string(kFew) + " runs.";
+  if (panels > 1) {
+    caption += " Scenarios whose medians differ tenfold have panels of their own.";
+  }
   if (hidden > 0) {
     caption += " " + counted(hidden, "outlier") + " nearer to the box not drawn.";
   }
+  return caption;
+}
+}  // namespace
+
+Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
+  std::vector<Panel> panels = panels_of(data, metric);
+  if (panels.empty()) {
+    panels.push_back({"", std::vector<bool>(data.scenarios.size(), true)});
+  }
+  Canvas canvas;
+  Grid grid{{"pipeline", "part", "value", "scenario", "repetition", "panel"}, {}};
+  std::size_t runs = 0;
+  std::size_t hidden = 0;
+  double y = 0;
+  for (const Panel& panel : panels) {
+    BoxPanel boxes(data, metric, panel);
+    y = boxes.draw(canvas, y == 0 ? 0 : y + kBetween);
+    boxes.add_to(grid);
+    runs += boxes.runs();
+    hidden += boxes.hidden();
+  }
   return {"boxes-" + slug(metric.metric),
           metric_title(metric.metric) + " of solved runs",
-          caption,
+          caption_of(panels.size(), runs, hidden),
           kFigureWidth,
-          bottom + kAxisHeight,
+          y,
           canvas.take(),
-          box_numbers(data, metric)};
+          std::move(grid)};
 }
 }  // namespace altiplan::study::report
