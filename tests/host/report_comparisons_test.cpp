@@ -93,12 +93,17 @@ TEST(Report, AShareHasOneInterval) {
 
 TEST(Report, OfTooFewScenariosThereIsNoInterval) {
   StudyData data = study(2, 5, 4);
-  data.file.claims = {{"longer", "median(p1.length_m / p0.length_m)", "> 1", 0.95}};
+  data.file.claims = {{"longer", "median(p1.length_m / p0.length_m)", "> 1", 0.95},
+                      {"harder", "median(p1.expanded / p0.expanded)", "> 1", 0.95}};
   const auto files = written(data);
   const std::string& page = files.at("index.html");
-  EXPECT_NE(page.find("its claim is undecided"), std::string::npos);
-  EXPECT_NE(page.find("too few scenarios: at least 6 for 95 %"), std::string::npos);
-  EXPECT_NE(page.find("too few scenarios, at least 6 are needed"), std::string::npos);
+  EXPECT_NE(page.find("none of 2 claims holds, 2 undecided"), std::string::npos);
+  EXPECT_NE(page.find("Undecided, too few scenarios (at least 6 for 95 %): longer, harder."),
+            std::string::npos);
+  for (const std::string once : {"too few scenarios", "have no interval"}) {
+    EXPECT_NE(page.find(once), std::string::npos) << once;
+    EXPECT_EQ(page.find(once), page.rfind(once)) << once;
+  }
 }
 
 TEST(Report, AVerdictSaysNothingTwice) {

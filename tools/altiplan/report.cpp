@@ -62,7 +62,11 @@ int write_page(const Arguments& arguments) {
          " scenes could not be built: the page lists them; the first: " +
          study::report::printable(written.notes.front()));
   }
-  std::printf("%s\n%s: %s MB, %zu figures, %zu scenes\n", written.summary.c_str(),
+  std::printf("%s\n", written.summary.c_str());
+  for (const std::string& sentence : written.lacking) {
+    std::printf("  %s\n", sentence.c_str());
+  }
+  std::printf("%s: %s MB, %zu figures, %zu scenes\n",
               (std::filesystem::path(arguments.folder) / "index.html").c_str(),
               fixed(double(written.page_bytes) / 1e6, 2).c_str(), written.figures, written.scenes);
   return kDone;

@@ -98,8 +98,10 @@ class Evaluation {
     pairs_.missing.assign(quantity.values.size(), 0);
   }
 
-  void add(std::size_t scenario, const Runs& runs) {
+  /// `runs` are those of the pipelines named.
+  void add(std::size_t scenario, const Runs& runs, bool is_whole) {
     ++pairs_.all;
+    pairs_.whole += is_whole ? 1 : 0;
     std::vector<double> values;
     bool is_false = false;  // because of a guard
     bool is_missing = false;
@@ -158,7 +160,7 @@ ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
       }
     }
     for (const auto& [repetition, runs] : pairs) {
-      evaluation.add(scenario, runs);
+      evaluation.add(scenario, runs, runs.size() == named.size());
     }
   }
   return evaluation.take();

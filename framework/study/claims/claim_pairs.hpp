@@ -13,6 +13,7 @@ struct ClaimPairs {
   std::vector<double> results;         ///< one per counted pair
   std::vector<std::size_t> scenarios;  ///< the scenario of each
   std::size_t all = 0;                 ///< pairs with at least one run
+  std::size_t whole = 0;               ///< pairs with runs of all pipelines named
   std::vector<std::size_t> missing;    ///< pairs without it, one per value of the quantity
   std::size_t undefined = 0;  ///< pairs with all values whose result is undefined, such as 0 / 0
 };

@@ -66,7 +66,8 @@ std::string result(const JudgedClaim& judged, const ClaimRange& range) {
     return judged.why_no_interval.empty()
                ? estimate + ", which is " + (satisfies ? "" : "not ") + is +
                      " (an extreme: of these runs only, without an interval)"
-               : estimate + ", claimed was " + is + "; no interval, " + judged.why_no_interval;
+               : estimate + ", claimed was " + is + "; no interval" +
+                     (judged.has_too_few ? "" : ", " + judged.why_no_interval);
   }
   const auto [low, high] = *judged.interval;
   const std::string interval = estimate + ", " + host::per_cent(judged.claim.confidence) +

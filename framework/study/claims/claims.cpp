@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "host/base/words.hpp"
 #include "study/claims/claim_pairs.hpp"
@@ -61,6 +62,7 @@ void find_interval(const StudyData& data, const ClaimQuantity& quantity, const C
   }
   if (!judged.interval) {
     judged.why_no_interval = why_no_bootstrap(pairs.scenarios, confidence);
+    judged.has_too_few = !judged.why_no_interval.empty();
     if (judged.why_no_interval.empty()) {
       judged.why_no_interval = "some resamples are not finite";
     }
@@ -123,6 +125,7 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
     const ClaimPairs pairs = pairs_of(data, quantity);
     judged.used = pairs.results.size();
     judged.pairs = pairs.all;
+    judged.lacks_runs = pairs.all > 0 && pairs.whole == 0;
     judged.measured = std::any_of(quantity.values.begin(), quantity.values.end(),
                                   [](const ClaimValue& value) { return is_measured(value.name); });
     if (judged.used > 0) {
@@ -138,6 +141,28 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
     judged.reasons = host::sentence("The claim cannot be read: " + std::string(error.what()));
   }
   return judged;
+}
+
+std::vector<std::string> common_reasons(const std::vector<JudgedClaim>& claims) {
+  std::map<std::string, std::string> named;  // claims of each reason
+  for (const JudgedClaim& judged : claims) {
+    std::string reason;
+    if (judged.lacks_runs) {
+      reason = "No data, as no pair has runs of all pipelines named";
+    } else if (judged.has_too_few) {  // "too few scenarios: at least 6 for 95 %"
+      const std::string& why = judged.why_no_interval;
+      const std::size_t colon = why.find(": ");
+      reason = "Undecided, " + why.substr(0, colon) + " (" + why.substr(colon + 2) + ")";
+    }
+    if (!reason.empty()) {
+      named[reason] += (named[reason].empty() ? "" : ", ") + judged.claim.id;
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [reason, ids] : named) {
+    sentences.push_back(host::sentence(reason + ": " + ids));
+  }
+  return sentences;
 }
 
 bool is_yes_or_no(std::string_view value) {

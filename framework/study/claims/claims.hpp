@@ -33,6 +33,8 @@ struct JudgedClaim {
   std::string method;           ///< of the interval: "bootstrap over 100 scenarios"; "" without one
   std::size_t used = 0;         ///< pairs in which every named value exists
   std::size_t pairs = 0;        ///< all pairs (scenario, repetition) with a run
+  bool lacks_runs = false;      ///< no pair has runs of all pipelines named
+  bool has_too_few = false;     ///< scenarios or repetitions for an interval
   bool measured = false;        ///< names a time or memory, which vary between equal runs
   std::string why_no_interval;  ///< "too few scenarios: at least 6 for 95 %"; "" with one
   std::string words;            ///< the verdict and its reasons, in sentences
@@ -45,6 +47,10 @@ std::string wanted(const ClaimEntry& claim);
 /// Evaluates the claim on the study's runs. A value counts if its run has it and solved the
 /// problem; values that describe failures (is_of_every_run) count in every run that has them.
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
+
+/// A sentence for each reason that may be that of many claims, without runs or with too few, and
+/// the claims; their own words do not say it again.
+std::vector<std::string> common_reasons(const std::vector<JudgedClaim>& claims);
 
 /// What so few runs keep from the claim even if every pair counts: "will be undecided: too few
 /// scenarios: at least 6 for 95 %", "cannot hold: …"; "" if it may hold. `groups` has the scenario

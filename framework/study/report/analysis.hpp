@@ -17,6 +17,14 @@ constexpr double kAlpha = 0.05;
 /// the stores; without values that vary between equal runs if `times` is false.
 StudyData in_order(StudyData data, bool times);
 
+/// What the study plans and has no run of.
+struct Absent {
+  std::vector<std::string> pipelines;  ///< names
+  std::size_t scenarios = 0;           ///< number
+};
+/// Takes them out of a study that has runs.
+Absent take_absent(StudyData& data);
+
 /// The outcomes of a pipeline's runs.
 struct Success {
   std::size_t runs = 0;

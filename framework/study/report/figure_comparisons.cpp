@@ -110,14 +110,11 @@ std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
                         "less" +
                         (less_is_better ? " (is better)" : "") + ", right of it more" +
                         (less_is_better ? "." : " (is better).");
-  if (std::any_of(rows.begin(), rows.end(),
-                  [](const Comparison* row) { return !row->effect.interval; })) {
-    caption += " Without an interval: too few scenarios, at least " +
-               std::to_string(fewest_units(kConfidence)) + " are needed.";
-  }
-  if (rows.size() < metric.comparisons.size()) {
+  const auto all = std::count_if(metric.comparisons.begin(), metric.comparisons.end(),
+                                 [](const Comparison& made) { return made.used > 0; });
+  if (rows.size() < std::size_t(all)) {
     caption += " " + std::to_string(rows.size()) + " of " +
-               counted(metric.comparisons.size(), "comparison") +
+               counted(std::size_t(all), "comparison") +
                ", those with the lowest p; the table has all.";
   }
   return caption;

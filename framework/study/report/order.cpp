@@ -109,6 +109,53 @@ StudyData in_order(StudyData data, bool times) {
   return data;
 }
 
+namespace {
+
+/// Keeps the marked variants; returns the new index for each old one.
+std::vector<std::size_t> keep(std::vector<StoredVariant>& variants, const std::vector<bool>& kept) {
+  std::vector<std::size_t> place(variants.size(), kNoRow);
+  std::vector<StoredVariant> left;
+  for (std::size_t old = 0; old < variants.size(); ++old) {
+    if (kept[old]) {
+      place[old] = left.size();
+      left.push_back(std::move(variants[old]));
+    }
+  }
+  variants = std::move(left);
+  return place;
+}
+}  // namespace
+
+Absent take_absent(StudyData& data) {
+  Absent absent;
+  if (data.rows.empty()) {
+    return absent;
+  }
+  std::vector<bool> pipelines(data.pipelines.size(), false);
+  std::vector<bool> scenarios(data.scenarios.size(), false);
+  for (const RunRow& row : data.rows) {
+    pipelines[row.pipeline] = true;
+    scenarios[row.scenario] = true;
+  }
+  std::vector<std::size_t> series;
+  for (std::size_t p = 0; p < pipelines.size(); ++p) {
+    if (pipelines[p]) {
+      series.push_back(data.series_of(p));
+    } else {
+      absent.pipelines.push_back(data.pipelines[p].name);
+    }
+  }
+  absent.scenarios = std::size_t(std::count(scenarios.begin(), scenarios.end(), false));
+  const std::vector<std::size_t> pipeline = keep(data.pipelines, pipelines);
+  const std::vector<std::size_t> scenario = keep(data.scenarios, scenarios);
+  data.series = std::move(series);
+  for (RunRow& row : data.rows) {
+    row.pipeline = pipeline[row.pipeline];
+    row.scenario = scenario[row.scenario];
+  }
+  return absent;
+}
+
 const std::vector<std::string>& outcome_order() {
   static const std::vector<std::string> kOrder{
       "solved",        "no_route",   "timed_out", "invalid_problem", "rejected",

@@ -52,12 +52,16 @@ std::string table_html(const Table& table, std::size_t open_rows = 12) {
 /// The warnings shown before any number.
 std::string incomplete_html(const Content& content) {
   const std::string part = incomplete(content.data);
-  return part.empty()
-             ? ""
-             : "<p class=notice><b>" + html(part) +
-                   "</b> A sample, one of several shards, or a study that was interrupted: "
-                   "<code>altiplan study</code> continues where it ended, and "
-                   "<code>altiplan report</code> combines shards.</p>\n";
+  std::string text = part.empty() ? "" : "<b>" + html(part) + "</b>";
+  for (const std::string& sentence : lacking(content)) {
+    text += (text.empty() ? "" : " ") + html(sentence);
+  }
+  if (!part.empty()) {
+    text +=
+        " <code>altiplan study</code> without a selection runs what is left, and "
+        "<code>altiplan report</code> combines shards.";
+  }
+  return text.empty() ? "" : "<p class=notice>" + text + "</p>\n";
 }
 
 /// With the result of a comparison next to its pipelines, so that it stays visible on a narrow
@@ -100,16 +104,23 @@ std::string claims_html(const Content& content) {
   if (content.claims.empty() && content.claims_left_out.empty()) {
     return paragraph("The study has no claims.", "quiet");
   }
-  std::string out = content.claims.empty() ? "" : "<ul class=claims>\n";
-  for (const JudgedClaim& judged : content.claims) {
-    static constexpr const char* kKinds[] = {"good", "bad", "open", "open"};
-    out += std::string("<li class=\"") + kKinds[int(judged.verdict)] + "\"><div class=head><b>" +
-           html(judged.claim.id) + "</b> <span class=verdict>" +
-           html(std::string(name_of(judged.verdict))) + "</span></div><code>" +
-           html(judged.claim.that) + " " + html(wanted(judged.claim)) + "</code>" +
-           paragraph(judged.reasons) + "</li>\n";
+  std::string out;
+  for (const std::string& sentence : common_reasons(content.claims)) {
+    out += paragraph(sentence);
   }
-  out += content.claims.empty() ? "" : "</ul>\n";
+  std::string list;
+  for (const JudgedClaim& judged : content.claims) {
+    if (judged.lacks_runs) {
+      continue;
+    }
+    static constexpr const char* kKinds[] = {"good", "bad", "open", "open"};
+    list += std::string("<li class=\"") + kKinds[int(judged.verdict)] + "\"><div class=head><b>" +
+            html(judged.claim.id) + "</b> <span class=verdict>" +
+            html(std::string(name_of(judged.verdict))) + "</span></div><code>" +
+            html(judged.claim.that) + " " + html(wanted(judged.claim)) + "</code>" +
+            paragraph(judged.reasons) + "</li>\n";
+  }
+  out += list.empty() ? "" : "<ul class=claims>\n" + list + "</ul>\n";
   for (const std::string& line : content.claims_left_out) {
     out += paragraph(line, "quiet");
   }

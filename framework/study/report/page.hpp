@@ -28,7 +28,8 @@ struct Builds {
 
 /// The content of the report, independent of the output format.
 struct Content {
-  StudyData data;                        ///< in_order
+  StudyData data;  ///< in_order, without what is absent
+  Absent absent;
   std::vector<std::string> short_names;  ///< of its pipelines
   bool times = true;
   std::string title;
@@ -66,6 +67,9 @@ Grid run_grid(const Content& content);
 
 /// "A study of 4 pipelines …", one sentence.
 std::string summary(const Content& content);
+/// Sentences on what the report lacks beside what it has, each once: pipelines, scenarios and
+/// intervals.
+std::vector<std::string> lacking(const Content& content);
 /// "34 of 540 planned runs are stored (6 %): verdicts are preliminary.", "" if all are stored.
 std::string incomplete(const StudyData& data);
 /// Paragraphs on methods: tests, corrections, resamples, omissions.

@@ -86,6 +86,33 @@ std::string summary(const Content& content) {
          (faults == 0 ? "no unexplained failures" : counted(faults, "unexplained failure")) + ".";
 }
 
+std::vector<std::string> lacking(const Content& content) {
+  constexpr std::size_t kMaxNames = 12;
+  std::vector<std::string> sentences;
+  if (const auto& absent = content.absent.pipelines; !absent.empty()) {
+    std::string names;
+    for (std::size_t at = 0; at < absent.size() && at < kMaxNames; ++at) {
+      names += (at == 0 ? "" : ", ") + printable(absent[at]);
+    }
+    if (absent.size() > kMaxNames) {
+      names += " and " + grouped(absent.size() - kMaxNames) + " more";
+    }
+    sentences.push_back("No run of " + counted(absent.size(), "pipeline") + ": " + names + ".");
+  }
+  if (content.absent.scenarios > 0) {
+    sentences.push_back("No run of " + counted(content.absent.scenarios, "scenario") + ".");
+  }
+  const auto lacks = [](const Comparison& made) { return made.used > 0 && !made.effect.interval; };
+  for (const MetricAnalysis& metric : content.analysis.metrics) {
+    if (std::any_of(metric.comparisons.begin(), metric.comparisons.end(), lacks)) {
+      sentences.push_back("Comparisons of fewer than " + std::to_string(fewest_units(kConfidence)) +
+                          " scenarios (of one: repetitions) have no interval.");
+      break;
+    }
+  }
+  return sentences;
+}
+
 std::string incomplete(const StudyData& data) {
   const std::size_t stored = data.rows.size();
   if (stored >= data.planned) {

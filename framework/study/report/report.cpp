@@ -124,15 +124,16 @@ void draw(Content& content) {
 
 Content content_of(const Source& source, const Options& options) {
   Content content;
-  content.data = in_order(source.data, options.times);
-  content.short_names = short_names(content.data);
   content.times = options.times;
+  content.data = in_order(source.data, options.times);
+  judge_claims(content);
+  content.absent = take_absent(content.data);
+  content.short_names = short_names(content.data);
   content.title = printable(options.title.empty() ? content.data.file.name : options.title);
   content.title = content.title.empty() ? "Study" : content.title;
   content.command = options.command;
   content.study_text = source.study_text;
   content.analysis = analyse(content.data, options.times);
-  judge_claims(content);
   content.failures = failures_of(content.data);
   content.convergence = convergence_of(content.data, source.traces);
   draw(content);
@@ -313,6 +314,7 @@ Written write_report(const Source& source, const Options& options, const fs::pat
   written.scenes = content.scenes.scenes.size();
   written.notes = content.scenes.notes;
   written.changed = content.scenes.changed;
+  written.lacking = lacking(content);
   const std::string part = incomplete(content.data);
   written.summary = (part.empty() ? "" : part + " ") + summary(content);
   return written;

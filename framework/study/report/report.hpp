@@ -37,6 +37,7 @@ struct Written {
   std::vector<std::string> notes;    ///< on scenes that could not be built
   std::vector<std::string> changed;  ///< sentences on changes since the runs were made
   std::string summary;
+  std::vector<std::string> lacking;  ///< sentences on what the study has no runs of
 };
 
 /// Throws Error if the folder contains anything but an earlier report, or is not writable.
