@@ -195,7 +195,7 @@ TEST(Describe, TextJsonAndTable) {
 TEST(Plugins, EachLibraryIsTriedInAProcessOfItsOwn) {
   Registry registry({altiplan::folders::build() / "tests/broken_plugins"});
   const std::vector<Library> libraries = examine_all(registry);
-  const std::string text = plugins_text(registry, libraries);
+  const std::string text = refused_text(libraries);
   const Json json = plugins_json(registry, libraries);
   std::size_t refused = 0;
   for (const Library& library : libraries) {
@@ -214,7 +214,11 @@ TEST(Plugins, EachLibraryIsTriedInAProcessOfItsOwn) {
   EXPECT_EQ(libraries.size(), 5U);
   EXPECT_EQ(refused, 4U);
   EXPECT_EQ(json["libraries"].size(), 5U);
-  EXPECT_NE(text.find("planner alpha"), std::string::npos);
+  EXPECT_NE(searched_text(registry).find("searched: "), std::string::npos);
+  const std::vector<ListedPlugin> listed = listed_plugins(libraries);
+  EXPECT_TRUE(std::any_of(listed.begin(), listed.end(), [](const ListedPlugin& plugin) {
+    return plugin.kind == "planner" && plugin.name == "alpha";
+  }));
 }
 }  // namespace
 }  // namespace altiplan::host

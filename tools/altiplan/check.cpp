@@ -12,6 +12,7 @@
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
+#include "terminal.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -30,9 +31,14 @@ void print_violations(const CheckResult& verdict, const char* point) {
   }
 }
 
+std::string verdict_text(const CheckResult& verdict) {
+  return painted(stdout, verdict.ok() ? Color::good : Color::bad,
+                 verdict.ok() ? "valid" : "not valid");
+}
+
 void print_route(const CheckResult& verdict, const Measures& measures) {
   std::printf("%s: %zu waypoints, %s km, clearance %s m, %s m above ground\n",
-              verdict.ok() ? "valid" : "not valid", measures.waypoints,
+              verdict_text(verdict).c_str(), measures.waypoints,
               fixed(measures.length_m / 1000, 3).c_str(),
               fixed(measures.min_clearance_m, 2).c_str(),
               fixed(measures.min_ground_clearance_m, 2).c_str());
@@ -41,7 +47,7 @@ void print_route(const CheckResult& verdict, const Measures& measures) {
 
 void print_track(const host::TrackVerdict& verdict, const host::Track& track, bool has_events) {
   std::printf("flight %s: %zu points, %s s, %d collision%s, %s\n",
-              verdict.check.ok() ? "valid" : "not valid", track.size(),
+              verdict_text(verdict.check).c_str(), track.size(),
               fixed(track.back().first, 0).c_str(), verdict.collisions,
               verdict.collisions == 1 ? "" : "s",
               verdict.reached ? "reached the goal" : "did not reach the goal");

@@ -19,6 +19,7 @@
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "plan_world.hpp"
+#include "terminal.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -54,7 +55,9 @@ std::string left_out(const PlanCheck& plan) {
 }
 
 void print(const PlanReport& report, const host::Mission& world) {
-  std::printf("%s: %s, %zu waypoints, %s km, %s\n", report.passed() ? "pass" : "fail",
+  const Color color = report.passed() ? Color::good : Color::bad;
+  std::printf("%s: %s, %zu waypoints, %s km, %s\n",
+              painted(stdout, color, report.passed() ? "pass" : "fail").c_str(),
               host::printable(report.file).c_str(), report.measures.waypoints,
               fixed(report.measures.length_m / 1000, 3).c_str(), report.height_in_words().c_str());
   for (const Finding& finding : report.findings) {

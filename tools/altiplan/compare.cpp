@@ -8,6 +8,7 @@
 #include "study/compare/compare.hpp"
 #include "study/compare/origin.hpp"
 #include "study/store/load_study.hpp"
+#include "table.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -108,23 +109,23 @@ std::string verdict_text(const study::MetricChange& change) {
 }
 
 void print_metrics(const std::vector<study::MetricChange>& changes) {
-  int pipeline = 8;
-  int metric = 6;
+  Table table({{"pipeline"},
+               {"metric"},
+               {"pairs", true, 6},
+               {"first", true, 12},
+               {"second", true, 12},
+               {"second vs. first [95 % CI]"},
+               {"n", true, 14},
+               {"p (Holm)", true, 9},
+               {"verdict"}},
+              0, 2);
   for (const study::MetricChange& change : changes) {
-    pipeline = std::max(pipeline, int(change.pipeline.size()));
-    metric = std::max(metric, int(change.metric.size()));
+    table.add({change.pipeline, change.metric, std::to_string(change.pairs), number(change.before),
+               number(change.after), change_text(change),
+               change.pairs > 0 ? change.effect.units.words() : "-", number(change.p),
+               Table::Cell(verdict_text(change), color_of(name(change.verdict)))});
   }
-  std::printf("%-*s  %-*s  %6s  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline, "pipeline", metric,
-              "metric", "pairs", "first", "second", "second vs. first [95 % CI]", "n", "p (Holm)",
-              "verdict");
-  for (const study::MetricChange& change : changes) {
-    std::printf("%-*s  %-*s  %6zu  %12s  %12s  %-34s  %14s  %9s  %s\n", pipeline,
-                change.pipeline.c_str(), metric, change.metric.c_str(), change.pairs,
-                number(change.before).c_str(), number(change.after).c_str(),
-                change_text(change).c_str(),
-                change.pairs > 0 ? change.effect.units.words().c_str() : "-",
-                number(change.p).c_str(), verdict_text(change).c_str());
-  }
+  table.print(stdout);
 }
 
 /// Reads results out of a store.
@@ -165,7 +166,8 @@ bool print_verdict(const study::Comparison& comparison) {
     words += "; " + std::to_string(missing) + (missing == 1 ? " run" : " runs") +
              " of the first cannot be compared: the second has no run of that name and seed";
   }
-  std::printf("%s\n", words.c_str());
+  const Color color = comparison.is_worse() ? Color::bad : Color::good;
+  std::printf("%s\n", painted(stdout, color, words).c_str());
   return !comparison.is_worse() && comparison.is_whole();
 }
 

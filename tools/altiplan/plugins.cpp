@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 
 #include "commands.hpp"
@@ -8,6 +9,7 @@
 #include "host/result/result_json.hpp"
 #include "study/model/study_file.hpp"
 #include "study/reproduce/paper_file.hpp"
+#include "table.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -29,7 +31,13 @@ int plugins(const Arguments& arguments) {
   if (arguments.json) {
     std::cout << host::file_text(host::plugins_json(registry, libraries));
   } else {
-    std::cout << host::plugins_text(registry, libraries);
+    Table table({{"", false, 31}, {""}}, 0);
+    for (const host::ListedPlugin& plugin : host::listed_plugins(libraries)) {
+      table.add({Table::Cell(plugin.kind + " " + plugin.name, Color::strong), plugin.sentence});
+    }
+    table.print(stdout);
+    std::fputs(painted(stdout, Color::bad, host::refused_text(libraries)).c_str(), stdout);
+    std::fputs(host::searched_text(registry).c_str(), stdout);
   }
   const bool refused = std::any_of(libraries.begin(), libraries.end(),
                                    [](const host::Library& l) { return !l.refused.empty(); });

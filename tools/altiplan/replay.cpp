@@ -11,6 +11,7 @@
 #include "study/compare/replay.hpp"
 #include "study/plan/study_plan.hpp"
 #include "study/store/find_run.hpp"
+#include "terminal.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -33,12 +34,14 @@ int report(std::FILE* to, const study::StoredRun& stored, const host::Json& resu
   }
   const std::string name = study::run_name(stored);
   if (!replayed.difference) {
-    std::fprintf(to, "%s: identical to the stored run: %s\n", name.c_str(), stored.outcome.c_str());
+    std::fprintf(to, "%s: %s to the stored run: %s\n", name.c_str(),
+                 painted(to, Color::good, "identical").c_str(), stored.outcome.c_str());
     return kDone;
   }
   const host::Difference& difference = *replayed.difference;
-  std::fprintf(to, "%s: differs from the stored run at %s: it was %s and is %s\n", name.c_str(),
-               difference.path.c_str(), difference.first.c_str(), difference.second.c_str());
+  std::fprintf(to, "%s: %s from the stored run at %s: it was %s and is %s\n", name.c_str(),
+               painted(to, Color::bad, "differs").c_str(), difference.path.c_str(),
+               difference.first.c_str(), difference.second.c_str());
   if (!replayed.changed.empty()) {
     std::fprintf(to, "  possible cause: the changes reported above\n");
   } else if (result.at("budget_hit") == true) {

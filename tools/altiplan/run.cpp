@@ -6,6 +6,7 @@
 #include "guarded_run.hpp"
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
+#include "table.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -21,25 +22,20 @@ struct RunArguments {
   double timeout_s = host::kDefaultStepSeconds;
 };
 
-/// Columns of a row of the table, 110 characters in all.
-constexpr const char* kRow = "  %-14s %-12s %-12s %9s %6s %6s %8s %7s %8s %8s %8s\n";
-
-void print_row(std::FILE* to, const std::string& id, const std::string& plugin,
-               const std::string& status, const std::optional<Measures>& m, double seconds) {
-  const auto cell = [&](std::optional<double> value, int digits) { return fixed(value, digits); };
+void add_row(Table& table, const std::string& id, const std::string& plugin,
+             const std::string& status, const std::optional<Measures>& m, double seconds) {
   std::optional<double> length;
   std::optional<double> points;
   if (m) {
     length = m->length_m / 1000;
     points = double(m->waypoints);
   }
-  std::fprintf(to, kRow, id.c_str(), plugin.c_str(), status.c_str(), cell(length, 3).c_str(),
-               cell(points, 0).c_str(), cell(m ? m->max_turn_deg : std::nullopt, 1).c_str(),
-               cell(m ? m->min_radius_m : std::nullopt, 1).c_str(),
-               cell(m ? m->max_climb_deg : std::nullopt, 1).c_str(),
-               cell(m ? m->min_clearance_m : std::nullopt, 1).c_str(),
-               cell(m ? m->min_ground_clearance_m : std::nullopt, 1).c_str(),
-               fixed(seconds * 1000, 1).c_str());
+  table.add({id, plugin, Table::Cell(status, color_of(status)), fixed(length, 3), fixed(points, 0),
+             fixed(m ? m->max_turn_deg : std::nullopt, 1),
+             fixed(m ? m->min_radius_m : std::nullopt, 1),
+             fixed(m ? m->max_climb_deg : std::nullopt, 1),
+             fixed(m ? m->min_clearance_m : std::nullopt, 1),
+             fixed(m ? m->min_ground_clearance_m : std::nullopt, 1), fixed(seconds * 1000, 1)});
 }
 
 /// The time budget of the step with this id, if it has no other budget that could end it.
@@ -77,14 +73,24 @@ void print_budgets(std::FILE* to, const host::Config& config, const host::RunRes
 }
 
 void print_table(std::FILE* to, const host::RunResult& result) {
-  std::fprintf(to, kRow, "step", "plugin", "status", "length_km", "points", "turn_d", "radius_m",
-               "climb_d", "clear_m", "ground_m", "time_ms");
+  Table table({{"step", false, 14},
+               {"plugin", false, 12},
+               {"status", false, 12},
+               {"length_km", true, 9},
+               {"points", true, 6},
+               {"turn_d", true, 6},
+               {"radius_m", true, 8},
+               {"climb_d", true, 7},
+               {"clear_m", true, 8},
+               {"ground_m", true, 8},
+               {"time_ms", true, 8}});
   for (const host::StepResult& step : result.steps) {
     const bool flown =
         result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
-    print_row(to, step.id, step.plugin, step.accepted && !flown ? "accepted" : name(step.status),
-              flown ? result.flight->measures : step.measures, step.time_s);
+    add_row(table, step.id, step.plugin, step.accepted && !flown ? "accepted" : name(step.status),
+            flown ? result.flight->measures : step.measures, step.time_s);
   }
+  table.print(to);
   if (result.flight) {
     print_flight(to, *result.flight, result.steps.back().budget_hit);
   }
@@ -112,7 +118,8 @@ void hand_out(std::FILE* to, const RunArguments& arguments, const host::Config& 
   if (arguments.json) {
     std::fputs(host::file_text(json).c_str(), to);
   } else {
-    std::fprintf(to, "%s: %s\n", config.pipeline_path.stem().c_str(), name(result.status));
+    std::fprintf(to, "%s: %s\n", config.pipeline_path.stem().c_str(),
+                 painted(to, color_of(name(result.status)), name(result.status)).c_str());
     print_table(to, result);
     print_budgets(to, config, result);
     std::fprintf(to, "  %s\n", result.message.c_str());

@@ -16,6 +16,7 @@
 #include "study/run/study_run.hpp"
 #include "study/store/load_study.hpp"
 #include "study/store/place.hpp"
+#include "table.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -46,14 +47,23 @@ std::string line_of(const study::StudyProgress& progress) {
   return line;
 }
 
-void print_outcomes(const study::StudyData& data) {
-  std::size_t width = 8;
-  for (const study::StoredVariant& pipeline : data.pipelines) {
-    width = std::max(width, pipeline.name.size());
+/// "2 no_route, 1 timed_out"
+std::string numbers_of(const std::map<std::string, std::size_t>& outcomes) {
+  std::string text;
+  for (const auto& [outcome, number] : outcomes) {
+    text += (text.empty() ? "" : ", ") + std::to_string(number) + " " + outcome;
   }
+  return text;
+}
+
+void print_outcomes(const study::StudyData& data) {
+  Table table({{"pipeline", false, 8},
+               {"runs", true, 8},
+               {"solved", true, 8},
+               {"plan_ms", true, 12},
+               {"not solved"}});
   const std::size_t time = data.column("plan_time_s");
-  std::printf("  %-*s %8s %8s %12s  %s\n", int(width), "pipeline", "runs", "solved", "plan_ms",
-              "not solved");
+  std::string absent;
   for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
     std::size_t runs = 0;
     std::size_t solved = 0;
@@ -62,32 +72,51 @@ void print_outcomes(const study::StudyData& data) {
     for (const study::RunRow& row : data.rows) {
       if (row.pipeline == p) {
         ++runs;
-        solved += row.solved();
-        others[row.outcome] += !row.solved();
-        if (row.solved() && time < data.columns.size() && !std::isnan(row.values[time])) {
+        if (!row.solved()) {
+          ++others[row.outcome];
+          continue;
+        }
+        ++solved;
+        if (time < data.columns.size() && !std::isnan(row.values[time])) {
           times.push_back(1000 * row.values[time]);
         }
       }
     }
-    std::string text;
-    for (const auto& [outcome, number] : others) {
-      text +=
-          number == 0 ? "" : (text.empty() ? "" : ", ") + std::to_string(number) + " " + outcome;
+    if (runs == 0) {
+      absent += (absent.empty() ? "" : ", ") + data.pipelines[p].name;
+      continue;
     }
     const std::optional<double> median =
         times.empty() ? std::nullopt : std::optional(study::median(times));
-    std::printf("  %-*s %8zu %8zu %12s  %s\n", int(width), data.pipelines[p].name.c_str(), runs,
-                solved, fixed(median, 1).c_str(), text.c_str());
+    const Color color = solved == runs ? Color::good : solved == 0 ? Color::bad : Color::open;
+    table.add({data.pipelines[p].name, std::to_string(runs),
+               Table::Cell(std::to_string(solved), color), fixed(median, 1), numbers_of(others)});
+  }
+  table.print(stdout);
+  if (!absent.empty()) {
+    std::printf("  no runs: %s\n", absent.c_str());
   }
 }
 
 /// True if every claim holds.
 bool print_claims(const study::StudyData& data) {
   bool all_hold = true;
+  std::vector<study::JudgedClaim> all;
   for (const study::ClaimEntry& claim : data.file.claims) {
-    const study::JudgedClaim judged = study::judge_claim(data, claim);
+    all.push_back(study::judge_claim(data, claim));
+    const study::JudgedClaim& judged = all.back();
     all_hold = all_hold && judged.verdict == study::Verdict::holds;
-    std::printf("  claim %s: %s\n", claim.id.c_str(), judged.words.c_str());
+    if (judged.lacks_runs) {
+      continue;
+    }
+    const std::size_t verdict = judged.words.find(':');  // "Holds: …"
+    const Color color = color_of(std::string(name_of(judged.verdict)));
+    std::printf("  claim %s: %s%s\n", claim.id.c_str(),
+                painted(stdout, color, judged.words.substr(0, verdict)).c_str(),
+                judged.words.substr(verdict).c_str());
+  }
+  for (const std::string& sentence : study::common_reasons(all)) {
+    std::printf("  %s\n", sentence.c_str());
   }
   return all_hold;
 }

@@ -7,6 +7,7 @@
 #include "progress_line.hpp"
 #include "study/figures/text.hpp"
 #include "study/model/run_values.hpp"
+#include "table.hpp"
 #include "tune/tune_report.hpp"
 
 namespace altiplan::cli {
@@ -45,19 +46,16 @@ std::string change(double before, double now) {
   return (percent > 0 ? "+" : "") + fixed(percent, 2) + " %";
 }
 
-void print_row(const std::string& what, const std::string& before, const std::string& now,
-               const std::string& change) {
-  std::printf("  %-44s %14s %14s %10s\n", what.c_str(), before.c_str(), now.c_str(),
-              change.c_str());
-}
-
-void print_comparison(const char* what, const tune::TunedComparison& made) {
+void add_comparison(Table& table, const char* what, const tune::TunedComparison& made) {
   if (made.scenarios == 0) {
     return;
   }
-  print_row("mean over " + counted(made.scenarios, std::string(what) + " scenario"),
-            readable(made.mean_before, 6), readable(made.mean_now, 6),
-            change(made.mean_before, made.mean_now));
+  const Color color = made.mean_now < made.mean_before   ? Color::good
+                      : made.mean_now > made.mean_before ? Color::bad
+                                                         : Color::none;
+  table.add({"mean over " + counted(made.scenarios, std::string(what) + " scenario"),
+             readable(made.mean_before, 6), readable(made.mean_now, 6),
+             Table::Cell(change(made.mean_before, made.mean_now), color)});
 }
 
 std::string share_of(std::size_t part, std::size_t all) {
@@ -80,9 +78,12 @@ std::string repeating_call(const tune::TunePlan& plan, const std::string& folder
 void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
                  const std::string& folder) {
   const tune::TuneSummary summary = tune::summary_of(plan, tuning);
-  print_row(plan.request.metric, "original", "tuned", "change");
-  print_comparison("tuning", summary.tuned_on);
-  print_comparison("held-out", summary.held_back);
+  Table table({{plan.request.metric, false, 44},
+               {"original", true, 14},
+               {"tuned", true, 14},
+               {"change", true, 10}});
+  add_comparison(table, "tuning", summary.tuned_on);
+  add_comparison(table, "held-out", summary.held_back);
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
     const tune::TunedParameter& parameter = plan.parameters[p];
     const std::string before = parameter.shown();
@@ -91,8 +92,9 @@ void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
       const std::string& set = tuning.tuned().assignments[p];
       now = readable(std::stod(set.substr(set.find('=') + 1)), 6);
     }
-    print_row(parameter.over.key, before, now, "");
+    table.add({parameter.over.key, before, now, ""});
   }
+  table.print(stdout);
   std::printf("  %s, %s failed, %s on the plateau of the best score\n",
               counted(summary.evaluations, "evaluation").c_str(),
               share_of(summary.failed, std::max<std::size_t>(1, summary.evaluations)).c_str(),

@@ -34,7 +34,16 @@ std::string parameter_table(const std::vector<FieldSpec>& parameters);
 /// The registry's libraries, each loaded in its own process: one that cannot be loaded, or that
 /// ends its process, is refused with the reason.
 std::vector<Library> examine_all(Registry& registry);
-std::string plugins_text(const Registry& registry, const std::vector<Library>& libraries);
+/// A plugin in the list of all.
+struct ListedPlugin {
+  std::string kind;
+  std::string name;
+  std::string sentence;
+};
+std::vector<ListedPlugin> listed_plugins(const std::vector<Library>& libraries);
+/// A line for each refused library, and for each copy and each folder searched.
+std::string refused_text(const std::vector<Library>& libraries);
+std::string searched_text(const Registry& registry);
 nlohmann::ordered_json plugins_json(const Registry& registry,
                                     const std::vector<Library>& libraries);
 }  // namespace altiplan::host

@@ -30,27 +30,33 @@ std::vector<Library> examine_all(Registry& registry) {
   return libraries;
 }
 
-std::string plugins_text(const Registry& registry, const std::vector<Library>& libraries) {
-  std::string text;
-  const auto line = [&](const std::string& kind, const std::string& name,
-                        const std::string& sentence) {
-    const std::string head = kind + " " + name;
-    text += head + std::string(head.size() < 32 ? 32 - head.size() : 1, ' ') + sentence + "\n";
-  };
+std::vector<ListedPlugin> listed_plugins(const std::vector<Library>& libraries) {
+  std::vector<ListedPlugin> all;
   for (const PluginEntry& entry : built_in_environments()) {
-    line(entry.kind, entry.name, std::string(entry.sentence) + " (built in)");
+    all.push_back({entry.kind, entry.name, std::string(entry.sentence) + " (built in)"});
   }
-  std::string refused;
+  for (const Library& library : libraries) {
+    for (const Manifest& plugin : library.plugins) {
+      if (library.refused.empty()) {
+        all.push_back({plugin.kind, plugin.name, plugin.sentence});
+      }
+    }
+  }
+  return all;
+}
+
+std::string refused_text(const std::vector<Library>& libraries) {
+  std::string text;
   for (const Library& library : libraries) {
     if (!library.refused.empty()) {
-      refused += "refused: " + library.file.string() + ": " + library.refused + "\n";
-      continue;
-    }
-    for (const Manifest& plugin : library.plugins) {
-      line(plugin.kind, plugin.name, plugin.sentence);
+      text += "refused: " + library.file.string() + ": " + library.refused + "\n";
     }
   }
-  text += refused;
+  return text;
+}
+
+std::string searched_text(const Registry& registry) {
+  std::string text;
   for (const LibraryCopy& copy : registry.copies()) {
     text += "skipped: " + copy.file.string() + ": the same build as " + copy.used.string() +
             ", which comes first\n";
