@@ -12,6 +12,7 @@
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
+#include "progress.hpp"
 #include "terminal.hpp"
 
 namespace altiplan::cli {
@@ -61,7 +62,8 @@ void print_track(const host::TrackVerdict& verdict, const host::Track& track, bo
 int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, bool telemetry,
            const std::vector<host::FlightEvent>& events, bool as_json) {
-  const CheckResult verdict = host::judge(route, mission.request, mission.via);
+  const CheckResult verdict =
+      busy("judging the route", [&] { return host::judge(route, mission.request, mission.via); });
   const Measures measures = measure(route, mission.request);
   bool valid = verdict.ok();
   host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}};
@@ -74,7 +76,8 @@ int report(const host::Mission& mission, const Route& route,
     setup.truth = mission.truth;
     setup.events = events;
     setup.telemetry = telemetry;
-    const host::TrackVerdict flown = host::judge_track(*track, setup);
+    const host::TrackVerdict flown =
+        busy("judging the flight", [&] { return host::judge_track(*track, setup); });
     valid = valid && flown.check.ok();
     json["flight"] = {{"check", host::to_json(flown.check)},
                       {"collisions", flown.collisions},
@@ -99,14 +102,16 @@ int check_result(const Arguments& arguments) {
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
-  const host::Mission mission = host::build_mission(config, 1);
+  const host::Mission mission =
+      busy("building the world", [&] { return host::build_mission(config, 1); });
   return report(mission, *stored.route, stored.track, stored.telemetry,
                 host::build_events(config, mission), arguments.plan.json);
 }
 
 int check_route(const Arguments& arguments) {
   const host::Config config = host::load_scenario(*arguments.plan.scenario, arguments.overrides);
-  const host::Mission mission = host::build_mission(config, 1);
+  const host::Mission mission =
+      busy("building the world", [&] { return host::build_mission(config, 1); });
   const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
   for (const std::string& note : imported.notes) {
     info(note);

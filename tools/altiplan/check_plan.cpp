@@ -19,6 +19,7 @@
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "plan_world.hpp"
+#include "progress.hpp"
 #include "terminal.hpp"
 
 namespace altiplan::cli {
@@ -205,7 +206,8 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
     return;
   }
   std::string words;
-  const std::vector<host::ChangedItem> changes = changes_of(report, world, words);
+  const std::vector<host::ChangedItem> changes =
+      busy("curing the mission", [&] { return changes_of(report, world, words); });
   const std::string better = host::changed_plan(text, mission.format, changes);
   const bool passes =
       !changes.empty() &&
@@ -293,17 +295,21 @@ int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
     static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
   }
   host::expect_route(plan.plan, mission);
-  const host::Mission world =
-      host::build_mission(scenario ? *scenario : world_of(plan, mission, overrides), 1);
-  PlanReport report = host::judge_plan(plan.plan, mission, world, !plan.scenario);
+  const host::Mission world = busy("building the world", [&] {
+    return host::build_mission(scenario ? *scenario : world_of(plan, mission, overrides), 1);
+  });
+  PlanReport report = busy("judging the mission", [&] {
+    return host::judge_plan(plan.plan, mission, world, !plan.scenario);
+  });
   add_notes(report, world);
   if (const std::string words = left_out(plan); !words.empty()) {
     report.notes.insert(report.notes.begin(), words);
   }
   const std::vector<double> arrivals = arrivals_of(plan, mission, report);
   if (plan.certificate) {
-    host::write_file(*plan.certificate,
-                     certificate(report, world, basis_of(plan, mission), arrivals));
+    host::write_file(*plan.certificate, busy("writing the certificate", [&] {
+      return certificate(report, world, basis_of(plan, mission), arrivals);
+    }));
   }
   if (plan.junit) {
     host::write_file(*plan.junit, junit(report));

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "progress.hpp"
 #include "study/compare/compare.hpp"
 #include "study/compare/origin.hpp"
 #include "study/store/load_study.hpp"
@@ -172,10 +173,13 @@ bool print_verdict(const study::Comparison& comparison) {
 }
 
 int compare(const Arguments& arguments) {
+  std::optional<Activity> activity("reading the databases");
   const study::StudyData first = study::load_study_data({arguments.first});
   const study::StudyData second = study::load_study_data({arguments.second});
+  activity->begin("comparing");
   const study::Comparison comparison =
       study::compare_studies(first, second, {arguments.metrics, arguments.tolerance_percent / 100});
+  activity.reset();
   std::printf("%zu pairs of runs; %zu runs only in the first, %zu only in the second\n",
               comparison.pairs, comparison.only_first, comparison.only_second);
   if (comparison.other_seeds > 0) {

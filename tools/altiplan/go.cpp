@@ -10,6 +10,7 @@
 #include "host/first_route/first_route.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
+#include "progress.hpp"
 #include "route_export.hpp"
 
 namespace altiplan::cli {
@@ -140,8 +141,9 @@ bool write_views(const fs::path& folder, const Arguments& arguments) {
   route.options.format = kit::MissionFile::Format::qgc_plan;
   route.options.takeoff = route.options.land = !arguments.wish.turn_radius_m;
   finish_options(route);
-  const host::Scene scene =
-      host::build_scene({host::read_result(route.result, arguments.overrides)});
+  const host::Scene scene = busy("drawing the page", [&] {
+    return host::build_scene({host::read_result(route.result, arguments.overrides)});
+  });
   host::write_file(folder / "page.html", host::viewer_page(scene.json));
   const std::optional<host::Exported> plan = exported(route, std::nullopt);
   if (plan) {
@@ -153,9 +155,11 @@ bool write_views(const fs::path& folder, const Arguments& arguments) {
 }
 
 int go(const Arguments& arguments) {
+  std::optional<Activity> activity("reading the model");
   const host::FirstRoute first(wish_of(arguments), arguments.overrides.plugin_path);
   const fs::path folder = folder_of(arguments);
   host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
+  activity.reset();
   create(folder);
   Interrupt interrupt;
   host::RunResult result;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "progress.hpp"
 #include "study/store/merge.hpp"
 #include "study/store/place.hpp"
 
@@ -30,7 +31,8 @@ void expect_no_loss(const Arguments& arguments) {
 int merge(const Arguments& arguments) {
   expect_store_writable(arguments.out, "-o");
   expect_no_loss(arguments);
-  const study::Merged merged = study::merge_stores(arguments.stores, arguments.out);
+  const study::Merged merged =
+      busy("merging", [&] { return study::merge_stores(arguments.stores, arguments.out); });
   for (const std::string& sentence : merged.differing) {
     warn(sentence);
   }

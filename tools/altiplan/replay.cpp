@@ -8,6 +8,7 @@
 #include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
 #include "interrupt.hpp"
+#include "run_watch.hpp"
 #include "study/compare/replay.hpp"
 #include "study/plan/study_plan.hpp"
 #include "study/store/find_run.hpp"
@@ -66,7 +67,7 @@ host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const h
                                              const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
   const bool as_then = stored.outcome == "crashed";
-  words.for_user = "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
+  words.for_user = over_progress() + "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
                    (as_then ? "crashed, as the stored run did: " + stored.message
                             : "crashed, unlike the stored run: " + stored.outcome) +
                    "\n";
@@ -90,10 +91,14 @@ int run_again(const Arguments& arguments, const study::Store& store,
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
+  std::optional<RunWatch> watch(std::in_place, config, options.timeout_s);
+  options.progress = watch->progress();
   options.on_call = [&](const host::RunResult& result) {
+    watch->call(result);
     process->set_crash_report(crash_report(arguments, config, stored, result));
   };
   options.on_stuck = [&](const host::RunResult& result) {
+    watch->end();
     // The plugin is still running and may print: its stdout stays redirected.
     if (interrupt.happened()) {
       _exit(kInterrupted);
@@ -106,6 +111,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
     _exit(code);
   };
   const host::RunResult result = host::run(config, options);
+  watch.reset();
   process.reset();
   if (interrupt.happened()) {
     return kInterrupted;  // an incomplete run cannot be compared

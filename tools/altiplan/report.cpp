@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "progress.hpp"
 #include "study/arena/arena.hpp"
 #include "study/figures/text.hpp"
 #include "study/store/load_study.hpp"
@@ -41,14 +42,17 @@ std::string command_of(const Arguments& arguments) {
 
 int write_page(const Arguments& arguments) {
   study::report::expect_report_folder(arguments.folder);
+  std::optional<Activity> activity("reading the runs");
   const study::report::Source source = study::report::load_source(arguments.stores);
   study::report::Options options;
   options.title = arguments.title;
   options.command = command_of(arguments);
   options.times = !arguments.no_times;
   options.scenes.plugin_path = arguments.overrides.plugin_path;
+  options.begins = [&](const std::string& what) { activity->begin(what); };
   const study::report::Written written =
       study::report::write_report(source, options, arguments.folder);
+  activity.reset();
   constexpr std::size_t kMaxChanges = 5;
   for (std::size_t n = 0; n < written.changed.size() && n < kMaxChanges; ++n) {
     warn(study::report::printable(written.changed[n]));

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "host/flight/events.hpp"
+#include "progress.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -96,7 +97,8 @@ std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<
     return std::nullopt;
   }
   host::Config config = host::load_config(stored.pipeline, stored.overrides);
-  host::Mission mission = host::build_mission(config, 1);
+  host::Mission mission =
+      busy("building the world", [&] { return host::build_mission(config, 1); });
   source->name =
       config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
   if (route.flight) {
@@ -106,7 +108,9 @@ std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<
 }
 
 std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExport& route) {
-  host::Exported exported = host::export_route(loaded.mission, loaded.source, route.options);
+  host::Exported exported = busy("judging the mission", [&] {
+    return host::export_route(loaded.mission, loaded.source, route.options);
+  });
   for (const std::string& message : exported.messages) {
     say(message);
   }

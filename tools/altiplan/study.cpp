@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "progress_line.hpp"
+#include "progress.hpp"
 #include "study/claims/claims.hpp"
 #include "study/model/study_data.hpp"
 #include "study/plan/undecidable.hpp"
@@ -150,8 +150,9 @@ int study(Arguments arguments) {
     arguments.options.store = arguments.store;
     expect_store_writable(arguments.store, "--out");
   }
-  const study::StudyPlan plan =
-      study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
+  const study::StudyPlan plan = busy("reading the study", [&] {
+    return study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
+  });
   if (plan.runs.empty()) {
     throw Error("no run is left: --filter, --sample and --shard select none of the " +
                 std::to_string(plan.planned) + " runs");

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "progress_line.hpp"
+#include "progress.hpp"
 #include "study/figures/text.hpp"
 #include "study/model/run_values.hpp"
 #include "table.hpp"

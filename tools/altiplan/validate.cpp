@@ -7,6 +7,7 @@
 #include "host/config/yaml.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "progress.hpp"
 #include "study/plan/study_plan.hpp"
 #include "study/plan/undecidable.hpp"
 #include "study/reproduce/paper.hpp"
@@ -23,7 +24,9 @@ struct Arguments {
 
 /// Builds the world, whose layers read their files, and prints its warnings.
 void build(const host::Config& config) {
-  for (const std::string& warning : host::build_mission(config, 1).warnings) {
+  const host::Mission mission =
+      busy("building the world", [&] { return host::build_mission(config, 1); });
+  for (const std::string& warning : mission.warnings) {
     warn(warning);
   }
 }
@@ -32,7 +35,9 @@ void build(const host::Config& config) {
 std::string validate_one(const std::string& file, const Arguments& arguments) {
   const host::FileKind kind = host::kind_of(host::load_yaml(file));
   if (kind == host::FileKind::study) {
-    const auto plan = study::load_study(file, {}, arguments.overrides.plugin_path);
+    const auto plan = busy("reading the study", [&] {
+      return study::load_study(file, {}, arguments.overrides.plugin_path);
+    });
     for (const std::string& sentence : study::undecidable_claims(plan, {})) {
       warn(file + ": " + sentence);
     }

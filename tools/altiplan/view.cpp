@@ -7,7 +7,7 @@
 #include "host/view/scene.hpp"
 #include "host/view/screenshot.hpp"
 #include "host/view/viewer_page.hpp"
-#include "progress_line.hpp"
+#include "progress.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -69,10 +69,10 @@ std::string try_png(const Arguments& arguments, const std::string& page, const h
   }
   std::string png;
   try {
-    png = host::screenshot(
-        *chromium, page,
+    const std::string query =
         "?still&theme=light" +
-            (arguments.cut_m ? "&cut=" + fixed(arguments.cut_m, 3) : std::string()));
+        (arguments.cut_m ? "&cut=" + fixed(arguments.cut_m, 3) : std::string());
+    png = busy("drawing the picture", [&] { return host::screenshot(*chromium, page, query); });
   } catch (const Error& error) {
     return error.what();
   }
@@ -94,10 +94,8 @@ int view(const Arguments& arguments) {
     files.push_back(arguments.png.value_or(""));
     expect_apart(arguments.svg, "--svg", files);
   }
-  ProgressLine line;
-  line.show("reading the world, and the traces of searches");
-  const host::Scene scene = host::build_scene(results);
-  line.clear();
+  const host::Scene scene = busy("reading the world, and the traces of searches",
+                                 [&] { return host::build_scene(results); });
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }

@@ -126,6 +126,7 @@ Content content_of(const Source& source, const Options& options) {
   Content content;
   content.times = options.times;
   content.data = in_order(source.data, options.times);
+  options.begins("judging the claims");
   judge_claims(content);
   content.absent = take_absent(content.data);
   content.short_names = short_names(content.data);
@@ -133,6 +134,7 @@ Content content_of(const Source& source, const Options& options) {
   content.title = content.title.empty() ? "Study" : content.title;
   content.command = options.command;
   content.study_text = source.study_text;
+  options.begins("comparing the pipelines");
   content.analysis = analyse(content.data, options.times);
   content.failures = failures_of(content.data);
   content.convergence = convergence_of(content.data, source.traces);
@@ -140,6 +142,7 @@ Content content_of(const Source& source, const Options& options) {
   content.builds = builds_of(content.data, source.results);
   SceneOptions scenes = options.scenes;
   scenes.times = options.times;
+  scenes.begins = options.begins;
   content.scenes = build_scenes(content.data, content.analysis, source.results, scenes);
   return content;
 }
@@ -291,6 +294,7 @@ Source load_source(const std::vector<std::string>& stores) {
 Written write_report(const Source& source, const Options& options, const fs::path& folder) {
   expect_report_folder(folder);
   const Content content = content_of(source, options);
+  options.begins("writing the report");
   const std::string page = page_text(content);
   const fs::path beside = host::name_beside(fs::absolute(folder) / "report");
   // Replaced files are no longer in it, and the folder is removed if nothing was replaced.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Options {
   std::string command;  ///< the command line
   bool times = true;    ///< false: no values that vary between equal runs
   SceneOptions scenes;  ///< `times` of it follows the one above
+  /// Called with what is done next: "building scene 3 of 48".
+  std::function<void(const std::string&)> begins = [](const std::string&) {};
 };
 
 /// Loads stores of one study. Throws like load_study_data.

@@ -293,8 +293,11 @@ std::vector<std::vector<std::size_t>> choose_scenes(const StudyData& data, const
 Scenes build_scenes(const StudyData& data, const Analysis& analysis, const ResultSource& results,
                     const SceneOptions& options) {
   SceneMaker maker(data, results, options);
-  for (const auto& rows : choose_scenes(data, analysis, options.most)) {
-    maker.add(rows);
+  const auto chosen = choose_scenes(data, analysis, options.most);
+  for (std::size_t at = 0; at < chosen.size(); ++at) {
+    options.begins("building scene " + std::to_string(at + 1) + " of " +
+                   std::to_string(chosen.size()));
+    maker.add(chosen[at]);
   }
   return maker.take(pairs_of(data).size());
 }

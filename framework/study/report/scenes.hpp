@@ -22,6 +22,7 @@ struct SceneOptions {
   std::size_t most = 48;              ///< scenes
   std::size_t max_bytes = 2'200'000;  ///< of all of them, packed
   std::size_t max_bytes_each = 400'000;
+  std::function<void(const std::string&)> begins = [](const std::string&) {};  ///< of Options
 };
 
 /// The runs of one pair in their world, packed.

@@ -13,7 +13,7 @@
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
 #include "interrupt.hpp"
-#include "progress_line.hpp"
+#include "progress.hpp"
 #include "study/figures/text.hpp"
 
 namespace altiplan::cli {
