@@ -3,7 +3,9 @@
 import fcntl
 import json
 import os
+import pty
 import re
+import select
 import signal
 import subprocess
 import sys
@@ -136,6 +138,23 @@ class Interruption(Folder):
         self.assertEqual(os.listdir(self.path("tmp")), [])
         self.assertFalse(os.path.exists(self.path("out.png")))
         self.assertRaises(ProcessLookupError, os.kill, int(self.read("pid")), 0)
+
+    def test_progress_on_a_terminal(self):
+        stored = json.loads(self.read(self.result()))
+        self.layer("rogue_layer: {does: making_never_returns}")
+        self.write("hangs.json", json.dumps({**stored, "scenario": self.path("hangs.yaml")}))
+        here, there = pty.openpty()
+        self.addCleanup(os.close, here)
+        call = subprocess.Popen([PROGRAM, "view", "hangs.json", "-o", "page.html", "--plugin-path",
+                                 PLUGINS], stdin=subprocess.DEVNULL, stderr=there, cwd=self.folder)
+        os.close(there)
+        self.addCleanup(call.wait)
+        self.addCleanup(call.kill)
+        said = b""
+        while b"building the world of hangs.json" not in said:
+            self.assertTrue(select.select([here], [], [], HANGS_S)[0], said)
+            said += os.read(here, 1000)
+        self.ends(call, signal.SIGINT)
 
     def test_a_study_and_a_tuning(self):
         self.write("hangs.yaml", PIPELINE.replace("astar", "rogue").replace(

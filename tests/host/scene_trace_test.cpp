@@ -53,6 +53,20 @@ TEST_F(SceneTrace, EventsAndTheirParents) {
   EXPECT_EQ(numbers<float>(iterations.at("alive")), (std::vector<float>{-1, -1}));
 }
 
+TEST_F(SceneTrace, ReportsHowMuchHasBeenRead) {
+  traced(25'000);
+  Overrides only_plugins;
+  only_plugins.plugin_path = overrides_.plugin_path;
+  std::vector<std::string> reported;
+  build_scene({read_result((folder_ / "result.json").string(), only_plugins)},
+              [&](const std::string& what) {
+                if (const std::size_t at = what.find("reading the trace"); at == 0) {
+                  reported.push_back(what.substr(what.rfind(':') + 2));
+                }
+              });
+  EXPECT_EQ(reported, (std::vector<std::string>{"39 %", "79 %"}));
+}
+
 TEST_F(SceneTrace, IterationsOfAPopulation) {
   result(kTold);
   edit("result.json", [&](Json& json) { json["trace"] = (folder_ / "t.jsonl").string(); });

@@ -80,6 +80,11 @@ std::string try_png(const Arguments& arguments, const std::string& page, const h
   return "";
 }
 
+host::Scene scene_of(const std::vector<host::StoredResult>& results) {
+  Activity activity;
+  return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
+}
+
 int view(const Arguments& arguments) {
   expect_writable(arguments.page, "-o");
   expect_writable(arguments.png, "--png");
@@ -94,8 +99,7 @@ int view(const Arguments& arguments) {
     files.push_back(arguments.png.value_or(""));
     expect_apart(arguments.svg, "--svg", files);
   }
-  const host::Scene scene = busy("reading the world, and the traces of searches",
-                                 [&] { return host::build_scene(results); });
+  const host::Scene scene = scene_of(results);
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }

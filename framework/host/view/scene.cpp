@@ -151,7 +151,8 @@ std::string mission_text(const StoredResult& stored) {
 
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const std::vector<StoredResult>& results) : results_(results) {}
+  SceneBuilder(const std::vector<StoredResult>& results, const SceneProgress& progress)
+      : results_(results), progress_(progress) {}
 
   Scene operator()() {
     // Groups results by mission, so that each is built once.
@@ -202,9 +203,11 @@ class SceneBuilder {
 
   void add(const std::vector<std::size_t>& group, std::vector<Json>& results) {
     const StoredResult& of = results_[group.front()];
+    say("building the world of " + of.file);
     const Config config = load_config(of.pipeline, of.overrides, registry_);
     registry_ = config.registry;
     const Mission mission = build_mission(config, 1);
+    say("drawing the world of " + of.file);
     if (scene_.is_null()) {
       box_ = scene_box(mission, results_);
       seed_ = config.seed;
@@ -221,12 +224,29 @@ class SceneBuilder {
     const std::vector<FlightEvent> events = build_events(config, mission);
     const auto samples = std::clamp<std::size_t>(kProfileSamples / results_.size(), 60, 300);
     for (const std::size_t n : group) {
-      by_json(results_[n],
-              [&] { results[n] = result_scene(results_[n], mission, events, samples, notes_); });
+      by_json(results_[n], [&] {
+        say("judging " + results_[n].file + number_of(n));
+        results[n] = result_scene(results_[n], mission, events, samples, notes_);
+        results[n]["trace"] = trace_scene(results_[n], notes_, [&](double share) {
+          say("reading the trace of " + results_[n].file + ": " + std::to_string(int(100 * share)) +
+              " %");
+        });
+      });
+    }
+  }
+  std::string number_of(std::size_t n) const {
+    return results_.size() > 1
+               ? " (" + std::to_string(n + 1) + " of " + std::to_string(results_.size()) + ")"
+               : "";
+  }
+  void say(const std::string& what) const {
+    if (progress_) {
+      progress_(what);
     }
   }
 
   const std::vector<StoredResult>& results_;
+  const SceneProgress& progress_;
   std::shared_ptr<Registry> registry_;
   Json scene_;
   Box box_;
@@ -284,5 +304,7 @@ Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) 
   return box;
 }
 
-Scene build_scene(const std::vector<StoredResult>& results) { return SceneBuilder(results)(); }
+Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress) {
+  return SceneBuilder(results, progress)();
+}
 }  // namespace altiplan::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <string>
@@ -93,8 +94,9 @@ void add_heights(Json& profile, const Request& request);
 Json flight_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 
-/// The search as recorded in its trace, thinned evenly, or null.
-Json trace_scene(const StoredResult& stored, SceneNotes& notes);
+/// The search as recorded in its trace, thinned evenly, or null. `progress` gets the share read.
+Json trace_scene(const StoredResult& stored, SceneNotes& notes,
+                 const std::function<void(double share)>& progress);
 
 /// Copies keys of a stored result. Throws a Json::exception if one is missing, or is not a text.
 void copy_texts(Json& to, const Json& from, std::initializer_list<const char*> keys);
@@ -116,7 +118,7 @@ std::string first_found(const CheckResult& check);
 Json check_scene(Json check, const std::string& whose, SceneNotes& notes);
 
 /// One result: from the stored file what only the run can know, its routes and its flight judged
-/// now, and its profile, of `samples` points, in the known world.
+/// now, and its profile, of `samples` points, in the known world; without its trace.
 Json result_scene(const StoredResult& stored, const Mission& mission,
                   const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
 }  // namespace altiplan::host

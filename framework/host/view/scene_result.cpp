@@ -181,7 +181,6 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
   }
   json["flight"] = flight_scene(stored, mission, events, samples, notes);
   conclude(json, stored, accepted, notes);
-  json["trace"] = trace_scene(stored, notes);
   return json;
 }
 }  // namespace altiplan::host

@@ -194,7 +194,9 @@ std::filesystem::path find_trace(const StoredResult& stored, const std::string& 
 }
 }  // namespace
 
-Json trace_scene(const StoredResult& stored, SceneNotes& notes) {
+Json trace_scene(const StoredResult& stored, SceneNotes& notes,
+                 const std::function<void(double share)>& progress) {
+  constexpr std::size_t kReportEvery = 10'000;  // lines
   const Json& written = stored.json.at("trace");
   if (written.is_null()) {
     return nullptr;
@@ -210,8 +212,15 @@ Json trace_scene(const StoredResult& stored, SceneNotes& notes) {
     notes.warn(file.string() + ":1: expected a trace of altiplan run: the search is not shown");
     return nullptr;
   }
+  std::error_code unknown;
+  const auto bytes = double(std::max<std::uintmax_t>(1, std::filesystem::file_size(file, unknown)));
+  double read = 0;
   Reader reader;
   for (std::size_t number = 2; std::getline(in, line); ++number) {
+    read += double(line.size() + 1);
+    if (number % kReportEvery == 0) {
+      progress(std::min(1.0, read / bytes));
+    }
     try {
       reader.add(line);
     } catch (const std::exception&) {
