@@ -129,6 +129,62 @@ std::string polyline(const Map& map, const Json& points, std::size_t first, std:
          std::string(color) + "\" " + more + "/>\n";
 }
 
+/// The names of marks, none cut by the map's edge or over another.
+class Names {
+ public:
+  explicit Names(const Area& map) : map_(map) {}
+
+  std::string beside(double x, double y, const char* text) {
+    for (const double down : {0.0, -18.0, 18.0}) {
+      for (const double right : {12.0, -12.0 - kWide}) {
+        const Area area{x + right, y - kHigh / 2 + down, kWide, kHigh};
+        if (is_free(area)) {
+          taken_.push_back(area);
+          return "<g paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"4\" "
+                 "stroke-linejoin=\"round\">" +
+                 text_at(right > 0 ? area.left : area.right(), area.top + 13, text, kInk, 14,
+                         right > 0 ? Align::start : Align::end, true) +
+                 "</g>\n";
+        }
+      }
+    }
+    return "";
+  }
+
+ private:
+  static constexpr double kWide = 46;  // of the longest name
+  static constexpr double kHigh = 16;
+
+  bool is_free(const Area& area) const {
+    return area.left >= map_.left && area.right() <= map_.right() && area.top >= map_.top &&
+           area.bottom() <= map_.bottom() &&
+           std::none_of(taken_.begin(), taken_.end(), [&](const Area& other) {
+             return area.left < other.right() && other.left < area.right() &&
+                    area.top < other.bottom() && other.top < area.bottom();
+           });
+  }
+  Area map_;
+  std::vector<Area> taken_;
+};
+
+/// The first of some areas that covers neither the start nor the goal nor their names; else the
+/// first of all.
+Area free_corner(const std::vector<Area>& areas, const Json& scene, const Map& map) {
+  constexpr double kAround = 66;  // a mark and its name
+  const auto is_free = [&](const Area& area) {
+    const auto holds = [&](const Json& at) {
+      const double x = map.x(at.at(0).get<double>());
+      const double y = map.y(at.at(1).get<double>());
+      return x > area.left - kAround && x < area.right() + kAround && y > area.top - kAround / 2 &&
+             y < area.bottom() + kAround / 2;
+    };
+    return (scene.at("start").is_null() || !holds(scene.at("start"))) &&
+           (scene.at("goal").is_null() || !holds(scene.at("goal").at("at")));
+  };
+  const auto found = std::find_if(areas.begin(), areas.end(), is_free);
+  return found == areas.end() ? areas.front() : *found;
+}
+
 std::string ends(const Json& scene, const Map& map) {
   const std::string ink = "stroke=\""s + std::string(kInk) + "\" stroke-width=\"2\"";
   std::string svg;
@@ -147,20 +203,15 @@ std::string ends(const Json& scene, const Map& map) {
     svg += circle(map, loiter.at("at"), loiter.at("radius").get<double>() * map.per_metre(),
                   ink + " fill=\"none\"");
   }
-  const auto name = [&](double x, double y, const char* text) {
-    const std::string halo = text_at(x + 12, y + 5, text, kInk, 14, Align::start, true);
-    svg +=
-        "<g paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"4\" "
-        "stroke-linejoin=\"round\">" +
-        halo + "</g>\n";
-  };
+  Names names(map.area());
   if (!scene.at("goal").is_null()) {
     const auto [x, y] = goal_like(scene.at("goal"), "#1a2027");
-    name(x, y, "Goal");
+    svg += names.beside(x, y, "Goal");
   }
   if (const Json& start = scene.at("start"); !start.is_null()) {
     svg += circle(map, start, 6.5, ink + " fill=\"#ffffff\"");
-    name(map.x(start.at(0).get<double>()), map.y(start.at(1).get<double>()), "Start");
+    svg +=
+        names.beside(map.x(start.at(0).get<double>()), map.y(start.at(1).get<double>()), "Start");
   }
   return svg;
 }
@@ -199,24 +250,32 @@ std::string routes(const Json& scene, const Map& map) {
   return svg + ends(scene, map);
 }
 
-std::string scale_and_north(const Map& map) {
+std::string scale_and_north(const Json& scene, const Map& map) {
+  constexpr double kMargin = 8;
   const Area& area = map.area();
   const double metres = round_step(area.width / map.per_metre(), 6);
   const double length = metres * map.per_metre();
-  const double left = area.left + 16;
-  const double y = area.bottom() - 18;
-  std::string svg = rectangle({left - 8, y - 26, length + 16, 36},
-                              "fill=\"#ffffff\" fill-opacity=\"0.85\" rx=\"4\"");
-  svg += "<path d=\"M" + pixels(left) + " " + pixels(y - 6) + "v6h" + pixels(length) +
-         "v-6\" stroke=\"#1a2027\" stroke-width=\"1.5\"/>\n";
-  svg += text_at(left + length / 2, y - 9,
+  const double right = area.right() - kMargin;
+  const double bottom = area.bottom() - kMargin;
+  const Area bar = free_corner({{area.left + kMargin, bottom - 36, length + 16, 36},
+                                {right - length - 16, bottom - 36, length + 16, 36},
+                                {area.left + kMargin, area.top + kMargin, length + 16, 36}},
+                               scene, map);
+  std::string svg = rectangle(bar, "fill=\"#ffffff\" fill-opacity=\"0.85\" rx=\"4\"");
+  svg += "<path d=\"M" + pixels(bar.left + 8) + " " + pixels(bar.bottom() - 16) + "v6h" +
+         pixels(length) + "v-6\" stroke=\"#1a2027\" stroke-width=\"1.5\"/>\n";
+  svg += text_at(bar.left + bar.width / 2, bar.bottom() - 19,
                  metres >= 1000 ? grouped(metres / 1000) + " km" : grouped(metres) + " m", kInk, 12,
                  Align::middle);
-  const double x = area.right() - 26;
-  const double top = area.top + 14;
-  svg += "<circle cx=\"" + pixels(x) + "\" cy=\"" + pixels(top + 16) +
+  const Area rose = free_corner({{right - 40, area.top + kMargin, 40, 40},
+                                 {area.left + kMargin, area.top + kMargin, 40, 40},
+                                 {right - 40, bottom - 40, 40, 40}},
+                                scene, map);
+  const double x = rose.left + 20;
+  const double top = rose.top + 4;
+  svg += "<circle cx=\"" + pixels(x) + "\" cy=\"" + pixels(rose.top + 20) +
          "\" r=\"20\" fill=\"#ffffff\" fill-opacity=\"0.85\"/>\n<path d=\"M" + pixels(x) + " " +
-         pixels(top) + "l6 16h-12z\" fill=\"#d55e00\"/>\n";
-  return svg + text_at(x, top + 30, "N", kInk, 13, Align::middle, true);
+         pixels(top + 11) + "l6 19h-12z\" fill=\"#d55e00\"/>\n";
+  return svg + text_at(x, top + 8, "N", kInk, 13, Align::middle, true);
 }
 }  // namespace altiplan::host::picture

@@ -62,6 +62,16 @@ double round_step(double length, double steps);
 /// With a comma between groups of three digits: "12,500".
 std::string grouped(double value);
 
+/// The unit of an axis of lengths up to `greatest` metres.
+struct LengthUnit {
+  const char* name;
+  double metres;
+};
+inline LengthUnit length_unit(double greatest) {
+  constexpr double kLong = 10'000;
+  return greatest > kLong ? LengthUnit{"km", 1000} : LengthUnit{"m", 1};
+}
+
 /// Decodes numbers that a scene holds as base64.
 template <class Value>
 std::vector<Value> numbers(const Json& base64_text) {
@@ -98,7 +108,8 @@ std::string routes(const Json& scene, const Map& map);
 /// The body of a result at its closest place; "" if there is none.
 std::string closest_body(const Json& scene, const Json& result, std::string_view color,
                          const Map& map);
-std::string scale_and_north(const Map& map);
+/// In corners of the map that hold neither the start nor the goal.
+std::string scale_and_north(const Json& scene, const Map& map);
 std::string legend(const Json& scene, const Area& area);
 std::string profiles(const Json& scene, const Area& area);
 }  // namespace altiplan::host::picture

@@ -117,7 +117,7 @@ std::string picture_svg(const Json& scene) {
   svg += rectangle(map.area(), "fill=\"#eef1f4\"");
   svg += "<g clip-path=\"url(#map)\">\n";
   svg += relief(scene, map) + solids(scene, map) + routes(scene, map);
-  svg += "</g>\n" + rectangle(map.area(), "stroke=\"#5b6672\"") + scale_and_north(map);
+  svg += "</g>\n" + rectangle(map.area(), "stroke=\"#5b6672\"") + scale_and_north(scene, map);
   svg += legend(scene, {map.area().right() + kMargin, room.top, kLegend, bottom - room.top});
   if (below > 0) {
     svg += profiles(scene, {kMargin, bottom + 12, kWidth - 2 * kMargin, below - 12});

@@ -108,7 +108,7 @@ std::string map_svg(const Route& route, const std::vector<std::string>& labels,
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + size +
          "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n" +
          rectangle(area, "fill=\"#eef1f4\"") + relief(scene, map) + solids(scene, map) +
-         picture::routes(scene, map) + labelled(route, labels, map) + scale_and_north(map) +
+         picture::routes(scene, map) + labelled(route, labels, map) + scale_and_north(scene, map) +
          "</svg>\n";
 }
 }  // namespace altiplan::host

@@ -191,9 +191,24 @@ std::set<TrackPlace> places_of(const Track& track, const std::set<std::size_t>& 
   return places;
 }
 
+/// Adds the heights that the true world's layers fill, as they are when the vehicle is there.
+void add_solids_along(Json& profile, const Track& track, const std::set<TrackPlace>& places,
+                      TruthAlong truth, const Box& volume) {
+  SolidProfile solids = solid_profile(profile, volume);
+  for (const TrackPlace& place : places) {
+    const std::size_t next = std::min(place.first + 1, track.size() - 1);
+    const std::size_t last = next > 0 ? next - 1 : 0;
+    truth.go_to(place.first);
+    solids.add(truth.truth(), at(track, place).second, track[next].second - track[last].second);
+  }
+  solids.write(profile);
+}
+
 /// The flight's profile at those positions: height, clearance in the true world, and the speed and
 /// turn flown.
-Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAlong truth) {
+Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAlong truth,
+                const Box& volume) {
+  const TruthAlong at_start = truth;
   Json profile;
   for (const char* key : {"t", "s", "altitude", "ground", "speed", "turn"}) {
     profile[key] = Json::array();
@@ -201,7 +216,8 @@ Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAl
   ClearanceProfile clearance;
   double s = 0;
   std::size_t reached = 0;
-  for (const TrackPlace& place : places_of(track, points, truth)) {
+  const std::set<TrackPlace> places = places_of(track, points, truth);
+  for (const TrackPlace& place : places) {
     const auto [i, share] = place;
     for (; reached < i; ++reached) {
       s += (track[reached + 1].second - track[reached].second).norm();
@@ -225,6 +241,7 @@ Json profile_of(const Track& track, const std::set<std::size_t>& points, TruthAl
                                   : Json(nullptr));
   }
   clearance.write(profile);
+  add_solids_along(profile, track, places, at_start, volume);
   return profile;
 }
 
@@ -320,8 +337,8 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   for (const auto& point : points) {
     json["event_times"].push_back(point ? rounded(track[*point].first) : Json(nullptr));
   }
-  json["profile"] =
-      profile_of(track, thinned(track, must, samples), TruthAlong(mission, events, points));
+  json["profile"] = profile_of(track, thinned(track, must, samples),
+                               TruthAlong(mission, events, points), mission.track_request.volume);
   return json;
 }
 }  // namespace altiplan::host

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFine = 0.5;  ///< metres: less is invisible
 constexpr int kLevels = 24;    ///< at which allowed heights are looked for
 
-using Span = std::array<double, 2>;  ///< heights
+using Span = std::array<double, 2>;  ///< heights, m
 
 /// Where a layer is solid above or below a place, from `low` to `high`; by steps in which its
 /// clearance cannot change sign.
@@ -25,7 +25,8 @@ std::vector<Span> solid_heights(const Environment& layer, Vec3 p, double low, do
     const double clearance = layer.clearance(p);
     const bool is_solid = clearance < 0;
     if (is_solid && !was_solid) {
-      spans.push_back({p.z(), high});
+      // What begins at the lowest height is touched there, not entered.
+      spans.push_back({p.z() <= low + kFine ? low : p.z(), high});
     } else if (!is_solid && was_solid) {
       spans.back()[1] = p.z();
     }
@@ -110,42 +111,103 @@ Json spans_json(const std::vector<Span>& spans) {
   }
   return json;
 }
+
+/// The spans of both, merged where they overlap.
+std::vector<Span> united(std::vector<Span> spans, const std::vector<Span>& more) {
+  spans.insert(spans.end(), more.begin(), more.end());
+  std::sort(spans.begin(), spans.end());
+  std::vector<Span> merged;
+  for (const Span& span : spans) {
+    if (!merged.empty() && span[0] <= merged.back()[1]) {
+      merged.back()[1] = std::max(merged.back()[1], span[1]);
+    } else {
+      merged.push_back(span);
+    }
+  }
+  return merged;
+}
+
+Vec3 point_of(const Json& at) {
+  return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
+}
+
+/// The shown heights of a profile: from the lowest place or ground, or the volume's floor where
+/// there is no ground, to some way above the highest.
+Span shown_heights(const Json& profile, const Box& volume) {
+  Span range{kInfinity, -kInfinity};
+  widen(range, profile.at("ground"));
+  const bool has_ground = range[0] <= range[1];
+  widen(range, profile.at("altitude"));
+  const double above = std::max(100.0, 0.4 * (range[1] - range[0]));
+  return {has_ground ? std::max(range[0], volume.min.z()) : volume.min.z(),
+          std::min(range[1] + above, volume.max.z())};
+}
 }  // namespace
 
-void add_heights(Json& profile, const Request& request) {
-  Span range{kInfinity, -kInfinity};
-  widen(range, profile.at("altitude"));
-  widen(range, profile.at("ground"));
-  const double above = std::max(100.0, 0.4 * (range[1] - range[0]));
-  range = {std::max(range[0], request.volume.min.z()),
-           std::min(range[1] + above, request.volume.max.z())};
-  const AllowedHeights allowed(request, range[0], range[1]);
-  Json low = Json::array();
-  Json high = Json::array();
-  for (const Json& at : profile.at("at")) {
-    const auto span =
-        allowed.around({at[0].get<double>(), at[1].get<double>(), at[2].get<double>()});
-    low.push_back(span && (*span)[0] > range[0] ? rounded((*span)[0]) : Json(nullptr));
-    high.push_back(span && (*span)[1] < range[1] ? rounded((*span)[1]) : Json(nullptr));
-  }
-  profile["lowest"] = std::move(low);
-  profile["highest"] = std::move(high);
-  Json solids = Json::object();
-  for (const Layer& layer : request.world->layers()) {
+void SolidProfile::add(const World& world, const Vec3& p, const Vec3& ahead) {
+  const Vec3 aside = Vec3(-ahead.y(), ahead.x(), 0).normalized();  // zero where it only climbs
+  for (const Layer& layer : world.layers()) {
     if (layer.environment->ground() != nullptr) {
       continue;
     }
-    Json spans = Json::array();
-    bool has_any = false;
-    for (const Json& at : profile.at("at")) {
-      spans.push_back(spans_json(solid_heights(
-          *layer.environment, {at[0].get<double>(), at[1].get<double>(), 0}, range[0], range[1])));
-      has_any = has_any || !spans.back().empty();
+    const Environment& environment = *layer.environment;
+    std::vector<Span> below = solid_heights(environment, p, heights_[0], heights_[1]);
+    std::vector<Span> beside = below;
+    for (const double share : {-1.0, -0.5, 0.5, 1.0}) {
+      beside = united(beside, solid_heights(environment, p + share * beside_m_ * aside, heights_[0],
+                                            heights_[1]));
     }
-    if (has_any) {
-      solids[layer.id] = std::move(spans);
+    if (!beside.empty()) {
+      layers_[layer.id][count_] = {spans_json(below), spans_json(beside)};
     }
   }
-  profile["solid"] = std::move(solids);
+  ++count_;
+}
+
+void SolidProfile::write(Json& profile) const {
+  profile["beside_m"] = rounded(beside_m_);
+  for (const std::size_t list : {0, 1}) {
+    Json& lists = profile[list == 0 ? "solid" : "beside"] = Json::object();
+    for (const auto& [layer, samples] : layers_) {
+      Json spans(count_, Json::array());
+      bool has_any = false;
+      for (const auto& [sample, both] : samples) {
+        spans[sample] = both[list];
+        has_any = has_any || !both[list].empty();
+      }
+      if (has_any) {
+        lists[layer] = std::move(spans);
+      }
+    }
+  }
+}
+
+SolidProfile solid_profile(const Json& profile, const Box& volume) {
+  constexpr double kMostBeside = 25;     // metres
+  constexpr double kBesideShare = 0.02;  // of the volume's longer side
+  const Vec3 size = volume.max - volume.min;
+  return {shown_heights(profile, volume),
+          std::min(kMostBeside, kBesideShare * std::max(size.x(), size.y()))};
+}
+
+void add_heights(Json& profile, const Request& request) {
+  const Span range = shown_heights(profile, request.volume);
+  const AllowedHeights allowed(request, range[0], range[1]);
+  Json low = Json::array();
+  Json high = Json::array();
+  SolidProfile solids = solid_profile(profile, request.volume);
+  const Json& places = profile.at("at");
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Vec3 at = point_of(places[n]);
+    const auto span = allowed.around(at);
+    low.push_back(span && (*span)[0] > range[0] ? rounded((*span)[0]) : Json(nullptr));
+    high.push_back(span && (*span)[1] < range[1] ? rounded((*span)[1]) : Json(nullptr));
+    solids.add(*request.world, at,
+               point_of(places[std::min(n + 1, places.size() - 1)]) -
+                   point_of(places[n == 0 ? 0 : n - 1]));
+  }
+  profile["lowest"] = std::move(low);
+  profile["highest"] = std::move(high);
+  solids.write(profile);
 }
 }  // namespace altiplan::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <initializer_list>
 #include <map>
@@ -83,10 +84,30 @@ class ClearanceProfile {
 /// unless it has more waypoints.
 Json route_profile(const Route& route, const Request& request, std::size_t samples);
 
+/// The heights that each layer but the ground fills along a profile: `solid`, above and below the
+/// vehicle, and `beside`, there or within `beside_m` of it to either side. Within half a metre; at
+/// each sample a list of [low, high].
+class SolidProfile {
+ public:
+  SolidProfile(const std::array<double, 2>& heights, double beside_m)
+      : heights_(heights), beside_m_(beside_m) {}
+  /// The next sample, at p, where the vehicle moves along `ahead`.
+  void add(const World& world, const Vec3& p, const Vec3& ahead);
+  void write(Json& profile) const;
+
+ private:
+  std::array<double, 2> heights_;
+  double beside_m_;
+  std::size_t count_ = 0;
+  std::map<std::string, std::map<std::size_t, std::array<Json, 2>>> layers_;
+};
+
+/// For a profile that has its `altitude` and `ground`.
+SolidProfile solid_profile(const Json& profile, const Box& volume);
+
 /// Adds to a route's profile, at each sample: `lowest` and `highest`, the limits of the allowed
-/// heights around the route's own or nearest to it, null where there is none nearby; and `solid`,
-/// for each layer that is met above or below the route the heights that it fills. Within half a
-/// metre.
+/// heights around the route's own or nearest to it, null where there is none nearby, within half a
+/// metre; and its SolidProfile.
 void add_heights(Json& profile, const Request& request);
 
 /// The stored flight, judged now, its track thinned to what is visible, its profile to `samples`
