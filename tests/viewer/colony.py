@@ -83,13 +83,13 @@ class Colony:
     @own_scene
     def test_how_it_converged(self):
         self.open_search(scenes.colony)
-        self.assertEqual(self.curves("length"), "Length by iteration, m best 10,500 m  mean 10,750 m ")
-        self.assertEqual(self.curves("alive"), "Alive  3 ")
+        self.assertEqual(self.curves("length"), "Length by iteration, km best 10,500 m mean 10,750 m")
+        self.assertEqual(self.curves("alive"), "Alive  3")
         # The third of five iterations is in the middle.
         width, height = self.run_js("const {clientWidth, clientHeight} = document.querySelector("
                                     "'.chart.length .u-over'); return [clientWidth, clientHeight]")
         self.point_at(".chart.length .u-over", width / 2, height / 2)
-        self.assertEqual(self.curves("length"), "Length by iteration, m best 11,500 m  mean 11,750 m ")
+        self.assertEqual(self.curves("length"), "Length by iteration, km best 11,500 m mean 11,750 m")
         self.assertIsNone(self.drawn()["searched"])
         ActionChains(self.browser.driver).click().perform()
         self.browser.settle()
@@ -97,13 +97,13 @@ class Colony:
         self.assertTrue(self.run_js("return document.getElementById('search_shown').checked"))
         self.assertIn("Iteration 3 of 5", self.text("#search_text"))
         self.press("d")
-        self.assertEqual(self.curves("length"), "Length by iteration, m best 11,500 m  mean 11,750 m ")
+        self.assertEqual(self.curves("length"), "Length by iteration, km best 11,500 m mean 11,750 m")
 
     @own_scene
     def test_of_a_tree_its_best_length(self):
         self.open_search(scenes.improvements)
         self.click("#search_shown")
-        self.assertEqual(self.curves("length"), "Best length by iteration, m best 11,100 m ")
+        self.assertEqual(self.curves("length"), "Best length by iteration, km best 11,100 m")
         self.assertIsNone(self.run_js("return document.querySelector('.chart.alive')"))
         self.assertEqual(len(self.shown()), 12)
         self.assertIn("Iteration 900: best 11,100 m. 14 of 14", self.text("#search_text"))

@@ -25,6 +25,7 @@ from both import Both
 from case import TEMPLATE, Case, own_scene
 from colony import Colony
 from cut import Cut, CutIn3
+from follow import Follow, FollowIn3
 from signs import Signs
 
 
@@ -45,7 +46,7 @@ class File(unittest.TestCase):
             self.assertIn(holder, TEMPLATE)
 
 
-class Page(Both, Bodies, Colony, Cut, CutIn3, Signs, Case):
+class Page(Both, Bodies, Colony, Cut, CutIn3, Follow, FollowIn3, Signs, Case):
     def test_camera_of_the_still(self):
         self.run_js("altiplan.still()")
         eye = self.run_js("return altiplan.camera()")
@@ -196,7 +197,7 @@ class Page(Both, Bodies, Colony, Cut, CutIn3, Signs, Case):
         self.assertLessEqual(min(times), 6000)
 
 
-class Flat(Both, Bodies, Colony, Cut, Signs, Case):
+class Flat(Both, Bodies, Colony, Cut, Follow, Signs, Case):
     """Without WebGL: the same from above."""
     webgl = False
     view = "2d"

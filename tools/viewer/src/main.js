@@ -4,6 +4,7 @@ import {set_series} from './colors.js';
 import {by_id} from './dom.js';
 import {Store} from './store.js';
 import {Frame, hidden_at_first, lines_of} from './world.js';
+import {build_film} from './ui/film.js';
 import {build_panels} from './ui/panels.js';
 import {follow_theme} from './ui/theme.js';
 import {View2} from './view2/view.js';
@@ -36,14 +37,15 @@ function first_state(scene, lines) {
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
   return {shown, hidden: hidden_at_first(scene), selected, source: 'route', time: 0, playing: false, speed: 1,
-    cursor: null, exaggeration, cut, grid: true, bodies: true, everything: false, theme: 'light', tab: 'profiles',
+    follow: false, filmed: false, zoom: null, cursor: null, exaggeration, cut, grid: true, bodies: true,
+    everything: false, theme: 'light', tab: 'profiles',
     search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
 }
 
 function make_view(stage, world, store) {
   if (query.has('flat')) return new View2(stage, world, store);
   try {
-    return new View3(stage, world, store, query.has('still'));
+    return new View3(stage, world, store, query.has('still') || query.has('film'));
   } catch (error) {
     if (!/WebGL/i.test(error.message)) throw error;
     by_id('readout').dataset.note = '2-D: this browser has no WebGL';
@@ -67,14 +69,15 @@ function start() {
   const world = {scene, frame: new Frame(scene.box), lines};
   const store = new Store(first_state(scene, lines));
   follow_theme(store, query.get('theme'));
-  if (query.has('still')) document.body.classList.add('still');
+  for (const alone of ['still', 'film']) if (query.has(alone)) document.body.classList.add(alone);
   const has_flight = lines.some(({kind}) => kind === 'track');
   by_id('clock').hidden = !has_flight;
   const view = make_view(by_id('stage'), world, store);
-  build_panels(view, world, store);
+  const {labels} = build_panels(view, world, store);
   if (query.has('still')) still(view, store);
   Object.assign(altiplan, {drawn: () => view.drawn(), camera: () => view.where(),
-    project: (point) => view.project(point), state: store.state, still: () => still(view, store)});
+    project: (point) => view.project(point), labels, state: store.state, still: () => still(view, store),
+    film: build_film(view, world, store)});
   view.first_frame();
   altiplan.ready_ms = performance.now();
   altiplan.ready = true;

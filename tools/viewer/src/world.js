@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {round_step} from './units.js';
+import {length_unit, round_step} from './units.js';
 
 /** Coordinates relative to the centre of the box: in 32 bits a point 50 km from it is accurate to
  *  2 mm; one 5,000 km from the origin of the map would be accurate to half a metre. */
@@ -119,14 +119,16 @@ export function last_before(values, value) {
 
 export const between = (a, b, share) => a.map((value, axis) => value + (b[axis] - value) * share);
 
-/** Position and heading of a flight at `time`. */
+/** Position of a flight at `time`, a position ahead of it, the speed, and the leg. */
 export function place_at(line, time) {
   const from = Math.min(last_before(line.times, time), Math.max(0, line.points.length - 2));
   const to = Math.min(from + 1, line.points.length - 1);
   const span = line.times[to] - line.times[from];
   const share = span > 0 ? Math.min(1, Math.max(0, (time - line.times[from]) / span)) : 0;
   const at = between(line.points[from], line.points[to], share);
-  return {at, ahead: between(at, line.points[to], share < 1 ? 1 : 0), from};
+  const [a, b] = [line.points[from], line.points[to]];
+  const speed = span > 0 ? Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / span : 0;
+  return {at, ahead: between(at, b, share < 1 ? 1 : 0), speed, from};
 }
 
 /** Longitude and latitude of (x, y), bilinear between the corners of the box. */
@@ -148,4 +150,16 @@ export function grid_lines(box, axis) {
   for (let at = Math.ceil(box[0][axis] / step) * step; at <= box[1][axis] + step * 1e-6;
     at += step) lines.push(at);
   return {step, lines};
+}
+
+/** The unit of the grid's numbers. */
+export function grid_unit(box) {
+  const all = [0, 1].flatMap((axis) => grid_lines(box, axis).lines.map(Math.abs));
+  return length_unit(Math.max(0, ...all));
+}
+
+/** The line of the flight that is looked at: of the selected result, else the first. */
+export function flight_line({lines}, {selected}) {
+  const tracks = lines.filter(({kind}) => kind === 'track');
+  return tracks.find(({result}) => result === selected) ?? tracks[0] ?? null;
 }

@@ -2,16 +2,17 @@
 import {by_id, element} from '../dom.js';
 
 const kButtons = [
-  ['fit', '⌂ Overview', 'The whole box from the south-west (R)'],
-  ['top', '⊤ Top view', 'Top view, north up (T)'],
-  ['theme', '◐ Theme', 'Light or dark theme (D)'],
-  ['help', '?', 'Keys and symbols (?)'],
+  ['fit', '⌂', ' Overview', 'The whole box from the south-west (R)'],
+  ['top', '⊤', ' Top view', 'Top view, north up (T)'],
+  ['theme', '◐', ' Theme', 'Light or dark theme (D)'],
+  ['help', '?', '', 'Keys and symbols (?)'],
 ];
 
 export function build_bar(world, actions) {
   by_id('menu').onclick = actions.menu;
-  by_id('actions').append(...kButtons.map(([name, text, title]) =>
-    element('button', {id: `do_${name}`, textContent: text, title, onclick: actions[name]})));
+  by_id('actions').append(...kButtons.map(([name, sign, word, title]) =>
+    element('button', {id: `do_${name}`, title, ariaLabel: title, onclick: actions[name]}, sign,
+      element('span', {className: 'word'}, word))));
   by_id('north').onclick = actions.north;
   const {results} = world.scene;
   const solved = results.filter(({status}) => status === 'solved').length;

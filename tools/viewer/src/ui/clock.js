@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {by_id, element} from '../dom.js';
 import {clock, number} from '../units.js';
+import {happenings} from './happenings.js';
 
 const kSpeeds = [1, 2, 5, 10, 20, 50, 100];
 // The default speed plays a flight in at most this time.
@@ -13,6 +14,8 @@ export function build_clock(world, store) {
   const last = Math.max(...tracks.map(({times}) => times.at(-1)));
   const play = element('button', {id: 'play', title: 'Play or pause (space)',
     onclick: () => store.set({playing: !store.state.playing})});
+  const follow = element('button', {id: 'follow', title: 'Fly behind the vehicle (F)',
+    onclick: () => store.set({follow: !store.state.follow})}, 'Follow');
   const slider = element('input', {type: 'range', id: 'time', min: 0, max: last, step: 'any',
     ariaLabel: 'Time of flight',
     oninput: () => store.set({time: Number(slider.value), playing: false})});
@@ -22,7 +25,7 @@ export function build_clock(world, store) {
     onchange: () => store.set({speed: Number(speed.value)})},
     kSpeeds.map((factor) => element('option', {value: factor}, `${factor}×`)));
   store.set({speed: kSpeeds.find((factor) => last / factor <= kWatchSeconds) ?? kSpeeds.at(-1)});
-  by_id('clock').append(play, element('div', {className: 'rail'}, marks, slider), shown, speed);
+  by_id('clock').append(play, follow, element('div', {className: 'rail'}, marks, slider), shown, speed);
 
   const reflect = () => {
     const {time, playing} = store.state;
@@ -31,28 +34,20 @@ export function build_clock(world, store) {
     play.textContent = playing ? '❚❚' : '▶';
     play.ariaLabel = playing ? 'Pause' : 'Play';
     speed.value = store.state.speed;
+    follow.ariaPressed = String(store.state.follow);
   };
   const reflect_marks = () => marks.replaceChildren(...
     happenings(world.scene, store.state.selected).map((mark) => sign(mark, last, store)));
-  store.on(['time', 'playing', 'speed'], reflect);
+  store.on(['time', 'playing', 'speed', 'follow'], reflect);
   store.on(['selected'], reflect_marks);
-  store.on(['playing'], () => store.state.playing && run(store, last));
+  store.on(['playing'], () => {
+    if (!store.state.playing) return;
+    // What is played is the flight, and so are the profiles.
+    if (world.scene.results[store.state.selected]?.flight?.profile) store.set({source: 'flight'});
+    run(store, last);
+  });
   reflect();
   reflect_marks();
-}
-
-/** The handovers, replans and events of the selected flight, each with its time and text. */
-function happenings({results, events}, selected) {
-  const flight = results[selected]?.flight;
-  if (!flight) return [];
-  return [
-    ...(flight.handovers ?? []).map(({at_s, to, why}) =>
-      ({at_s, kind: 'handover', text: `Handover to ${to}: ${why}`})),
-    ...(flight.replans ?? []).map(({at_s, step, status, message}) =>
-      ({at_s, kind: 'replan', text: `Replan with ${step}, ${status}: ${message}`})),
-    ...(flight.event_times ?? []).map((at_s, event) =>
-      ({at_s, kind: 'event', text: events[event]?.text ?? ''})),
-  ].filter(({at_s}) => at_s !== null);
 }
 
 function sign({at_s, kind, text}, last, store) {

@@ -3,8 +3,8 @@ import uPlot from 'uplot';
 import {style_of} from '../colors.js';
 import {element, swatch} from '../dom.js';
 import {is_population, iteration_at, iterations_around} from '../playback.js';
-import {metres, number} from '../units.js';
-import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
+import {length_unit, metres, number} from '../units.js';
+import {fit, labels_of, new_cell, new_plot, put_cursor, range_of} from './chart.js';
 
 // Up to this many iterations, each is also drawn as a point.
 const kFew = 40;
@@ -22,7 +22,7 @@ const kAlive = {key: 'alive', title: 'Alive', zero: true, span: 1, curves: [
  *  number of members that found a route. A click on an iteration calls `go_to` with it. */
 export function build_convergence(store, go_to) {
   const charts = element('div', {className: 'charts convergence', hidden: true});
-  const made = {pane: charts, show};
+  const made = {pane: charts, show, labels: () => drawn.flatMap(({plot}) => labels_of(plot))};
   let [playback, shown, looked, drawn, hovered] = [null, null, null, [], null];
 
   /** Shows the search in progress of a playback. */
@@ -46,16 +46,18 @@ export function build_convergence(store, go_to) {
   const seen = () => store.state.search === playback ? store.state.searched : playback.count;
   function draw(chart) {
     const value = element('span', {});
-    const cell = new_cell(chart, value);
-    charts.append(cell);
     const link = {silent: false};
     const data = [shown.map((iteration) => iteration.number), ...chart.curves.map(({key}) =>
       shown.map((iteration) => Number.isFinite(iteration[key]) ? iteration[key] : null))];
     const colors = chart.curves.map(({color}) => style_of(color));
     const series = [{}, ...chart.curves.map(({dash}, nth) => curve(colors[nth], dash))];
-    const plot = new_plot(cell, data, series, {dots: colors, incrs: kApart,
+    const range = range_of(chart, data);
+    const up = length_unit(chart.unit === 'm' ? Math.max(...range) : 0);
+    const cell = new_cell({...chart, unit: chart.unit && up.name}, value);
+    charts.append(cell);
+    const plot = new_plot(cell, data, series, {dots: colors, incrs: kApart, metres: [1, up.metres],
       scales: {x: {range: (_, low, high) => low === high ? [low - 1, high + 1] : [low, high]},
-        y: {range: range_of(chart, data)}},
+        y: {range}},
       hooks: {draw: [reflect], setCursor: [(self) => {
         if (!link.silent && self.cursor.event) hover(shown[self.cursor.idx] ?? null);
       }]}});
@@ -83,9 +85,9 @@ export function build_convergence(store, go_to) {
       value.replaceChildren(...chart.curves.flatMap((curve) => reading(curve, iteration)));
     }
   }
-  const reading = ({key, title, color, mark, read}, iteration) => element('span', {},
-    mark ? swatch(style_of(color), mark) : null,
-    ` ${title} ${iteration ? read(iteration[key]) : ''} `);
+  const reading = ({key, title, color, mark, read}, iteration) => element('span',
+    {className: 'reading'}, mark ? swatch(style_of(color), mark) : null, ` ${title} `,
+    element('output', {}, iteration ? read(iteration[key]) : ''));
 
   new ResizeObserver(() => fit(drawn)).observe(charts);
   store.on(['theme'], rebuild);

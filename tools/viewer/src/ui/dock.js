@@ -5,14 +5,16 @@ import {build_profiles} from './profiles.js';
 import {build_search} from './search.js';
 import {build_violations, violations_of} from './violations.js';
 
-/** The four panes under the picture, one at a time. */
+/** The four panes under the picture, one at a time. Returns `labels`, what its charts draw. */
 export function build_dock(view, world, store) {
   const count = violations_of(world).length;
+  const profiles = build_profiles(world, store);
+  const search = build_search(world, store);
   const panes = {
-    profiles: ['Profiles', build_profiles(world, store)],
+    profiles: ['Profiles', profiles.pane],
     metrics: ['Metrics', build_metrics(world, store)],
     violations: [`Violations (${count})`, build_violations(view, world, store)],
-    search: ['Search', build_search(world, store)],
+    search: ['Search', search.pane],
   };
   const tabs = element('div', {className: 'tabs', role: 'tablist'});
   const dock = by_id('dock');
@@ -37,4 +39,5 @@ export function build_dock(view, world, store) {
     reflect();
   });
   reflect();
+  return {labels: () => [...profiles.labels(), ...search.labels()]};
 }

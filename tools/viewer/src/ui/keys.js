@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import {kKindNames, kKinds} from '../colors.js';
 import {by_id, element, swatch} from '../dom.js';
+import {flight_line} from '../world.js';
 import {next_cut} from './cut.js';
 
 const kKeys = [
   ['Space', 'play or pause the flight'],
   ['← →', 'step the flight back or forward by 1 s (with Shift: 10 s)'],
+  ['F', 'follow the vehicle, or stop'],
   ['1 … 9', 'show or hide a result'],
   ['R', 'overview: the whole box from the south-west'],
   ['T', 'top view'], ['N', 'from the south, north up'],
@@ -28,6 +30,7 @@ export function listen_to_keys(world, store, actions) {
     '?': actions.help, '[': () => exaggerate(-0.5), ']': () => exaggerate(0.5),
     ',': () => cut(-1), '.': () => cut(1), c: () => store.set({cut: Infinity}),
     g: () => store.set({grid: !state.grid}), l: () => store.set({legend: !state.legend}),
+    f: () => flight_line(world, state) && store.set({follow: !state.follow}),
     p: tab('profiles'), m: tab('metrics'),
     v: tab('violations'), s: tab('search'),
     ' ': () => store.set({playing: !state.playing}),
@@ -71,8 +74,9 @@ function help_text() {
       [element('dt', {}, element('kbd', {}, key)), element('dd', {}, what)])),
     element('h2', {}, 'Mouse and touch'),
     element('p', {}, 'Drag to rotate, drag with the right button or two fingers to pan, use the ' +
-      'wheel or pinch to zoom. Point at a route to move the cursor of the profiles; click it to ' +
-      'select that result. Click a profile of a flight to jump to that time.'),
+      'wheel or pinch to zoom; the scale is that of the middle of the picture. Point at a route to move the cursor of the profiles; click it to ' +
+      'select that result. Click a profile of a flight to jump to that time, turn the wheel on it ' +
+      'to zoom, drag it along, double-click it to see all again.'),
     element('h2', {}, 'Search events'),
     element('p', {className: 'kinds'}, kKindNames.slice(0, 4).flatMap((name, kind) =>
       element('span', {}, swatch(kKinds[kind]), name))),

@@ -4,15 +4,15 @@ import {kRoleNames, role_color, route_color} from '../colors.js';
 import {by_id, element, swatch} from '../dom.js';
 import {thinning} from '../playback.js';
 import {ramp_gradient} from '../ramp.js';
-import {metres, number} from '../units.js';
-import {grid_lines, layers_of} from '../world.js';
+import {mark_text, metres, number} from '../units.js';
+import {grid_lines, grid_unit, layers_of} from '../world.js';
 import {violations_of} from './violations.js';
 
 /** The legend of colours and lines, with units. */
 export function build_legend(world, store) {
   const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
     ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
-    ...body(world.scene, store.state), grid(world.frame, store.state), ...search(store.state));
+    ...body(world.scene, store.state), grid(world, store.state), ...search(store.state));
   store.on(['theme', 'shown', 'hidden', 'grid', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
   reflect();
   const fold = () => {
@@ -61,8 +61,12 @@ function search({search: shown}) {
   return shown ? [element('div', {className: 'note'}, `Search. ${thinning(shown.trace)}`)] : [];
 }
 
-function grid(frame, state) {
-  const parts = state.grid ? [`Grid ${metres(grid_lines(frame.box, 0).step)}`] : [];
+function grid({frame, scene}, state) {
+  const [{step}, unit] = [grid_lines(frame.box, 0), grid_unit(frame.box)];
+  const parts = state.grid ? [`Grid ${mark_text(step, step, unit.metres)} ${unit.name}`] : [];
+  if (!scene.ground && !document.body.classList.contains('flat')) {
+    parts.push(`floor drawn at ${metres(frame.box[0][2])}`);
+  }
   if (state.exaggeration > 1) parts.push(`vertical exaggeration ${state.exaggeration.toFixed(1)}×`);
   if (state.cut < Infinity) parts.push(`cut above ${metres(state.cut)}`);
   return element('div', {className: 'note'}, parts.join(', '));

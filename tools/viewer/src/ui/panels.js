@@ -6,11 +6,13 @@ import {build_dock} from './dock.js';
 import {listen_to_keys} from './keys.js';
 import {build_labels} from './labels.js';
 import {build_legend} from './legend.js';
-import {build_marks} from './marks.js';
+import {build_compass, build_marks} from './marks.js';
 import {build_pointer} from './pointer.js';
+import {build_scale} from './scale.js';
 import {build_side} from './side.js';
+import {build_telemetry} from './telemetry.js';
 
-/** The panels around the picture and on it. */
+/** The panels around the picture and on it. Returns `labels`, what their canvases hold. */
 export function build_panels(view, world, store) {
   const {scene} = world;
   document.title = by_id('title').textContent = scene.title;
@@ -26,10 +28,14 @@ export function build_panels(view, world, store) {
   build_bar(world, actions);
   build_side(view, world, store);
   build_clock(world, store);
-  build_dock(view, world, store);
+  const {labels} = build_dock(view, world, store);
   build_legend(world, store);
-  build_labels(view, world, store);
-  build_marks(view, world, store);
+  build_compass(view);
+  build_scale(view);
+  build_telemetry(world, store);
+  // After the panels on the picture, of which the labels stay clear.
+  build_labels(view, world, store, build_marks(view, world, store));
   build_pointer(view, world, store);
   listen_to_keys(world, store, actions);
+  return {labels};
 }

@@ -5,6 +5,7 @@ import {between, lonlat} from '../world.js';
 import {route_cursor} from './cursor.js';
 
 const kReachPixels = 10;
+const kTipPixels = 14;
 
 /** Shows the route (moving the profiles' cursor), the solid and the ground under the pointer. */
 export function build_pointer(view, world, store) {
@@ -47,8 +48,16 @@ function hover(x, y, view, world, store) {
     tip.textContent = view.solid_at(x, y) ?? '';
   }
   tip.hidden = tip.textContent === '';
-  tip.style.transform = `translate(${x + 14}px,${y + 14}px)`;
+  put_tip(tip, x, y, view.stage);
   by_id('readout').textContent = describe(view.ground_at(x, y), world.scene);
+}
+
+/** Beside the pointer, on the side where it is not cut. */
+function put_tip(tip, x, y, {clientWidth, clientHeight}) {
+  const beside = (at, size, side) => Math.max(0,
+    at + kTipPixels + size > side ? at - kTipPixels - size : at + kTipPixels);
+  tip.style.transform = `translate(${beside(x, tip.offsetWidth, clientWidth)}px,` +
+    `${beside(y, tip.offsetHeight, clientHeight)}px)`;
 }
 
 function choose(found, world, store) {

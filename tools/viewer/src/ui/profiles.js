@@ -2,10 +2,11 @@
 import uPlot from 'uplot';
 import {kind_colors, route_color, style_of} from '../colors.js';
 import {element, swatch} from '../dom.js';
-import {metres, number} from '../units.js';
-import {last_before} from '../world.js';
-import {fit, new_cell, new_plot, put_cursor, range_of} from './chart.js';
-import {profile_cursor, profile_of} from './cursor.js';
+import {length_unit, metres, number} from '../units.js';
+import {fit, labels_of, new_cell, new_plot, put_cursor, range_of} from './chart.js';
+import {profile_cursor, profile_of, vehicle_cursor} from './cursor.js';
+import {draw_solids, obstacle_heights_of, solids_legend} from './profile_solids.js';
+import {listen_to_zoom, scaled, scrolled} from './zoom.js';
 
 // The shown range is at least `span`, so that a level line looks level.
 const kCharts = [
@@ -14,6 +15,7 @@ const kCharts = [
   {key: 'speed', title: 'Speed', unit: 'm/s', zero: true, span: 1},
   {key: 'turn', title: 'Turn at waypoints', unit: '°', limit: 'turn_deg', zero: true, span: 10},
 ];
+const kStep = 1.6;  // of the buttons that zoom
 
 /** Charts over the distance of the route or the time of the flight, with one cursor. */
 export function build_profiles(world, store) {
@@ -21,33 +23,49 @@ export function build_profiles(world, store) {
   const choice = element('div', {className: 'choice'});
   const charts = element('div', {className: 'charts'});
   pane.append(choice, charts);
-  let drawn = [];
+  let [drawn, profile, whole] = [[], null, null];
 
   const rebuild = () => {
     for (const {plot} of drawn) plot.destroy();
-    const profile = profile_of(world, store.state);
-    choice.replaceChildren(...sources(world, store, profile));
+    profile = profile_of(world, store.state);
+    whole = profile && [profile.x[0], profile.x.at(-1)];
+    choice.replaceChildren(...sources(world, store, profile, zoom_by));
     charts.replaceChildren();
     drawn = profile ? kCharts.map((chart) => draw(chart, profile, charts, world, store)) : [];
-    reflect_when_drawn();
+    // A chart has screen positions only once it has been drawn.
+    for (const chart of drawn) chart.redrawn = reflect;
     fit(drawn);
+    show_part();
   };
   const reflect = () => {
-    const profile = profile_of(world, store.state);
-    for (const chart of drawn) show_cursor(chart, profile, store.state);
+    const at = profile && (store.state.cursor ?? vehicle_cursor(profile, world, store.state));
+    for (const chart of drawn) show_cursor(chart, profile, at ?? {x: null, index: null});
   };
-  // A chart has screen positions only once it has been drawn.
-  const reflect_when_drawn = () => {
-    for (const chart of drawn) chart.redrawn = reflect;
+  const zoom_by = (factor) => {
+    const middle = (store.state.zoom ?? whole).reduce((a, b) => a + b) / 2;
+    const at = store.state.cursor?.x ?? vehicle_cursor(profile, world, store.state)?.x ?? middle;
+    store.set({zoom: scaled(store.state.zoom, whole, at, factor)});
+  };
+  const show_part = () => {
+    const [min, max] = store.state.zoom ?? whole ?? [];
+    for (const {plot} of drawn) plot.setScale('x', {min, max});
+  };
+  const scroll = ({zoom, playing}) => {
+    if (!profile || !zoom) return;
+    const at = vehicle_cursor(profile, world, store.state);
+    if (at) store.set({zoom: scrolled(zoom, whole, at.x, playing)});
   };
   new ResizeObserver(() => fit(drawn)).observe(charts);
+  store.on(['selected', 'source'], () => store.set({zoom: null}));
   store.on(['selected', 'source', 'theme'], rebuild);
   store.on(['cursor', 'time'], reflect);
+  store.on(['time'], scroll);
+  store.on(['zoom'], show_part);
   rebuild();
-  return pane;
+  return {pane, labels: () => drawn.flatMap(({plot}) => labels_of(plot))};
 }
 
-function sources(world, store, profile) {
+function sources(world, store, profile, zoom_by) {
   const result = world.scene.results[store.state.selected];
   if (!profile) {
     const fate = result?.status === 'solved' ? 'is not shown' : 'has no route';
@@ -58,28 +76,42 @@ function sources(world, store, profile) {
     ariaPressed: String(profile.kind === kind),
     onclick: () => store.set({source: kind, cursor: null})});
   const both = result.profile && result.flight?.profile;
+  const zoom = (text, title, factor) => element('button', {textContent: text, title,
+    ariaLabel: title, onclick: () => zoom_by(factor)});
   return [element('b', {}, result.name), ...(both ? [button('route', 'Route'),
     button('flight', 'Flight')] : []), element('span', {className: 'note'},
-    profile.kind === 'route' ? 'over distance, m' : 'over time, s')];
+    profile.kind === 'route' ? `over distance, ${unit_along(profile).name}` : 'over time, s'),
+  element('span', {className: 'zoom'}, zoom('−', 'Show more of the profiles', kStep),
+    zoom('+', 'Show a part of the profiles', 1 / kStep))];
 }
+
+const unit_along = ({kind, x}) => length_unit(kind === 'route' ? x.at(-1) : 0);
 
 function draw(chart, profile, charts, world, store) {
   const value = element('span', {});
-  const cell = new_cell(chart, value);
-  charts.append(cell);
-  const result = world.scene.results[store.state.selected];
+  const {scene, frame} = world;
+  const result = scene.results[store.state.selected];
   const limit = chart.limit ? result.limits?.[chart.limit] ?? null : null;
   const color = route_color(store.state.selected, store.state.theme);
   const {data, series, names} = curves(chart, profile, limit, color, result.limits);
+  const is_height = chart.key === 'altitude';
+  const obstacles = is_height ? obstacle_heights_of(profile, scene) : [];
+  // Buildings stand on the floor where there is no ground.
+  const floor = obstacles.length > 0 && !scene.ground ? frame.box[0][2] : undefined;
+  const range = range_of({...chart, floor}, [...seen(chart, data, limit), obstacles]);
+  const up = length_unit(chart.unit === 'm' ? Math.max(...range.map(Math.abs)) : 0);
+  const cell = new_cell({...chart, unit: chart.unit === 'm' ? up.name : chart.unit}, value,
+    is_height ? [...solids_legend(profile, scene), ...limits_legend(series)] : names.map(entry));
+  charts.append(cell);
   const link = {silent: false};
   const made = {};
   // The cursor's dot is on the curve itself, not on ground and limits beside it.
-  const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range: range_of(chart,
-    seen(chart, data, limit))}}, hooks: {drawClear: [(self) => {
-    if (chart.key === 'altitude') draw_solids(self, profile);
-  }], draw: [() => made.redrawn?.()], setCursor: [(self) => {
-    if (!link.silent && self.cursor.event) follow(self, profile, store);
-  }]}});
+  const plot = new_plot(cell, data, series, {dots: [color], scales: {y: {range}},
+    metres: [unit_along(profile).metres, up.metres], hooks: {drawClear: [(self) => {
+      if (is_height) draw_solids(self, profile, scene);
+    }], draw: [() => made.redrawn?.()], setCursor: [(self) => {
+      if (!link.silent && self.cursor.event) follow(self, profile, store);
+    }]}});
   plot.over.addEventListener('click', () => {
     const index = plot.cursor.idx;
     if (profile.kind === 'flight' && index !== null && index !== undefined) {
@@ -87,6 +119,7 @@ function draw(chart, profile, charts, world, store) {
     }
   });
   plot.over.addEventListener('pointerleave', () => store.set({cursor: null}));
+  listen_to_zoom(plot, [profile.x[0], profile.x.at(-1)], store);
   Object.assign(made, {plot, cell, value, chart, link, names});
   return made;
 }
@@ -107,12 +140,12 @@ function curves(chart, profile, limit, color, limits) {
     if (limits?.ground_clearance_m) {
       data.push(profile.ground.map((height) => height === null ? null :
         height + limits.ground_clearance_m));
-      series.push(limit_line());
+      series.push({...limit_line(), limits: true});
     }
     for (const key of ['lowest', 'highest']) {
       if (profile[key]?.some((height) => height !== null)) {
         data.push(profile[key]);
-        series.push({...limit_line(), spanGaps: false});
+        series.push({...limit_line(), spanGaps: false, limits: true});
       }
     }
   }
@@ -146,26 +179,6 @@ function compared(profile, color) {
   return made;
 }
 
-/** The heights that obstacles and zones fill below, at and above the route. */
-function draw_solids({ctx, bbox, data, valToPos}, profile) {
-  const [x] = data;
-  const pixel = (nth) => valToPos(x[Math.max(0, Math.min(nth, x.length - 1))], 'x', true);
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-  ctx.clip();
-  ctx.fillStyle = style_of('--solid_fill');
-  for (const spans of Object.values(profile.solid ?? {})) {
-    spans.forEach((its, nth) => its.forEach(([low, high]) => {
-      const left = (pixel(nth - 1) + pixel(nth)) / 2;
-      const right = (pixel(nth) + pixel(nth + 1)) / 2;
-      const top = valToPos(high, 'y', true);
-      ctx.fillRect(left, top, right - left, valToPos(low, 'y', true) - top);
-    }));
-  }
-  ctx.restore();
-}
-
 /** The columns that set the chart's range; clearances from distant kinds may exceed it. */
 const seen = (chart, data, limit) => chart.key !== 'clearance' ? data :
   [data[0], data.at(limit === null ? -1 : -2), ...limit === null ? [] : [[limit]]];
@@ -180,14 +193,19 @@ function follow(plot, profile, store) {
   }
 }
 
-/** Shows the cursor, or else the flight's time, as a line and a value on a chart. */
-function show_cursor({plot, value, chart, link, names}, profile, {cursor, time}) {
-  const x = cursor?.x ?? (profile.kind === 'flight' ? time : null);
+const entry = ([text, color, , line]) =>
+  element('span', {className: 'reading'}, swatch(color, line), ` ${text}`);
+
+/** Names the limits of heights where there are any. */
+const limits_legend = (series) => series.some(({limits}) => limits) ?
+  [entry(['allowed', style_of('--limit'), null, 'line attempt'])] : [];
+
+/** Shows a sample as a line and as values on a chart. */
+function show_cursor({plot, value, chart, link, names}, profile, {x, index}) {
   put_cursor(plot, link, x);
-  const index = x === null ? null : cursor?.index ?? last_before(profile.x, x);
   if (names.length > 0) {
-    value.replaceChildren(...names.map(([name, color, values, line]) => element('span', {},
-      swatch(color, line), ` ${name}${index === null ? '' : ` ${metres(values[index])}`}`)));
+    value.replaceChildren(...index === null ? [] : names.map(([, color, values, line]) =>
+      entry([metres(values[index]), color, values, line])));
     return;
   }
   if (index === null) {

@@ -12,8 +12,8 @@ export function build_search(world, store) {
   const traced = world.scene.results.map((result, index) => ({result, index}))
     .filter(({result}) => result.trace);
   if (traced.length === 0) {
-    return element('div', {}, element('p', {className: 'empty'},
-      'No result has a trace of its search (altiplan run --trace).'));
+    return {labels: () => [], pane: element('div', {}, element('p', {className: 'empty'},
+      'No result has a trace of its search (altiplan run --trace).'))};
   }
   const choice = element('select', {id: 'searched_result', onchange: () => show(true)},
     traced.map(({result, index}) => element('option', {value: index}, result.name)));
@@ -96,11 +96,12 @@ export function build_search(world, store) {
     if (tab === 'search') convergence.show(playback_of(trace()));
   });
   reflect();
-  return element('div', {}, element('div', {className: 'controls'},
+  const pane = element('div', {}, element('div', {className: 'controls'},
     element('div', {className: 'row'}, traced.length > 1 ? choice : null, visible.row),
     element('div', {className: 'row'}, play, slider),
     element('div', {className: 'row'}, told),
     element('div', {className: 'row kinds'}, kKindNames.slice(0, 4).flatMap((name, kind) =>
       element('span', {}, swatch(kKinds[kind]), name)))),
   convergence.pane);
+  return {pane, labels: convergence.labels};
 }

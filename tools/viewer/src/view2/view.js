@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 import {bodies_of, from_above} from '../body.js';
+import {chase_metres} from '../chase.js';
 import {casing, kKinds, mix, role_color, route_color, style_of} from '../colors.js';
+import {by_id} from '../dom.js';
 import {outline} from '../shapes.js';
-import {drift, event_times, grid_lines, layer_key, present,
-  circles} from '../world.js';
+import {circles, drift, event_times, flight_line, grid_lines, layer_key, place_at,
+  present} from '../world.js';
 import {ground_image} from './ground_image.js';
 import {count_below, path_of_many} from './paths.js';
 
 const kOpacity = {obstacle: 0.6, keep_out: 0.25, keep_in: 0.06, threat: 0.25,
   unknown: 0.15};
-const kLegendPixels = 330;
-const kLabelPixels = 70;
+// Pixels around the box: for its numbers, the names of its axes, and the compass.
+const kMargins = {side: 74, bottom: 48, top: 26};
 
 /** The world from above, for browsers without WebGL. Same methods as View3. */
 export class View2 {
@@ -28,6 +30,20 @@ export class View2 {
     this.look('fit');
     store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'bodies', 'theme',
       'search', 'searched'], () => this.draw());
+    store.on(['follow', 'time', 'selected'], (state, changed) => this.#follow(state, changed));
+  }
+
+  /** Keeps the vehicle in the middle. */
+  #follow(state, changed) {
+    const line = state.follow && flight_line(this.world, state);
+    if (!line) return;
+    if (changed.has('follow')) {
+      const across = 3 * chase_metres(line, state.speed, this.world.frame);
+      this.scale = Math.max(this.scale,
+        Math.min(this.stage.clientWidth, this.stage.clientHeight) / across);
+    }
+    this.middle = place_at(line, state.time).at.slice(0, 2);
+    this.draw();
   }
 
   on_frame(listener) {
@@ -53,6 +69,7 @@ export class View2 {
     this.canvas.onpointerup = () => { held = null; };
     this.canvas.onpointermove = (event) => {
       if (!held) return;
+      this.store.set({follow: false});
       this.middle[0] -= (event.offsetX - held[0]) / this.scale;
       this.middle[1] += (event.offsetY - held[1]) / this.scale;
       held = [event.offsetX, event.offsetY];
@@ -70,17 +87,31 @@ export class View2 {
 
   look(from) {
     if (from !== 'fit' && from !== 'top') return;
+    this.store.set({follow: false});
     const {box, size} = this.world.frame;
-    this.middle = [0, 1].map((axis) => (box[0][axis] + box[1][axis]) / 2);
-    this.scale = 0.86 * Math.min(this.stage.clientWidth / size[0],
-      this.stage.clientHeight / size[1]);
-    // To the right of the legend as far as there is room.
-    const room = (this.stage.clientWidth - size[0] * this.scale) / 2 - kLabelPixels;
-    this.middle[0] -= Math.min(kLegendPixels / 2, Math.max(0, room)) / this.scale;
+    const {clientWidth: width, clientHeight: height} = this.stage;
+    const {side, top} = kMargins;
+    const scale_in = ({left, bottom}) => Math.min(Math.max(1, width - left - side) / size[0],
+      Math.max(1, height - bottom - top) / size[1]);
+    const [best] = this.#margins().sort((a, b) => scale_in(b) - scale_in(a));
+    this.scale = scale_in(best);
+    this.middle = [(box[0][0] + box[1][0]) / 2 - (best.left - side) / 2 / this.scale,
+      (box[0][1] + box[1][1]) / 2 - (best.bottom - top) / 2 / this.scale];
     this.draw();
   }
 
+  /** What is left free for numbers and panels: beside the legend, or above it. */
+  #margins() {
+    const legend = by_id('legend');
+    // The names of sources go on below the box.
+    const below = kMargins.bottom + by_id('attribution').offsetHeight;
+    const right_of = legend.offsetWidth > 0 ? legend.offsetLeft + legend.offsetWidth : 0;
+    return [{left: right_of + kMargins.side, bottom: below},
+      {left: kMargins.side, bottom: Math.max(below, legend.offsetHeight + kMargins.bottom + 10)}];
+  }
+
   fly_to([x, y], away = this.world.frame.diagonal / 4) {
+    this.store.set({follow: false});
     this.middle = [x, y];
     this.scale = Math.max(this.scale, Math.min(this.stage.clientWidth,
       this.stage.clientHeight) / away);
@@ -124,8 +155,18 @@ export class View2 {
     return 0;
   }
 
+  metres_per_pixel() {
+    return 1 / this.scale;
+  }
+
+  /** The sides of the box at which its numbers are: west and south. */
+  near_side() {
+    return [-1, -1];
+  }
+
   where() {
-    return {position: [...this.middle, this.scale], target: [...this.middle, 0], flying: false};
+    return {position: [...this.middle, this.scale], target: [...this.middle, 0],
+      flying: false, following: this.store.state.follow};
   }
 
   /** The current drawing: the points that its paths were made of, since 2-D has no buffers. */

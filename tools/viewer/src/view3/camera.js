@@ -18,7 +18,11 @@ export class Camera {
     this.controls.screenSpacePanning = false;
     this.controls.minDistance = frame.diagonal / 2000;
     this.controls.maxDistance = frame.diagonal * 6;
-    this.controls.addEventListener('change', changed);
+    this.controls.addEventListener('change', () => {
+      if (this.placing) return;
+      this.turned?.();
+      changed();
+    });
     this.flight = null;
   }
 
@@ -55,12 +59,20 @@ export class Camera {
     return {target, position: target.clone().addScaledVector(back, distance)};
   }
 
-  put({target, position}) {
+  put(pose) {
     this.flight = null;
+    this.place(pose);
+    this.changed();
+  }
+
+  /** The same during a frame: asks for no other one. */
+  place({target, position}) {
     this.controls.target.copy(target);
     this.eye.position.copy(position);
+    this.placing = true;
     this.controls.update();
-    this.changed();
+    this.placing = false;
+    this.eye.updateMatrixWorld();
   }
 
   /** Moves smoothly, or at once if the user prefers reduced motion. */
@@ -76,7 +88,7 @@ export class Camera {
 
   /** Flies to `target`, seen from the same side and close enough to see its surroundings. */
   fly_to(target, away = this.frame.diagonal * 0.22) {
-    const back = this.eye.position.clone().sub(this.controls.target);
+    const back = this.back();
     back.setLength(Math.min(back.length(), away));
     this.fly({target, position: target.clone().add(back)});
   }
@@ -89,7 +101,9 @@ export class Camera {
     this.controls.target.lerpVectors(this.flight.from_target, this.flight.target, eased);
     this.eye.position.lerpVectors(this.flight.from_position, this.flight.position, eased);
     if (share === 1) this.flight = null;
+    this.placing = true;
     this.controls.update();
+    this.placing = false;
     return share < 1;
   }
 
@@ -99,6 +113,16 @@ export class Camera {
     this.eye.near = distance / 100;
     this.eye.far = distance + this.frame.diagonal * (1 + exaggeration);
     this.eye.updateProjectionMatrix();
+  }
+
+  /** Metres that a pixel is wide that far in front of the eye. */
+  pixel_at(depth, height) {
+    return 2 * depth * Math.tan(kFieldDeg / 2 * kRadians) / height;
+  }
+
+  /** From the target to the eye. */
+  back() {
+    return this.eye.position.clone().sub(this.controls.target);
   }
 
   /** Azimuth of the eye, in degrees clockwise from north. */

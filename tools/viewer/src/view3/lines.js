@@ -15,8 +15,10 @@ const kMaxDots = 80;
 
 /** A casing writes no depth, so that it does not flicker with the line on top of it. */
 function stroke(geometry, width, order, dash, depthWrite = true) {
+  // Those drawn later are pulled a little to the eye, or they would flicker where lines coincide.
   const material = new LineMaterial({linewidth: width, dashed: Boolean(dash), dashSize: dash,
-    gapSize: dash, depthWrite});
+    gapSize: dash, depthWrite, polygonOffset: true, polygonOffsetFactor: 0,
+    polygonOffsetUnits: -8 * order});
   const made = new Line2(geometry, material);
   made.renderOrder = order;
   return made;

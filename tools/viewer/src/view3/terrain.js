@@ -6,6 +6,8 @@ import {pressed_down} from './shaders.js';
 
 // Posts of the coarse terrain drawn in motion if a full frame takes too long.
 const kCoarsePosts = 40000;
+// Posts along the side of a tile: those out of the picture are not drawn.
+const kTile = 64;
 // Colour of the ground's interior, seen at its sides and where it is cut.
 const kInsideColor = {light: 0x8d949d, dark: 0x48505a};
 
@@ -72,7 +74,30 @@ function skirt({nx, ny}, values, base) {
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4}));
 }
 
-/** One draw call; light and height colours are in the vertices. */
+/** Pieces of `kTile` of the picked columns or rows, each beginning where the one before it ends. */
+function pieces(picked) {
+  const all = [];
+  for (let at = 0; at + 1 < picked.length; at += kTile) all.push(picked.slice(at, at + kTile + 1));
+  return all;
+}
+
+/** A sphere around all posts of a tile. */
+function sphere_around({nx}, values, columns, rows) {
+  const corner = (column, row) => new Vector3(...values.subarray(3 * (row * nx + column),
+    3 * (row * nx + column) + 2), 0);
+  const [low, high] = [corner(columns[0], rows[0]), corner(columns.at(-1), rows.at(-1))];
+  [low.z, high.z] = [Infinity, -Infinity];
+  for (const row of rows) {
+    for (const column of columns) {
+      const height = values[3 * (row * nx + column) + 2];
+      if (height < low.z) low.z = height;
+      if (height > high.z) high.z = height;
+    }
+  }
+  return new Sphere(low.clone().add(high).multiplyScalar(0.5), low.distanceTo(high) / 2);
+}
+
+/** Tiles of one mesh; light and height colours are in its vertices. */
 export class Terrain {
   /** `cut` is a uniform with the local height of the cut. */
   constructor(ground, frame, cut) {
@@ -91,16 +116,18 @@ export class Terrain {
     };
     this.inside = {value: new Color()};
     pressed_down(material, cut, this.inside);
-    const mesh = (step) => {
+    const tile = (columns, rows) => {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', this.position);
       geometry.setAttribute('color', this.color);
-      geometry.setIndex(new BufferAttribute(cells(ground, every(nx, step), every(ny, step)), 1));
-      geometry.boundingSphere = new Sphere(new Vector3(), frame.diagonal * 10);
+      geometry.setIndex(new BufferAttribute(cells(ground, columns, rows), 1));
+      geometry.boundingSphere = sphere_around(ground, this.position.array, columns, rows);
       return new Mesh(geometry, material);
     };
-    this.fine = mesh(1);
-    this.coarse = stride > 1 ? mesh(stride) : null;
+    const tiles = (step) => new Group().add(...pieces(every(ny, step)).flatMap((rows) =>
+      pieces(every(nx, step)).map((columns) => tile(columns, rows))));
+    this.fine = tiles(1);
+    this.coarse = stride > 1 ? tiles(stride) : null;
     this.skirt = skirt(ground, this.position.array, frame.base(ground) - frame.centre[2]);
     pressed_down(this.skirt.material, cut);
     this.object = new Group().add(this.fine, this.skirt);
@@ -135,7 +162,7 @@ export class Terrain {
     }
     const post = (at) => this.frame.world(array.subarray(3 * at, 3 * at + 3));
     return {nx, ny: count / nx, min: min + this.frame.centre[2], max: max + this.frame.centre[2],
-      cells: this.fine.geometry.index.count / 6,
+      cells: this.fine.children.reduce((sum, {geometry}) => sum + geometry.index.count / 6, 0),
       corners: [0, nx - 1, count - nx, count - 1].map(post)};
   }
 }

@@ -2,15 +2,18 @@
 import {AmbientLight, Color, DirectionalLight, Group, Raycaster, Scene, Vector2, Vector3,
   WebGLRenderer} from 'three';
 import {style_of} from '../colors.js';
-import {event_times} from '../world.js';
+import {event_times, flight_line} from '../world.js';
 import {Bodies} from './bodies.js';
 import {Camera} from './camera.js';
+import {Chase} from './chase.js';
+import {Floor} from './floor.js';
 import {Goals} from './goals.js';
 import {Grid} from './grid.js';
 import {Lines} from './lines.js';
 import {Search} from './search.js';
 import {Solids} from './solids.js';
 import {Terrain} from './terrain.js';
+import {Vehicle} from './vehicle.js';
 
 // A full frame that takes longer than this is replaced by a coarse one while the picture moves.
 const kSlowMs = 60;
@@ -22,7 +25,9 @@ const kNowhere = 1e9;
 /** The world in three dimensions. Its root is stretched vertically by the exaggeration. */
 export class View3 {
   constructor(stage, world, store, for_picture) {
-    Object.assign(this, {stage, world, store, listeners: []});
+    // The clock of what moves by itself, in milliseconds.
+    Object.assign(this, {stage, world, store, listeners: [], now: () => performance.now()});
+    this.draws_followed = true;
     const {scene, frame, lines} = world;
     const software = is_software();
     this.renderer = new WebGLRenderer({antialias: for_picture || !software,
@@ -37,13 +42,17 @@ export class View3 {
     this.picture = new Scene().add(this.root, ...lights());
     this.camera = new Camera(this.canvas, frame, () => this.draw());
     this.cut = {value: kNowhere};
-    this.terrain = scene.ground && new Terrain(scene.ground, frame, this.cut);
+    this.camera.turned = () => this.chase.read(this.camera.back());
+    this.chase = new Chase(world);
+    this.vehicle = new Vehicle(world);
+    this.terrain = scene.ground ? new Terrain(scene.ground, frame, this.cut) : null;
+    this.floor = scene.ground ? null : new Floor(frame);
     this.solids = new Solids(scene, frame);
     this.lines = new Lines(lines, scene.ground, frame);
     this.grid = new Grid(frame, scene.ground, this.cut);
     this.goals = new Goals(scene, frame);
     this.bodies = new Bodies(scene, frame);
-    this.root.add(...(this.terrain ? [this.terrain.object] : []), this.grid.object,
+    this.root.add((this.terrain ?? this.floor).object, this.grid.object, this.vehicle.plumb,
       this.goals.object, this.solids.object, this.lines.object, this.bodies.object);
     this.full_frame_ms = 0;
     this.#rest_after_motion();
@@ -54,7 +63,7 @@ export class View3 {
     // Shaders compile while the panels are built.
     this.renderer.compile(this.picture, this.camera.eye);
     store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'bodies', 'theme',
-      'exaggeration', 'cut', 'search', 'searched'], (state, changed) => this.update(state, changed));
+      'exaggeration', 'cut', 'search', 'searched', 'follow'], (state, changed) => this.update(state, changed));
   }
 
   on_frame(listener) {
@@ -83,7 +92,8 @@ export class View3 {
     this.grid.update(state);
     this.goals.update(state);
     this.bodies.update(state);
-    this.terrain?.paint(state);
+    (this.terrain ?? this.floor).paint(state);
+    if (changed.has('follow')) this.#begin_or_end(state.follow);
     if (changed.has('theme')) this.picture.background = new Color(style_of('--sky'));
     if (changed.has('exaggeration')) this.#stretched(state.exaggeration);
     if (changed.has('search')) this.#replace_search(state.search);
@@ -124,14 +134,42 @@ export class View3 {
     this.canvas.addEventListener('wheel', () => { this.moved = performance.now(); });
   }
 
+  /** How long the eye is on its way when it begins to follow. */
+  comes_in(milliseconds) {
+    this.chase.come_ms = milliseconds;
+  }
+
+  #begin_or_end(follow) {
+    this.camera.controls.enablePan = !follow;
+    this.vehicle.plumb.visible = false;
+    if (!follow) return;
+    this.overview = false;
+    this.camera.flight = null;
+    this.chase.begin(this.camera, this.now(), !this.store.state.filmed &&
+      matchMedia('(prefers-reduced-motion: reduce)').matches);
+  }
+
+  /** Puts the eye behind the vehicle; true if it moves on by itself. */
+  #follow() {
+    const {state} = this.store;
+    const line = state.follow && flight_line(this.world, state);
+    if (!line) return false;
+    const pose = this.chase.pose(line, state, this.now());
+    this.camera.place(pose);
+    this.vehicle.update(line, state, {eye: this.camera.eye,
+      pixel_at: (depth) => this.camera.pixel_at(depth, this.height)});
+    return pose.moving;
+  }
+
   /** Requests a frame; several requests share one. */
   draw() {
     if (!this.started) return;
     this.wanted ??= requestAnimationFrame((now) => {
       this.wanted = null;
-      const flying = this.camera.advance(now);
-      this.#paint(flying);
-      if (flying) this.draw();
+      const moving = this.camera.advance(now) || this.#follow();
+      this.#paint(moving);
+      // A film asks for each frame.
+      if (moving && !this.store.state.filmed) this.draw();
     });
   }
 
@@ -145,7 +183,16 @@ export class View3 {
     if (coarse) this.resting = setTimeout(() => this.draw(), kRestMs + 20);
     this.camera.before_frame(state.exaggeration);
     this.renderer.render(this.picture, this.camera.eye);
+    if (state.follow) this.#paint_vehicle();
     for (const listener of this.listeners) listener();
+  }
+
+  /** In front of all that is drawn. */
+  #paint_vehicle() {
+    this.renderer.autoClear = false;
+    this.renderer.clearDepth();
+    this.renderer.render(this.vehicle.picture, this.camera.eye);
+    this.renderer.autoClear = true;
   }
 
   /** Draws everything and waits until it is in the picture's buffer. */
@@ -205,6 +252,7 @@ export class View3 {
 
   look(from) {
     const stretch = this.store.state.exaggeration;
+    this.store.set({follow: false});
     this.overview = from === 'fit';
     if (from === 'fit') this.camera.put(this.camera.fit(stretch));
     if (from === 'top') this.camera.fly(this.camera.fit(stretch, 180, 90));
@@ -217,6 +265,7 @@ export class View3 {
   /** `away` limits the distance from the eye. */
   fly_to(point, away) {
     this.overview = false;
+    this.store.set({follow: false});
     this.camera.fly_to(this.#place(point), away);
   }
 
@@ -225,16 +274,27 @@ export class View3 {
     return this.camera.heading_deg();
   }
 
+  /** In the middle of the picture. */
+  metres_per_pixel() {
+    return this.camera.pixel_at(this.camera.back().length(), this.height);
+  }
+
+  /** The sides of the box nearer to the eye: of x and of y -1 for the lower, 1 for the upper. */
+  near_side() {
+    const hair = kHair * this.world.frame.diagonal;
+    return this.camera.eye.position.toArray().slice(0, 2).map((at) => at > hair ? 1 : -1);
+  }
+
   where() {
     const {eye, controls} = this.camera;
     return {position: eye.position.toArray(), target: controls.target.toArray(),
-      flying: this.camera.flight !== null};
+      flying: this.camera.flight !== null, following: this.store.state.follow};
   }
 
   drawn() {
     return {view: '3d', ...this.lines.drawn(), ...this.solids.drawn(),
       moving: this.solids.moved(), bodies: this.bodies.drawn(),
-      ground: this.terrain?.drawn() ?? null, searched: this.search ?
+      ground: this.terrain?.drawn() ?? null, floor: this.floor?.drawn() ?? null, searched: this.search ?
         this.search.points.material.uniforms.now.value : null};
   }
 }
