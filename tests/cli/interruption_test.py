@@ -139,6 +139,26 @@ class Interruption(Folder):
         self.assertFalse(os.path.exists(self.path("out.png")))
         self.assertRaises(ProcessLookupError, os.kill, int(self.read("pid")), 0)
 
+    def test_a_film_that_is_being_made(self):
+        """By programs that take all and never end."""
+        self.write("pipeline.yaml", PIPELINE + "  - fly: route\n")
+        self.result()
+        os.mkdir(self.path("bin"))
+        for name in ("chromium", "ffmpeg"):
+            self.write(f"bin/{name}", "#!/bin/sh\necho $$ > '%s'\nexec sleep 1000\n" %
+                       self.path(f"{name}.pid"))
+            os.chmod(self.path(f"bin/{name}"), 0o755)
+        os.mkdir(self.path("tmp"))
+        call = self.begin("view", "result.json", "--mp4", "out.mp4", ready=lambda: True,
+                          env={**os.environ, "PATH": self.path("bin") + ":" + os.environ["PATH"],
+                               "TMPDIR": self.path("tmp")})
+        self.wait_for(lambda: os.path.exists(self.path("chromium.pid"))
+                      and self.read("chromium.pid").strip(), call)
+        self.ends(call, signal.SIGINT)
+        self.assertEqual(os.listdir(self.path("tmp")), [])
+        self.assertFalse(os.path.exists(self.path("out.mp4")))
+        self.assertRaises(ProcessLookupError, os.kill, int(self.read("chromium.pid")), 0)
+
     def test_progress_on_a_terminal(self):
         stored = json.loads(self.read(self.result()))
         self.layer("rogue_layer: {does: making_never_returns}")

@@ -25,6 +25,32 @@ class View(CliCase):
         self.assertEqual(len(found), 1)
         return json.loads(found[0])
 
+    def test_a_film_needs_programs_and_a_flight(self):
+        self.call("run", self.pipeline, "--out", "route.json")
+        os.mkdir(self.path("bin"))
+        for name in ("chromium", "ffmpeg"):
+            self.write(f"bin/{name}", "#!/bin/sh\nexit 1\n")
+        for programs, said in (
+                ((), "--mp4 needs Chromium: install the Debian package 'chromium', or set "
+                     "ALTIPLAN_CHROMIUM to its path"),
+                (("chromium",), "--mp4 needs ffmpeg: install the Debian package 'ffmpeg'"),
+                (("chromium", "ffmpeg"), "--mp4: expected a result with a flight (of a pipeline "
+                                         "with a fly step), found none")):
+            for name in programs:
+                os.chmod(self.path(f"bin/{name}"), 0o755)
+            environment = {name: value for name, value in os.environ.items()
+                           if name != "ALTIPLAN_CHROMIUM"}
+            done = subprocess.run([PROGRAM, "view", "route.json", "--mp4", "film.mp4"],
+                                  capture_output=True, text=True, cwd=self.folder, timeout=60,
+                                  env={**environment, "PATH": self.path("bin")})
+            self.assertEqual((done.returncode, done.stdout, done.stderr),
+                             (3, "", f"altiplan: {said}\n"))
+        for wrong in (["--mp4-seconds", "5", "-o", "page.html"],
+                      ["--mp4", "film.mp4", "--mp4-seconds", "0.5"],
+                      ["--mp4", "film.mp4", "--mp4-seconds", "nan"]):
+            self.view("route.json", *wrong, code=2)
+        self.assertNotIn("film.mp4", os.listdir(self.folder))
+
     def test_view_makes_a_page(self):
         self.call("run", self.pipeline, "--out", "one.json", "--trace", "trace.jsonl")
         self.call("run", self.pipeline, "--out", "two.json", "--seed", "5", "--set",

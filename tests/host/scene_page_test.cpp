@@ -7,8 +7,8 @@
 
 #include "altiplan/error.hpp"
 #include "host/base/base64.hpp"
+#include "host/view/chromium.hpp"
 #include "host/view/png.hpp"
-#include "host/view/screenshot.hpp"
 #include "host/view/viewer_page.hpp"
 
 namespace altiplan::host {

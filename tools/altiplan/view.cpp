@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
+#include "host/view/chromium.hpp"
+#include "host/view/film.hpp"
 #include "host/view/picture_svg.hpp"
 #include "host/view/scene.hpp"
-#include "host/view/screenshot.hpp"
 #include "host/view/viewer_page.hpp"
 #include "progress.hpp"
 
@@ -17,6 +19,8 @@ struct Arguments {
   std::optional<std::string> page;
   std::optional<std::string> png;
   std::optional<std::string> svg;
+  std::optional<std::string> mp4;
+  std::optional<double> mp4_seconds;
   std::optional<double> cut_m;
   host::Overrides overrides;
 };
@@ -80,26 +84,61 @@ std::string try_png(const Arguments& arguments, const std::string& page, const h
   return "";
 }
 
+/// Writes the film, frame by frame.
+void write_film(const Arguments& arguments, const host::FilmMakers& makers, const std::string& page,
+                const host::Json& scene) {
+  const double seconds = arguments.mp4_seconds.value_or(host::film_seconds(scene));
+  const auto began = std::chrono::steady_clock::now();
+  LateProgress progress;
+  progress.say("film: starting Chromium");
+  const std::string bytes =
+      host::film(makers, page, seconds, [&](std::size_t done, std::size_t all) {
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+        progress.say("film: frame " + std::to_string(done) + " of " + std::to_string(all) + ", " +
+                     duration(took.count() / double(done) * double(all - done)) + " left");
+      });
+  progress.stop();
+  host::write_file(*arguments.mp4, bytes);
+  std::printf("%s: %s MB: %s s\n", arguments.mp4->c_str(),
+              fixed(double(bytes.size()) / 1e6, 2).c_str(), fixed(seconds, 0).c_str());
+}
+
+std::vector<host::StoredResult> read_results(const Arguments& arguments) {
+  const std::pair<const std::optional<std::string>&, const char*> outputs[] = {
+      {arguments.page, "-o"},
+      {arguments.png, "--png"},
+      {arguments.svg, "--svg"},
+      {arguments.mp4, "--mp4"}};
+  for (const auto& [file, option] : outputs) {
+    expect_writable(file, option);
+  }
+  std::vector<host::StoredResult> results;
+  for (const std::string& file : arguments.results) {
+    results.push_back(host::read_result(file, arguments.overrides));
+    std::vector<std::string> files = files_of(results.back());
+    for (const auto& [output, option] : outputs) {
+      expect_apart(output, option, files);
+      files.push_back(output.value_or(""));
+    }
+  }
+  const bool has_flight = std::any_of(results.begin(), results.end(),
+                                      [](const auto& result) { return result.track.has_value(); });
+  if (arguments.mp4 && !has_flight) {
+    throw Error(
+        "--mp4: expected a result with a flight (of a pipeline with a fly step), found none");
+  }
+  return results;
+}
+
 host::Scene scene_of(const std::vector<host::StoredResult>& results) {
   Activity activity;
   return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
 }
 
 int view(const Arguments& arguments) {
-  expect_writable(arguments.page, "-o");
-  expect_writable(arguments.png, "--png");
-  expect_writable(arguments.svg, "--svg");
-  std::vector<host::StoredResult> results;
-  for (const std::string& file : arguments.results) {
-    results.push_back(host::read_result(file, arguments.overrides));
-    std::vector<std::string> files = files_of(results.back());
-    expect_apart(arguments.page, "-o", files);
-    files.push_back(arguments.page.value_or(""));
-    expect_apart(arguments.png, "--png", files);
-    files.push_back(arguments.png.value_or(""));
-    expect_apart(arguments.svg, "--svg", files);
-  }
-  const host::Scene scene = scene_of(results);
+  const std::optional<host::FilmMakers> makers =
+      arguments.mp4 ? std::optional<host::FilmMakers>(std::in_place) : std::nullopt;
+  const host::Scene scene = scene_of(read_results(arguments));
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }
@@ -120,6 +159,9 @@ int view(const Arguments& arguments) {
       warn(why + ": writing a top view as SVG instead, " + instead.string());
       write(instead.string(), host::picture_svg(scene.json), scene.json);
     }
+  }
+  if (makers) {
+    write_film(arguments, *makers, page, scene.json);
   }
   return kDone;
 }
@@ -149,11 +191,22 @@ void add_view(App& app, Action& action) {
   command
       ->add_option("--svg", arguments->svg, "write a top view with the routes' altitude profiles")
       ->type_name("FILE");
+  auto* mp4 = command
+                  ->add_option("--mp4", arguments->mp4,
+                               "write a film of the flight from behind the vehicle, rendered by "
+                               "Chromium and ffmpeg")
+                  ->type_name("FILE");
+  command
+      ->add_option("--mp4-seconds", arguments->mp4_seconds,
+                   "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
+      ->type_name("S")
+      ->check(number_from(1, 600))
+      ->needs(mp4);
   add_plugin_path(*command, arguments->overrides);
   set_example(*command, "altiplan view result.json -o page.html");
   command->callback([&action, arguments] {
-    if (!arguments->page && !arguments->png && !arguments->svg) {
-      throw UsageError{"-o, --png or --svg is required"};
+    if (!arguments->page && !arguments->png && !arguments->svg && !arguments->mp4) {
+      throw UsageError{"-o, --png, --svg or --mp4 is required"};
     }
     action = [arguments] { return view(*arguments); };
   });
