@@ -66,7 +66,7 @@ struct ALTIPLAN_API Request {
   /// Airspeed, m/s: of an aeroplane its own, else the vehicle's speed.
   double air_speed() const { return vehicle.wing ? vehicle.wing->airspeed_mps : vehicle.speed_mps; }
   /// True if what precedes a leg may refuse it by more than a limit on turns.
-  bool judges_pairs() const { return !constraints.empty() || vehicle.body != nullptr; }
+  bool judges_pairs() const;
   /// True if headings persist through legs that have none, and some limit depends on that.
   bool headings_last() const {
     return !vehicle.turns_on_the_spot &&

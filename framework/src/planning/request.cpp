@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/request.hpp"
 
+#include <algorithm>
+
 namespace altiplan {
 namespace {
 
@@ -26,6 +28,12 @@ std::vector<Pose> on_circle(const Request& request, const Vec3& centre, const Lo
   return poses;
 }
 }  // namespace
+
+bool Request::judges_pairs() const {
+  return vehicle.body != nullptr ||
+         std::any_of(constraints.begin(), constraints.end(),
+                     [](const NamedConstraint& named) { return !named.admits_all; });
+}
 
 std::optional<Approach> Request::before_start(const Vec3& first) const {
   const Vec3 course = start.loiter ? start.loiter->course(start.position, first) : start.velocity;

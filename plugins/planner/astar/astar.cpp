@@ -23,6 +23,7 @@
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
 #include "cell_search.hpp"
+#include "step_search.hpp"
 
 namespace {
 
@@ -63,7 +64,7 @@ class AStar final : public Planner {
                         });
   }
 
-  enum class By { cells, one_parent, heading };
+  enum class By { cells, steps, one_parent, heading };
 
   /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
@@ -71,7 +72,14 @@ class AStar final : public Planner {
         settings.cost.length_alone() && settings.cost.length == 1) {
       return By::cells;
     }
-    return kit::begins_by_heading(settings, request) ? By::heading : By::one_parent;
+    if (kit::begins_by_heading(settings, request)) {
+      return By::heading;
+    }
+    const bool is_length = settings.cost.length_alone() && settings.cost.length == 1;
+    return is_length && settings.consistent() && !request.judges_pairs() &&
+                   request.limits.max_route_length == kInfinity
+               ? By::steps
+               : By::one_parent;
   }
 
   /// Searches once for a route that costs less than `best_cost`.
@@ -83,10 +91,15 @@ class AStar final : public Planner {
           return *std::move(found);
         }
         [[fallthrough]];
+      case By::steps:
       case By::one_parent: {
+        std::optional<SearchResult> by_places;
+        if (quickest(settings, request) != By::one_parent) {
+          by_places = by_steps(request, settings);
+        }
         SearchResult found =
-            on_lattice<astar::Search, astar::Node>(request, settings, best_cost, memory_);
-        if (!kit::heading_may_help(settings, best_cost, sizeof(kit::HeadingCell) + 1, found)) {
+            by_places ? *std::move(by_places) : by_one_parent(request, settings, best_cost);
+        if (!kit::heading_may_help(settings, best_cost, found)) {
           return found;
         }
         const Request rest = kit::after(request, found.result.counters);
@@ -100,21 +113,46 @@ class AStar final : public Planner {
 
   SearchResult by_heading(const Request& request, const SearchSettings& settings,
                           double best_cost) const {
-    return on_lattice<kit::HeadingSearch, kit::HeadingCell>(request, settings, best_cost,
-                                                            heading_memory_);
+    const kit::Lattice lattice(request, settings.cell_m, settings.neighbours, {});
+    const auto memory = heading_memory_.take();
+    return kit::HeadingSearch(request, settings, lattice, best_cost, *memory).run();
   }
 
-  template <class Search, class Node, class Memory>
-  SearchResult on_lattice(const Request& request, const SearchSettings& settings, double best_cost,
-                          kit::ScratchPool<Memory>& pool) const {
-    constexpr std::size_t kBytes = sizeof(Node) + 1;
+  SearchResult by_one_parent(const Request& request, const SearchSettings& settings,
+                             double best_cost) const {
+    constexpr std::size_t kBytes = sizeof(astar::Node) + 1;
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
                                {params_.max_bytes(), kBytes});
     if (auto refused = kit::beyond_budget(lattice, kBytes, request.budget)) {
       return {*std::move(refused)};
     }
-    const auto memory = pool.take();
-    return Search(request, settings, lattice, best_cost, *memory).run();
+    const auto memory = memory_.take();
+    return astar::Search(request, settings, lattice, best_cost, *memory).run();
+  }
+
+  /// Empty if the costs would be too coarse, or the cells too many to number by tiles.
+  std::optional<SearchResult> by_steps(const Request& request,
+                                       const SearchSettings& settings) const {
+    const kit::Lattice lattice(request, settings.cell_m, settings.neighbours, {});
+    const kit::TileIndex tiles(lattice.spec().counts);
+    if (!tiles.fits()) {
+      return std::nullopt;
+    }
+    const auto memory = step_memory_.take();
+    const Box box = lattice.spec().box();
+    const auto scale = kit::StepCosts::between(settings.costs, lattice, request.start.position,
+                                               request.goal.position);
+    double longest_m = 4 * (box.max - box.min).sum();
+    while (true) {
+      const kit::StepCosts costs(lattice, scale, longest_m);
+      if (costs.error() > kGreatestError[scale == kit::StepCosts::Scale::ratio]) {
+        return std::nullopt;
+      }
+      if (auto found = astar::StepSearch(request, settings, lattice, tiles, costs, *memory).run()) {
+        return found;
+      }
+      longest_m = 4 * costs.longest_m();
+    }
   }
 
   /// Empty if the costs would be too coarse.
@@ -153,6 +191,7 @@ class AStar final : public Planner {
   mutable kit::ScratchPool<astar::Memory> memory_;
   mutable kit::ScratchPool<kit::HeadingMemory> heading_memory_;
   mutable kit::ScratchPool<astar::CellMemory> cell_memory_;
+  mutable kit::ScratchPool<astar::StepMemory> step_memory_;
 };
 }  // namespace
 

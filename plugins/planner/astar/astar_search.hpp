@@ -14,12 +14,11 @@ namespace altiplan::astar {
 /// State of a cell in the search.
 struct Node {
   double g;  ///< cost-to-come from the start
-  kit::MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
   std::uint8_t in;  ///< the step that led here; kHere: linked to the start
   bool closed;
 };
-inline constexpr Node kFresh = {kInfinity, {}, 0, 0, false};
+inline constexpr Node kFresh = {kInfinity, 0, 0, false};
 
 struct Memory {
   kit::NodeStore<Node> nodes;
@@ -120,24 +119,32 @@ class Search : kit::GoalSearch {
     // A first step after a heading, or after a link, forms no pair of steps: it is checked as a
     // whole.
     const bool judged_whole = rules_.is_first(node.in) && from;
+    const auto cell_at = [&](int d) {
+      const Cell o = kit::offset(d);
+      return Cell{c[0] + o[0], c[1] + o[1], c[2] + o[2]};
+    };
+    kit::DirectionMask better = 0;
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
-      const auto next = std::uint32_t(std::int64_t(index) + lattice_.stride(d));
-      Node& successor = nodes_.at(next, kFresh);
-      if (successor.closed) {
-        continue;
-      }
-      const Cell o = kit::offset(d);
-      const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
-      const Vec3 there = lattice_.position(to);
+      const Node& successor = nodes_.at(std::uint32_t(index + lattice_.stride(d)), kFresh);
+      const Vec3 there = lattice_.position(cell_at(d));
       const double g = node.g + step_cost(d, here, there);
-      const double length = length_here + lattice_.step_length(d);
-      if (!(g < successor.g) || too_long(length, there) || exceeds_incumbent(g, there) ||
-          !rules_.leg_free(from, c, d, here, there, node.clearance, successor.clearance) ||
-          (judged_whole && !rules_.any_leg_ok(from, here, there))) {
+      const bool is_better = !successor.closed && g < successor.g &&
+                             !too_long(length_here + lattice_.step_length(d), there) &&
+                             !exceeds_incumbent(g, there);
+      better |= kit::DirectionMask(is_better) << d;
+    }
+    better = better == 0 ? 0 : rules_.legs_free(from, c, here, better);
+    for (; better != 0; better &= better - 1) {
+      const int d = __builtin_ctz(better);
+      const Cell to = cell_at(d);
+      const Vec3 there = lattice_.position(to);
+      if (judged_whole && !rules_.any_leg_ok(from, here, there)) {
         continue;
       }
-      reach(next, g, length, rules_.step_after(node.in, d));
+      const auto next = std::uint32_t(index + lattice_.stride(d));
+      reach(next, node.g + step_cost(d, here, there), length_here + lattice_.step_length(d),
+            rules_.step_after(node.in, d));
       push(next, to, there);
     }
   }

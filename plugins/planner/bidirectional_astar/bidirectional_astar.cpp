@@ -50,7 +50,7 @@ class BidirectionalAStar final : public Planner {
       return run(settings, request, best_cost, true);
     }
     SearchResult found = run(settings, request, best_cost, false);
-    if (!kit::heading_may_help(settings, best_cost, sizeof(Node) + 1, found)) {
+    if (!kit::heading_may_help(settings, best_cost, found)) {
       return found;
     }
     const Request rest = kit::after(request, found.result.counters);

@@ -33,7 +33,6 @@ struct Reached {
 
 struct Node {
   std::array<Reached, 2> by;
-  kit::MoveRules::KnownClearance clearance;
   std::uint16_t stamp;
 };
 

@@ -66,7 +66,7 @@ class TwoSidedSearch : kit::LatticeSearch {
   enum Side : std::size_t { forward, backward };
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   static constexpr Reached kUnreached = {kInfinity, 0, kNone, kit::kHere, false};
-  static constexpr Node kFresh = {{kUnreached, kUnreached}, {}, 0};
+  static constexpr Node kFresh = {{kUnreached, kUnreached}, 0};
   static Side other(Side side) { return side == forward ? backward : forward; }
 
   void begin();
@@ -257,9 +257,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
     Node& neighbour = nodes_.at(next.cell, kFresh);
     const bool is_free =
-        side == forward
-            ? rules_.place_free(c, d, here, there, node.clearance, neighbour.clearance)
-            : rules_.place_free(to, d, there, here, neighbour.clearance, node.clearance);
+        side == forward ? rules_.place_free(c, d) : rules_.place_free(to, d);
     if (is_free && !admits(side, arrival, here, there, step)) {
       return;  // another arrival may take it
     }

@@ -12,14 +12,9 @@ namespace altiplan::dstar_lite {
 
 /// Cached information about legs beyond the occupancy.
 struct LegMemory {
-  struct Near {
-    kit::MoveRules::KnownClearance clearance;
-    std::uint16_t stamp;
-  };
   kit::ScratchArray<std::uint32_t> judged;  ///< by cell: directions with a free leg to it, kJudged
-  kit::NodeStore<Near> near;
 
-  static constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(Near);
+  static constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t);
 };
 
 /// The legs between neighbouring cells that a vehicle may fly, whatever the preceding leg.
@@ -40,9 +35,6 @@ class Legs {
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
     steps_ = rules_->steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
-    if (judges_) {
-      memory_.near.reset(lattice_.size());
-    }
   }
   void forget(std::uint32_t index) {
     if (judges_ && memory_.judged[index] != 0) {
@@ -84,24 +76,19 @@ class Legs {
     if (known != 0) {
       return known & (kJudged - 1);
     }
-    const Vec3 here = lattice_.position(c);
-    kit::DirectionMask free = 0;
-    for (kit::DirectionMask open = rules_->out_of(c); open != 0; open &= open - 1) {
-      const int d = std::countr_zero(open);
-      const Cell o = kit::offset(d);
-      const Cell from = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
-      const Vec3 there = lattice_.position(from);
-      const bool is_free =
-          rules_->place_free(from, kit::opposite(d), there, here,
-                             near(std::uint32_t(index + lattice_.stride(d))), near(index)) &&
-          rules_->admits(std::nullopt, there, here);
-      free |= kit::DirectionMask(is_free) << d;
+    // A leg keeps off obstacles and the ground in both directions.
+    kit::DirectionMask free = rules_->places_free(c, rules_->out_of(c));
+    if (problem_.request.judges_pairs()) {
+      const Vec3 here = lattice_.position(c);
+      for (kit::DirectionMask open = free; open != 0; open &= open - 1) {
+        const int d = std::countr_zero(open);
+        if (!rules_->admits(std::nullopt, here + lattice_.step(d), here)) {
+          free &= ~(kit::DirectionMask{1} << d);
+        }
+      }
     }
     memory_.judged.at(index) = free | kJudged;
     return free;
-  }
-  kit::MoveRules::KnownClearance& near(std::uint32_t index) {
-    return memory_.near.at(index, {}).clearance;
   }
 
   const Problem& problem_;

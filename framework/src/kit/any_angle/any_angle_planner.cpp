@@ -69,24 +69,17 @@ PlanResult AnyAnglePlanner::do_plan(const Request& request) const {
   }
   result.proved = looks_everywhere() && !legs_differ(request);
   const bool again = params_.angle_rule == AnyAngleParams::Angles::complete && !result.proved;
-  return again ? by_heading(request, lattice.size(), result) : result;
+  return again ? by_heading(request, result) : result;
 }
 
-PlanResult AnyAnglePlanner::by_heading(const Request& request, std::size_t cells,
-                                       const PlanResult& found) const {
+PlanResult AnyAnglePlanner::by_heading(const Request& request, const PlanResult& found) const {
   SearchSettings settings;
   settings.cell_m = params_.cell_m;
   settings.corner = CornerRule::any;  // a step that touches edges satisfies the constraints too
   settings.moves = MoveCheck::cells;
   settings.max_bytes = std::min(params_.max_bytes(), request.budget.max_memory_bytes);
-  constexpr std::size_t kBytes = sizeof(HeadingCell) + 1;
-  if (cells * kBytes > settings.max_bytes) {
-    PlanResult result = found;
-    result.message += "; the memory allowed is too little for a search by cell and heading";
-    return result;
-  }
   const Request rest = after(request, found.counters);
-  const Lattice lattice(rest, settings.cell_m, settings.neighbours, {settings.max_bytes, kBytes});
+  const Lattice lattice(rest, settings.cell_m, settings.neighbours, {});
   const auto memory = heading_memory_.take();
   PlanResult second = HeadingSearch(rest, settings, lattice, kInfinity, *memory).run().result;
   add(second.counters, found.counters);

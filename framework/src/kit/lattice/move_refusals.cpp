@@ -42,12 +42,23 @@ std::string MoveRules::sharp_turns() const {
 }
 
 std::string MoveRules::refusals() const {
+  std::array<std::int64_t, rule_count> refused = refused_;
+  std::string layer = refused_layer_;
+  if (ground_steps_) {
+    const Rule low = rule_of(ground_.too_low());
+    refused[by_no_ground] += ground_steps_->refused().no_ground;
+    refused[low] += ground_steps_->refused().too_low;
+    refused[by_altitude] += ground_steps_->refused().too_high;
+    if (low == by_clearance && layer.empty()) {
+      layer = ground_.bare_ground().layers().front().id;
+    }
+  }
   const std::string names[rule_count] = {
       "blocked cells",
       "leg_length",
       "climb_angle",
       request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
-      "clearance to '" + refused_layer_ + "'",
+      "clearance to '" + layer + "'",
       "no ground below",
       "ground_clearance",
       "altitude",
@@ -56,17 +67,17 @@ std::string MoveRules::refusals() const {
       refused_link_ + " where start or goal join the lattice"};
   std::vector<int> order;
   for (int rule = 0; rule < rule_count; ++rule) {
-    if (refused_[std::size_t(rule)] > 0) {
+    if (refused[std::size_t(rule)] > 0) {
       order.push_back(rule);
     }
   }
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return refused_[std::size_t(a)] > refused_[std::size_t(b)];
+    return refused[std::size_t(a)] > refused[std::size_t(b)];
   });
   std::string text;
   for (const int rule : order) {
     text += (text.empty() ? "" : ", ") + names[rule] + " (" +
-            std::to_string(refused_[std::size_t(rule)]) + ")";
+            std::to_string(refused[std::size_t(rule)]) + ")";
   }
   return text.empty() || steps_refused_by_.empty() ? text + steps_refused_by_
                                                    : text + "; " + steps_refused_by_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "altiplan/check.hpp"
+#include "altiplan/error.hpp"
 #include "altiplan/kit/lattice/line_of_sight.hpp"
 #include "altiplan/swept_volume.hpp"
 
@@ -27,17 +28,10 @@ Told by_cosine(double dot, double lengths, double limit_cosine) {
   return std::abs(over) <= 1e-9 * lengths ? Told::nothing : over > 0 ? Told::kept : Told::broken;
 }
 
-bool has_ground_rules(const Request& request) {
-  const auto& bands = request.limits.altitude;
-  return request.world->has_ground() ||
-         std::any_of(bands.begin(), bands.end(), [](const AltitudeBand& band) {
-           return band.datum == AltitudeBand::Datum::ground;
-         });
-}
 }  // namespace
 
 bool MoveRules::cells_decide(const Request& request) {
-  return !has_ground_rules(request) && !request.judges_pairs() && !request.limits.turns() &&
+  return !GroundRules(request, 0, false).exist() && !request.judges_pairs() && !request.limits.turns() &&
          request.limits.max_route_length == kInfinity;
 }
 
@@ -67,9 +61,10 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       lattice_(lattice),
       corner_(corner),
       needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-      spare_(needed_ + request.world->over_approximation() + kLengthTolerance),
-      reach_(std::max(request.vehicle.reach_m() + kBodyTolerance, spare_)),
-      asks_world_(check == MoveCheck::exact) {
+      reach_(std::max(request.vehicle.reach_m() + kBodyTolerance,
+                      needed_ + request.world->over_approximation() + kLengthTolerance)),
+      asks_world_(check == MoveCheck::exact),
+      ground_(request, needed_, asks_world_) {
   const Limits& limits = request.limits;
   const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
   cosines_ = {cosine(limits.max_slope()), cosine(limits.max_turn_horizontal),
@@ -80,18 +75,23 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       wide_grid_ = occupancy(request, lattice, reach_);
     }
   }
-  has_ground_rules_ = has_ground_rules(request);
   judges_pairs_ = request.judges_pairs();
-  if (asks_world_) {
-    sort_layers();
-    wants_clearance_ = !obstacles_.layers().empty();
+  if (ground_.exist()) {
+    if (!GroundSteps::fit(lattice)) {
+      throw ParameterError("cell_m", "the volume would have more than 32,000 levels of cells");
+    }
+    ground_steps_.emplace(lattice, ground_);
   }
-  if (has_ground_rules_) {
-    find_gaps();
-    ground_.emplace(lattice, *request.world);
+  if (!ground_.obstacles().layers().empty()) {
+    clearance_steps_.emplace(lattice, ground_.obstacles(), needed_);
+    if (request.vehicle.body != nullptr && ground_.bare_ground().layers().empty()) {
+      wide_steps_.emplace(lattice, ground_.obstacles(), reach_);
+    }
   }
   for (const NamedConstraint& named : request.constraints) {
-    constraints_.push_back(named);
+    if (!named.admits_all) {
+      constraints_.push_back(named);
+    }
   }
   steps_ = directions_kept();
   headings_last_ = request.headings_last();
@@ -135,49 +135,6 @@ std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_
   return Approach(from, onward(first, request_.start.position).heading_at(here));
 }
 
-void MoveRules::sort_layers() {
-  obstacles_ = *request_.world;
-  for (const Layer& layer : request_.world->layers()) {
-    const Ground* ground = layer.environment->ground();
-    if (ground != nullptr && ground->is_all()) {
-      obstacles_ = obstacles_.without(layer.id);
-      bare_ground_ = bare_ground_.with(layer);
-    }
-  }
-}
-
-void MoveRules::find_gaps() {
-  constexpr double kRounding = 1e-5;  // of the heights in StepGround, in metres
-  double slope = 0;
-  for (const Layer& layer : bare_ground_.layers()) {
-    // Anything below this blocks the leg itself.
-    needed_gap_ = 0;
-    too_low_ = by_clearance;
-    refused_layer_ = layer.id;
-    if (needed_ > 0) {
-      slope = std::max(slope, layer.environment->ground()->slope(request_.volume.grown(needed_)));
-    }
-  }
-  needed_gap_ = obstacles_.has_ground() ? -kInfinity : needed_gap_;
-  certain_gap_ = needed_ > 0 ? needed_ * std::hypot(1, slope) : 0;
-  const auto held_to = [&](double gap, Rule rule) {
-    too_low_ = gap >= needed_gap_ ? rule : too_low_;
-    needed_gap_ = std::max(needed_gap_, gap);
-    certain_gap_ = std::max(certain_gap_, gap);
-  };
-  for (const AltitudeBand& band : request_.limits.altitude) {
-    if (band.datum == AltitudeBand::Datum::ground) {
-      held_to(band.min, by_altitude);
-      has_ceiling_over_ground_ = has_ceiling_over_ground_ || band.max < kInfinity;
-    }
-  }
-  if (request_.limits.min_ground_clearance) {
-    held_to(*request_.limits.min_ground_clearance, by_ground);
-  }
-  needed_gap_ -= kLengthTolerance + kRounding;
-  certain_gap_ += kRounding;
-}
-
 DirectionMask MoveRules::directions_kept() {
   const Limits& limits = request_.limits;
   DirectionMask kept = 0;
@@ -207,27 +164,20 @@ DirectionMask MoveRules::directions_kept() {
   return kept;
 }
 
+MoveRules::Rule MoveRules::rule_of(GroundRules::Refusal refusal) {
+  using Refusal = GroundRules::Refusal;
+  return refusal == Refusal::no_ground          ? by_no_ground
+         : refusal == Refusal::ground_clearance ? by_ground
+         : refusal == Refusal::altitude         ? by_altitude
+                                                : by_clearance;
+}
+
 bool MoveRules::keeps_ground(const Vec3& a, const Vec3& b) {
-  const World& world = *request_.world;
-  const Limits& limits = request_.limits;
-  if (!world.ground_below(a, b)) {
-    ++refused_[by_no_ground];
-    return false;
+  const GroundRules::Refusal refusal = ground_.heights(a, b);
+  if (refusal != GroundRules::Refusal::none) {
+    ++refused_[rule_of(refusal)];
   }
-  if (limits.min_ground_clearance && world.ground_gap(a, b, *limits.min_ground_clearance) <
-                                         *limits.min_ground_clearance - kLengthTolerance) {
-    ++refused_[by_ground];
-    return false;
-  }
-  for (const AltitudeBand& band : limits.altitude) {
-    if (band.datum == AltitudeBand::Datum::ground &&
-        (world.ground_gap(a, b, band.min) < band.min - kLengthTolerance ||
-         (band.max < kInfinity && world.ground_gap_max(a, b) > band.max + kLengthTolerance))) {
-      ++refused_[by_altitude];
-      return false;
-    }
-  }
-  return true;
+  return refusal == GroundRules::Refusal::none;
 }
 
 bool MoveRules::constraints_admit(const std::optional<Approach>& before, const Vec3& a,
@@ -237,45 +187,13 @@ bool MoveRules::constraints_admit(const std::optional<Approach>& before, const V
     const auto from = before ? std::optional(before->from) : std::nullopt;
     if (!constraints_[i].admits({from, a, b, world})) {
       ++refused_[by_constraint];
-      refused_constraint_ = request_.constraints[i].name;
+      refused_constraint_ = constraints_[i].name;
       admit_needed_parent_ =
           admit_needed_parent_ || (before && constraints_[i].admits({std::nullopt, a, b, world}));
       return false;
     }
   }
   return true;
-}
-
-bool MoveRules::keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b) {
-  const Cell o = offset(d);
-  const Cell to = {c[0] + o[0], c[1] + o[1], c[2]};
-  const auto ends_too_low = [&] {
-    return a.z() - ground_->height(c) < needed_gap_ || b.z() - ground_->height(to) < needed_gap_;
-  };
-  const double low = std::min(a.z(), b.z());
-  const double high = std::max(a.z(), b.z());
-  StepGround::Top& top = ground_->below(c, d);
-  if (low - top.most >= certain_gap_ && !has_ceiling_over_ground_) {
-    return true;
-  }
-  if (top.least < StepGround::kNone && !ends_too_low() && high - top.least >= needed_gap_ &&
-      low - top.most < certain_gap_) {
-    const double gap = request_.world->ground_gap(a, b, certain_gap_);
-    // Where it is sufficient, the returned gap may exceed the actual one.
-    StepGround::learn(top, low, high, std::min(gap, certain_gap_), gap < certain_gap_);
-    if (gap >= certain_gap_ && !has_ceiling_over_ground_) {
-      return true;
-    }
-  }
-  if (top.least == StepGround::kNone) {
-    ++refused_[by_no_ground];
-    return false;
-  }
-  if (high - top.least < needed_gap_ || ends_too_low()) {
-    ++refused_[too_low_];
-    return false;
-  }
-  return keeps_ground(a, b) && (!asks_world_ || keeps_off(bare_ground_, a, b));
 }
 
 bool MoveRules::keeps_off(const World& layers, const Vec3& a, const Vec3& b) {
@@ -287,38 +205,40 @@ bool MoveRules::keeps_off(const World& layers, const Vec3& a, const Vec3& b) {
   return layer == nullptr;
 }
 
-void MoveRules::ask(KnownClearance& known, const Vec3& at) const {
-  if (!known.asked) {
-    known.asked = true;
-    // Rounded toward the obstacle.
-    known.least =
-        std::nextafterf(float(obstacles_.clearance(at)), -std::numeric_limits<float>::infinity());
+DirectionMask MoveRules::places_free(const Cell& c, DirectionMask wanted) {
+  moves_checked_ += __builtin_popcount(wanted);
+  if (ground_steps_) {
+    wanted = ground_steps_->permitted(c, wanted);
   }
+  if (clearance_steps_ && wanted != 0) {
+    const DirectionMask kept = clearance_steps_->permitted(c, wanted);
+    if (kept != wanted) {
+      refused_[by_clearance] += __builtin_popcount(wanted & ~kept);
+      refused_layer_ = clearance_steps_->layer();
+    }
+    wanted = kept;
+  }
+  return wanted;
 }
 
-bool MoveRules::keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
-                          KnownClearance& near_b) {
-  const double length = lattice_.step_length(d);
-  // Clearance is 1-Lipschitz: a bound at a gives one at b, and two balls of half the leg around its
-  // ends contain all of it.
-  near_b.learn(near_a.least - length);
-  const double half = spare_ + length / 2;
-  if (near_a.least <= half) {
-    ask(near_a, a);
-    near_b.learn(near_a.least - length);
+DirectionMask MoveRules::legs_free(const std::optional<Approach>& before, const Cell& c,
+                                   const Vec3& here, DirectionMask wanted) {
+  const bool has_body = request_.vehicle.body != nullptr;
+  if (!has_body) {
+    wanted = places_free(c, wanted);
   }
-  if (near_b.least <= spare_) {
-    ask(near_b, b);
+  if (!judges_pairs_) {
+    return wanted;
   }
-  return near_a.least > spare_ + length || std::min(near_a.least, near_b.least) > half ||
-         keeps_off(obstacles_, a, b);
-}
-
-bool MoveRules::place_free(const Cell& c, int d, const Vec3& a, const Vec3& b,
-                           KnownClearance& near_a, KnownClearance& near_b) {
-  ++moves_checked_;
-  return (!has_ground_rules_ || keeps_ground(c, d, a, b)) &&
-         (!wants_clearance_ || keeps_off(d, a, b, near_a, near_b));
+  DirectionMask kept = 0;
+  for (DirectionMask left = wanted; left != 0; left &= left - 1) {
+    const int d = __builtin_ctz(left);
+    const Vec3 there = here + lattice_.step(d);
+    const bool is_free = has_body ? body_free(before, c, d, here, there)
+                                  : constraints_admit(before, here, there);
+    kept |= DirectionMask(is_free) << d;
+  }
+  return kept;
 }
 
 bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const Cell& b) {
@@ -333,7 +253,7 @@ bool MoveRules::sees(const std::optional<Approach>& before, const Cell& a, const
 
 bool MoveRules::keeps_rules(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
                             bool is_wide) {
-  return keeps_limits(before, a, b) && (!has_ground_rules_ || keeps_ground(a, b)) &&
+  return keeps_limits(before, a, b) && (!ground_.exist() || keeps_ground(a, b)) &&
          (is_wide ? constraints_admit(before, a, b) : admits(before, a, b)) &&
          (!asks_world_ || keeps_off(*request_.world, a, b));
 }

@@ -64,7 +64,7 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
   virtual bool looks_everywhere() const = 0;
 
   PlanResult do_plan(const Request& request) const final;
-  PlanResult by_heading(const Request& request, std::size_t cells, const PlanResult& found) const;
+  PlanResult by_heading(const Request& request, const PlanResult& found) const;
 
   AnyAngleParams params_;
   std::size_t bytes_per_cell_;

@@ -8,30 +8,28 @@
 #include <vector>
 
 #include "altiplan/kit/lattice/goal_search.hpp"
-#include "altiplan/kit/scratch.hpp"
+#include "altiplan/kit/lattice/tiles.hpp"
 
 namespace altiplan::kit {
 
-/// State of a cell in a search by cell and heading.
+/// State of a cell in a search by cell and heading; all zero until it is reached.
 struct HeadingCell {
   double g;        ///< of the cheapest arrival that is or was open
   StepMask taken;  ///< steps out of the cell that need no further arrival
-  MoveRules::KnownClearance clearance;
-  std::uint16_t stamp;
   std::uint8_t in;  ///< step of that arrival
-  bool is_open;     ///< steps that no arrival may take are included in `taken`
+  bool is_reached;
+  bool is_open;  ///< steps that no arrival may take are included in `taken`
 };
-inline constexpr HeadingCell kFreshCell = {kInfinity, 0, {}, 0, kHere, false};
 
 /// A node of the search: a cell reached by a step.
 struct Arrival {
-  std::uint32_t cell;
+  std::uint32_t cell;  ///< as a TileIndex numbers it
   std::uint32_t from;  ///< the previous arrival
   std::uint8_t in;     ///< the step into the cell; kHere: linked to the start
 };
 
 struct HeadingMemory {
-  NodeStore<HeadingCell> cells;
+  TiledArray<HeadingCell> cells;
   OpenList open;
   std::vector<Arrival> arrivals;
   std::vector<double> lengths;  ///< path lengths, where costs differ from them
@@ -49,6 +47,7 @@ class HeadingSearch : GoalSearch {
   HeadingSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
                 double best_cost, HeadingMemory& memory)
       : GoalSearch(request, settings, lattice, best_cost, memory.open),
+        tiles_(TileIndex::of(lattice)),
         cells_(memory.cells),
         arrivals_(memory.arrivals),
         lengths_(memory.lengths) {}
@@ -61,7 +60,7 @@ class HeadingSearch : GoalSearch {
       if (index == kGoal) {
         return with(route_to(goal_parent_, true), goal_g_, true, false);
       }
-      HeadingCell& cell = cells_[arrivals_[index].cell];
+      HeadingCell& cell = cells_.at(arrivals_[index].cell);
       if (nothing_left(cell, arrivals_[index])) {
         continue;
       }
@@ -82,7 +81,7 @@ class HeadingSearch : GoalSearch {
 
  private:
   void begin() {
-    cells_.reset(lattice_.size());
+    cells_.reset(tiles_.tiles());
     open_.clear(quantum());
     arrivals_.clear();
     lengths_.clear();
@@ -93,10 +92,19 @@ class HeadingSearch : GoalSearch {
         continue;
       }
       at_start_ = link.length == 0;
-      cells_.at(lattice_.index(link.cell), kFreshCell);
-      push({lattice_.index(link.cell), kNone, kHere}, link.cell, there,
+      const std::uint32_t number = tiles_.number(link.cell);
+      reached(number);
+      push({number, kNone, kHere}, link.cell, there,
            link_cost(start_, there, link.length), link.length);
     }
+  }
+
+  HeadingCell& reached(std::uint32_t number) {
+    HeadingCell& cell = cells_.at(number);
+    if (!cell.is_reached) {
+      cell = {kInfinity, 0, kHere, true, false};
+    }
+    return cell;
   }
 
   void push(const Arrival& arrival, const Cell& c, const Vec3& at, double g, double length) {
@@ -110,7 +118,7 @@ class HeadingSearch : GoalSearch {
 
   bool nothing_left(const HeadingCell& cell, const Arrival& arrival) const {
     return (rules_.after(arrival.in) & ~cell.taken) == 0 && cell.is_open &&
-           to_goal_.link_of(lattice_.cell(arrival.cell)) == nullptr;
+           to_goal_.link_of(tiles_.cell(arrival.cell)) == nullptr;
   }
 
   /// True if another arrival at the cell can take every step that this one can, at no higher cost.
@@ -130,7 +138,7 @@ class HeadingSearch : GoalSearch {
 
   void expand(std::uint32_t index, double g_here, HeadingCell& cell) {
     const Arrival arrival = arrivals_[index];  // a push may relocate it
-    const Cell c = lattice_.cell(arrival.cell);
+    const Cell c = tiles_.cell(arrival.cell);
     const Vec3 here = arrival.in == kHere && at_start_ ? start_ : lattice_.position(c);
     const std::optional<Approach> from = before(arrival.in, here);
     const double length_here = keeps_lengths() ? lengths_[index] : g_here;
@@ -144,7 +152,7 @@ class HeadingSearch : GoalSearch {
     try_goal(index, g_here, length_here, c, here, from);
     if (!cell.is_open) {
       cell.is_open = true;
-      cell.taken = ~steps_in(rules_.out_of(c));
+      cell.taken = ~steps_in(rules_.places_free(c, rules_.out_of(c)));
     }
     // The first step after a heading or a link is no pair of lattice steps: it is checked as a
     // whole.
@@ -162,16 +170,14 @@ class HeadingSearch : GoalSearch {
       if (too_long(length, there) || exceeds_incumbent(g, there)) {
         continue;
       }
-      const auto next = std::uint32_t(std::int64_t(arrival.cell) + lattice_.stride(d));
-      HeadingCell& successor = cells_.at(next, kFreshCell);
-      const bool is_free =
-          rules_.place_free(c, d, here, there, cell.clearance, successor.clearance);
-      if (is_free && (!rules_.admits(from, here, there) ||
-                      (judged_whole && !rules_.any_leg_ok(from, here, there)))) {
+      const std::uint32_t next = tiles_.number(to);
+      HeadingCell& successor = reached(next);
+      if (!rules_.admits(from, here, there) ||
+          (judged_whole && !rules_.any_leg_ok(from, here, there))) {
         continue;  // another arrival may take it
       }
       cell.taken |= StepMask{1} << step;
-      if (is_free && !is_needless(successor, to, step, g)) {
+      if (!is_needless(successor, to, step, g)) {
         push({next, index, std::uint8_t(step)}, to, there, g, length);
       }
     }
@@ -179,15 +185,15 @@ class HeadingSearch : GoalSearch {
 
   /// Memory of this search, not the capacity that the pool has grown to.
   bool memory_full() const {
-    return lattice_.size() * sizeof(HeadingCell) + arrivals_.size() * sizeof(Arrival) +
-               open_.size() * sizeof(OpenList::Entry) >
+    return cells_.bytes() + arrivals_.size() * sizeof(Arrival) +
+               open_.size() * sizeof(OpenList::Entry) + rules_.bytes() >
            settings_.max_bytes;
   }
 
   Polyline route_to(std::uint32_t last, bool at_goal) const {
     Polyline route;
     for (std::uint32_t index = last; index != kNone; index = arrivals_[index].from) {
-      route.push_back(lattice_.position(lattice_.cell(arrivals_[index].cell)));
+      route.push_back(lattice_.position(tiles_.cell(arrivals_[index].cell)));
     }
     if (at_start_) {
       route.pop_back();
@@ -195,13 +201,14 @@ class HeadingSearch : GoalSearch {
     route.push_back(start_);
     std::reverse(route.begin(), route.end());
     if (at_goal) {
-      const Cell c = lattice_.cell(arrivals_[last].cell);
+      const Cell c = tiles_.cell(arrivals_[last].cell);
       end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
     }
     return route;
   }
 
-  NodeStore<HeadingCell>& cells_;
+  TileIndex tiles_;
+  TiledArray<HeadingCell>& cells_;
   std::vector<Arrival>& arrivals_;
   std::vector<double>& lengths_;
 };

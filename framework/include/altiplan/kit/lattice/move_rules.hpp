@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/lattice/step_ground.hpp"
+#include "altiplan/kit/lattice/clearance_steps.hpp"
+#include "altiplan/kit/lattice/ground_steps.hpp"
 #include "altiplan/kit/lattice/steps.hpp"
 
 namespace altiplan::kit {
@@ -46,7 +47,7 @@ class ALTIPLAN_API MoveRules {
   static bool cells_decide(const Request& request);
 
   /// Directions out of c, reached by the step `in` (kHere: not by a step), that pass the checks
-  /// answered from masks; they still have to pass `leg_free`.
+  /// answered from masks; they still have to pass `legs_free`.
   DirectionMask candidates(const Cell& c, int in) {
     const DirectionMask open = out_of(c);
     const DirectionMask kept = directions_of(after(in));
@@ -89,35 +90,23 @@ class ALTIPLAN_API MoveRules {
     refused_[by_turn] += __builtin_popcount(directions_of(left) & ~directions_of(kept));
   }
 
-  /// Lower bound of a cell's distance to obstacles, tightened while a search checks steps around
-  /// the cell. (StepGround has tighter bounds for the ground.)
-  struct KnownClearance {
-    float least = -std::numeric_limits<float>::infinity();
-    bool asked = false;
-
-    void learn(double bound) {
-      if (bound > least) {
-        least = std::nextafterf(float(bound), -std::numeric_limits<float>::infinity());
-      }
-    }
-  };
-
-  /// True if the step a–b, from c in direction d, satisfies the constraints that depend on the
-  /// position alone.
-  bool place_free(const Cell& c, int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
-                  KnownClearance& near_b);
+  /// Directions among `wanted` in which the step out of c satisfies the constraints that depend on
+  /// the position alone.
+  DirectionMask places_free(const Cell& c, DirectionMask wanted);
+  bool place_free(const Cell& c, int d) { return places_free(c, DirectionMask{1} << d) != 0; }
+  /// True if every step between two cells of the 3 x 3 x 3 around c is known to satisfy them.
+  bool all_free_around(const Cell& c) {
+    return (!ground_steps_ || ground_steps_->permits_all_around(c)) &&
+           (!clearance_steps_ || clearance_steps_->permits_all_around(c));
+  }
   /// True if the constraints, and the vehicle's body, admit the leg after its approach.
   bool admits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     return !judges_pairs_ || (constraints_admit(before, a, b) && body_fits(before, a, b));
   }
-  bool leg_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
-                const Vec3& b, KnownClearance& near_a, KnownClearance& near_b) {
-    if (request_.vehicle.body != nullptr) {
-      return body_free(before, c, d, a, b, near_a, near_b);
-    }
-    return place_free(c, d, a, b, near_a, near_b) &&
-           (!judges_pairs_ || constraints_admit(before, a, b));
-  }
+  /// Directions among `wanted` in which the step out of c, at `here`, satisfies the constraints on a
+  /// leg that follows the approach.
+  DirectionMask legs_free(const std::optional<Approach>& before, const Cell& c, const Vec3& here,
+                          DirectionMask wanted);
 
   /// True if the straight leg between the centres of two cells, for a vehicle that comes from
   /// `before`, satisfies the constraints on a leg: as by leg_ok, and with moves by cells also by
@@ -151,6 +140,11 @@ class ALTIPLAN_API MoveRules {
   /// may be too few, and finding nothing proves nothing.
   bool parent_mattered() const { return refused_[by_turn] > 0 || admit_needed_parent_; }
   std::int64_t moves_checked() const { return moves_checked_; }
+  /// Bytes of what is known of the ground and the obstacles.
+  std::size_t bytes() const {
+    return (ground_steps_ ? ground_steps_->bytes() : 0) +
+           (clearance_steps_ ? clearance_steps_->bytes() : 0);
+  }
   /// True if the cell itself is closed, which only moves by cells know.
   bool cell_blocked(const Cell& c) {
     const bool blocked = grid_ != nullptr && grid_->blocked(c);
@@ -188,26 +182,18 @@ class ALTIPLAN_API MoveRules {
                     double length);
   bool keeps_turn(const Approach& before, const Vec3& a, const Vec3& leg) const;
   bool keeps_ground(const Vec3& a, const Vec3& b);
-  bool keeps_ground(const Cell& c, int d, const Vec3& a, const Vec3& b);
   bool keeps_off(const World& layers, const Vec3& a, const Vec3& b);
-  bool keeps_off(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
-                 KnownClearance& near_b);
-  void ask(KnownClearance& known, const Vec3& at) const;
-  void sort_layers();
-  void find_gaps();
+  static Rule rule_of(GroundRules::Refusal refusal);
   bool constraints_admit(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   bool body_fits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   void refuse_body(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
   bool body_free(const std::optional<Approach>& before, const Cell& c, int d, const Vec3& a,
-                 const Vec3& b, KnownClearance& near_a, KnownClearance& near_b);
-  bool is_wide(int d, const Vec3& a, const Vec3& b, KnownClearance& near_a,
-               KnownClearance& near_b) const;
+                 const Vec3& b);
 
   const Request& request_;
   const Lattice& lattice_;
   CornerRule corner_;
   double needed_;
-  double spare_;  ///< clearance beyond half a leg that proves the leg free
   double reach_;  ///< clearance in which the vehicle's body passes in any attitude
   bool asks_world_;
   struct {
@@ -215,19 +201,14 @@ class ALTIPLAN_API MoveRules {
     double turn = 0;
     double turn_space = 0;
   } cosines_;  ///< of the limits on angles
-  bool wants_clearance_ = false;
-  bool has_ground_rules_ = false;
   bool judges_pairs_ = false;  ///< by constraints, or by the vehicle's body
   std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;
   std::shared_ptr<const VoxelGrid> wide_grid_;
-  World obstacles_;    ///< the layers that contain more than their ground
-  World bare_ground_;  ///< the other layers
-  std::optional<StepGround> ground_;
-  double certain_gap_ = 0;  ///< a gap that proves a leg free of the ground and its constraints
-  double needed_gap_ = -kInfinity;  ///< a gap below which they are violated
-  Rule too_low_ = by_ground;        ///< the constraint that is then violated
-  bool has_ceiling_over_ground_ = false;
+  GroundRules ground_;
+  std::optional<GroundSteps> ground_steps_;        ///< where there is ground
+  std::optional<ClearanceSteps> clearance_steps_;  ///< where the world is asked for obstacles
+  std::optional<ClearanceSteps> wide_steps_;       ///< the same for a body in any attitude
   DirectionMask steps_ = 0;
   bool headings_last_ = false;
   std::array<StepMask, kSteps> after_{};   ///< by incoming step

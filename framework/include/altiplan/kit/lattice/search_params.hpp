@@ -157,20 +157,13 @@ inline bool begins_by_heading(const SearchSettings& settings, const Request& req
          (request.limits.turns() || request.judges_pairs());
 }
 
-/// True if a search by (cell, heading), with that memory per cell, may find a route where one with
-/// a single parent per cell has found none.
-inline bool heading_may_help(const SearchSettings& settings, double best_cost, std::size_t bytes,
-                             SearchResult& found) {
-  if (settings.state == SearchState::parent || found.result.status != PlanStatus::no_route ||
-      !found.parent_mattered || best_cost < kInfinity) {
-    return false;
-  }
-  const auto cells = std::size_t(found.result.counters.back().value);
-  if (cells * bytes > settings.max_bytes) {
-    found.result.message += "; the memory allowed is too little for a search by cell and heading";
-    return false;
-  }
-  return true;
+/// True if a search by (cell, heading) may find a route where one with a single parent per cell has
+/// found none.
+inline bool heading_may_help(const SearchSettings& settings, double best_cost,
+                             const SearchResult& found) {
+  return settings.state != SearchState::parent &&
+         found.result.status == PlanStatus::no_route && found.parent_mattered &&
+         best_cost == kInfinity;
 }
 
 /// The second search's result, with the statistics of the first one added.

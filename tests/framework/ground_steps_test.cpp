@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/lattice/step_ground.hpp"
+#include "altiplan/kit/lattice/ground_steps.hpp"
 
 #include <gtest/gtest.h>
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
@@ -44,7 +45,6 @@ void expect_the_judges_answers(const Case& over, int seed) {
   }
   const Lattice lattice(request, over.cell_m, Neighbourhood::all, {});
   MoveRules rules(request, lattice, MoveCheck::exact, CornerRule::any);
-  std::vector<MoveRules::KnownClearance> known(lattice.size());
   SplitMix64 random{std::uint64_t(seed)};
   int kept = 0;
   int refused = 0;
@@ -60,8 +60,7 @@ void expect_the_judges_answers(const Case& over, int seed) {
     }
     const Cell o = offset(d);
     const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
-    const bool is_free = rules.place_free(c, d, lattice.position(c), lattice.position(to),
-                                          known[lattice.index(c)], known[lattice.index(to)]);
+    const bool is_free = rules.place_free(c, d);
     ASSERT_EQ(is_free, leg_ok(std::nullopt, lattice.position(c), lattice.position(to), request))
         << over.layer << ' ' << seed << ' ' << n << ": " << rules.refusals();
     (is_free ? kept : refused) += 1;
@@ -70,14 +69,14 @@ void expect_the_judges_answers(const Case& over, int seed) {
   EXPECT_GT(refused, 300);
 }
 
-TEST(StepGround, StepsOverHillsAreJudgedAsTheJudgeJudgesThem) {
+TEST(GroundSteps, StepsOverHillsAreJudgedAsTheJudgeJudgesThem) {
   for (int seed = 0; seed < 12; ++seed) {
     const std::string draw = "{count: 16, extent_m: 20000, seed: " + std::to_string(seed) + "}";
     expect_the_judges_answers({"hills", draw, 20e3, 5e3, {500, 500, 100}}, seed);
   }
 }
 
-TEST(StepGround, StepsOverAnElevationModelAreJudgedAsTheJudgeJudgesThem) {
+TEST(GroundSteps, StepsOverAnElevationModelAreJudgedAsTheJudgeJudgesThem) {
   const std::string file =
       "{file: " + altiplan::folders::source().string() + "/configs/data/jacksboro_fault.tif}";
   for (int seed = 0; seed < 6; ++seed) {
@@ -85,17 +84,51 @@ TEST(StepGround, StepsOverAnElevationModelAreJudgedAsTheJudgeJudgesThem) {
   }
 }
 
-TEST(StepGround, BoundsHoldWhatLegsHaveShown) {
-  StepGround::Top top;
-  StepGround::learn(top, 1000, 1200, 300, false);
-  EXPECT_NEAR(top.most, 900, 1e-3);
-  StepGround::learn(top, 700, 700, 20, true);
-  EXPECT_NEAR(top.most, 680, 1e-3);
-  EXPECT_NEAR(top.least, 680, 1e-3);
-  EXPECT_GE(top.most, 680);
-  EXPECT_LE(top.least, 680);
-  StepGround::learn(top, 700, 700, -kInfinity, true);
-  EXPECT_EQ(top.least, StepGround::kNone);
+TEST(GroundSteps, WhatIsPermittedAllAroundIsPermittedStepByStep) {
+  const std::string file =
+      "{file: " + altiplan::folders::source().string() + "/configs/data/jacksboro_fault.tif}";
+  const Box volume = {{0, 0, 0}, {29.6e3, 29.6e3, 1200}};
+  const World nothing;
+  Site site;
+  site.volume = volume;
+  site.before = &nothing;
+  World world = World().with({"ground", "terrain", testing::make_environment("terrain", file, site)});
+  world = world.with({"tower", "shape",
+                      std::make_shared<kit::ShapeLayer>(std::vector<Shape>{
+                          Shape{Cylinder{12e3, 12e3, 800, 0, 1e4}}})});
+  Request request =
+      testing::request_in(std::move(world), {1e3, 1e3, 1100}, {20e3, 20e3, 1100}, volume);
+  request.limits.min_ground_clearance = 50;
+  request.vehicle.radius_m = request.limits.min_clearance = 10;
+  const Lattice lattice(request, {200, 200, 20}, Neighbourhood::all, {});
+  MoveRules rules(request, lattice, MoveCheck::exact, CornerRule::any);
+  SplitMix64 random{7};
+  int around = 0;
+  for (int n = 0; n < 3000; ++n) {
+    Cell c{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      c[axis] = int(random.integer(0, lattice.spec().counts[axis] - 1));
+    }
+    if (!rules.all_free_around(c)) {
+      continue;
+    }
+    ++around;
+    for (int at = 0; at < kDirections; ++at) {
+      const Cell o = offset(at);  // kHere included
+      if ((lattice.inside(c) >> at & 1) == 0) {
+        continue;
+      }
+      const Cell from = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
+      const DirectionMask within = directions_where([&](const Cell& step) {
+        return std::abs(o[0] + step[0]) <= 1 && std::abs(o[1] + step[1]) <= 1 &&
+               std::abs(o[2] + step[2]) <= 1;
+      });
+      const DirectionMask inside = rules.out_of(from) & within;
+      ASSERT_EQ(rules.places_free(from, inside), inside) << n;
+    }
+  }
+  EXPECT_GT(around, 500);
+  EXPECT_LT(around, 2500);
 }
 }  // namespace
 }  // namespace altiplan::kit

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdlib>
+
+#include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/step_costs.hpp"
+
+namespace altiplan::kit {
+
+/// By the step into a cell, its successors if all steps between the cells around it are free: those
+/// that no other path from the preceding cell, around the cell, reaches at less cost, or at the
+/// same cost by a last step that comes earlier in a fixed order. Whatever the parents of cells, a
+/// cell keeps a predecessor on a shortest path from which it is not pruned: of those, the one with
+/// the earliest last step.
+///
+/// For all steps of a box's neighbourhood that is D. Harabor, A. Grastien, Online Graph Pruning for
+/// Pathfinding on Grid Maps, AAAI 2011, doi:10.1609/aaai.v25i1.7994, in 3-D; a limit on climbs
+/// leaves fewer steps, and so fewer ways around.
+class NaturalSteps {
+ public:
+  NaturalSteps(DirectionMask steps, const StepCosts& costs) {
+    for (int in = 0; in < kDirections; ++in) {
+      for (DirectionMask left = steps; left != 0; left &= left - 1) {
+        const int out = std::countr_zero(left);
+        const bool is_needed = in == kHere || is_natural(in, out, steps, costs);
+        kept_[std::size_t(in)] |= DirectionMask(is_needed) << out;
+      }
+    }
+  }
+  DirectionMask operator[](int in) const { return kept_[std::size_t(in)]; }
+
+ private:
+  static int axes(int d) {
+    const Cell o = offset(d);
+    return std::abs(o[0]) + std::abs(o[1]) + std::abs(o[2]);
+  }
+  /// True if the step comes before the other: the one along fewer axes.
+  static bool is_earlier(int d, int other) {
+    return axes(d) != axes(other) ? axes(d) < axes(other) : d < other;
+  }
+
+  static bool is_natural(int in, int out, DirectionMask steps, const StepCosts& costs) {
+    const Cell a = offset(in);
+    const Cell b = offset(out);
+    const Cell end = {a[0] + b[0], a[1] + b[1], a[2] + b[2]};  // from the preceding cell
+    if (end == Cell{0, 0, 0}) {
+      return false;
+    }
+    const auto is_step = [&](const Cell& o) {
+      return std::abs(o[0]) <= 1 && std::abs(o[1]) <= 1 && std::abs(o[2]) <= 1 &&
+             (steps >> direction(o[0], o[1], o[2]) & 1) != 0;
+    };
+    const std::uint32_t cost = costs[in] + costs[out];
+    if (is_step(end) && costs[direction(end[0], end[1], end[2])] <= cost) {
+      return false;
+    }
+    for (DirectionMask left = steps; left != 0; left &= left - 1) {
+      const int first = std::countr_zero(left);
+      const Cell o = offset(first);
+      const Cell rest = {end[0] - o[0], end[1] - o[1], end[2] - o[2]};
+      const bool is_around = std::abs(o[0] - a[0]) <= 1 && std::abs(o[1] - a[1]) <= 1 &&
+                             std::abs(o[2] - a[2]) <= 1;  // the cell between is beside this one
+      if (first == in || !is_around || !is_step(rest)) {
+        continue;
+      }
+      const int last = direction(rest[0], rest[1], rest[2]);
+      const std::uint32_t around = costs[first] + costs[last];
+      if (around < cost || (around == cost && is_earlier(last, out))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::array<DirectionMask, kDirections> kept_{};
+};
+}  // namespace altiplan::kit
