@@ -10,7 +10,7 @@
 
 #include "commands.hpp"
 #include "host/base/unfinished.hpp"
-#include "progress_line.hpp"
+#include "progress.hpp"
 #include "reproduce_text.hpp"
 
 namespace altiplan::cli {
