@@ -92,10 +92,11 @@ TEST(GroundSteps, WhatIsPermittedAllAroundIsPermittedStepByStep) {
   Site site;
   site.volume = volume;
   site.before = &nothing;
-  World world = World().with({"ground", "terrain", testing::make_environment("terrain", file, site)});
+  World world =
+      World().with({"ground", "terrain", testing::make_environment("terrain", file, site)});
   world = world.with({"tower", "shape",
-                      std::make_shared<kit::ShapeLayer>(std::vector<Shape>{
-                          Shape{Cylinder{12e3, 12e3, 800, 0, 1e4}}})});
+                      std::make_shared<kit::ShapeLayer>(
+                          std::vector<Shape>{Shape{Cylinder{12e3, 12e3, 800, 0, 1e4}}})});
   Request request =
       testing::request_in(std::move(world), {1e3, 1e3, 1100}, {20e3, 20e3, 1100}, volume);
   request.limits.min_ground_clearance = 50;

@@ -35,8 +35,9 @@ Ground ground_of(const std::string& plugin, const std::string& parameters, const
 std::vector<Ground> grounds() {
   const std::string model =
       "{file: " + folders::source().string() + "/configs/data/jacksboro_fault.tif}";
-  return {ground_of("terrain", model, {}),
-          ground_of("hills", "{count: 30, extent_m: 20000, seed: 4}", {{0, 0, 0}, {2e4, 2e4, 5e3}})};
+  return {
+      ground_of("terrain", model, {}),
+      ground_of("hills", "{count: 30, extent_m: 20000, seed: 4}", {{0, 0, 0}, {2e4, 2e4, 5e3}})};
 }
 
 std::string yaml(const Vec3& cell, const char* state) {
@@ -81,7 +82,8 @@ Problem draw_problem(const Ground& ground, std::uint64_t seed, int cells) {
   const Vec3 size = problem.cell.cwiseProduct(
       Vec3{draw(3, cells), draw(3, cells), draw.below(4) == 0 ? 1 : draw(2, cells)});
   Vec3 low = draw.within(ground.box.min, ground.box.max - size);
-  const auto height = ground.layer->ground()->height(low.x() + size.x() / 2, low.y() + size.y() / 2);
+  const auto height =
+      ground.layer->ground()->height(low.x() + size.x() / 2, low.y() + size.y() / 2);
   low.z() = height.value_or(300) - draw(0, size.z() / 2);
   const Box volume{low, low + size};
   std::vector<Shape> solids;

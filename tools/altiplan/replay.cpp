@@ -67,7 +67,8 @@ host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const h
                                              const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
   const bool as_then = stored.outcome == "crashed";
-  words.for_user = over_progress() + "altiplan: " + result.message + "\n" + study::run_name(stored) + ": " +
+  words.for_user = over_progress() + "altiplan: " + result.message + "\n" +
+                   study::run_name(stored) + ": " +
                    (as_then ? "crashed, as the stored run did: " + stored.message
                             : "crashed, unlike the stored run: " + stored.outcome) +
                    "\n";

@@ -89,15 +89,14 @@ void write_film(const Arguments& arguments, const host::FilmMakers& makers, cons
                 const host::Json& scene) {
   const double seconds = arguments.mp4_seconds.value_or(host::film_seconds(scene));
   const auto began = std::chrono::steady_clock::now();
-  LateProgress progress;
-  progress.say("film: starting Chromium");
+  Activity progress("film: starting Chromium");
   const std::string bytes =
       host::film(makers, page, seconds, [&](std::size_t done, std::size_t all) {
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-        progress.say("film: frame " + std::to_string(done) + " of " + std::to_string(all) + ", " +
-                     duration(took.count() / double(done) * double(all - done)) + " left");
+        progress.begin("film: frame " + std::to_string(done) + " of " + std::to_string(all) + ", " +
+                       duration(took.count() / double(done) * double(all - done)) + " left");
       });
-  progress.stop();
+  progress.end();
   host::write_file(*arguments.mp4, bytes);
   std::printf("%s: %s MB: %s s\n", arguments.mp4->c_str(),
               fixed(double(bytes.size()) / 1e6, 2).c_str(), fixed(seconds, 0).c_str());

@@ -15,8 +15,7 @@ namespace altiplan::astar {
 /// one of them is a cell that the search has reached, there is no route.
 class GoalFlood {
  public:
-  GoalFlood(const kit::TileIndex& tiles, kit::MoveRules& rules,
-            kit::TiledArray<std::uint8_t>& seen)
+  GoalFlood(const kit::TileIndex& tiles, kit::MoveRules& rules, kit::TiledArray<std::uint8_t>& seen)
       : tiles_(tiles), rules_(rules), seen_(seen) {}
 
   /// Adds a cell from which the goal is one leg away.

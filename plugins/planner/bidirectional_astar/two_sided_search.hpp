@@ -256,8 +256,7 @@ class TwoSidedSearch : kit::LatticeSearch {
       return;
     }
     Node& neighbour = nodes_.at(next.cell, kFresh);
-    const bool is_free =
-        side == forward ? rules_.place_free(c, d) : rules_.place_free(to, d);
+    const bool is_free = side == forward ? rules_.place_free(c, d) : rules_.place_free(to, d);
     if (is_free && !admits(side, arrival, here, there, step)) {
       return;  // another arrival may take it
     }

@@ -29,8 +29,7 @@ ClearanceSteps::ClearanceSteps(const Lattice& lattice, const World& obstacles, d
 std::uint32_t ClearanceSteps::look_at(const Cell& c, std::size_t block) {
   const bool is_level = lattice_.spec().counts[2] == 1;
   const auto first = [](int index) { return index / kEdge * kEdge; };
-  const Vec3 corner =
-      lattice_.position({first(c[0]), first(c[1]), is_level ? 0 : first(c[2])});
+  const Vec3 corner = lattice_.position({first(c[0]), first(c[1]), is_level ? 0 : first(c[2])});
   const Vec3 diagonal = (kEdge - 1) / 2.0 * lattice_.step(direction(1, 1, is_level ? 0 : 1));
   const bool is_far = obstacles_.clearance(corner + diagonal) > diagonal.norm() + around_;
   if (!is_far) {
@@ -46,8 +45,7 @@ double ClearanceSteps::clearance(const Cell& c) {
   }
   Block& block = *blocks_[slots_[block_of(c)] - 2];
   const auto within = [](int index) { return std::size_t(index % kEdge); };
-  float& known =
-      block.clearance[(within(c[2]) * kEdge + within(c[1])) * kEdge + within(c[0])];
+  float& known = block.clearance[(within(c[2]) * kEdge + within(c[1])) * kEdge + within(c[0])];
   if (known == kUnknown) {
     known = std::max(rounded_down(obstacles_.clearance(lattice_.position(c))),
                      std::numeric_limits<float>::lowest());

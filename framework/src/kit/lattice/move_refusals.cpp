@@ -71,9 +71,8 @@ std::string MoveRules::refusals() const {
       order.push_back(rule);
     }
   }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return refused[std::size_t(a)] > refused[std::size_t(b)];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return refused[std::size_t(a)] > refused[std::size_t(b)]; });
   std::string text;
   for (const int rule : order) {
     text += (text.empty() ? "" : ", ") + names[rule] + " (" +

@@ -31,8 +31,8 @@ Told by_cosine(double dot, double lengths, double limit_cosine) {
 }  // namespace
 
 bool MoveRules::cells_decide(const Request& request) {
-  return !GroundRules(request, 0, false).exist() && !request.judges_pairs() && !request.limits.turns() &&
-         request.limits.max_route_length == kInfinity;
+  return !GroundRules(request, 0, false).exist() && !request.judges_pairs() &&
+         !request.limits.turns() && request.limits.max_route_length == kInfinity;
 }
 
 namespace {
@@ -234,8 +234,8 @@ DirectionMask MoveRules::legs_free(const std::optional<Approach>& before, const 
   for (DirectionMask left = wanted; left != 0; left &= left - 1) {
     const int d = __builtin_ctz(left);
     const Vec3 there = here + lattice_.step(d);
-    const bool is_free = has_body ? body_free(before, c, d, here, there)
-                                  : constraints_admit(before, here, there);
+    const bool is_free =
+        has_body ? body_free(before, c, d, here, there) : constraints_admit(before, here, there);
     kept |= DirectionMask(is_free) << d;
   }
   return kept;

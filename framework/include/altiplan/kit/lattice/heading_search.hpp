@@ -14,8 +14,8 @@ namespace altiplan::kit {
 
 /// State of a cell in a search by cell and heading; all zero until it is reached.
 struct HeadingCell {
-  double g;        ///< of the cheapest arrival that is or was open
-  StepMask taken;  ///< steps out of the cell that need no further arrival
+  double g;         ///< of the cheapest arrival that is or was open
+  StepMask taken;   ///< steps out of the cell that need no further arrival
   std::uint8_t in;  ///< step of that arrival
   bool is_reached;
   bool is_open;  ///< steps that no arrival may take are included in `taken`
@@ -94,8 +94,8 @@ class HeadingSearch : GoalSearch {
       at_start_ = link.length == 0;
       const std::uint32_t number = tiles_.number(link.cell);
       reached(number);
-      push({number, kNone, kHere}, link.cell, there,
-           link_cost(start_, there, link.length), link.length);
+      push({number, kNone, kHere}, link.cell, there, link_cost(start_, there, link.length),
+           link.length);
     }
   }
 

@@ -103,8 +103,8 @@ class ALTIPLAN_API MoveRules {
   bool admits(const std::optional<Approach>& before, const Vec3& a, const Vec3& b) {
     return !judges_pairs_ || (constraints_admit(before, a, b) && body_fits(before, a, b));
   }
-  /// Directions among `wanted` in which the step out of c, at `here`, satisfies the constraints on a
-  /// leg that follows the approach.
+  /// Directions among `wanted` in which the step out of c, at `here`, satisfies the constraints on
+  /// a leg that follows the approach.
   DirectionMask legs_free(const std::optional<Approach>& before, const Cell& c, const Vec3& here,
                           DirectionMask wanted);
 
@@ -200,7 +200,7 @@ class ALTIPLAN_API MoveRules {
     double climb = 0;
     double turn = 0;
     double turn_space = 0;
-  } cosines_;  ///< of the limits on angles
+  } cosines_;                  ///< of the limits on angles
   bool judges_pairs_ = false;  ///< by constraints, or by the vehicle's body
   std::vector<NamedConstraint> constraints_;
   std::shared_ptr<const VoxelGrid> grid_;

@@ -161,9 +161,8 @@ inline bool begins_by_heading(const SearchSettings& settings, const Request& req
 /// found none.
 inline bool heading_may_help(const SearchSettings& settings, double best_cost,
                              const SearchResult& found) {
-  return settings.state != SearchState::parent &&
-         found.result.status == PlanStatus::no_route && found.parent_mattered &&
-         best_cost == kInfinity;
+  return settings.state != SearchState::parent && found.result.status == PlanStatus::no_route &&
+         found.parent_mattered && best_cost == kInfinity;
 }
 
 /// The second search's result, with the statistics of the first one added.

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <string>
 #include <type_traits>
 #include <utility>
-#include <string>
 #include <vector>
 
 #include "altiplan/error.hpp"
@@ -41,9 +41,10 @@ class TileIndex {
   static TileIndex of(const Lattice& lattice) {
     TileIndex tiles(lattice.spec().counts);
     if (!tiles.fits()) {
-      throw ParameterError("cell_m", "the lattice would have too many cells to number in 32 bits: " +
-                                         std::to_string(lattice.size()) +
-                                         "; choose larger cells or a smaller volume");
+      throw ParameterError("cell_m",
+                           "the lattice would have too many cells to number in 32 bits: " +
+                               std::to_string(lattice.size()) +
+                               "; choose larger cells or a smaller volume");
     }
     return tiles;
   }
