@@ -145,6 +145,33 @@ void hold(std::uint64_t first, int count, int cells) {
 
 TEST(TerrainSearch, LengthsAndVerdictsAreThoseOfAPlainSearch) { hold(0, 1500, 9); }
 TEST(TerrainSearch, InLargerVolumes) { hold(50'000, 40, 30); }
+
+TEST(TerrainSearch, NamesWhatShutsTheGoalIn) {
+  const Box volume{{0, 0, 0}, {2e4, 2e4, 3e3}};
+  const Ground ground = ground_of("hills", "{count: 30, extent_m: 20000, seed: 4}", volume);
+  std::vector<Shape> walls;
+  for (const auto& [min, max] :
+       std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>{{{12e3, 12e3}, {16e3, 12.5e3}},
+                                                                {{12e3, 15.5e3}, {16e3, 16e3}},
+                                                                {{12e3, 12e3}, {12.5e3, 16e3}},
+                                                                {{15.5e3, 12e3}, {16e3, 16e3}}}) {
+    walls.emplace_back(BoxShape{{{min.x(), min.y(), 0}, {max.x(), max.y(), 4e3}}});
+  }
+  World world = World().with({"ground", "ground", ground.layer});
+  world = world.with({"ring", "solids", std::make_shared<kit::ShapeLayer>(std::move(walls))});
+  Request request =
+      testing::request_in(std::move(world), {2e3, 2e3, 2500}, {14e3, 14e3, 2500}, volume);
+  request.limits.min_turn_radius = 50;
+  const PlanResult result =
+      testing::make_planner("astar", yaml({200, 200, 50}, "auto"))->plan(request);
+  EXPECT_EQ(result.status, PlanStatus::no_route);
+  EXPECT_TRUE(result.proved);
+  EXPECT_TRUE(result.message.starts_with("no route: the goal is shut in: it can be reached from "))
+      << result.message;
+  EXPECT_NE(result.message.find("around which are refused clearance to 'ring'"), std::string::npos)
+      << result.message;
+}
+
 TEST(NightlyTerrainSearch, LengthsAndVerdictsAreThoseOfAPlainSearch) {
   hold(1'000'000, 1'000'000, 7);
 }

@@ -156,7 +156,7 @@ class Reproduce(case.StudyCase):
     def test_list(self):
         out, _ = self.call("reproduce", "--list", self.paper)
         self.assertRegex(out, r"^007 cities: Two searches \(cities\.md\)\n")
-        self.assertRegex(out, r"greedy +0\.1 s +0\.2 s +the greedy one\n")
+        self.assertRegex(out, r"greedy +80 ms +0\.2 s +the greedy one\n")
         self.assertRegex(out, r"saves +0\.3 s +0\.6 s +saves nodes\n")
         self.assertRegex(out, r"all +0\.3 s +0\.6 s +all 3 rows")
         out, _ = self.call("reproduce", "--list", "--json")

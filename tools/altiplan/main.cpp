@@ -96,6 +96,9 @@ std::string fixed(const std::optional<double>& value, int digits) {
 }
 
 std::string duration(double seconds) {
+  if (seconds > 0 && seconds < 0.1) {
+    return fixed(1000 * seconds, 0) + " ms";
+  }
   if (seconds < 1) {
     return fixed(seconds, 1) + " s";
   }

@@ -309,21 +309,22 @@ class StepSearch {
     result.status = status;
     result.budget_hit = status != PlanStatus::no_route;
     result.proved = status == PlanStatus::no_route && !found.parent_mattered;
-    result.message = kit::explanation(status, progress_, request_, lattice_, rules_) +
-                     rules_.sharp_turns() + shut_in();
+    result.message = status == PlanStatus::no_route && is_shut_in
+                         ? shut_in()
+                         : kit::explanation(status, progress_, request_, lattice_, rules_) +
+                               rules_.sharp_turns();
     result.counters = kit::counters(progress_, lattice_, rules_);
     return found;
   }
 
-  /// What shuts the goal in, if it is known to be.
+  /// What shuts the goal in: it alone is the cause, whatever the search was refused before.
   std::string shut_in() const {
-    if (!may_flood_ || !flood_.is_shut_in()) {
-      return "";
-    }
     kit::MoveRules around(request_, lattice_, settings_.moves, settings_.corner);
     flood_.for_each([&](const Cell& c) { around.places_free(c, around.out_of(c)); });
-    return "; the goal is shut in: it can be reached from " + std::to_string(flood_.cells()) +
-           " cells alone, around which are refused " + around.refusals();
+    return "no route: the goal is shut in: it can be reached from " +
+           std::to_string(flood_.cells()) + " of " + std::to_string(lattice_.size()) +
+           " cells alone, around which are refused " + around.refusals() + "; " +
+           std::to_string(progress_.expanded) + " expanded";
   }
 
   void add_to_trace(std::uint32_t g, int step, const Cell& c, const Vec3& here) const {
