@@ -339,6 +339,7 @@ TEST(AStarOracle, HoldsWhereItOnceDidNot) {
   Tally tally;
   compare(24, false, tally);    // a route within the goal's tolerance, and a limit on its length
   compare(1433, false, tally);  // manhattan over faces, the goal between centres
+  compare(4124, false, tally);  // a way around that left the lattice
   EXPECT_GT(tally.solved, 8);
   TurnTally turns;
   compare_turns(3976, turns);  // a vertical leg after one to the south-west

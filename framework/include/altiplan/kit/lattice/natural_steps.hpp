@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdlib>
@@ -42,6 +43,18 @@ class NaturalSteps {
     return axes(d) != axes(other) ? axes(d) < axes(other) : d < other;
   }
 
+  /// True if the cell `between` is beside `here`, and on the lattice because the cell before, at 0,
+  /// `here` and `end` are: between them on each axis.
+  static bool is_around(const Cell& between, const Cell& here, const Cell& end) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({0, here[axis], end[axis]});
+      if (between[axis] < low || between[axis] > high || std::abs(between[axis] - here[axis]) > 1) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   static bool is_natural(int in, int out, DirectionMask steps, const StepCosts& costs) {
     const Cell a = offset(in);
     const Cell b = offset(out);
@@ -61,9 +74,7 @@ class NaturalSteps {
       const int first = std::countr_zero(left);
       const Cell o = offset(first);
       const Cell rest = {end[0] - o[0], end[1] - o[1], end[2] - o[2]};
-      const bool is_around = std::abs(o[0] - a[0]) <= 1 && std::abs(o[1] - a[1]) <= 1 &&
-                             std::abs(o[2] - a[2]) <= 1;  // the cell between is beside this one
-      if (first == in || !is_around || !is_step(rest)) {
+      if (first == in || !is_around(o, a, end) || !is_step(rest)) {
         continue;
       }
       const int last = direction(rest[0], rest[1], rest[2]);
