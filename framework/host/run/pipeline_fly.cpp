@@ -12,6 +12,7 @@ namespace {
 /// Stands in for a session that could not begin: each replan reports the reason.
 class BrokenSession final : public Session {
  public:
+  // It is kept, not thrown: NOLINTNEXTLINE(bugprone-throw-keyword-missing)
   explicit BrokenSession(std::exception_ptr error) : error_(std::move(error)) {}
 
  private:
