@@ -63,6 +63,16 @@ TEST(Lattice, TooManyCellsAreRefusedWithBothFigures) {
   }
 }
 
+TEST(Lattice, TooManyCellsForAnyMemoryAreRefusedByCount) {
+  try {
+    const Lattice lattice(empty_request(), {0.001, 0.001, 0.001}, Neighbourhood::all, {});
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_NE(std::string(error.what()).find(" cells; allowed are 4e9 cells: "), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Lattice, DistanceIsTheShortestWayOnAnEmptyLattice) {
   Request request = testing::request_in(World(), {0, 0, 0}, {1, 1, 1}, {{0, 0, 0}, {50, 50, 50}});
   for (const Vec3& cell : {Vec3(5, 5, 5), Vec3(7, 3, 5), Vec3(10, 9, 1)}) {
