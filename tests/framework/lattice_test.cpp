@@ -68,7 +68,7 @@ TEST(Lattice, TooManyCellsForAnyMemoryAreRefusedByCount) {
     const Lattice lattice(empty_request(), {0.001, 0.001, 0.001}, Neighbourhood::all, {});
     FAIL();
   } catch (const ParameterError& error) {
-    EXPECT_NE(std::string(error.what()).find(" cells; allowed are 4e9 cells: "), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find(" MB; allowed are 4e9 cells: "), std::string::npos)
         << error.what();
   }
 }

@@ -41,18 +41,17 @@ void expect_few(const std::array<double, 3>& counts, const LatticeMemory& memory
   if (!(bytes <= double(memory.max_bytes)) || total > 4e9) {
     const double mb = 1.0 / (1024 * 1024);
     const auto whole = [](double value) { return std::to_string(std::int64_t(value)); };
-    const double allowed_mb = std::min(double(memory.max_bytes) * mb, 1e15);
-    const std::string allowed = allowed_mb < 1 ? "less than 1" : whole(allowed_mb);
+    const double allowed_mb = double(memory.max_bytes) * mb;
+    const std::string allowed = memory.max_bytes == ~std::size_t{0} ? ""
+                                : allowed_mb < 1                    ? "less than 1 MB and "
+                                                 : whole(allowed_mb) + " MB and ";
     const std::string cells =
         total < 1e18 ? whole(counts[0]) + " x " + whole(counts[1]) + " x " + whole(counts[2])
                      : std::string("more than 1e18");
-    const bool is_memory = memory.max_bytes < ~std::size_t{0} && bytes > double(memory.max_bytes);
     const std::string needed = total < 1e18 ? whole(std::ceil(bytes * mb)) : "far too many";
-    const std::string need =
-        is_memory ? ", which need " + needed + " MB; allowed are " + allowed + " MB and 4e9 cells"
-                  : "; allowed are 4e9 cells";
-    throw ParameterError("cell_m", "the lattice would have " + cells + " cells" + need +
-                                       ": choose larger cells or a smaller volume");
+    throw ParameterError("cell_m", "the lattice would have " + cells + " cells, which need " +
+                                       needed + " MB; allowed are " + allowed +
+                                       "4e9 cells: choose larger cells or a smaller volume");
   }
 }
 }  // namespace
