@@ -12,10 +12,12 @@
 //   steps between them.
 // Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
 //   turn limits are first checked against the single parent of a cell, which is incomplete; closed
-//   nodes are never reopened; where cells decide alone (cell_search.hpp) lengths are integers
-//   (kit::StepCosts), and successors that another path reaches as cheaply are pruned.
+//   nodes are never reopened; where cells or places decide (cell_search.hpp, step_search.hpp)
+//   lengths are integers (kit::StepCosts), and successors that another path reaches as cheaply are
+//   pruned.
 // Symbols: g cost-to-come, h heuristic, f = w_g g + w_h h.
 #include <memory>
+#include <utility>
 
 #include "altiplan/kit/lattice/heading_search.hpp"
 #include "altiplan/kit/lattice/search_params.hpp"
@@ -68,14 +70,13 @@ class AStar final : public Planner {
 
   /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
-    if (settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request) &&
-        settings.cost.length_alone() && settings.cost.length == 1) {
+    const bool is_length = settings.cost.length_alone() && settings.cost.length == 1;
+    if (is_length && settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request)) {
       return By::cells;
     }
     if (kit::begins_by_heading(settings, request)) {
       return By::heading;
     }
-    const bool is_length = settings.cost.length_alone() && settings.cost.length == 1;
     return is_length && settings.consistent() && !request.judges_pairs() &&
                    request.limits.max_route_length == kInfinity
                ? By::steps
@@ -85,30 +86,19 @@ class AStar final : public Planner {
   /// Searches once for a route that costs less than `best_cost`.
   SearchResult search(const SearchSettings& settings, const Request& request,
                       double best_cost) const {
-    switch (quickest(settings, request)) {
-      case By::cells:
-        if (auto found = by_cells(request, settings)) {
-          return *std::move(found);
-        }
-        [[fallthrough]];
-      case By::steps:
-      case By::one_parent: {
-        std::optional<SearchResult> by_places;
-        if (quickest(settings, request) != By::one_parent) {
-          by_places = by_steps(request, settings);
-        }
-        SearchResult found =
-            by_places ? *std::move(by_places) : by_one_parent(request, settings, best_cost);
-        if (!kit::heading_may_help(settings, best_cost, found)) {
-          return found;
-        }
-        const Request rest = kit::after(request, found.result.counters);
-        return kit::after_one_parent(by_heading(rest, settings, best_cost), found);
-      }
-      case By::heading:
-        break;
+    const By by = quickest(settings, request);
+    if (by == By::heading) {
+      return by_heading(request, settings, best_cost);
     }
-    return by_heading(request, settings, best_cost);
+    std::optional<SearchResult> exact = by == By::cells   ? by_cells(request, settings)
+                                        : by == By::steps ? by_steps(request, settings)
+                                                          : std::nullopt;
+    SearchResult found = exact ? *std::move(exact) : by_one_parent(request, settings, best_cost);
+    if (!kit::heading_may_help(settings, best_cost, found)) {
+      return found;
+    }
+    const Request rest = kit::after(request, found.result.counters);
+    return kit::after_one_parent(by_heading(rest, settings, best_cost), found);
   }
 
   SearchResult by_heading(const Request& request, const SearchSettings& settings,
@@ -130,6 +120,29 @@ class AStar final : public Planner {
     return astar::Search(request, settings, lattice, best_cost, *memory).run();
   }
 
+  /// The result of `once(costs)`, a search with lengths as whole numbers that gives none if a path
+  /// is too long for them: it is then tried with coarser ones. Empty if these are too coarse.
+  template <class Search>
+  static auto with_step_costs(const Request& request, const SearchSettings& settings,
+                              const kit::Lattice& lattice, const Search& once)
+      -> decltype(once(std::declval<const kit::StepCosts&>())) {
+    const Box box = lattice.spec().box();
+    const auto scale = kit::StepCosts::between(settings.costs, lattice, request.start.position,
+                                               request.goal.position);
+    // few paths are longer than four times this, except in mazes
+    double longest_m = 4 * (box.max - box.min).sum();
+    while (true) {
+      const kit::StepCosts costs(lattice, scale, longest_m);
+      if (costs.error() > kGreatestError[scale == kit::StepCosts::Scale::ratio]) {
+        return std::nullopt;
+      }
+      if (auto found = once(costs)) {
+        return found;
+      }
+      longest_m = 4 * costs.longest_m();
+    }
+  }
+
   /// Empty if the costs would be too coarse, or the cells too many to number by tiles.
   std::optional<SearchResult> by_steps(const Request& request,
                                        const SearchSettings& settings) const {
@@ -139,20 +152,9 @@ class AStar final : public Planner {
       return std::nullopt;
     }
     const auto memory = step_memory_.take();
-    const Box box = lattice.spec().box();
-    const auto scale = kit::StepCosts::between(settings.costs, lattice, request.start.position,
-                                               request.goal.position);
-    double longest_m = 4 * (box.max - box.min).sum();
-    while (true) {
-      const kit::StepCosts costs(lattice, scale, longest_m);
-      if (costs.error() > kGreatestError[scale == kit::StepCosts::Scale::ratio]) {
-        return std::nullopt;
-      }
-      if (auto found = astar::StepSearch(request, settings, lattice, tiles, costs, *memory).run()) {
-        return found;
-      }
-      longest_m = 4 * costs.longest_m();
-    }
+    return with_step_costs(request, settings, lattice, [&](const kit::StepCosts& costs) {
+      return astar::StepSearch(request, settings, lattice, tiles, costs, *memory).run();
+    });
   }
 
   /// Empty if the costs would be too coarse.
@@ -165,24 +167,16 @@ class AStar final : public Planner {
       return SearchResult{*std::move(refused)};
     }
     const auto memory = cell_memory_.take();
-    const Box box = lattice.spec().box();
-    // few paths are longer than four times this, except in mazes
-    const auto scale = kit::StepCosts::between(settings.costs, lattice, request.start.position,
-                                               request.goal.position);
-    double longest_m = 4 * (box.max - box.min).sum();
-    while (true) {
-      const kit::StepCosts costs(lattice, scale, longest_m);
-      if (costs.error() > kGreatestError[scale == kit::StepCosts::Scale::ratio]) {
-        return std::nullopt;
-      }
-      if (auto result = astar::CellSearch(request, settings, lattice, costs, *memory).run()) {
-        const double cost = length(result->route);
-        const bool at_goal =
-            result->status == PlanStatus::solved && result->route.back() == request.goal.position;
-        return SearchResult{*std::move(result), cost, at_goal};
-      }
-      longest_m = 4 * costs.longest_m();
+    auto result = with_step_costs(request, settings, lattice, [&](const kit::StepCosts& costs) {
+      return astar::CellSearch(request, settings, lattice, costs, *memory).run();
+    });
+    if (!result) {
+      return std::nullopt;
     }
+    const double cost = length(result->route);
+    const bool at_goal =
+        result->status == PlanStatus::solved && result->route.back() == request.goal.position;
+    return SearchResult{*std::move(result), cost, at_goal};
   }
 
   Traits do_traits() const override { return params_.traits(); }
