@@ -5,7 +5,7 @@
 
 namespace altiplan::kit {
 
-/// leg_free for a vehicle with a body.
+/// One step of legs_free for a vehicle with a body.
 bool MoveRules::body_free(const std::optional<Approach>& before, const Cell& c, int d,
                           const Vec3& a, const Vec3& b) {
   const DirectionMask step = DirectionMask{1} << d;

@@ -18,8 +18,8 @@ namespace altiplan::kit {
 /// the earliest last step.
 ///
 /// For all steps of a box's neighbourhood that is D. Harabor, A. Grastien, Online Graph Pruning for
-/// Pathfinding on Grid Maps, AAAI 2011, doi:10.1609/aaai.v25i1.7994, in 3-D; a limit on climbs
-/// leaves fewer steps, and so fewer ways around.
+/// Pathfinding on Grid Maps, AAAI 2011, doi:10.1609/aaai.v25i1.7994, in 3-D (kNatural, without a
+/// table to make); a limit on climbs leaves fewer steps, and so fewer ways around.
 class NaturalSteps {
  public:
   NaturalSteps(DirectionMask steps, const StepCosts& costs) {
