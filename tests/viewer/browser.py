@@ -1,14 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chromium without a screen, the processor in place of a graphics card, and only our page."""
+"""Chromium without a screen, the processor in place of a graphics card, and only our page. Where it
+is not installed, a program that imports this is skipped."""
 import atexit
 import functools
 import json
 import os
 import shutil
+import sys
 import tempfile
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
+SKIPPED = 77
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    MISSING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
+except ImportError as error:
+    MISSING = [str(error)]
+if MISSING:
+    print(f"skipped: needs Debian's chromium, chromium-driver and python3-selenium: {MISSING}")
+    sys.exit(SKIPPED)
 
 QUIET = ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync",

@@ -5,10 +5,10 @@ import os
 import re
 import unittest
 
-from selenium.webdriver import ActionChains
-
-import browser
+import browser  # first: without Chromium it skips the program
 import scenes
+
+from selenium.webdriver import ActionChains
 
 VIEWER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "viewer")
 with open(os.path.join(VIEWER, "dist", "viewer.html"), encoding="utf-8") as file:
