@@ -156,6 +156,8 @@ std::vector<fs::path> files_of_workers(const fs::path& folder) {
 
 WorkFolder::WorkFolder(const fs::path& folder)
     : path_(fs::absolute(folder).lexically_normal()), owner_(::getpid()) {
+  // An interruption between creating the folder and `unfinished_` would leave it behind.
+  const auto lock = host::uninterrupted();
   do {
     std::error_code error;
     fs::create_directories(path_, error);
