@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """check_test.py PROGRAM BROKEN: `altiplan check`, and what `run` prints of a flight."""
 import json
+import os
+import shutil
 
 import case
 from case import CliCase, PIPELINE, SCENARIO
@@ -56,6 +58,31 @@ class Check(CliCase):
         self.assertIn("scenario.yaml has changed since the result was written", err)
         for text in ("{}", "[1", "[]", '{"altiplan": 2}'):
             self.call("check", self.write("wrong.json", text), code=3)
+
+    def test_a_copied_folder_is_judged_by_its_own_files(self):
+        os.mkdir(self.path("first"))
+        for name in ("scenario.yaml", "pipeline.yaml"):
+            shutil.copy(self.path(name), self.path("first"))
+        self.call("run", "first/pipeline.yaml", "-o", "first/result.json")
+        self.call("check", "first/result.json")
+        shutil.copytree(self.path("first"), self.path("second"))
+        higher = SCENARIO.replace("KNOWN", "true").replace("[310, 700, 1000]", "[310, 1000, 1000]")
+        self.write("second/scenario.yaml", higher.replace("[300, 300, 0]", "[300, 0, 0]"))
+        _, err = self.call("check", "first/result.json")
+        self.assertEqual(err, "")
+        out, err = self.call("check", "second/result.json", code=1)
+        self.assertTrue(out.startswith("not valid"), out)
+        self.assertEqual(err, f"altiplan: warning: {self.path('second/scenario.yaml')} has changed "
+                              "since the result was written\n")
+        shutil.rmtree(self.path("second"))
+        os.rename(self.path("first"), self.path("third"))
+        out, err = self.call("check", "third/result.json")
+        self.assertEqual((out[:5], err), ("valid", ""))
+        os.mkdir(self.path("alone"))
+        shutil.move(self.path("third/result.json"), self.path("alone"))
+        self.call("check", "alone/result.json", code=3)
+        os.rename(self.path("third"), self.path("first"))
+        self.call("check", "alone/result.json")
 
     def test_check_a_flight_against_the_true_world(self):
         self.write("scenario.yaml", SCENARIO.replace("KNOWN", "false"))

@@ -72,7 +72,7 @@ host::Config with_flight(host::Config config) {
 host::Json with_flight_of(const host::RunResult& result, const host::Config& config,
                           host::Json stored) {
   const host::Json flown = host::result_json(config, result);
-  for (const char* key : {"status", "reason", "message", "flight"}) {
+  for (const char* key : {"folder", "status", "reason", "message", "flight"}) {
     stored[key] = flown.at(key);
   }
   host::Json& steps = stored["steps"];
@@ -87,11 +87,13 @@ host::Json with_flight_of(const host::RunResult& result, const host::Config& con
 }
 
 host::RunResult flown(const host::Config& config, const std::vector<Vec3>& places,
-                      host::FlownVehicle& vehicle, const std::stop_token& stop) {
+                      host::FlownVehicle& vehicle, const std::string& file,
+                      const std::stop_token& stop) {
   constexpr double kNoLimit = 1e8;  // s: a flight takes what it takes
   host::RunOptions options;
   options.timeout_s = kNoLimit;
   options.stop = stop;
+  options.out = file;
   options.real.emplace(host::RealFlight{Route(places), vehicle});
   host::ProcessGuard process;
   options.process = &process;
@@ -118,7 +120,7 @@ int fly(const Arguments& arguments, const LoadedRoute& loaded, const host::Expor
   flight.say = [](const std::string& message) { std::cerr << "altiplan: " + message + "\n"; };
   link::LinkedVehicle vehicle(connection.link, connection.vehicle, loaded.mission.known, flight,
                               connection.stop);
-  host::RunResult result = flown(config, places, vehicle, connection.stop);
+  host::RunResult result = flown(config, places, vehicle, arguments.file(), connection.stop);
   if (result.flight) {
     result.flight->link = arguments.link.address;
     print_flight(stdout, *result.flight, false);

@@ -34,6 +34,7 @@ host::ProcessGuard::CrashReport crash_report(const CrashOutput& crash, const hos
 host::RunResult guarded_run(const host::Config& config, host::RunOptions options,
                             const CrashOutput& crash, Interrupt& interrupt,
                             const HandOut& hand_out) {
+  options.out = crash.file;
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;

@@ -11,7 +11,7 @@
 
 namespace altiplan::cli {
 
-/// Where the result of a run goes if a plugin ends the process, besides the message on stderr.
+/// Where the result of a run goes, also if a plugin ends the process.
 struct CrashOutput {
   std::optional<std::string> file;
   bool on_stdout = false;

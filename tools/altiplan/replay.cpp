@@ -88,6 +88,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
   Interrupt interrupt;
   host::RunOptions options;
   options.timeout_s = budget.wall_s;
+  options.out = arguments.out;
   options.trace = arguments.trace;
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);

@@ -22,7 +22,7 @@ std::string below(const std::string& path, const std::string& key) {
 }
 
 bool varies(const std::string& path, const std::string& key) {
-  return key.ends_with("time_s") || (path.empty() && key == "trace");
+  return key.ends_with("time_s") || (path.empty() && (key == "trace" || key == "folder"));
 }
 
 std::optional<Difference> differ_at(const std::string& path, const Json& first, const Json& second);

@@ -16,8 +16,8 @@ struct Difference {
 };
 
 /// The first difference in the order of the first result; numbers are compared exactly. Ignores
-/// what may differ between two runs of one seed: keys that end in time_s, and `trace`, the name of
-/// a file given by the call.
+/// what may differ between two runs of one seed: keys that end in time_s, and `trace` and
+/// `folder`, which the call gives.
 std::optional<Difference> first_difference(const Json& first, const Json& second);
 
 /// The same for the texts of two result.json; texts that are not JSON are compared verbatim.

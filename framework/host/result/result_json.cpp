@@ -234,6 +234,9 @@ Json result_json(const Config& config, const RunResult& result) {
   Json json;
   json["altiplan"] = kFileFormat;
   json["version"] = ALTIPLAN_VERSION;
+  if (result.folder) {
+    json["folder"] = *result.folder;
+  }
   json["pipeline"] = config.pipeline_path.string();
   json["scenario"] = config.scenario_path.string();
   json["files"] = Json::array();

@@ -12,6 +12,7 @@
 #include "host/result/stored_shape.hpp"
 
 namespace altiplan::host {
+namespace fs = std::filesystem;
 namespace {
 
 bool is_point(const Json& json, std::size_t numbers) {
@@ -146,18 +147,47 @@ Route route_of(const Json& holder, const std::string& file) {
   return legs;
 }
 
+namespace {
+/// The file that the result was made from, where both were copied or moved together.
+void take_along(Json& path, const fs::path& from, const fs::path& to) {
+  const fs::path way = fs::path(path.get<std::string>()).lexically_relative(from);
+  const fs::path moved = (to / way).lexically_normal();
+  if (!way.empty() && is_there(moved)) {
+    path = moved.string();
+  }
+}
+
+/// The same for all files of a result.
+void take_files_along(Json& json, const std::string& file) {
+  if (!json.contains("folder")) {
+    return;
+  }
+  const fs::path to = fs::absolute(file).lexically_normal().parent_path();
+  const fs::path from = json.at("folder").get<std::string>();  // where it was written
+  if (to == from) {
+    return;
+  }
+  take_along(json.at("pipeline"), from, to);
+  take_along(json.at("scenario"), from, to);
+  for (Json& used : json.at("files")) {
+    take_along(used.at("path"), from, to);
+  }
+}
+}  // namespace
+
 StoredResult read_result(const std::string& file, const Overrides& overrides) {
   return stored_result(file, read_json(file, "a result of altiplan run"), overrides);
 }
 
 StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides) {
   StoredResult stored{file, std::move(content), {}, {}, {}, {}, false, {}};
-  const Json& json = stored.json;
+  Json& json = stored.json;
   try {
     if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {
       throw Error(file + ": expected a result of format 1");
     }
     expect_shape(json, file);
+    take_files_along(json, file);
     stored.overrides = stored_overrides(json, overrides);
     stored.pipeline = json.at("pipeline").get<std::string>();
     for (const Json& used : json.at("files")) {

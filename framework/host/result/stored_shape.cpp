@@ -32,7 +32,7 @@ constexpr Key kResult[] = {
     {"overrides", kObject},      {"seed", kSeed},          {"status", kStatus},
     {"message", kText},          {"steps", kList},         {"route", kList | kNull},
     {"legs", kList | kNull},     {"metrics", kObject},     {"check", kObject | kNull},
-    {"flight", kObject | kNull}, {"trace", kText | kNull},
+    {"flight", kObject | kNull}, {"trace", kText | kNull}, {"folder", kText},
 };
 constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};
 constexpr Key kStep[] = {

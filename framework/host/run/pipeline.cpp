@@ -18,6 +18,9 @@ Run::Run(const Config& config, const RunOptions& options)
       watchdog_([this](const std::string& why) { give_up(why); },
                 [&options] { return options.process ? options.process->kept_mb() : 0; }),
       interrupt_(options.stop, [this] { watchdog_.stop_now(); }) {
+  if (options.out) {
+    result_.folder = std::filesystem::absolute(*options.out).lexically_normal().parent_path();
+  }
   if (options.trace) {
     trace_ = std::make_unique<TraceFile>(*options.trace, options.trace_limit_mb * 1'000'000);
     result_.trace = options.trace->string();

@@ -31,6 +31,7 @@ struct RunProgress {
 
 struct RunOptions {
   int threads = 1;
+  std::optional<std::filesystem::path> out;  ///< the file that the result is written to
   std::optional<std::filesystem::path> trace;
   std::uintmax_t trace_limit_mb = kDefaultTraceMb;
   /// Called from the watchdog's thread with the result so far if a step never stops; must not

@@ -44,6 +44,7 @@ struct RunResult {
   double setup_time_s = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;
+  std::optional<std::string> folder;  ///< absolute, of the file that the result is written to
   std::optional<std::string> trace;
   std::string trace_error;  ///< why the trace could not be written
 
