@@ -123,6 +123,13 @@ class Study(StudyCase):
         self.assertEqual(len(self.rows()), 4)
         self.assertIn("selected 20, stored 4, to do 16", self.call("--dry-run"))
 
+    def test_a_dry_run_of_very_many_runs_checks_some(self):
+        self.study(radii="1..700")
+        said = self.call("--dry-run", store=None)
+        self.assertIn("2 pipelines x 700 scenarios x 2 repetitions = 2800 runs\n  selected 2800", said)
+        self.assertRegex(said, r"\n  not checked: the files of \d{3} runs\n")
+        self.assertRegex(said, r"per run, from \d trial runs?\)")
+
     def test_claims_that_so_few_runs_cannot_decide(self):
         self.study("claims: [{id: long, that: mean(straight.length_m), is: '>= 5'}]\n")
         said = self.call("--dry-run")

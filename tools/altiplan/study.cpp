@@ -8,6 +8,8 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "host/base/machine_fault.hpp"
+#include "host/base/words.hpp"
 #include "progress.hpp"
 #include "study/claims/claims.hpp"
 #include "study/model/study_data.hpp"
@@ -20,6 +22,8 @@
 
 namespace altiplan::cli {
 namespace {
+
+constexpr std::size_t kDryPairs = 1000;  // checked by a dry run, which should not take long
 
 struct Arguments {
   std::string study;
@@ -122,19 +126,23 @@ bool print_claims(const study::StudyData& data) {
 }
 
 int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
-  const study::StudyEstimate estimate = study::estimate_study(plan, arguments.options);
+  const study::StudyEstimate estimate =
+      busy("trying runs", [&] { return study::estimate_study(plan, arguments.options); });
   std::printf("%zu pipeline%s x %zu scenario%s x %d repetition%s = %zu runs\n",
               plan.pipelines.size(), plan.pipelines.size() == 1 ? "" : "s", plan.scenarios.size(),
               plan.scenarios.size() == 1 ? "" : "s", plan.file.repetitions,
               plan.file.repetitions == 1 ? "" : "s", plan.planned);
   std::printf("  selected %zu, stored %zu, to do %zu\n", plan.runs.size(), estimate.stored,
               estimate.left);
+  if (plan.unchecked > 0) {
+    std::printf("  not checked: the files of %zu runs\n", plan.unchecked);
+  }
   if (estimate.left > 0) {
+    const std::string from =
+        host::counted(estimate.measured, estimate.is_probed ? "trial run" : "stored run");
     std::printf("  about %s with --jobs %d (%s per run, from %s)\n",
                 duration(estimate.total_s).c_str(), arguments.options.jobs,
-                duration(estimate.run_s).c_str(),
-                estimate.is_probed ? "a trial run of each pipeline"
-                                   : (std::to_string(estimate.measured) + " stored runs").c_str());
+                duration(estimate.run_s).c_str(), from.c_str());
   }
   for (const std::string& sentence : study::undecidable_claims(plan, arguments.selection)) {
     std::printf("  %s\n", sentence.c_str());
@@ -149,6 +157,9 @@ int study(Arguments arguments) {
   } else {
     arguments.options.store = arguments.store;
     expect_store_writable(arguments.store, "--out");
+  }
+  if (arguments.dry_run && (arguments.options.fresh || !host::is_there(arguments.options.store))) {
+    arguments.selection.most_checked = kDryPairs;  // keys of runs matter to a store alone
   }
   const study::StudyPlan plan = busy("reading the study", [&] {
     return study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);

@@ -81,7 +81,12 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
   plan.runs = selected_runs(plan, selection);
   std::map<std::pair<std::size_t, std::size_t>, std::string> pairs;
   for (PlannedRun& run : plan.runs) {
-    std::string& text = pairs[{run.scenario, run.pipeline}];
+    const std::pair pair(run.scenario, run.pipeline);
+    if (pairs.size() >= selection.most_checked && !pairs.contains(pair)) {
+      ++plan.unchecked;
+      continue;
+    }
+    std::string& text = pairs[pair];
     if (text.empty()) {
       try {
         const host::Config config = host::load_config(

@@ -41,6 +41,7 @@ struct StudyPlan {
   std::vector<Variant> pipelines;
   std::vector<PlannedRun> runs;              ///< those selected, in execution order: shuffled
   std::size_t planned = 0;                   ///< number of all runs of the study
+  std::size_t unchecked = 0;                 ///< of the runs: those without a key
   std::shared_ptr<host::Registry> registry;  ///< of the last run planned
   std::vector<std::shared_ptr<host::Registry>>
       registries;  ///< all of them: files may name plugin folders
@@ -56,6 +57,8 @@ struct StudySelection {
   int shards = 1;
   std::set<std::string> pipelines = {};  ///< names of variants; empty: all
   std::string scenarios = {};            ///< Variant::of; "": all
+  /// Most pairs of scenario and pipeline that are checked; the runs of others get no key.
+  std::size_t most_checked = std::size_t(-1);
 };
 
 /// Reads and checks the study, and every pair of pipeline and scenario in it; throws ConfigError

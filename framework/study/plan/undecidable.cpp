@@ -49,8 +49,12 @@ std::string named_pipelines(const StudyPlan& plan, const ClaimQuantity& quantity
 }  // namespace
 
 std::vector<std::string> undecidable_claims(const StudyPlan& plan, StudySelection selection) {
-  selection.shard = selection.shards = 1;  // all of them decide together
-  const Pairs pairs = pairs_of(selected_runs(plan, selection));
+  if (plan.file.claims.empty()) {
+    return {};
+  }
+  const bool is_part = selection.shards > 1;  // all of them decide together
+  selection.shard = selection.shards = 1;
+  const Pairs pairs = pairs_of(is_part ? selected_runs(plan, selection) : plan.runs);
   std::vector<std::string> names;
   for (const Variant& pipeline : plan.pipelines) {
     names.push_back(pipeline.name);

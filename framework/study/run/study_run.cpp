@@ -19,6 +19,8 @@ namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::size_t kMostProbes = 50;  // of pipelines: a dry run should not take long
+
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
@@ -299,7 +301,9 @@ StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options)
   if (keys.empty() && !left.empty()) {
     std::map<std::size_t, std::size_t> first;  // of each pipeline
     for (const std::size_t i : left) {
-      first.emplace(plan.runs[i].pipeline, i);
+      if (!plan.runs[i].key.empty() && first.size() < kMostProbes) {
+        first.emplace(plan.runs[i].pipeline, i);
+      }
     }
     std::vector<std::size_t> probes;
     for (const auto& [pipeline, run] : first) {

@@ -42,7 +42,7 @@ struct StudyEnd {
 StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options);
 
 /// The remaining runs and their estimated time, from the stored runs, or else from one run of each
-/// pipeline made now and not stored.
+/// pipeline (of 50, if there are more) made now and not stored.
 struct StudyEstimate {
   std::size_t stored = 0;
   std::size_t left = 0;
