@@ -162,8 +162,9 @@ TEST(AStar, CellsBeyondTheMemoryOfABudgetAreAResult) {
   Drawn drawn = draw({"S...", "....", "...G"});
   drawn.request.budget.max_memory_bytes = 20;
   // Memory is taken before the search where cells decide alone, else as cells are reached.
-  for (const auto& [moves, message] : {std::pair("{moves: cells}", "the budget is 0 MiB"),
-                                       {"{moves: exact}", "the memory allowed was used up"}}) {
+  for (const auto& [moves, message] :
+       {std::pair("{moves: cells}", "the budget is 0 MiB"),
+        {"{moves: exact}", "the memory allowed was used up (max_memory_mb, within_mb)"}}) {
     const PlanResult result = make_planner("astar", moves)->plan(drawn.request);
     EXPECT_EQ(result.status, PlanStatus::timed_out);
     EXPECT_TRUE(result.budget_hit);

@@ -72,7 +72,9 @@ struct SearchParams {
     f("max_memory_mb", max_memory_mb)
         .unit("MB")
         .at_least(1)
-        .doc("memory limit of the lattice; a larger one is refused before allocation");
+        .doc(
+            "memory limit: a search ends where it has used it; where memory for the whole lattice "
+            "is taken beforehand, one that needs more is refused");
   }
 
   void describe_costs(Fields& f) {
