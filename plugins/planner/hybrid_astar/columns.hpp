@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,28 @@ class Columns {
     return (low + high) / 2;
   }
 
+  /// After a search that has found no columns from the start to the goal: which of the two is shut
+  /// in, the one with fewer columns around it, and by what.
+  std::string shut_in() {
+    const std::vector<int> starts = around(start_);
+    const std::vector<int> goals = around(index(goals_.front().position));
+    const bool is_start = open_of(starts) < open_of(goals);
+    kit::LegRules refused(request_);
+    for (const int column : is_start ? starts : goals) {
+      if (!is_open(column)) {
+        const Vec3 p = centre(column);
+        const auto [low, high] = heights(p.x(), p.y());
+        const Vec3 middle(p.x(), p.y(), (low + high) / 2);
+        refused.ok(std::nullopt, middle, middle);
+      }
+    }
+    const std::string by = refused.refusals();
+    return std::string("the ") + (is_start ? "start" : "goal") + " is shut in on " +
+           std::to_string(open_of(is_start ? starts : goals)) + " of " +
+           std::to_string(columns_.size()) + " columns of cells" +
+           (by.empty() ? "" : ", around which are refused " + by);
+  }
+
  private:
   static constexpr double kMaxColumns = 512;  ///< along an axis
   static constexpr int kHeights = 9;          ///< tried in a column
@@ -121,20 +144,14 @@ class Columns {
       column.distance = kInfinity;
       return;
     }
-    for (int k = 0; k < 9; ++k) {
-      const int x = at % nx_ + k % 3 - 1;
-      const int y = at / nx_ + k / 3 - 1;
-      if (k == 4 || x < 0 || x >= nx_ || y < 0 || y >= ny_) {
-        continue;
-      }
-      const int next = y * nx_ + x;
+    for_neighbours(at, [&](int next, int k) {
       const double distance = column.distance + steps_[std::size_t(k)];
       Column& other = columns_[std::size_t(next)];
       if (distance < other.distance && !other.is_closed) {
         other.distance = distance;
         queue_.push({distance + to_start(next), next});
       }
-    }
+    });
   }
 
   /// Lower bound on the length from the starts; 0 where no bound is consistent: the fastest of
@@ -170,6 +187,40 @@ class Columns {
     return fastest > 0 ? run / fastest * request_.air_speed() : kInfinity;
   }
 
+  /// The columns that lead to this one, and those beside them that are closed to the vehicle.
+  std::vector<int> around(int column) {
+    std::vector<int> found{column};
+    std::vector<bool> is_found(columns_.size());
+    is_found[std::size_t(column)] = true;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!is_open(found[i])) {
+        continue;
+      }
+      for_neighbours(found[i], [&](int next, int) {
+        if (!is_found[std::size_t(next)]) {
+          is_found[std::size_t(next)] = true;
+          found.push_back(next);
+        }
+      });
+    }
+    return found;
+  }
+  std::size_t open_of(const std::vector<int>& some) {
+    return std::size_t(
+        std::count_if(some.begin(), some.end(), [&](int column) { return is_open(column); }));
+  }
+
+  template <class Visit>
+  void for_neighbours(int column, const Visit& visit) const {
+    for (int k = 0; k < 9; ++k) {
+      const int x = column % nx_ + k % 3 - 1;
+      const int y = column / nx_ + k / 3 - 1;
+      if (k != 4 && x >= 0 && x < nx_ && y >= 0 && y < ny_) {
+        visit(y * nx_ + x, k);
+      }
+    }
+  }
+
   int index(const Vec3& p) const {
     const int x = std::clamp(int((p.x() - min_.x()) / cell_), 0, nx_ - 1);
     const int y = std::clamp(int((p.y() - min_.y()) / cell_), 0, ny_ - 1);
@@ -201,14 +252,17 @@ class Columns {
     return {low, high};
   }
 
+  /// At no height.
+  Vec3 centre(int column) const {
+    return min_ + Vec3(column % nx_ + 0.5, column / nx_ + 0.5, 0) * cell_;
+  }
+
   bool is_flyable(int column) const {
-    const int row = column / nx_;
-    const double x = min_.x() + (column % nx_ + 0.5) * cell_;
-    const double y = min_.y() + (row + 0.5) * cell_;
-    const auto [low, high] = heights(x, y);
+    const Vec3 at = centre(column);
+    const auto [low, high] = heights(at.x(), at.y());
     for (int k = 0; k < kHeights && low <= high; ++k) {
       const double z = low + (high - low) * k / (kHeights - 1);
-      if (rules_.point_ok({x, y, z})) {
+      if (rules_.point_ok({at.x(), at.y(), z})) {
         return true;
       }
     }

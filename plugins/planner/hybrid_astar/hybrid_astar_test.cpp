@@ -49,6 +49,31 @@ TEST(HybridAstar, SaysSoonThatAGoalsHeadingCannotBeMet) {
   EXPECT_LT(testing::counter(result, "expanded"), 10'000);
 }
 
+World ring_around(const Vec3& p) {
+  std::vector<Shape> towers;
+  for (int n = 0; n < 30; ++n) {
+    const Vec3 at = p + 300 * unit_heading(2 * kPi * n / 30);
+    towers.push_back(Cylinder{at.x(), at.y(), 60, 0, 600});
+  }
+  return testing::world_of(towers);
+}
+
+TEST(HybridAstar, NamesWhatShutsAnEndIn) {
+  for (const bool is_start : {true, false}) {
+    const Pose inside{{1200, 0, 100}, 0};
+    const Pose outside{{-1500, 0, 100}, 0};
+    Request request = is_start ? between(inside, outside, ring_around(inside.position))
+                               : between(outside, inside, ring_around(inside.position));
+    const PlanResult result = make_planner("hybrid_astar")->plan(request);
+    EXPECT_EQ(result.status, PlanStatus::no_route);
+    const std::string who = is_start ? "the start" : "the goal";
+    EXPECT_NE(result.message.find("no route: " + who + " is shut in on "), std::string::npos)
+        << result.message;
+    EXPECT_NE(result.message.find("around which are refused 'shapes' ("), std::string::npos)
+        << result.message;
+  }
+}
+
 TEST(HybridAstar, EqualRequestsGiveEqualRoutes) {
   RandomStream random(9);
   Request request =

@@ -34,6 +34,7 @@ class Search {
         starts_(request.start_poses(request.start.loiter ? kLoiterPoses : settings.headings)),
         goals_(request.goal_poses(request.goal.loiter ? kLoiterPoses : settings.headings)),
         columns_(request, settings.cell_m, starts_, goals_),
+        rules_(request),
         watch_(request.budget),
         length_(std::max(std::numbers::sqrt2 * settings.cell_m,
                          2 * kPi / settings.headings * settings.radius)) {
@@ -181,7 +182,7 @@ class Search {
       return;
     }
     ++checked_;
-    if (leg_ok(before, leg, request_)) {
+    if (rules_.ok(before, leg)) {
       add(next);
     } else {
       ++refused_;
@@ -242,7 +243,7 @@ class Search {
     std::optional<Approach> before = approach(at);
     for (const Leg& leg : legs) {
       ++checked_;
-      if (!leg_ok(before, leg, request_)) {
+      if (!rules_.ok(before, leg)) {
         ++refused_;
         return false;
       }
@@ -315,13 +316,18 @@ class Search {
     return counted(std::move(result));
   }
 
-  std::string reason(bool by_memory) const {
+  std::string reason(bool by_memory) {
     const auto metres = [](double value) {
       return std::isfinite(value) ? std::to_string(std::int64_t(value)) + " m" : "any distance";
     };
+    if (nodes_.empty() && !ended_) {
+      return "no route: " + columns_.shut_in();
+    }
+    const std::string refusals = rules_.refusals();
     return std::to_string(expanded_) + " poses expanded, the nearest " + metres(nearest_) +
            " from the goal; " + std::to_string(refused_) + " of " + std::to_string(checked_) +
            " legs refused, with turns of " + metres(settings_.radius) +
+           (refusals.empty() ? "" : ", of the last by " + refusals) +
            (is_hopeless()
                 ? "; poses from which the goal can be reached: " + std::to_string(approach_count_) +
                       ": check its heading, the volume and obstacles"
@@ -336,6 +342,7 @@ class Search {
   std::vector<Pose> goals_;
   std::vector<std::pair<double, std::size_t>> shots_;  ///< lengths, of indices of goals_
   Columns columns_;
+  kit::LegRules rules_;
   BudgetWatch watch_;
   double length_;  ///< of a piece, through the air: it leaves its cell, or its heading
   std::vector<double> gradients_{0};  ///< of pieces
