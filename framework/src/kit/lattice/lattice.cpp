@@ -2,6 +2,7 @@
 #include "altiplan/kit/lattice/lattice.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include "altiplan/error.hpp"
@@ -28,10 +29,28 @@ Box room(const Request& request) {
 void expect_fitting(const Vec3& cell, const Box& box) {
   const Vec3 size = box.max - box.min;
   if (size.head<2>().maxCoeff() > 0 && cell.x() > size.x() && cell.y() > size.y()) {
-    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
+    const auto whole = [](double value) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.9g", value);
+      return std::string(text);
+    };
     throw ParameterError("cell_m", "a cell of " + whole(cell.x()) + " x " + whole(cell.y()) +
                                        " m is larger than the volume of " + whole(size.x()) +
                                        " x " + whole(size.y()) + " m");
+  }
+}
+
+/// Steps far beyond the volume would be of no use, and lengths lose all digits.
+void expect_useful(const Vec3& cell, const Box& box) {
+  const double most = 1e6 * std::max(1.0, (box.max - box.min).maxCoeff());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cell[axis] > most) {
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "a cell of %.6g m on axis %c is over a million times larger than the volume",
+                    cell[axis], "xyz"[axis]);
+      throw ParameterError("cell_m", text);
+    }
   }
 }
 
@@ -81,6 +100,9 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   }
   if (!native && !level_m_) {
     expect_fitting(spec_.cell, box);
+  }
+  if (!native) {
+    expect_useful(spec_.cell, box);
   }
   expect_few(counts, memory);
   for (std::size_t axis = 0; axis < 3; ++axis) {
