@@ -197,7 +197,9 @@ void Fields::finish() {
   }
   if (problems_.empty()) {
     for (const std::string& rule : broken_rules_) {
-      problem(*source_, path_, rule);
+      const std::string first = rule.substr(0, rule.find(' '));  // often the key at fault
+      const Value* value = source_->find(first);
+      problem(value == nullptr ? *source_ : *value, value == nullptr ? path_ : key_of(first), rule);
     }
   }
 }

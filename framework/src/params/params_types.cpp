@@ -121,11 +121,12 @@ void Fields::read(const Value& value, bool& t, const std::string& key, std::size
 void Fields::read(const Value& value, int& t, const std::string& key, std::size_t field) {
   std::int64_t wide = t;
   read(value, wide, key, field);
-  if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
-    problem(value, key, "the integer is too large");
-    return;
+  if (wide >= std::numeric_limits<int>::min() && wide <= std::numeric_limits<int>::max()) {
+    t = static_cast<int>(wide);
+  } else if (!std::isfinite(bound_[field].spec.max)) {  // in a list; else its bounds refuse it
+    numbers_.pop_back();
+    problem(value, key, "the integer is too large, found " + value.what());
   }
-  t = static_cast<int>(wide);
 }
 
 void Fields::read(const Value& value, std::int64_t& t, const std::string& key, std::size_t field) {
