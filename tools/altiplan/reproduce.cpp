@@ -218,19 +218,24 @@ void add_reproduce(App& app, Action& action, const std::string& command_line) {
       ->add_option("papers", arguments->papers,
                    "papers: number (002), name (fusion_astar), paper file, or all")
       ->type_name("PAPER");
-  command->add_flag("--list", arguments->list, "only list the papers, and their rows with times");
+  auto* list_only = command->add_flag("--list", arguments->list,
+                                      "only list the papers, and their rows with times");
   command->add_option("--row", arguments->rows, "only this row; repeatable")
       ->type_name("ID")
       ->one_at_a_time()
-      ->take_all();
-  command->add_flag("--quick", arguments->options.quick,
-                    "run a sample of the scenarios and seeds: the documentation's figures must lie "
-                    "in its 99.9 % intervals");
+      ->take_all()
+      ->excludes(list_only);
+  command
+      ->add_flag("--quick", arguments->options.quick,
+                 "run a sample of the scenarios and seeds: the documentation's figures must lie in "
+                 "its 99.9 % intervals")
+      ->excludes(list_only);
   command
       ->add_option("-o,--out", arguments->out,
                    "keep the results in this folder, a database for each study; the next call uses "
                    "them")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->excludes(list_only);
   command
       ->add_option("--jobs", arguments->options.study.jobs,
                    "number of parallel runs (default: the number of processors)")

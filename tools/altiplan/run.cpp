@@ -168,13 +168,15 @@ void add_run(App& app, Action& action) {
       ->add_option("--threads", arguments->threads,
                    "maximum number of threads per plugin (default 1)")
       ->check(Check::between(1, 1024));
-  command->add_option("--trace", arguments->trace, "write a search trace to this file")
-      ->type_name("FILE");
+  auto* trace =
+      command->add_option("--trace", arguments->trace, "write a search trace to this file")
+          ->type_name("FILE");
   command
       ->add_option("--trace-limit", arguments->trace_limit_mb,
                    "most that the trace may take (MB, default 64)")
       ->type_name("MB")
-      ->check(Check::between(1, 1'000'000));
+      ->check(Check::between(1, 1'000'000))
+      ->needs(trace);
   command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
       ->type_name("FILE");
   command
