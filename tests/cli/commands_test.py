@@ -60,7 +60,9 @@ class Cli(CliCase):
             self.assertTrue(err)
         self.call("describe", "nobody", code=3)
         with open("/dev/full", "w") as full:
-            self.call("plugins", code=5, stdout=full)
+            for command in (("plugins",), ("describe", "astar"), ("--help",), ("run", self.pipeline)):
+                _, err = self.call(*command, code=3, stdout=full)
+                self.assertEqual(err, "altiplan: cannot write to stdout\n")
 
     def test_a_reader_that_goes_away_ends_every_command_quietly(self):
         self.call("run", self.pipeline, "--out", "read.json")

@@ -66,7 +66,7 @@ int guarded(const char* program, const std::function<int()>& action) {
       std::raise(SIGPIPE);
     }
     std::cerr << program << ": cannot write to stdout\n";
-    return code == kDone ? kInternal : code;
+    return code == kDone ? kBadFile : code;
   }
   return code;
 }
