@@ -42,6 +42,36 @@ class Info(unittest.TestCase):
                      "- terrain: {file: ", "volume: {min_m: [0, 0, 236]", "cell_m: [200, 200, 30]"):
             self.assertIn(said, out)
 
+    def model(self, west, south=-18, cell=0.1):
+        rows = "\n".join(" ".join(str(100 + row * column % 7) for column in range(31))
+                         for row in range(31))
+        return self.write("model.asc", f"ncols 31\nnrows 31\nxllcorner {west}\nyllcorner {south}\n"
+                          f"cellsize {cell}\n{rows}\n")
+
+    def go(self, *arguments):
+        run = subprocess.run([PROGRAM, "go", "--terrain", "model.asc", "-o", "out", *arguments],
+                             cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        return run.stderr
+
+    def test_a_model_across_the_antimeridian(self):
+        self.assertIn("longitude 178.5000 to 181.5000,", self.info(self.model(178.45)))
+        said = self.go("--from", "12,-16", "--to", "179,-16")
+        self.assertIn("covers longitude 178.5 to 181.5 and latitude -17.95 to -14.95", said)
+        self.model(270)
+        said = self.go("--from", "-88,-16", "--to", "271.5,-16")
+        self.assertIn("--to: expected a longitude from -180 to 180, found 271.5: give -88.5", said)
+
+    def test_a_coordinate_system_is_asked_for_only_where_it_is_the_cause(self):
+        said = self.info(self.model(500000, 5000000, 25), code=3)
+        self.assertIn("the file names no coordinate system: give --crs EPSG:CODE", said)
+        broken = self.write("model.asc", pathlib.Path(self.folder / self.model(8)).read_text()
+                            .replace("\n100 101", "\n100 x"))
+        said = self.info(broken, code=3)
+        self.assertNotIn("--crs", said)
+        said = self.info("--crs", "EPSG:32632", TERRAIN, code=3)
+        self.assertIn("has its own coordinate system (WGS 84), but crs is EPSG:32632", said)
+
     def test_json(self):
         found = json.loads(self.info("--json", TERRAIN, self.write("zones.txt", OPENAIR)))
         self.assertEqual([one["kind"] for one in found], ["elevation model", "published airspace"])

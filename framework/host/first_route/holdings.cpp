@@ -36,7 +36,11 @@ std::string words(const kit::AirspaceLimit& limit) {
 /// Longitudes and latitudes met so far.
 class Extent {
  public:
-  void add(double lon, double lat) { box_ = box_.with({lon, lat, 0}); }
+  void add(double lon, double lat) {
+    // 178.5 to 181.5 across the antimeridian
+    const double turns = box_.is_empty() ? 0 : std::round((box_.min.x() - lon) / 360);
+    box_ = box_.with({lon + 360 * turns, lat, 0});
+  }
   std::string text() const {
     const auto range = [](double low, double high) {
       return with_digits(low, 7) + " to " + with_digits(high, 7);

@@ -64,13 +64,13 @@ std::string pose_cells(const RouteWish& wish, const WishedHeights& heights,
 Search wing_search(const RouteWish& wish, const WishedHeights& heights, const SearchSpace& space) {
   const std::string poses = "with: " + pose_cells(wish, heights, space);
   const char* budget = "within_iterations: 60000";
-  if (wish.planner == "hybrid_astar" || (wish.planner.empty() && heights.max_m)) {
+  if (wish.planner == "hybrid_astar" || (!wish.planner && heights.max_m)) {
     return {"  - plan: hybrid_astar\n    " + poses + "\n    " + budget + "\n  - smooth: shortcut\n",
             "hybrid_astar " + poses.substr(6) + ", then shortcut"};
   }
-  if (!wish.planner.empty()) {
-    return {"  - plan: " + wish.planner + "\n  - smooth: shortcut\n",
-            wish.planner + ", then shortcut"};
+  if (wish.planner) {
+    return {"  - plan: " + *wish.planner + "\n  - smooth: shortcut\n",
+            *wish.planner + ", then shortcut"};
   }
   return {
       "  - plan: rrt_star\n    with: {max_iterations: " + std::to_string(20000 * space.fineness) +
@@ -95,7 +95,7 @@ Search choose_search(const RouteWish& wish, const WishedHeights& heights, const 
   if (wish.turn_radius_m) {
     return wing_search(wish, heights, space);
   }
-  const std::string planner = wish.planner.empty() ? "astar" : wish.planner;
+  const std::string planner = wish.planner.value_or("astar");
   const Cells cells = cells_of(heights, space);
   const bool has_cells = takes_cells(planner, registry);
   Search search{"  - plan: " + planner + "\n", planner};

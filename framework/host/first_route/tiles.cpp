@@ -2,6 +2,7 @@
 #include "host/first_route/tiles.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "altiplan/error.hpp"
@@ -75,6 +76,9 @@ Tile probe(Tile tile, Registry& registry) {
   return tile;
 }
 
+/// Whole turns that bring a longitude within 180 degrees of another.
+double turns_to(double there, double lon) { return std::round((there - lon) / 360); }
+
 std::string lonlat(double lon, double lat) {
   return with_digits(lon, 9) + "," + with_digits(lat, 9);
 }
@@ -105,7 +109,9 @@ Box Tile::degrees() const {
     for (const double v : {0.0, 0.5, 1.0}) {
       const Vec3 p = bounds.min + (bounds.max - bounds.min).cwiseProduct(Vec3(u, v, 0));
       const auto [lon, lat] = frame.to_lonlat(p.x(), p.y());
-      degrees = degrees.with({lon, lat, 0});
+      // 178.5 to 181.5 across the antimeridian
+      const double turns = degrees.is_empty() ? 0 : turns_to(degrees.min.x(), lon);
+      degrees = degrees.with({lon + 360 * turns, lat, 0});
     }
   }
   return degrees;
@@ -131,9 +137,14 @@ Tile read_tile(const fs::path& file, const std::string& crs, Registry& registry)
   tile.file = file;
   try {
     try {
-      return probe(tile, registry);
+      const Tile found = probe(tile, registry);
+      if (!crs.empty()) {  // refused unless it is the model's own
+        tile.crs = crs;
+        probe(tile, registry);
+      }
+      return found;
     } catch (const ParameterError& error) {
-      if (error.key() != "crs") {
+      if (error.key() != "crs" || !tile.crs.empty()) {
         throw;
       }
       tile.crs = crs.empty() ? kLonLat : crs;
@@ -143,9 +154,10 @@ Tile read_tile(const fs::path& file, const std::string& crs, Registry& registry)
     throw;
   } catch (const ConfigError& error) {
     throw Error(error.problems().front().message);
-  } catch (const Error& error) {
+  } catch (const ParameterError& error) {
+    const bool is_guessed = error.key() == "crs" && crs.empty();
     throw Error(error.what() +
-                std::string(tile.crs == kLonLat && crs.empty()
+                std::string(is_guessed
                                 ? ": the file names no coordinate system: give --crs EPSG:CODE"
                                 : ""));
   }
@@ -158,7 +170,7 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
     for (const fs::path& file : files_of(given)) {
       if (read.insert(fs::weakly_canonical(file)).second) {
         try {
-          tiles.push_back(read_tile(file, wish.crs, registry));
+          tiles.push_back(read_tile(file, wish.crs.value_or(""), registry));
         } catch (const PluginError&) {
           throw;
         } catch (const Error& error) {
@@ -172,6 +184,11 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
 
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   const auto& [option, lon, lat, height] = point;
+  const double usual = lon - 360 * std::round(lon / 360);
+  if (std::abs(lon) > 180 && is_held(tiles, lon, lat)) {
+    throw Error(option + ": expected a longitude from -180 to 180, found " + with_digits(lon, 9) +
+                ": give " + with_digits(usual, 9));
+  }
   if (is_held(tiles, lon, lat)) {
     return;
   }
@@ -192,7 +209,10 @@ void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   }
   Box degrees = Box::empty();
   for (const Tile& tile : tiles) {
-    degrees = degrees.united(tile.degrees());
+    const Box more = tile.degrees();
+    const double turns = degrees.is_empty() ? 0 : turns_to(degrees.min.x(), more.min.x());
+    const Vec3 east(360 * turns, 0, 0);
+    degrees = degrees.united({more.min + east, more.max + east});
   }
   const auto range = [](double low, double high) {
     return with_digits(low, 7) + " to " + with_digits(high, 7);

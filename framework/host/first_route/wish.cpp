@@ -13,9 +13,19 @@ namespace {
 constexpr double kAboveMin = 10;
 
 std::string metres(double value) { return with_digits(value, 6) + " m"; }
+
+void expect_words(const RouteWish& wish) {
+  if (wish.crs == "") {
+    throw Error("--crs: expected EPSG:CODE, found nothing");
+  }
+  if (wish.planner == "") {
+    throw Error("--planner: expected the name of a planner, found nothing");
+  }
+}
 }  // namespace
 
 WishedHeights heights_of(const RouteWish& wish) {
+  expect_words(wish);
   WishedHeights heights;
   heights.max_m = wish.max_above_ground_m;
   const double max = heights.max_m.value_or(1e9);

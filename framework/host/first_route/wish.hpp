@@ -19,13 +19,13 @@ struct WishedPoint {
 /// A route over an elevation model that is wished for without a scenario.
 struct RouteWish {
   std::vector<std::filesystem::path> terrain;  ///< models, or folders of them
-  std::string crs;                             ///< of models that name none
+  std::optional<std::string> crs;              ///< of models that name none
   std::vector<std::filesystem::path> avoid;    ///< files of zones
   std::vector<WishedPoint> points;             ///< start, via points, goal
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
   std::optional<double> turn_radius_m;  ///< of an aeroplane; none: a copter
-  std::string planner;                  ///< "": chosen
+  std::optional<std::string> planner;   ///< none: chosen
   std::optional<std::string> start_time;
 };
 

@@ -205,8 +205,10 @@ bool read_position(const Params& params, void* dataset, Dem& dem) {
   const double north = dem.south_west[1] + (dem.rows - 1) * dem.step[1];
   if (dem.geographic &&
       (dem.south_west[1] < -90 || north > 90 || (dem.columns - 1) * dem.step[0] > 360)) {
-    refuse(params, "expected latitudes within -90 and 90 degrees, found " +
-                       number(dem.south_west[1]) + " to " + number(north));
+    refuse(params,
+           "expected latitudes within -90 and 90 degrees, found " + number(dem.south_west[1]) +
+               " to " + number(north),
+           params.crs.empty() ? "file" : "crs");
   }
   return from_north;
 }

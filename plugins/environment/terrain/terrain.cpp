@@ -302,7 +302,9 @@ class Terrain final : public Environment, public Ground {
     for (const double x : {low.x(), high.x()}) {
       for (const double y : {low.y(), high.y()}) {
         const auto [lon, lat] = frame.to_lonlat(x, y);
-        degrees = degrees.with({lon, lat, 0});
+        // 178.5 to 181.5 across the antimeridian
+        const double turns = degrees.is_empty() ? 0 : std::round((degrees.min.x() - lon) / 360);
+        degrees = degrees.with({lon + 360 * turns, lat, 0});
       }
     }
     return metres + text("; longitude %.4f to %.4f, latitude %.4f to %.4f", degrees.min.x(),
