@@ -99,7 +99,8 @@ double Frame::scale_error(const Box& box) const {
       for (const auto& [dx, dy] : {std::pair(kStep, 0.0), std::pair(0.0, kStep)}) {
         const auto to = projection_->to_lonlat(x + dx, y + dy);
         const Radii radii = radii_at(from[1]);
-        const double east = radians(to[0] - from[0]) * radii.east;
+        const double lon = to[0] - from[0];
+        const double east = radians(lon - 360 * std::round(lon / 360)) * radii.east;
         const double north = radians(to[1] - from[1]) * radii.north;
         worst = std::max(worst, std::abs(std::hypot(east, north) / kStep - 1));
       }
