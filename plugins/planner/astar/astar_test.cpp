@@ -164,7 +164,7 @@ TEST(AStar, CellsBeyondTheMemoryOfABudgetAreAResult) {
   // Memory is taken before the search where cells decide alone, else as cells are reached.
   for (const auto& [moves, message] :
        {std::pair("{moves: cells}", "the budget is 0 MiB"),
-        {"{moves: exact}", "the memory allowed was used up (max_memory_mb, within_mb)"}}) {
+        {"{moves: exact}", "max_memory_mb or within_mb is used up"}}) {
     const PlanResult result = make_planner("astar", moves)->plan(drawn.request);
     EXPECT_EQ(result.status, PlanStatus::timed_out);
     EXPECT_TRUE(result.budget_hit);

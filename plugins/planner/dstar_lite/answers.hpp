@@ -27,9 +27,8 @@ inline std::string explanation(PlanStatus status, const kit::SearchStats& progre
                                const Problem& problem, const kit::MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"
-                     : progress.memory_full
-                         ? "the memory allowed was used up (max_memory_mb, within_mb)"
-                         : "the budget was used up";
+                     : progress.memory_full            ? "max_memory_mb or within_mb is used up"
+                                                       : "the budget was used up";
   text += ": " + std::to_string(progress.expanded) + " vertices expanded on " +
           std::to_string(problem.lattice.size()) + " cells";
   if (progress.expanded > 0) {

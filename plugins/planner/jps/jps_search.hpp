@@ -330,8 +330,8 @@ class Search {
     result.counters = counters();
     result.message = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"
-                     : memory_full() ? "the memory allowed was used up (max_memory_mb, within_mb)"
-                                     : "the budget was used up";
+                     : memory_full()                   ? "max_memory_mb or within_mb is used up"
+                                                       : "the budget was used up";
     result.message += ": " + std::to_string(expanded_) + " jump points expanded";
     if (expanded_ > 0) {
       const Vec3 at = lattice_.position(lattice_.cell(nearest_cell_));

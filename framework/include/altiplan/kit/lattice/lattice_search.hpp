@@ -155,9 +155,8 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
                                const MoveRules& rules) {
   std::string text = status == PlanStatus::no_route    ? "no route"
                      : status == PlanStatus::cancelled ? "cancelled"
-                     : progress.memory_full
-                         ? "the memory allowed was used up (max_memory_mb, within_mb)"
-                         : "the budget was used up";
+                     : progress.memory_full            ? "max_memory_mb or within_mb is used up"
+                                                       : "the budget was used up";
   text += ": " + std::to_string(progress.expanded) + " of " + std::to_string(lattice.size()) +
           " cells expanded";
   if (progress.expanded > 0) {
