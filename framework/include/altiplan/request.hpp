@@ -65,6 +65,9 @@ struct ALTIPLAN_API Request {
   }
   /// Airspeed, m/s: of an aeroplane its own, else the vehicle's speed.
   double air_speed() const { return vehicle.wing ? vehicle.wing->airspeed_mps : vehicle.speed_mps; }
+  /// A position for messages: "(12, -340, 528)", with longitude and latitude if the world has a
+  /// place on the Earth.
+  std::string place_text(const Vec3& p) const;
   /// True if what precedes a leg may refuse it by more than a limit on turns.
   bool judges_pairs() const;
   /// True if headings persist through legs that have none, and some limit depends on that.

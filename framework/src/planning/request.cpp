@@ -2,6 +2,7 @@
 #include "altiplan/request.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace altiplan {
 namespace {
@@ -75,5 +76,17 @@ std::vector<Pose> Request::goal_poses(int count) const {
   }
   return goal.heading ? std::vector<Pose>{{goal.position, *goal.heading}}
                       : all_headings(goal.position, count);
+}
+
+std::string Request::place_text(const Vec3& p) const {
+  char text[160];
+  std::snprintf(text, sizeof text, "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
+  std::string place = text;
+  if (world && world->frame().has_position()) {
+    const auto [lon, lat] = world->frame().to_lonlat(p.x(), p.y());
+    std::snprintf(text, sizeof text, " at longitude %.5f, latitude %.5f", lon, lat);
+    place += text;
+  }
+  return place;
 }
 }  // namespace altiplan

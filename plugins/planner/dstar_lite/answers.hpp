@@ -33,10 +33,9 @@ inline std::string explanation(PlanStatus status, const kit::SearchStats& progre
           std::to_string(problem.lattice.size()) + " cells";
   if (progress.expanded > 0) {
     const Vec3& at = progress.nearest;
-    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
-    text += ", from the goal, the nearest to the start at (" + whole(at.x()) + ", " +
-            whole(at.y()) + ", " + whole(at.z()) + "), " +
-            whole((at - problem.request.start.position).norm()) + " m from it";
+    text += ", from the goal, the nearest to the start at " + problem.request.place_text(at) +
+            ", " + std::to_string(std::llround((at - problem.request.start.position).norm())) +
+            " m from it";
   }
   const std::string refusals = rules.refusals();
   return refusals.empty() ? text : text + "; refused moves: " + refusals;

@@ -335,9 +335,9 @@ class Search {
     result.message += ": " + std::to_string(expanded_) + " jump points expanded";
     if (expanded_ > 0) {
       const Vec3 at = lattice_.position(lattice_.cell(nearest_cell_));
-      result.message += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) +
-                        ", " + whole(at.z()) + "), " + whole((at - request_.goal.position).norm()) +
-                        " m from it" + (budget_hit ? "" : "; blocked cells bar every path on");
+      result.message += ", the nearest to the goal at " + request_.place_text(at) + ", " +
+                        whole((at - request_.goal.position).norm()) + " m from it" +
+                        (budget_hit ? "" : "; blocked cells bar every path on");
     } else if (status == PlanStatus::no_route) {
       result.message += ", the start cannot join the lattice";
     }

@@ -161,9 +161,8 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
           " cells expanded";
   if (progress.expanded > 0) {
     const Vec3& at = progress.nearest;
-    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
-    text += ", the nearest to the goal at (" + whole(at.x()) + ", " + whole(at.y()) + ", " +
-            whole(at.z()) + "), " + whole((at - request.goal.position).norm()) + " m from it";
+    text += ", the nearest to the goal at " + request.place_text(at) + ", " +
+            std::to_string(std::llround((at - request.goal.position).norm())) + " m from it";
   } else if (status == PlanStatus::no_route) {
     text += ", the start cannot join the lattice";
   }
