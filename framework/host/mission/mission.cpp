@@ -210,8 +210,8 @@ std::string extent(const Box& box) {
   return text;
 }
 
-/// Warns of a layer that does not touch the volume, and so has no effect: usually a mistake, such
-/// as latitude and longitude swapped in its file.
+/// Warns of a layer that is empty or does not touch the volume, and so has no effect: usually a
+/// mistake, such as latitude and longitude swapped in its file.
 void warn_of_distant_layers(Mission& mission) {
   for (const Layer& layer : mission.truth.layers()) {
     const Box box = layer.environment->bounds();
@@ -219,6 +219,10 @@ void warn_of_distant_layers(Mission& mission) {
       mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin + ") at " + extent(box) +
                                  " does not touch the volume at " + extent(mission.site.volume) +
                                  ": check its position");
+    } else if (box.is_empty()) {
+      const std::vector<std::string>& notes = layer.environment->info().notes;
+      mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin + ") holds nothing here" +
+                                 (notes.empty() ? "" : ": " + notes.back()));
     }
   }
 }

@@ -11,6 +11,7 @@
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
 #include <cmath>
+#include <cstdio>
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/layers/polygon.hpp"
@@ -136,6 +137,7 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
     return {};
   }
   if (is_inside(box, bounds_) || prism == nullptr) {
+    ++kept_;
     return {shape};
   }
   std::vector<Polygon> pieces;
@@ -145,14 +147,49 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
       pieces);
   std::vector<Prism> parts;
   if (!add_prisms(pieces, *prism, parts)) {
+    ++kept_;
     return {shape};  // pieces that touch each other: the whole shape is equally correct
   }
-  ++(parts.empty() ? dropped_ : cut_);
+  if (parts.empty()) {
+    ++dropped_;
+  } else {
+    ++kept_;
+    ++cut_;
+  }
   return {parts.begin(), parts.end()};
 }
 
 std::string Clip::note() const {
   return std::to_string(dropped_) + " zones outside the bounds dropped, " + std::to_string(cut_) +
          " cut at them";
+}
+
+std::string Clip::why_none(const Frame& frame, const std::vector<kit::Point2>& corners) const {
+  if (kept_ > 0 || dropped_ == 0 || !frame.has_position()) {
+    return "";
+  }
+  Box degrees = Box::empty();
+  for (const auto& [lon, lat] : corners) {
+    degrees = degrees.with({lon, lat, 0});
+  }
+  bool would_do = false;
+  try {
+    Box swapped = Box::empty();
+    for (const auto& [lat, lon] : corners) {
+      const auto [x, y] = frame.to_local(lon, lat);
+      swapped = swapped.with({x, y, 0});
+    }
+    would_do = !is_outside(swapped, bounds_);
+  } catch (const Error&) {
+    // So far away that the projection fails.
+  }
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "none of its zones lies within the bounds: they cover longitude %.7g to %.7g and "
+                "latitude %.7g to %.7g",
+                degrees.min.x(), degrees.max.x(), degrees.min.y(), degrees.max.y());
+  return text + std::string(would_do ? "; with the two exchanged they would lie within: does "
+                                       "latitude stand first in the file?"
+                                     : "");
 }
 }  // namespace altiplan::zones

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "altiplan/environment.hpp"
+#include "altiplan/kit/layers/polygon.hpp"
 #include "altiplan/shape.hpp"
 
 namespace altiplan::zones {
@@ -28,10 +29,14 @@ class Clip {
   std::vector<Shape> cut(const Shape& shape);
   /// Number of zones dropped and cut.
   std::string note() const;
+  /// Of zones none of which lies within the bounds: what their corners (longitude, latitude) cover,
+  /// and whether they would lie within if latitude stood first in their file. "" if one does.
+  std::string why_none(const Frame& frame, const std::vector<kit::Point2>& corners) const;
 
  private:
   Box bounds_;
   std::size_t dropped_ = 0;
-  std::size_t cut_ = 0;
+  std::size_t kept_ = 0;
+  std::size_t cut_ = 0;  ///< of those kept
 };
 }  // namespace altiplan::zones

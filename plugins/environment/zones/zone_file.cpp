@@ -191,7 +191,7 @@ FileZones read_zone_file(const std::string& file, const FileRules& rules) {
   return kit::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
 }
 
-Frame frame_of(const FileZones& file) {
+std::vector<kit::Point2> corners_of(const FileZones& file) {
   std::vector<kit::Point2> corners;
   if (file.airspace) {
     corners = corners_of(*file.airspace);
@@ -203,9 +203,13 @@ Frame frame_of(const FileZones& file) {
       corners.push_back(zone.zone.centre);
     }
   }
+  return corners;
+}
+
+Frame frame_of(const FileZones& file) {
   kit::Point2 low{180, 90};
   double north = -90;
-  for (const kit::Point2& p : corners) {
+  for (const kit::Point2& p : corners_of(file)) {
     low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
     north = std::max(north, p[1]);
   }

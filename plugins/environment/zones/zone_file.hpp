@@ -54,6 +54,9 @@ struct FileZones {
 /// naming the file.
 FileZones read_zone_file(const std::string& file, const FileRules& rules);
 
+/// Longitude and latitude of the corners of all polygons and the centres of all circles.
+std::vector<kit::Point2> corners_of(const FileZones& file);
+
 /// A frame for a world that has none: its origin is the south-west corner of the zones.
 Frame frame_of(const FileZones& file);
 }  // namespace altiplan::zones

@@ -134,6 +134,7 @@ class Zones final : public Environment {
     Drawing drawing;
     std::size_t inactive = 0;
     std::vector<std::string> notes;
+    std::string why_none;  // zones lie within the bounds
     std::vector<Threat> threats;
 
     Reader(const Params& params, const Site& where) : site(where), horizon_s(params.horizon_s) {
@@ -156,6 +157,9 @@ class Zones final : public Environment {
       notes.push_back(std::to_string(shapes[0].size() + above_ground.size()) + " keep-out and " +
                       std::to_string(shapes[1].size()) + " keep-in zones, " +
                       std::to_string(inactive) + " not active");
+      if (!why_none.empty()) {
+        notes.push_back(why_none);
+      }
     }
 
     void add(Kind kind, const Shape& shape, const std::string& name) {
@@ -231,6 +235,7 @@ class Zones final : public Environment {
       }
       if (clip) {
         notes.push_back(clip->note());
+        why_none = clip->why_none(site.frame, corners_of(file));
       }
     }
 
