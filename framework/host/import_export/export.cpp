@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/import_export/export_attempt.hpp"
 #include "host/import_export/fence.hpp"
 #include "host/import_export/placing.hpp"
@@ -91,7 +92,7 @@ void add_zones(const Mission& mission, const Route& route, kit::MissionFile& fil
   if (fence.zones.empty()) {
     return;
   }
-  const std::string count = std::to_string(fence.zones.size()) + " zones ";
+  const std::string count = counted(fence.zones.size(), "zone") + " ";
   if (file.format == Format::waypoints || file.format == Format::gpx) {
     messages.push_back(count + "are not written: the format cannot hold them beside a route");
     return;

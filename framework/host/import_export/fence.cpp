@@ -119,19 +119,6 @@ bool crosses(const Shape& flat, const Polyline& route) {
   return false;
 }
 
-/// "floor 50 m, ceiling 900 m", "" without limits.
-std::string limits_of(const MissionZone& zone) {
-  std::string text;
-  const auto add = [&](const char* what, const std::optional<double>& value) {
-    if (value) {
-      text += (text.empty() ? "" : ", ") + std::string(what) + " " +
-              std::to_string(std::lround(*value)) + " m";
-    }
-  };
-  add("floor", zone.floor_m);
-  add("ceiling", zone.ceiling_m);
-  return text;
-}
 }  // namespace
 
 Fence zones_of(const World& world) {
@@ -146,17 +133,17 @@ Fence flat_fence_of(const World& world, const Polyline& route) {
   Fence fence;
   for (const Zone& zone : all_zones(world)) {
     const MissionZone& said = zone.zone;
-    const std::string limits = limits_of(said);
+    const bool has_limits = said.floor_m || said.ceiling_m;
     const bool lost_hole = !said.keep_in && !said.polygon.holes.empty();
     if (!said.keep_in && crosses(zone.flat, route)) {
       fence.notes.push_back("zone '" + said.name + "' is left out of the fence: the route passes " +
-                            (limits.empty() ? "through its hole" : "beyond its " + limits) +
+                            (has_limits ? "above or below it" : "through its hole") +
                             ", which a fence cannot express");
       continue;
     }
-    if (!limits.empty()) {
-      fence.notes.push_back("zone '" + said.name + "' (" + limits +
-                            ") is in the fence at every height: a fence has no vertical limits");
+    if (has_limits) {
+      fence.notes.push_back("zone '" + said.name +
+                            "' is in the fence at every height: a fence has no vertical limits");
     }
     if (lost_hole) {
       fence.notes.push_back("zone '" + said.name + "' is in the fence without its holes");
