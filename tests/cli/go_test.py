@@ -30,6 +30,14 @@ def grid(columns, rows, west, south, cell, void=lambda i, j: False):
                             for j in range(rows)) + "\n"
 
 
+def box(west, south, size):
+    return [[west, south], [west + size, south], [west + size, south + size], [west, south + size],
+            [west, south]]
+
+
+WALL = [[-84.5, 36.54], [-84.0, 36.54], [-84.0, 36.56], [-84.5, 36.56], [-84.5, 36.54]]
+
+
 class Go(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -81,16 +89,52 @@ class Go(unittest.TestCase):
         self.assertIn("wing with turns of 80 m", out)
         self.call("check", "wing/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
 
-    def test_zones_at_their_hours(self):
-        ring = [[-84.5, 36.54], [-84.0, 36.54], [-84.0, 36.56], [-84.5, 36.56], [-84.5, 36.54]]
-        (self.folder / "wall.geojson").write_text(json.dumps({
+    def zones(self, file, *rings, **properties):
+        (self.folder / file).write_text(json.dumps({
             "type": "FeatureCollection", "features": [{
                 "type": "Feature", "geometry": {"type": "Polygon", "coordinates": [ring]},
-                "properties": {"from": "2026-05-01T10:00:00Z", "until": "2026-05-01T18:00:00Z"}}]}))
+                "properties": properties} for ring in rings]}))
+
+    def test_zones_at_their_hours(self):
+        self.zones("wall.geojson", WALL, **{"from": "2026-05-01T10:00:00Z",
+                                            "until": "2026-05-01T18:00:00Z"})
         options = ["--terrain", TERRAIN, *ENDS, "--avoid", "wall.geojson"]
         out, _ = self.call("go", *options, code=1)
         self.assertIn("no route: ", out)
-        self.go(*options, "--start-time", "2026-05-01T20:00:00Z", "-o", "later", folder="later")
+        _, err = self.call("go", *options, "--start-time", "2026-05-01T20:00:00Z")
+        self.assertIn("warning: 'wall.geojson' (zones) holds nothing here", err)
+
+    def test_zones_that_do_and_do_not_count(self):
+        far = box(-80.3, 36.54, 0.01)
+        self.zones("two.geojson", box(-84.3, 36.54, 0.01), far)
+        options = ["--terrain", TERRAIN, *ENDS, "--avoid"]
+        out, err = self.call("go", *options, "two.geojson")
+        self.assertIn("zones: two.geojson: 1 zones outside the bounds dropped", out)
+        self.assertNotIn("warning", err)
+        self.zones("swapped.geojson", [[y, x] for x, y in box(-84.3, 36.54, 0.01)])
+        self.zones("far.geojson", far)
+        self.zones("empty.geojson")
+        for name, said in (("swapped", "does latitude stand first in the file?"),
+                           ("far", "they cover longitude -80.3 to -80.29 and latitude 36.54"),
+                           ("empty", "holds nothing here: 0 keep-out and 0 keep-in zones")):
+            _, err = self.call("go", *options, f"{name}.geojson")
+            self.assertIn(f"warning: '{name}.geojson' (zones) holds nothing here", err)
+            self.assertIn(said, err)
+            self.assertEqual("latitude stand first" in err, name == "swapped")
+
+    def test_why_there_is_no_route(self):
+        self.zones("wall.geojson", WALL, name="Wall")
+        self.zones("ring.geojson", box(-84.39, 36.47, 0.02), name="Prison")
+        for options, said in (
+                (["--avoid", "wall.geojson", "ring.geojson"], "reason: the start lies in 'Prison'"),
+                (["--avoid", "wall.geojson"], "reason: the zones close every way: without them a "
+                                              "route of 22.4"),
+                (["--avoid", "wall.geojson"], "is found, which enters 'Wall'\n"),
+                (["--min-agl", "50", "--max-agl", "52"], "reason: --max-agl: without a limit above")):
+            out, _ = self.call("go", "--terrain", TERRAIN, *ENDS, *options, code=1)
+            self.assertIn(said, out)
+        self.assertEqual(sorted(file.name for file in (self.folder / "jacksboro_fault").iterdir()),
+                         ["pipeline.yaml", "result.json", "scenario.yaml"])
 
     def test_tiles_in_a_folder_and_voids(self):
         (self.folder / "tiles").mkdir()
@@ -103,6 +147,19 @@ class Go(unittest.TestCase):
         self.assertIn("filled from their neighbours", out)
         self.assertIn("read as EPSG:4326", out)
         self.assertIn("../tiles/west.asc", (self.folder / "both/scenario.yaml").read_text())
+        _, err = self.call("go", "--terrain", "tiles/west.asc", "tiles/east.asc", "--from",
+                           "8.012,46.021", "--to", "8.025,46.021")
+        self.assertIn(" m of the route, with the start, lie over voids of the model", err)
+
+    def test_a_tile_of_another_country(self):
+        """It must not give the frame, in which the others would be resampled, each by itself."""
+        for name, west in (("west", 8.0), ("east", 8.06)):
+            (self.folder / f"{name}.asc").write_text(grid(60, 60, west, 46.0, 0.001))
+        (self.folder / "utm.asc").write_text(grid(120, 90, 400000, 3790000, 30))
+        (self.folder / "utm.prj").write_text(UTM)
+        out = self.go("--terrain", "west.asc", "east.asc", "utm.asc", "--from", "8.012,46.02",
+                      "--to", "8.11,46.04", "-o", "out", folder="out")
+        self.assertIn("and 1 tile more, read as EPSG:4326; frame: EPSG:4326", out)
 
     def test_a_projected_model(self):
         (self.folder / "utm.asc").write_text(grid(120, 90, 400000, 3790000, 30))
@@ -121,6 +178,9 @@ class Go(unittest.TestCase):
         for given in ("-84.38", "-84.38,36.48,1,1", "-84.38, 36.48", "x,y", "nan,36"):
             self.refused("expected LON,LAT", *terrain, "--from", given, *ENDS[2:], code=2)
         self.refused("the same point", *terrain, *ENDS[:2], "--to", "-84.38,36.48")
+        self.refused("expected a time such as", *terrain, *ENDS, "--start-time", "2026-13-01")
+        self.refused("from 0.0 to 10000.0", *terrain, *ENDS, "--min-agl", "100000", code=2)
+        self.refused("from 1.0 to 5000.0", *terrain, *ENDS, "--wing", "30000", code=2)
         self.refused("leaves no height", *terrain, *ENDS, "--min-agl", "90", "--max-agl", "80")
 
     def test_files_that_are_no_good(self):
@@ -129,7 +189,13 @@ class Go(unittest.TestCase):
         self.refused("is a VRT", "--terrain", "tiles.vrt", *ENDS)
         self.refused("--terrain: word.dat: expected an elevation model", "--terrain", "word.dat",
                      *ENDS)
-        self.refused("none.json", "--terrain", TERRAIN, *ENDS, "--avoid", "none.json")
+        self.refused("--avoid: none.json", "--terrain", TERRAIN, *ENDS, "--avoid", "none.json")
+        self.refused("--avoid: word.dat: expected zones: published airspace", "--terrain", TERRAIN,
+                     *ENDS, "--avoid", "word.dat")
+        self.zones("bow.geojson", [[-84.3, 36.5], [-84.2, 36.6], [-84.2, 36.5], [-84.3, 36.6],
+                                   [-84.3, 36.5]])
+        self.refused("--avoid: bow.geojson: features.0 ('0'): the outline meets itself", "--terrain",
+                     TERRAIN, *ENDS, "--avoid", "bow.geojson")
         self.refused("no_planner", "--terrain", TERRAIN, *ENDS, "--planner", "no_planner")
 
 

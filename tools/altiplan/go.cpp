@@ -5,8 +5,9 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "guarded_run.hpp"
+#include "first_run.hpp"
 #include "host/base/output_file.hpp"
+#include "host/base/unfinished.hpp"
 #include "host/first_route/first_route.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
@@ -89,35 +90,40 @@ fs::path folder_of(const Arguments& arguments) {
   return folder;
 }
 
-void create(const fs::path& folder) {
+/// Creates the folder, to be removed again unless it is finished.
+std::unique_ptr<host::Unfinished> created(const fs::path& folder) {
+  const auto lock = host::uninterrupted();
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     throw Error("-o: '" + folder.string() + "' " +
                 (error ? "cannot be created: " + error.message()
                        : "exists already: give the name of a new folder"));
   }
-}
-
-/// The files of a try, run; the result is written beside them.
-host::RunResult run_in(const fs::path& folder, const host::FirstFiles& files,
-                       const host::Overrides& overrides, Interrupt& interrupt) {
-  host::write_file(folder / "scenario.yaml", files.scenario);
-  host::write_file(folder / "pipeline.yaml", files.pipeline);
-  const host::Config config = host::load_config(folder / "pipeline.yaml", overrides);
-  const std::string out = folder / "result.json";
-  const HandOut hand_out = [&](std::FILE* to, const host::RunResult& result) {
-    host::write_file(out, host::file_text(host::result_json(config, result)));
-    std::fprintf(to, "no route: %s\n", result.message.c_str());
-  };
-  host::RunResult result = guarded_run(config, {}, {out, false}, interrupt, hand_out);
-  host::write_file(out, host::file_text(host::result_json(config, result)));
-  return result;
+  return std::make_unique<host::Unfinished>([folder] {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  });
 }
 
 /// True where another corridor or smaller cells may help.
 bool may_be_wider(const host::RunResult& result) {
   return !result.accepted && (result.status == host::RunStatus::no_route ||
                               result.status == host::RunStatus::timed_out);
+}
+
+/// How many zones of each file count, as its layer says.
+void print_zones(const host::RunResult& result, const std::vector<std::string>& layers) {
+  for (const std::string& layer : layers) {
+    std::string text;
+    for (const std::string& note : result.notes) {
+      const bool is_count = note.find("keep-in zones, ") != note.npos ||
+                            note.find("zones outside the bounds") != note.npos;
+      if (is_count && note.rfind(layer + ": ", 0) == 0) {
+        text += (text.empty() ? "" : "; ") + note.substr(layer.size() + 2);
+      }
+    }
+    std::printf("zones: %s: %s\n", layer.c_str(), text.c_str());
+  }
 }
 
 void print(const host::RunResult& result) {
@@ -128,9 +134,9 @@ void print(const host::RunResult& result) {
   }
   const Measures& m = step.measures.value();
   std::printf(
-      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s s\n",
+      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s\n",
       fixed(m.length_m / 1000, 3).c_str(), m.waypoints, fixed(m.min_ground_clearance_m, 1).c_str(),
-      fixed(seconds, 1).c_str());
+      duration(seconds).c_str());
 }
 
 /// The page, and the mission; false if the route would not be valid as a mission.
@@ -156,45 +162,63 @@ bool write_views(const fs::path& folder, const Arguments& arguments) {
 
 int go(const Arguments& arguments) {
   std::optional<Activity> activity("reading the model");
-  const host::FirstRoute first(wish_of(arguments), arguments.overrides.plugin_path);
+  const host::RouteWish wish = wish_of(arguments);
+  const host::FirstRoute first(wish, arguments.overrides.plugin_path);
   const fs::path folder = folder_of(arguments);
   host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
   activity.reset();
-  create(folder);
+  const std::unique_ptr<host::Unfinished> unfinished = created(folder);
   Interrupt interrupt;
   host::RunResult result;
+  int tried = 0;
   for (int attempt = 0; attempt < host::FirstRoute::kTries; ++attempt) {
     if (first.repeats(attempt)) {
       continue;
     }
+    tried = attempt;
     files = first.files(attempt, folder);
     result = run_in(folder, files, arguments.overrides, interrupt);
     if (interrupt.happened() || !may_be_wider(result)) {
       break;
     }
   }
+  std::vector<std::string> reasons;
+  if (!result.accepted && !interrupt.happened()) {
+    reasons = reasons_of({wish, arguments.overrides, folder, tried}, interrupt);
+  }
   interrupt.finish();
   for (const std::string& line : files.choices) {
     std::printf("%s\n", line.c_str());
   }
+  print_zones(result, files.zone_layers);
   if (interrupt.happened()) {
     return kInterrupted;
   }
+  print_remarks(result);
   if (!result.accepted) {
+    unfinished->is_finished();
     std::printf("no route: %s; %s/ holds scenario.yaml, pipeline.yaml and result.json\n",
                 result.message.c_str(), folder.c_str());
+    for (const std::string& reason : reasons) {
+      std::printf("reason: %s\n", reason.c_str());
+    }
     return result.exit_code();
   }
   print(result);
-  return write_views(folder, arguments) ? kDone : kNoRoute;
+  const Polyline& route = result.steps[*result.accepted].route.waypoints();
+  if (const std::string voids = first.over_voids(route); !voids.empty()) {
+    warn(voids);
+  }
+  const bool is_mission = write_views(folder, arguments);
+  unfinished->is_finished();
+  return is_mission ? kDone : kNoRoute;
 }
 
 void add_points(App& command, Arguments& arguments) {
   command
       .add_option("--terrain", arguments.terrain,
-                  "elevation model, or a folder of its tiles; repeatable")
+                  "elevation models, or a folder of tiles; repeatable")
       ->required()
-      ->one_at_a_time()
       ->take_all()
       ->type_name("DEM");
   command.add_option("--from", arguments.from, "start: degrees, and metres above ground")
@@ -217,18 +241,17 @@ void add_wishes(App& command, Arguments& arguments) {
   command
       .add_option("--avoid", arguments.avoid,
                   "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
-      ->one_at_a_time()
       ->take_all()
       ->type_name("FILE");
   const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
-    return command.add_option(name, value, what)->type_name("METRES")->check(number_from(0, 1e5));
+    return command.add_option(name, value, what)->type_name("METRES")->check(number_from(0, 1e4));
   };
   metres("--min-agl", wish.min_above_ground_m, "least height above ground (default 50)");
   metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
   auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
   command.add_option("--wing", wish.turn_radius_m, "plan for an aeroplane with this turn radius")
       ->type_name("RADIUS")
-      ->check(number_from(1, 1e5))
+      ->check(number_from(1, 5000))
       ->excludes(copter);
   command.add_option("--planner", wish.planner, "planner (default: chosen)")->type_name("NAME");
   command

@@ -57,15 +57,15 @@ host::RunResult guarded_run(const host::Config& config, host::RunOptions options
     }
     _exit(interrupt.happened() ? kInterrupted : result.exit_code());
   };
-  const host::RunResult result = host::run(config, options);
-  watch.reset();
-  process.reset();
+  return host::run(config, options);
+}
+
+void print_remarks(const host::RunResult& result) {
   for (const std::string& warning : result.warnings) {
     warn(warning);
   }
   for (const std::string& note : result.notes) {
     info(note);
   }
-  return result;
 }
 }  // namespace altiplan::cli

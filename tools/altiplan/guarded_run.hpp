@@ -20,9 +20,12 @@ struct CrashOutput {
 /// Prints, and writes, a result.
 using HandOut = std::function<void(std::FILE* to, const host::RunResult& result)>;
 
-/// Runs a pipeline with the process guarded against its plugins; prints warnings and notes. If a
-/// plugin never returns, the result so far is handed out and the process ends.
+/// Runs a pipeline with the process guarded against its plugins. If a plugin never returns, the
+/// result so far is handed out and the process ends.
 host::RunResult guarded_run(const host::Config& config, host::RunOptions options,
                             const CrashOutput& crash, Interrupt& interrupt,
                             const HandOut& hand_out);
+
+/// Prints the run's warnings and notes, on stderr.
+void print_remarks(const host::RunResult& result);
 }  // namespace altiplan::cli

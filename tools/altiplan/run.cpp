@@ -151,6 +151,7 @@ int run(const RunArguments& arguments) {
   };
   const host::RunResult result =
       guarded_run(config, options, {arguments.out, arguments.json}, interrupt, to);
+  print_remarks(result);
   to(stdout, result);
   if (!result.trace_error.empty()) {
     throw Error(result.trace_error);

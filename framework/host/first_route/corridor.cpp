@@ -17,6 +17,18 @@ namespace {
 /// Scale error above which lengths count as wrong, as build_mission has it.
 constexpr double kMaxScaleError = 0.005;
 
+/// Of the points' distance, metres, and turn radii.
+struct Margin {
+  double share;
+  double metres;
+  double radii;
+
+  double of(double length_m, double turn_radius_m) const {
+    return std::max({share * length_m, metres, radii * turn_radius_m});
+  }
+};
+constexpr Margin kMargins[Corridor::kWidths] = {{0.15, 1000, 6}, {0.5, 4000, 15}, {2, 20000, 50}};
+
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 }  // namespace
 
@@ -31,6 +43,7 @@ Corridor::Corridor(const RouteWish& wish, Registry& registry)
   const WishedPoint& from = wished_.front();
   std::stable_partition(tiles_.begin(), tiles_.end(),
                         [&](const Tile& tile) { return tile.holds(from.lon, from.lat); });
+  drop_distant();
   choose_frame();
   for (const WishedPoint& point : wished_) {
     const auto [x, y] = frame_.to_local(point.lon, point.lat);
@@ -40,6 +53,31 @@ Corridor::Corridor(const RouteWish& wish, Registry& registry)
   if (length_m_ < 1) {
     throw Error("--to: start and goal are the same point: give two that are apart");
   }
+}
+
+void Corridor::drop_distant() {
+  const WishedPoint& from = wished_.front();
+  const Frame flat = Frame::geographic(from.lon, from.lat, from.lat);
+  const auto local = [&](double lon, double lat) {
+    const auto [x, y] = flat.to_local(lon, lat);
+    return Vec3(x, y, 0);
+  };
+  Box reached = Box::empty();
+  double length = 0;
+  Vec3 before = local(from.lon, from.lat);
+  for (const WishedPoint& point : wished_) {
+    const Vec3 at = local(point.lon, point.lat);
+    length += (at - before).norm();
+    before = at;
+    reached = reached.with(at);
+  }
+  reached = reached.grown(kMargins[kWidths - 1].of(length, turn_radius_m_));
+  const auto is_distant = [&](const Tile& tile) {
+    const Box degrees = tile.degrees();
+    const Box box{local(degrees.min.x(), degrees.min.y()), local(degrees.max.x(), degrees.max.y())};
+    return box.intersected(reached).is_empty();
+  };
+  tiles_.erase(std::remove_if(tiles_.begin(), tiles_.end(), is_distant), tiles_.end());
 }
 
 /// A geographic model is scaled for the latitude of the flight. A projected one keeps its own axes
@@ -109,22 +147,30 @@ std::vector<Tile> Corridor::tiles(const Box& box) const {
   return within;
 }
 
-Box Corridor::box(int width) const {
-  // Of the points' distance, metres, and turn radii.
-  static constexpr double kMargins[kWidths][3] = {{0.15, 1000, 6}, {0.5, 4000, 15}, {2, 20000, 50}};
-  const auto& [share, metres, radii] = kMargins[width];
-  const double margin = std::max({share * length_m_, metres, radii * turn_radius_m_});
-  Box box = Box::empty();
-  for (const Vec3& p : points_) {
-    box = box.with(p);
-  }
-  box = box.grown(margin);
+Box Corridor::all_tiles() const {
   Box all = Box::empty();
   for (const Tile& tile : tiles_) {
     const Box own = in_frame(tile);
     all.min = all.min.cwiseMin(own.min);
     all.max = all.max.cwiseMax(own.max);
   }
+  return all;
+}
+
+bool Corridor::is_all(const Box& box) const {
+  const Box all = all_tiles();
+  constexpr double kRounding = 0.2;
+  return (box.min - all.min).head<2>().maxCoeff() < kRounding &&
+         (all.max - box.max).head<2>().maxCoeff() < kRounding;
+}
+
+Box Corridor::box(int width) const {
+  Box box = Box::empty();
+  for (const Vec3& p : points_) {
+    box = box.with(p);
+  }
+  box = box.grown(kMargins[width].of(length_m_, turn_radius_m_));
+  const Box all = all_tiles();
   for (int axis = 0; axis < 2; ++axis) {
     // Rounded, so that the scenario has the same numbers.
     box.min[axis] = std::ceil(std::max(box.min[axis], all.min[axis]) * 10) / 10;
@@ -140,6 +186,40 @@ Box Corridor::box(int width) const {
   box.min.z() = std::floor(low);
   box.max.z() = std::ceil(high);
   return box;
+}
+
+Corridor::Voids Corridor::voids_below(const Polyline& route) const {
+  Voids voids;
+  const World empty;
+  Site site;
+  site.frame = frame_;
+  site.before = &empty;
+  site.volume = Box::empty();
+  for (const Vec3& p : route) {
+    site.volume = site.volume.with(p);
+  }
+  site.volume = site.volume.grown(spacing_m());
+  for (const Tile& tile : tiles(site.volume)) {
+    if (!tile.has_voids()) {
+      continue;
+    }
+    // Ground that depends on how voids are filled lies over or beside one.
+    const auto filled = build_model(tile, site, registry_);
+    const auto sunk = build_model(tile, site, registry_, "fill_m, fill_m: -1000");
+    const auto is_guess = [&](const Vec3& p) {
+      return filled->ground()->height(p.x(), p.y()) != sunk->ground()->height(p.x(), p.y());
+    };
+    for (std::size_t n = 0; n + 1 < route.size(); ++n) {
+      const Vec3 leg = route[n + 1] - route[n];
+      const int parts = std::max(1, int(std::ceil(2 * leg.head<2>().norm() / tile.spacing_m)));
+      for (int i = 0; i < parts; ++i) {
+        voids.length_m += is_guess(route[n] + (i + 0.5) / parts * leg) ? leg.norm() / parts : 0;
+      }
+    }
+    voids.at_start = voids.at_start || is_guess(route.front());
+    voids.at_goal = voids.at_goal || is_guess(route.back());
+  }
+  return voids;
 }
 
 std::array<double, 2> Corridor::ground(const Box& box) const {

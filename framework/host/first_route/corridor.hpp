@@ -22,14 +22,26 @@ class Corridor {
   /// "frame: {origin_lonlat: [8.5, 46.5]}", or "" for the first model's own.
   const std::string& frame_line() const { return frame_line_; }
   std::string frame_in_words() const;
+  /// What of a route lies over voids of the models, which are read once more.
+  struct Voids {
+    double length_m = 0;
+    bool at_start = false;
+    bool at_goal = false;
+  };
+  Voids voids_below(const Polyline& route) const;
   /// Models within the box, the start's first.
   std::vector<Tile> tiles(const Box& box) const;
+  /// True if the box covers all models.
+  bool is_all(const Box& box) const;
   double length_m() const { return length_m_; }
   double spacing_m() const { return tiles_.front().spacing_m; }
 
  private:
+  /// Leaves out models so far from all points that no box reaches them.
+  void drop_distant();
   void choose_frame();
   Box in_frame(const Tile& tile) const;
+  Box all_tiles() const;
   /// Lowest and highest ground.
   std::array<double, 2> ground(const Box& box) const;
 

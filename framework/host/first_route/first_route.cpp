@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
@@ -46,7 +45,15 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
     : wish_(wish),
       heights_(heights_of(wish)),
       registry_(std::make_shared<Registry>(Registry::search_path(plugin_path))),
-      corridor_(wish, *registry_) {}
+      corridor_(wish, *registry_) {
+  for (const fs::path& file : wish_.avoid) {
+    try {
+      zone_parameters_.push_back(zone_parameters(file, wish_.start_time.has_value()));
+    } catch (const Error& error) {
+      throw Error(std::string("--avoid: ") + error.what());
+    }
+  }
+}
 
 /// As slow as turns of the radius allow at the bank, rounded up.
 double FirstRoute::speed_mps() const {
@@ -77,6 +84,18 @@ bool FirstRoute::repeats(int attempt) const {
   return before.min == now.min && before.max == now.max;
 }
 
+std::vector<std::string> FirstRoute::zone_layers() const {
+  std::vector<std::string> ids;
+  for (const fs::path& file : wish_.avoid) {
+    std::string id = file.filename();
+    while (std::count(ids.begin(), ids.end(), id) > 0) {
+      id += "_";
+    }
+    ids.push_back(id);
+  }
+  return ids;
+}
+
 std::string FirstRoute::environment(const Box& volume, const fs::path& folder) const {
   std::string text = "environment:\n";
   for (const Tile& tile : corridor_.tiles(volume)) {
@@ -84,16 +103,12 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
   }
   // Zones with hours count if they are active while the flight may last.
   const double horizon = std::ceil(3 * corridor_.length_m() / speed_mps() + 600);
-  std::set<std::string> ids;
-  for (const fs::path& file : wish_.avoid) {
-    std::string id = file.filename();
-    while (!ids.insert(id).second) {
-      id += "_";
-    }
+  const std::vector<std::string> ids = zone_layers();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const fs::path& file = wish_.avoid[i];
     text += "  - zones: {file: " + Json(path_in(folder, file)).dump() +
-            ", clip: true, horizon_s: " + text_of(horizon) +
-            zone_parameters(file, wish_.start_time.has_value()) + "}\n    id: " + Json(id).dump() +
-            "\n";
+            ", clip: true, horizon_s: " + text_of(horizon) + zone_parameters_[i] +
+            "}\n    id: " + Json(ids[i]).dump() + "\n";
   }
   return text;
 }
@@ -149,19 +164,32 @@ std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,
     ground += ", read as " + tile.crs;
   }
   const Vec3 size = (volume.max - volume.min) / 1000;
-  static constexpr const char* kWidth[] = {"narrow", "wider", "widest"};
+  static constexpr const char* kWidth[] = {"a narrow corridor", "a wider corridor",
+                                           "the widest corridor"};
   const std::string vehicle = wish_.turn_radius_m
                                   ? "wing with turns of " + whole(*wish_.turn_radius_m) +
                                         " m or more, " + text_of(speed_mps()) + " m/s"
                                   : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s";
   return {"terrain: " + ground + "; frame: " + corridor_.frame_in_words(),
-          "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) +
-              " km about the points (" + kWidth[kTry[attempt].width] + " corridor), " +
+          "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) + " km, " +
+              (corridor_.is_all(volume) ? "all of the model" : kWidth[kTry[attempt].width]) + ", " +
               whole(volume.min.z()) + " to " + whole(volume.max.z()) + " m above sea level",
           "heights: at least " + text_of(heights_.min_m) + " m above ground" +
+              (heights_.is_min_lowered ? " (half of --max-agl)" : "") +
               (heights_.max_m ? ", at most " + text_of(*heights_.max_m) + " m" : "") +
               ", points without a height at " + text_of(heights_.ends_m) + " m; " + vehicle,
           "planner: " + search.words};
+}
+
+std::string FirstRoute::over_voids(const Polyline& route) const {
+  const Corridor::Voids voids = corridor_.voids_below(route);
+  if (voids.length_m == 0) {
+    return "";
+  }
+  return whole(std::ceil(voids.length_m)) + " m of the route" +
+         (voids.at_start ? voids.at_goal ? ", with start and goal," : ", with the start," : "") +
+         (!voids.at_start && voids.at_goal ? ", with the goal," : "") +
+         " lie over voids of the model, filled from their neighbours: the ground may be higher";
 }
 
 FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
@@ -173,6 +201,6 @@ FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
           "# The search of a first route, written by altiplan go.\naltiplan: 1\n"
           "scenario: scenario.yaml\nsteps:\n" +
               search.steps,
-          choices(attempt, box, search)};
+          choices(attempt, box, search), zone_layers()};
 }
 }  // namespace altiplan::host

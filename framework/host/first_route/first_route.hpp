@@ -14,6 +14,7 @@ struct FirstFiles {
   std::string scenario;
   std::string pipeline;
   std::vector<std::string> choices;
+  std::vector<std::string> zone_layers;  ///< ids
 };
 
 /// Chooses frame, volume, cells and planner for a wish: try after try in a wider corridor, in the
@@ -30,8 +31,12 @@ class FirstRoute {
   bool repeats(int attempt) const;
   /// The files, to be written as scenario.yaml and pipeline.yaml in that folder.
   FirstFiles files(int attempt, const std::filesystem::path& folder) const;
+  /// Where a route lies over voids of the models: a sentence, "" if nowhere.
+  std::string over_voids(const Polyline& route) const;
 
  private:
+  /// The wish's files of zones by the ids of their layers.
+  std::vector<std::string> zone_layers() const;
   std::string environment(const Box& volume, const std::filesystem::path& folder) const;
   std::string vehicle() const;
   std::string point(const WishedPoint& at) const;
@@ -41,6 +46,7 @@ class FirstRoute {
 
   RouteWish wish_;
   WishedHeights heights_;
+  std::vector<std::string> zone_parameters_;  ///< for each of the wish's files
   std::shared_ptr<Registry> registry_;
   Corridor corridor_;
 };

@@ -117,10 +117,11 @@ Box Tile::degrees() const {
   return degrees;
 }
 
-std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry) {
+std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
+                                         const std::string& voids) {
   // The name has no folder that the file would be relative to.
   const Value parameters =
-      parse_yaml("{file: " + Json(tile.file.string()).dump() + ", voids: neighbours" +
+      parse_yaml("{file: " + Json(tile.file.string()).dump() + ", voids: " + voids +
                      (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
                  "terrain");
   return registry.get("environment", "terrain").environment(&parameters, site);

@@ -21,6 +21,7 @@ struct Tile {
   std::string note;      ///< "403 x 344 posts of 74.6 x 92.5 m", and voids if there are any
 
   bool is_geographic() const;
+  bool has_voids() const { return note.find("voids") != note.npos; }
   /// True if the point lies over the posts.
   bool holds(double lon, double lat) const;
   /// Extent in degrees, x for longitude.
@@ -28,7 +29,8 @@ struct Tile {
 };
 
 /// The models' layer as the terrain plugin builds it in that site.
-std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry);
+std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
+                                         const std::string& voids = "neighbours");
 
 /// Reads place and size of a model. One without a coordinate system (`crs`: "") is read as
 /// longitude and latitude if its numbers may be these. Throws Error naming the file.

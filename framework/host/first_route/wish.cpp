@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "host/base/words.hpp"
 
 namespace altiplan::host {
@@ -21,6 +22,10 @@ void expect_words(const RouteWish& wish) {
   if (wish.planner == "") {
     throw Error("--planner: expected the name of a planner, found nothing");
   }
+  if (wish.start_time && !kit::parse_iso_time(*wish.start_time)) {
+    throw Error("--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
+                *wish.start_time + "'");
+  }
 }
 }  // namespace
 
@@ -29,6 +34,7 @@ WishedHeights heights_of(const RouteWish& wish) {
   WishedHeights heights;
   heights.max_m = wish.max_above_ground_m;
   const double max = heights.max_m.value_or(1e9);
+  heights.is_min_lowered = !wish.min_above_ground_m && max / 2 < heights.min_m;
   heights.min_m = wish.min_above_ground_m.value_or(std::min(heights.min_m, max / 2));
   if (heights.min_m >= max) {
     throw Error("--max-agl: " + metres(max) + " leaves no height above --min-agl, " +

@@ -32,6 +32,7 @@ struct RouteWish {
 /// Heights above ground, metres.
 struct WishedHeights {
   double min_m = 50;
+  bool is_min_lowered = false;  ///< below the default, for the upper limit's sake
   std::optional<double> max_m;
   double ends_m = 60;  ///< of points without a height
 };

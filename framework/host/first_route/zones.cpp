@@ -4,12 +4,27 @@
 #include <algorithm>
 #include <tuple>
 
+#include "altiplan/error.hpp"
 #include "altiplan/kit/formats/airspace.hpp"
 #include "altiplan/kit/formats/geojson.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "altiplan/kit/formats/mission_file.hpp"
 
 namespace altiplan::host {
+
+namespace {
+
+/// GeoJSON, which is what is left where the content tells of no other kind.
+kit::GeoJson read_features(const std::filesystem::path& file, const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first == text.npos || text[first] != '{') {
+    throw Error(file.string() +
+                ": expected zones: published airspace (ED-269, ED-318, AIXM 5.1, OpenAir, UAS "
+                "facility maps), GeoJSON, KML, or a fence (.plan, .waypoints)");
+  }
+  return kit::read_geojson(file.string());
+}
+}  // namespace
 
 std::string zone_parameters(const std::filesystem::path& file, bool has_start_time) {
   const std::string text = kit::read_file(file.string());
@@ -20,7 +35,7 @@ std::string zone_parameters(const std::filesystem::path& file, bool has_start_ti
     kit::read_mission(file.string(), text);
     return "";
   }
-  const kit::GeoJson json = kit::read_geojson(file.string());
+  const kit::GeoJson json = read_features(file, text);
   std::string parameters;
   for (const auto& [key, property, is_time] : {std::tuple("floor_property", "floor_m", false),
                                                {"ceiling_property", "ceiling_m", false},
