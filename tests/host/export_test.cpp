@@ -259,6 +259,24 @@ TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
   EXPECT_TRUE(says(two, "not written: the route needs 3 items to stay valid"));
 }
 
+TEST(Export, MoreItemsThanAutopilotsStoreAreWarnedOf) {
+  const Vec3 start = kAround.front();
+  const Vec3 goal = kAround[1];
+  for (const int points : {500, 501}) {
+    Polyline dense;
+    for (int n = 0; n < points; ++n) {
+      dense.push_back(start + (goal - start) * (n / (points - 1.0)));
+    }
+    const Scene scene(dense);
+    for (const Format format : {Format::waypoints, Format::kml}) {
+      const Exported result = exported(scene, options_of(format), dense);
+      ASSERT_TRUE(result.text.has_value());
+      EXPECT_EQ(says(result, "warning: 501 items: PX4 stores 500"),
+                points == 501 && format == Format::waypoints);
+    }
+  }
+}
+
 TEST(Export, ThinningKeepsEndsAndViaPoints) {
   const Scene scene(kAround, true, nullptr);
   const std::vector<Goal> via{{kAround[2], 0.5}};

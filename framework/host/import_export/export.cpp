@@ -49,6 +49,9 @@ kit::MissionFile frame_of(const ExportSource& source, const Placing& place, Form
   return file;
 }
 
+/// The items that PX4 stores (NUM_MISSIONS_SUPPORTED); ArduPilot without an SD card about 700.
+constexpr std::size_t kStoredItems = 500;
+
 /// Drops waypoints, and their times, to fit max_items, and reports it. False if the route cannot be
 /// thinned that far.
 bool thin(const Mission& mission, ExportSource& source, const ExportOptions& options,
@@ -101,7 +104,20 @@ void add_zones(const Mission& mission, const Route& route, kit::MissionFile& fil
   file.zones = std::move(fence.zones);
 }
 
+void warn_of_many_items(const ExportSource& source, const Mission& mission,
+                        const ExportOptions& options, std::vector<std::string>& messages) {
+  const std::size_t items = options.has_commands() ? item_count(source, mission, options) : 0;
+  if (items > kStoredItems) {
+    messages.push_back("warning: " + std::to_string(items) +
+                       " items: PX4 stores 500, ArduPilot about 700 without an SD card; altiplan "
+                       "export --max-items N drops points that the route can do without");
+  }
+}
 }  // namespace
+
+bool ExportOptions::has_commands() const {
+  return format == Format::qgc_plan || format == Format::waypoints;
+}
 
 std::string ExportOptions::problem() const {
   if (format == Format::gpx && altitude != AltitudeFrame::sea) {
@@ -110,14 +126,13 @@ std::string ExportOptions::problem() const {
   if (format == Format::kml && altitude == AltitudeFrame::home) {
     return "kml only has heights above sea level or ground: give --altitude sea or ground";
   }
-  const bool has_commands = format == Format::qgc_plan || format == Format::waypoints;
-  if (loiters && !has_commands) {
+  if (loiters && !has_commands()) {
     return "--arcs loiter needs qgc-plan or waypoints: other formats have no commands";
   }
   if (loiters && altitude == AltitudeFrame::ground) {
     return "--arcs loiter needs --altitude sea or home: the ground below a circle has many heights";
   }
-  if ((takeoff || land) && !has_commands) {
+  if ((takeoff || land) && !has_commands()) {
     return "--takeoff and --land need qgc-plan or waypoints: other formats have no commands";
   }
   return "";
@@ -169,6 +184,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   }
   result = written_soundly(mission, source, place, options, std::move(text));
   if (result.text) {
+    warn_of_many_items(source, mission, options, notes);
     result.messages.insert(result.messages.end(), notes.begin(), notes.end());
     if (options.altitude == AltitudeFrame::ground) {
       result.messages.emplace_back(

@@ -23,6 +23,8 @@ struct ExportOptions {
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
 
+  /// True of a format for autopilots, with commands such as take-offs.
+  bool has_commands() const;
   /// The reason why the options cannot be combined; "" if they can.
   std::string problem() const;
 };
