@@ -260,8 +260,8 @@ TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
 }
 
 TEST(Export, MoreItemsThanAutopilotsStoreAreWarnedOf) {
-  const Vec3 start = kAround.front();
-  const Vec3 goal = kAround[1];
+  const Vec3& start = kAround.front();
+  const Vec3& goal = kAround[1];
   for (const int points : {500, 501}) {
     Polyline dense;
     for (int n = 0; n < points; ++n) {
