@@ -4,51 +4,15 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
+#include "altiplan/kit/lattice/bit_lines.hpp"
 #include "altiplan/kit/lattice/lattice.hpp"
 
 namespace altiplan::jps {
 
-/// Cells of a level as lines of bits, 1 blocked: its rows or its columns. Lines and the cells in
-/// them are numbered from -1, which is the border, as is everything after the last. Does not own
-/// the words; a word before the first line and one after the last must be readable.
-class BitLines {
- public:
-  /// Number of bits, from the first of a window, that belong to the line.
-  static constexpr int kWindow = 57;
-
-  BitLines() = default;
-  BitLines(const std::uint64_t* line_0, std::size_t words_per_line)
-      : line_0_(reinterpret_cast<const unsigned char*>(line_0)),
-        bytes_per_line_(std::ptrdiff_t(words_per_line * sizeof(std::uint64_t))) {
-    static_assert(std::endian::native == std::endian::little);
-  }
-
-  /// Bits of a line, and the offset to those of the next.
-  const unsigned char* line(int number) const { return line_0_ + number * bytes_per_line_; }
-  std::ptrdiff_t bytes_per_line() const { return bytes_per_line_; }
-
-  /// The cells of a line from `at` on in the direction of the scan: the first is the lowest bit
-  /// (kAhead: cell numbers rise), or the highest.
-  template <bool kAhead>
-  static std::uint64_t window(const unsigned char* line, int at) {
-    const auto from = std::size_t(at + 1);
-    std::uint64_t bits = 0;
-    if (kAhead) {
-      std::memcpy(&bits, line + from / 8, sizeof bits);
-      return bits >> from % 8;
-    }
-    std::memcpy(&bits, line + from / 8 - 7, sizeof bits);
-    return bits << (7 - from % 8);
-  }
-
- private:
-  const unsigned char* line_0_ = nullptr;
-  std::ptrdiff_t bytes_per_line_ = 0;
-};
+using kit::BitLines;
 
 /// Windows starting at one cell: of its line and of the two adjacent lines.
 template <kit::CornerRule kRule, bool kAhead>

@@ -52,36 +52,6 @@ struct Params {
   }
 };
 
-/// The constraint of the request that this search cannot check per step, or "".
-std::string beyond_cells(const Request& request) {
-  const Limits& limits = request.limits;
-  if (limits.turns()) {
-    return "limits on turns";
-  }
-  if (limits.min_leg > 0 || limits.max_leg < kInfinity) {
-    return "limits on the length of legs";
-  }
-  if (limits.max_route_length < kInfinity) {
-    return "a limit on the route's length";
-  }
-  if (request.world->has_ground()) {
-    return "the ground of a layer";
-  }
-  const bool over_ground =
-      limits.min_ground_clearance ||
-      std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
-        return band.datum == AltitudeBand::Datum::ground;
-      });
-  if (over_ground) {
-    return "constraints on the ground below";
-  }
-  if (request.vehicle.body != nullptr) {
-    return "the vehicle's body";
-  }
-  return request.constraints.empty() ? ""
-                                     : "the constraint '" + request.constraints.front().name + "'";
-}
-
 PlanResult refused(const std::string& what) {
   PlanResult result;
   result.status = PlanStatus::invalid_problem;
@@ -95,7 +65,7 @@ class Jps final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    if (const std::string rule = beyond_cells(request); !rule.empty()) {
+    if (const std::string rule = kit::beyond_cells(request); !rule.empty()) {
       return refused("cannot satisfy " + rule);
     }
     const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;

@@ -55,6 +55,35 @@ std::shared_ptr<const VoxelGrid> occupancy(const Request& request, const Lattice
                    std::max(request.limits.min_clearance, request.vehicle.radius_m));
 }
 
+std::string beyond_cells(const Request& request) {
+  const Limits& limits = request.limits;
+  if (limits.turns()) {
+    return "limits on turns";
+  }
+  if (limits.min_leg > 0 || limits.max_leg < kInfinity) {
+    return "limits on the length of legs";
+  }
+  if (limits.max_route_length < kInfinity) {
+    return "a limit on the route's length";
+  }
+  if (request.world->has_ground()) {
+    return "the ground of a layer";
+  }
+  const bool over_ground =
+      limits.min_ground_clearance ||
+      std::any_of(limits.altitude.begin(), limits.altitude.end(), [](const AltitudeBand& band) {
+        return band.datum == AltitudeBand::Datum::ground;
+      });
+  if (over_ground) {
+    return "constraints on the ground below";
+  }
+  if (request.vehicle.body != nullptr) {
+    return "the vehicle's body";
+  }
+  return request.constraints.empty() ? ""
+                                     : "the constraint '" + request.constraints.front().name + "'";
+}
+
 MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck check,
                      CornerRule corner)
     : request_(request),

@@ -27,6 +27,10 @@ enum class MoveCheck {
 ALTIPLAN_API std::shared_ptr<const VoxelGrid> occupancy(const Request& request,
                                                         const Lattice& lattice);
 
+/// What of the request a search that knows only which cells of a level are free cannot satisfy, or
+/// "": "limits on turns".
+ALTIPLAN_API std::string beyond_cells(const Request& request);
+
 /// Largest radius of a turn from one of the steps into another: their fillet radius
 /// min(a, b) / (2 tan(turn / 2)) for steps of lengths a and b whose headings differ; on level
 /// squares 1.207 times the edge. (Longer legs allow wider turns.)
