@@ -27,11 +27,11 @@ import worlds
 SPACE = ("astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta_star",
          "stratified_theta", "spatial_slicing", "rrt", "rrt_connect", "rrt_star",
          "informed_rrt_star", "apf", "ompl")
-LEVEL = ("jps", "ant_colony", "improved_ant_colony", "velocity_field", "astar", "theta_star", "rrt_star",
-         "dstar_lite", "bidirectional_astar")
+LEVEL = ("anya", "jps", "ant_colony", "improved_ant_colony", "velocity_field", "astar", "theta_star",
+         "rrt_star", "dstar_lite", "bidirectional_astar")
 SMOOTHERS = ("prune", "shortcut", "bspline", "hermite", "trim", "waypoint_reduction")
-OF_CELLS = {"astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta_star", "jps",
-            "stratified_theta", "spatial_slicing", "ant_colony", "improved_ant_colony"}
+OF_CELLS = {"anya", "astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta_star",
+            "jps", "stratified_theta", "spatial_slicing", "ant_colony", "improved_ant_colony"}
 
 
 class Case:
