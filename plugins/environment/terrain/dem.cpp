@@ -11,6 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
+#include "plain.hpp"
 #include "whole.hpp"
 
 namespace terrain {
@@ -70,7 +71,8 @@ bool is_small(const std::vector<fs::path>& files) {
   return bytes <= kMax;
 }
 
-gdal::Dataset open(const Params& params) {
+/// The model's file and those that belong to it.
+std::vector<fs::path> look_up(const Params& params) {
   const std::string& file = params.file.text;
   if (file.rfind("/vsi", 0) == 0 || file.find("://") != std::string::npos ||
       file.find(":/") != std::string::npos) {
@@ -79,9 +81,12 @@ gdal::Dataset open(const Params& params) {
   if (const std::string why = altiplan::kit::why_unreadable(file); !why.empty()) {
     refuse(params, why);
   }
-  const std::vector<fs::path> files = files_of(params);
+  return files_of(params);
+}
+
+gdal::Dataset open(const Params& params, const std::vector<fs::path>& files) {
   gdal::CloseDataset close;
-  std::string name = file;
+  std::string name = params.file.text;
   if (is_small(files)) {
     close.files = std::make_shared<gdal::MemoryFiles>(files);
     name = close.files->name_of(files.front());
@@ -91,7 +96,7 @@ gdal::Dataset open(const Params& params) {
   const char* const as_reals[] = {"DATATYPE=Float32", nullptr};
   gdal::Dataset dataset(
       api().GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, drivers,
-                       fs::path(file).extension() == ".asc" ? as_reals : nullptr, nullptr),
+                       files.front().extension() == ".asc" ? as_reals : nullptr, nullptr),
       std::move(close));
   if (!dataset) {
     refuse(params,
@@ -272,9 +277,15 @@ void expect_few(const Params& params, const Dem& dem, const Part& part) {
 }
 
 Dem read_dem(const Params& params, bool may_read_a_part) try {
+  const std::vector<fs::path> files = look_up(params);
+  if (files.size() == 1 && is_small(files)) {
+    if (std::optional<Dem> plain = read_plain(params, files.front())) {
+      return std::move(*plain);
+    }
+  }
   const gdal::Quiet quiet;
   Dem dem;
-  dem.dataset = open(params);
+  dem.dataset = open(params, files);
   void* dataset = dem.dataset.get();
   read_size(params, dataset, may_read_a_part, dem);
   if (const std::string missing = missing_from(params.file.text, dataset); !missing.empty()) {

@@ -63,14 +63,15 @@ struct Dem {
   int rows = 0;
   std::array<double, 2> south_west;  ///< of the first post, in the system's own units
   std::array<double, 2> step;        ///< between posts, likewise
-  gdal::Reference crs;
+  gdal::Reference crs;               ///< null: longitude and latitude of WGS 84
   std::string crs_name;
   std::string crs_code;     ///< "EPSG:32632", "" if the file gives none
   std::string datum;        ///< of the heights: "EGM96 height", "" if the file names none
   bool geographic = false;  ///< degrees; otherwise lengths of `unit_m`
   double unit_m = 1;
 
-  gdal::Dataset dataset;
+  std::vector<float> numbers;     ///< of the whole file in its order, if they are read already
+  gdal::Dataset dataset;          ///< null if they are
   void* band = nullptr;           ///< of the dataset
   bool from_north = true;         ///< order of the file's rows
   std::array<float, 2> nodata{};  ///< numbers that mark voids; NaN: none

@@ -91,6 +91,7 @@ Model::Model(const Params& params, const altiplan::Site& site)
       field_(read(part_about(dem_, layout_, site))),
       covered_(covered_by(field_, layout_)) {
   if (std::isinf(to_edge({0, 0, 0}))) {  // it is the whole
+    dem_.numbers = {};
     dem_.dataset.reset();
     dem_.band = nullptr;
     joined_ = site.before != nullptr && join(field_, *site.before);

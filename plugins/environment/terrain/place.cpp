@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "altiplan/error.hpp"
@@ -21,22 +22,28 @@ using XY = std::array<double, 2>;
 /// thread at a time.
 class ToWgs84 {
  public:
-  explicit ToWgs84(const gdal::Reference& crs)
-      : wgs84_(gdal::reference("EPSG:4326")), there_(crs, wgs84_), back_(wgs84_, crs) {}
-  XY lonlat(const XY& p) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return there_(p[0], p[1]);
+  explicit ToWgs84(const gdal::Reference& crs) {
+    if (crs) {
+      const gdal::Reference wgs84 = gdal::reference("EPSG:4326");
+      there_.emplace(crs, wgs84);
+      back_.emplace(wgs84, crs);
+    }
   }
-  XY native(double lon, double lat) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return back_(lon, lat);
-  }
+  XY lonlat(const XY& p) const { return by(there_, p); }
+  XY native(double lon, double lat) const { return by(back_, {lon, lat}); }
 
  private:
+  XY by(const std::optional<gdal::Transform>& transform, const XY& p) const {
+    if (!transform) {
+      return p;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return (*transform)(p[0], p[1]);
+  }
+
   mutable std::mutex mutex_;
-  gdal::Reference wgs84_;
-  gdal::Transform there_;
-  gdal::Transform back_;
+  std::optional<gdal::Transform> there_;  ///< none for WGS 84 itself
+  std::optional<gdal::Transform> back_;
 };
 
 /// The axes of a projected system, with a separate origin and in metres.
@@ -65,7 +72,7 @@ XY middle_of(const Dem& dem) {
 
 /// Longitude and latitude of another datum are shifted as a whole, by the shift at the centre.
 XY datum_shift(const Dem& dem) {
-  if (gdal::api().OSRIsSameGeogCS(dem.crs.get(), gdal::reference("EPSG:4326").get())) {
+  if (!dem.crs || gdal::api().OSRIsSameGeogCS(dem.crs.get(), gdal::reference("EPSG:4326").get())) {
     return {0, 0};
   }
   const XY middle = middle_of(dem);
@@ -235,7 +242,7 @@ Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& param
   const std::string crs = is_auto ? utm_of(dem) : site.frame_crs;
   const gdal::Reference asked = gdal::reference(crs);
   if (crs.empty() ||
-      (asked && gdal::api().OSRIsSame(asked.get(), dem.crs.get()) && !dem.geographic)) {
+      (asked && !dem.geographic && gdal::api().OSRIsSame(asked.get(), dem.crs.get()))) {
     return in_own_frame(dem);
   }
   return in_frame(dem, asked_frame(dem, crs), params);

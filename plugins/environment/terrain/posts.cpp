@@ -49,9 +49,11 @@ class Reader {
 
   /// Decodes each block once, however few GDAL's cache holds.
   void read() {
-    int width = 0;
-    int height = 0;
-    api().GDALGetBlockSize(dem_.band, &width, &height);
+    int width = dem_.columns;
+    int height = dem_.rows;
+    if (dem_.band != nullptr) {
+      api().GDALGetBlockSize(dem_.band, &width, &height);
+    }
     const int right = whole_.x + whole_.columns;
     const int below = whole_.y + whole_.rows;
     for (int y = whole_.y, next_y = 0; y < below; y = next_y) {
@@ -70,13 +72,25 @@ class Reader {
            std::size_t(x - whole_.x);
   }
 
-  void read(const Window& w) {
+  /// The file's own numbers of a window, into their places.
+  void fetch(const Window& w) {
+    if (dem_.band == nullptr) {
+      for (int y = w.y; y < w.y + w.rows; ++y) {
+        std::copy_n(dem_.numbers.begin() + std::ptrdiff_t(y) * dem_.columns + w.x, w.columns,
+                    place(w.x, y));
+      }
+      return;
+    }
     const GSpacing post = sizeof(float);
     const GSpacing row = post * whole_.columns * (dem_.from_north ? -1 : 1);
     if (api().GDALRasterIOEx(dem_.band, GF_Read, w.x, w.y, w.columns, w.rows, place(w.x, w.y),
                              w.columns, w.rows, GDT_Float32, post, row, nullptr) != CE_None) {
       refuse(params_, "damaged: " + gdal::last_error());
     }
+  }
+
+  void read(const Window& w) {
+    fetch(w);
     for (int y = w.y; y < w.y + w.rows; ++y) {
       const std::int64_t voids = to_metres(dem_, place(w.x, y), w.columns);
       if (voids < 0) {
@@ -101,15 +115,23 @@ class Reader {
   Window whole_;
 };
 
-Posts read(const Params& params, const Dem& dem, const Part& part) {
-  const gdal::Quiet quiet;
-  expect_few(params, dem, part);
+/// Refuses a part for which the file has no data.
+void expect_data(const Params& params, const Dem& dem, const Part& part) {
   const Window window = window_of(dem, part);
   const int missing =
       api().GDALGetDataCoverageStatus(dem.band, window.x, window.y, window.columns, window.rows,
                                       GDAL_DATA_COVERAGE_STATUS_EMPTY, nullptr);
   if (missing & GDAL_DATA_COVERAGE_STATUS_EMPTY) {
     refuse(params, "parts of the file contain no data");
+  }
+}
+
+Posts read(const Params& params, const Dem& dem, const Part& part) {
+  std::optional<gdal::Quiet> quiet;
+  expect_few(params, dem, part);
+  if (dem.band != nullptr) {
+    quiet.emplace();
+    expect_data(params, dem, part);
   }
   Posts posts{part, {}, 0};
   posts.heights.resize(std::size_t(part.columns) * std::size_t(part.rows));
