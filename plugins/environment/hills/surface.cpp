@@ -41,30 +41,40 @@ class Profile {
     }
   }
 
-  double at(double t) const {
+  std::size_t size() const { return bells_.size(); }
+
+  /// The ground at t. `factors` receives exp(-w² / 2) of each bell, w its widths away.
+  double at(double t, double* factors) const {
     double sum = base_;
     for (const Bell& bell : bells_) {
-      sum += bell.height * std::exp(-square((t - bell.middle) / bell.width) / 2);
+      *factors = std::exp(-square((t - bell.middle) / bell.width) / 2);
+      sum += bell.height * *factors++;
     }
     return sum;
   }
 
-  /// Upper bound of sign × second derivative on [from, to]; never below 0.
-  double bend(double sign, double from, double to) const {
+  /// Upper bound of sign × second derivative on [from, to], whose ends have these factors; never
+  /// below 0.
+  double bend(double sign, double from, double to, const double* at_from,
+              const double* at_to) const {
     double bound = 0;
     for (const Bell& bell : bells_) {
       const double w0 = std::abs(from - bell.middle) / bell.width;
       const double w1 = std::abs(to - bell.middle) / bell.width;
+      const double bend0 = (w0 * w0 - 1) * *at_from++;  // bell_bend(w0), without its exponential
+      const double bend1 = (w1 * w1 - 1) * *at_to++;
       const bool over_middle = from < bell.middle && bell.middle < to;
       const double near = over_middle ? 0 : std::min(w0, w1);
       const double far = std::max(w0, w1);
+      const double bend_near = over_middle ? -1 : w0 < w1 ? bend0 : bend1;
+      const double bend_far = w0 < w1 ? bend1 : bend0;
       double most = 0;
       if (sign < 0) {
-        most = -std::min(bell_bend(near), bell_bend(far));
+        most = -std::min(bend_near, bend_far);
       } else if (far < kMaxBendAt) {
-        most = bell_bend(far);
+        most = bend_far;
       } else {
-        most = near > kMaxBendAt ? bell_bend(near) : kMaxBend;
+        most = near > kMaxBendAt ? bend_near : kMaxBend;
       }
       bound += bell.height / square(bell.width) * most;
     }
@@ -89,40 +99,54 @@ struct Least {
   double enough;
   double too_low = -kInfinity;
   double best = kInfinity;
+  std::vector<double> factors = {};  ///< of the profile's bells at the places in use
 
   static constexpr double kTolerance = 1e-7;
 
+  /// A place on the leg: the function's value there, and which of `factors` are its own.
+  struct Place {
+    double t, value;
+    std::size_t number;
+  };
+
   double line(double t) const { return line0 + t * (line1 - line0); }
-  double height(double t) const { return sign * (z0 + t * (z1 - z0) - profile.at(t)); }
-  void take(double t, double at) { best = std::min(best, std::max(line(t), at)); }
+  Place look(double t, std::size_t number) {
+    factors.resize(std::max(factors.size(), (number + 1) * profile.size()));
+    const double ground = profile.at(t, factors.data() + number * profile.size());
+    const double value = sign * (z0 + t * (z1 - z0) - ground);
+    best = std::min(best, std::max(line(t), value));
+    return {t, value, number};
+  }
+  const double* factors_of(const Place& place) const {
+    return factors.data() + place.number * profile.size();
+  }
 
   double find() {
-    const double first = height(0);
-    const double last = height(1);
-    take(0, first);
-    take(1, last);
-    search(0, 1, first, last);
+    factors.reserve(8 * profile.size());
+    const Place first = look(0, 0);
+    search(first, look(1, 1), 2);
     return best;
   }
 
-  void search(double from, double to, double at_from, double at_to) {
+  void search(const Place& from, const Place& to, std::size_t number) {
     if (best < too_low) {
       return;
     }
-    const double sag = profile.bend(-sign, from, to) * square(to - from) / 8;
-    const double bound = std::max(std::min(line(from), line(to)), std::min(at_from, at_to) - sag);
-    if (bound >= std::min(best - kTolerance, enough) || to - from < 1e-13) {
+    const double length = to.t - from.t;
+    const double bend = profile.bend(-sign, from.t, to.t, factors_of(from), factors_of(to));
+    const double sag = bend * square(length) / 8;
+    const double bound =
+        std::max(std::min(line(from.t), line(to.t)), std::min(from.value, to.value) - sag);
+    if (bound >= std::min(best - kTolerance, enough) || length < 1e-13) {
       return;
     }
-    const double middle = (from + to) / 2;
-    const double at = height(middle);
-    take(middle, at);
-    if (at_from < at_to) {
-      search(from, middle, at_from, at);
-      search(middle, to, at, at_to);
+    const Place middle = look((from.t + to.t) / 2, number);
+    if (from.value < to.value) {
+      search(from, middle, number + 1);
+      search(middle, to, number + 1);
     } else {
-      search(middle, to, at, at_to);
-      search(from, middle, at_from, at);
+      search(middle, to, number + 1);
+      search(from, middle, number + 1);
     }
   }
 };

@@ -81,9 +81,22 @@ void GroundSteps::learn(int east, int north, int d) {
   int lowest = kNever;
   int highest = levels_;
   if (world_.ground_below(a, b)) {
-    const double gap = world_.ground_gap(a, b);
-    lowest = level_at(std::ceil((rules_.needed_gap() - gap) / height_ - kRounding));
-    int certain = level_at(std::ceil((rules_.certain_gap() - gap) / height_ + kRounding));
+    // The ground below its ends leaves the step one lowest level at most, and a query that may end
+    // as soon as the whole leg is known to keep that one is several times faster than the exact
+    // height of the leg above the ground.
+    const Cell o = offset(d);
+    const double gap_at_ends =
+        std::min(a.z() - ground_at(east, north), b.z() - ground_at(east + o[0], north + o[1]));
+    lowest = level_at(std::ceil((rules_.needed_gap() - gap_at_ends) / height_ - kRounding));
+    const double enough = rules_.certain_gap() + 2 * kRounding * height_;
+    int certain = lowest;
+    double gap = gap_at_ends;
+    if (lowest < levels_ &&
+        (gap = world_.ground_gap(raised(a, lowest), raised(b, lowest), enough)) < enough) {
+      gap -= lowest * height_;
+      lowest = level_at(std::ceil((rules_.needed_gap() - gap) / height_ - kRounding));
+      certain = level_at(std::ceil((rules_.certain_gap() - gap) / height_ + kRounding));
+    }
     while (lowest < certain) {
       const int middle = (lowest + certain) / 2;
       const bool keeps =
@@ -105,6 +118,15 @@ void GroundSteps::learn(int east, int north, int d) {
       north + o[1] < counts[1]) {
     set(east + o[0], north + o[1], opposite(d), lowest + o[2], highest + o[2]);
   }
+}
+
+double GroundSteps::ground_at(int east, int north) {
+  float& ground = columns_.at(column_at(east, north)).ground;
+  if (std::isnan(ground)) {
+    const Vec3 p = lattice_.position({east, north, 0});
+    ground = std::nextafter(float(p.z() - world_.ground_gap(p, p)), -INFINITY);
+  }
+  return ground;
 }
 
 void GroundSteps::set(int east, int north, int d, int lowest, int highest) {

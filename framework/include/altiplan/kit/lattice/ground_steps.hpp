@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -67,6 +68,7 @@ class ALTIPLAN_API GroundSteps {
   struct alignas(64) Column {
     std::array<Level, 28> lowest;  ///< by direction, the level from which its step is permitted
     DirectionMask known = 0;
+    float ground = NAN;  ///< below its middle, or a little less; NaN: not asked yet
   };
   static_assert(sizeof(Column) == sizeof(Levels));
 
@@ -103,6 +105,7 @@ class ALTIPLAN_API GroundSteps {
   /// Finds the levels of a step, and of its reverse.
   void learn(int east, int north, int d);
   void set(int east, int north, int d, int lowest, int highest);
+  double ground_at(int east, int north);
   /// The lowest level around which bounds permit everything.
   int level_above_all(int east, int north) const;
 
