@@ -20,20 +20,22 @@ bool is_gdal_open() {
   return false;
 }
 
-/// Reads the file in a fresh process, which ends with this code.
 constexpr int kWithout = 10;
 constexpr int kWith = 11;
-void expect_ending(const fs::path& file, const std::string& more, int code) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto read_and_end = [&] {
-    make_environment("terrain", file_yaml(file, more));
-    std::_Exit(is_gdal_open() ? kWith : kWithout);
-  };
-  EXPECT_EXIT(read_and_end(), ::testing::ExitedWithCode(code), "") << file << " " << more;
-}
 
 class PlainModels : public MadeFiles {
  protected:
+  /// Reads the file in a fresh process, which ends with this code.
+  void expect_ending(const fs::path& file, const std::string& more, int code) const {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto read_and_end = [&] {
+      make_environment("terrain", file_yaml(file, more));
+      fs::remove_all(folder_);  // that process's own
+      std::_Exit(is_gdal_open() ? kWith : kWithout);
+    };
+    EXPECT_EXIT(read_and_end(), ::testing::ExitedWithCode(code), "") << file << " " << more;
+  }
+
   /// The same file where a sidecar makes GDAL read it.
   fs::path with_sidecar(const fs::path& file) const {
     fs::create_directories(folder_ / "beside");
