@@ -115,8 +115,10 @@ class CellCorners {
     const std::int64_t right = left + kUnit;
     const std::int64_t low = std::int64_t{j} * kUnit;
     const std::int64_t high = low + kUnit;
-    const auto [x0, x1] = std::minmax(a.x, b.x);
-    const auto [y0, y1] = std::minmax(a.y, b.y);
+    const std::int64_t x0 = std::min(a.x, b.x);
+    const std::int64_t x1 = std::max(a.x, b.x);
+    const std::int64_t y0 = std::min(a.y, b.y);
+    const std::int64_t y1 = std::max(a.y, b.y);
     const bool beside_x = x1 > left && x0 < right;
     const bool beside_y = y1 > low && y0 < high;
     if (x0 == right && x1 == right && beside_y && !map_.free(i + 1, j)) {

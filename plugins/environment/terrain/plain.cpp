@@ -137,8 +137,8 @@ std::string text(TIFF* tiff, std::uint32_t name) {
 /// kind: true where posts are points, so that cells lie half a step about them.
 std::optional<bool> are_points(TIFF* tiff) {
   constexpr std::uint32_t kDirectory = 34735;
-  enum Key { kModelType = 1024, kRasterType = 1025, kCitation = 1026, kGeographicType = 2048 };
-  enum { kGeogCitation = 2049, kAngularUnits = 2054, kMajorAxis = 2057, kFlattening = 2059 };
+  enum Key { model_type = 1024, raster_type = 1025, citation = 1026, geographic_type = 2048 };
+  enum { geog_citation = 2049, angular_units = 2054, major_axis = 2057, flattening = 2059 };
   const auto keys = tags<std::uint16_t>(tiff, kDirectory);
   bool points = false;
   int wgs84 = 0;
@@ -148,22 +148,22 @@ std::optional<bool> are_points(TIFF* tiff) {
   for (std::size_t k = 4; k < 4 + 4 * std::size_t(keys[3]); k += 4) {
     const std::uint16_t value = keys[k + 3];
     switch (keys[k]) {
-      case kModelType:
+      case model_type:
         wgs84 += value == 2 ? 1 : 0;
         break;
-      case kGeographicType:
+      case geographic_type:
         wgs84 += value == 4326 ? 1 : 0;
         break;
-      case kRasterType:
+      case raster_type:
         points = value == 2;
         break;
-      case kAngularUnits:
+      case angular_units:
         wgs84 -= value == 9102 ? 0 : 1;  // degrees
         break;
-      case kCitation:
-      case kGeogCitation:
-      case kMajorAxis:
-      case kFlattening:
+      case citation:
+      case geog_citation:
+      case major_axis:
+      case flattening:
         break;  // what the code says in other words
       default:
         return {};
@@ -192,17 +192,17 @@ std::optional<float> nodata_of(const std::string& word) {
 }
 
 std::optional<Dem> header_of(const Params& params, TIFF* tiff) {
-  enum { kPixelScale = 33550, kTiePoint = 33922, kTransformation = 34264 };
-  enum { kGdalMetadata = 42112, kGdalNodata = 42113 };
+  enum { pixel_scale = 33550, tie_point = 33922, transformation = 34264 };
+  enum { gdal_metadata = 42112, gdal_nodata = 42113 };
   const auto columns = tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
   const auto rows = tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
-  const auto scale = tags<double>(tiff, kPixelScale);
-  const auto tie = tags<double>(tiff, kTiePoint);
+  const auto scale = tags<double>(tiff, pixel_scale);
+  const auto tie = tags<double>(tiff, tie_point);
   const auto points = are_points(tiff);
-  const auto nodata = nodata_of(text(tiff, kGdalNodata));
+  const auto nodata = nodata_of(text(tiff, gdal_nodata));
   if (!fits(params, columns, rows) || scale.size() < 2 || tie.size() != 6 || tie[0] != 0 ||
-      tie[1] != 0 || !tags<double>(tiff, kTransformation).empty() || !points || !nodata ||
-      !are_metres(text(tiff, kGdalMetadata)) ||
+      tie[1] != 0 || !tags<double>(tiff, transformation).empty() || !points || !nodata ||
+      !are_metres(text(tiff, gdal_metadata)) ||
       tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) != 1 ||
       tag<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, 0) != ORIENTATION_TOPLEFT ||
       tag<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, 0) != PHOTOMETRIC_MINISBLACK ||
