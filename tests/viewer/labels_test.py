@@ -4,9 +4,11 @@ cut and none lies on another one, on wide and narrow screens, light and dark, at
 
 `labels_test.py PROGRAM PLUGINS Views.test_ridge` runs one case; skipped without Chromium. With
 ALTIPLAN_PICTURES in the environment, pictures of all of them go into that folder."""
+import contextlib
 import json
 import os
 import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -147,7 +149,6 @@ class Views(Labels):
                 "altiplan.film.frame(arguments[0]).then(arguments[1])", second)
             self.assert_labels(f"film_{second}", 15)
 
-
     def test_pictures(self):
         """From above, with the heights below."""
         pipelines = os.path.join(CONFIGS, "pipelines")
@@ -180,6 +181,22 @@ class Report(Labels):
                 self.picture_of_all(f"report_{width}_{scheme}", width)
             texts = self.assert_labels(f"report_top_{width}_{scheme}", 200, scrolls=True)
             self.assertIn("greedy", texts)
+
+    def test_corner(self):
+        """On a machine so fast that the first number of the times lies in the corner of the axes."""
+        self.call("study", os.path.join(CONFIGS, "studies", "quick.yaml"), "--out", "corner.db",
+                  "--jobs", "2")
+        with contextlib.closing(sqlite3.connect(os.path.join(self.folder, "corner.db"))) as store:
+            times = "quantity IN (SELECT id FROM quantities WHERE name = 'plan_time_s')"
+            least, = store.execute("SELECT min(value) FROM run_values JOIN runs ON run = runs.id "
+                                   f"WHERE outcome = 'solved' AND {times}").fetchone()
+            store.execute(f"UPDATE run_values SET value = value * ? WHERE {times}", (0.001 / least,))
+            store.commit()
+        self.call("report", "corner.db", "-o", "corner")
+        self.browser.size(*SIZES[0])
+        self.browser.driver.get(f"file://{self.folder}/corner/index.html")
+        self.browser.settle()
+        self.assertTrue("0.001" in self.assert_labels("report_corner", 200, scrolls=True))
 
     def picture_of_all(self, name, width):
         """The whole page, however long."""

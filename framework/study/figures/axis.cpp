@@ -137,13 +137,14 @@ void draw_bottom(Canvas& canvas, const Axis& axis, double top, double y, const s
   for (const Axis::Tick& tick : axis.ticks()) {
     canvas.line(axis(tick.value), top, axis(tick.value), y, "hair");
     if (!tick.label.empty()) {
-      canvas.text(axis(tick.value), y + 15, tick.label, "quiet", Anchor::middle);
+      // Below what stands left of the corner, however near the first tick is to it.
+      canvas.text(axis(tick.value), y + 20, tick.label, "quiet", Anchor::middle);
     }
   }
   const double from = axis(axis.low());
   const double to = axis(axis.high());
   canvas.line(from, y, to, y, "quiet_line");
-  canvas.text((from + to) / 2, y + 32, label, "ink", Anchor::middle);
+  canvas.text((from + to) / 2, y + 37, label, "ink", Anchor::middle);
 }
 
 void draw_left(Canvas& canvas, const Axis& axis, double left, double right, double top,

@@ -91,9 +91,9 @@ class Axis {
   double to_;
 };
 
-/// A horizontal axis with grid lines up through the plot, its numbers and its label: from y
-/// down 34.
-constexpr double kAxisHeight = 36;
+/// A horizontal axis with grid lines up through the plot, its numbers and its label: from y down to
+/// the baseline of the label 37, and so much for all.
+constexpr double kAxisHeight = 41;
 void draw_bottom(Canvas& canvas, const Axis& axis, double top, double y, const std::string& label);
 /// A vertical axis with grid lines across the plot, and its label above.
 void draw_left(Canvas& canvas, const Axis& axis, double left, double right, double top,
