@@ -10,7 +10,8 @@
 // Deviations: the other root is the first sample, so that a straight path is found at once; the
 //   remaining distance to connect is split into equal legs, as a short last one might violate the
 //   minimum leg length; where limits on turn and climb would be violated, a leg is bent until they
-//   are satisfied; a node within the goal's tolerance ends the search.
+//   are satisfied; a node within the goal's tolerance ends the search; after 1000 edges every other
+//   sample is the middle of a bridge (bridges.hpp), for narrow passages.
 // Symbols: q_rand the sample, q_near the nearest node, q_new the end of the new leg.
 #include "altiplan/kit/dubins/steering_params.hpp"
 #include "altiplan/kit/scratch.hpp"

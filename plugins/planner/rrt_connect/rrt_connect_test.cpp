@@ -116,6 +116,30 @@ TEST(RrtConnect, RoutesAreNoLongerThanAllowedAndEndWithinTheTolerance) {
   EXPECT_GE(solved, 15);
 }
 
+/// A wall across x, 2 m thick, in a volume of 80 x 80 x 100 m, with one gap of 4 x 4 m.
+std::vector<Shape> wall_with_gap(double x, double y, double z) {
+  const auto box = [](const Vec3& min, const Vec3& max) { return Shape(BoxShape{{min, max}}); };
+  return {box({x, 0, 0}, {x + 2, y, 100}), box({x, y + 4, 0}, {x + 2, 80, 100}),
+          box({x, y, 0}, {x + 2, y + 4, z}), box({x, y, z + 4}, {x + 2, y + 4, 100})};
+}
+
+TEST(RrtConnect, FindsNarrowGapsInWalls) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    RandomStream random(seed);
+    std::vector<Shape> walls;
+    for (double x = 12; x < 70; x += 12) {
+      const auto wall = wall_with_gap(x, random.uniform(0, 76), random.uniform(0, 96));
+      walls.insert(walls.end(), wall.begin(), wall.end());
+    }
+    Request request = testing::request_in(testing::world_of(std::move(walls)), {5, 5, 5},
+                                          {75, 75, 95}, {{0, 0, 0}, {80, 80, 100}});
+    request.random = RandomStream(seed);
+    const PlanResult result = make_planner("rrt_connect")->plan(request);
+    ASSERT_EQ(result.status, PlanStatus::solved) << seed << ": " << result.message;
+    EXPECT_TRUE(check(result.route, request).ok());
+  }
+}
+
 TEST(RrtConnect, SaysWhatWasInTheWayAndNeverThatThereIsNoWay) {
   testing::Drawn sealed = testing::draw({"S....\n.....\n..###\n..#G#\n..###"});
   sealed.request.level_m = 0.5;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/plan_result.hpp"
+#include "bridges.hpp"
 #include "trees.hpp"
 
 namespace altiplan::rrt_connect {
@@ -40,11 +42,7 @@ class TwoTrees {
     int a = kStart;
     if (may_go_on() && !join_roots() && connect(a, 0) != Growth::reached) {
       while (!is_done() && may_go_on()) {
-        const State q_rand = sample();
-        const Node near = edges_.nearest(a, q_rand);
-        if (extend(a, near, q_rand) != Growth::trapped && !is_done()) {
-          connect(1 - a, newest(a));
-        }
+        grow(a);
         a = tree(kStart).legs.size() <= tree(kGoal).legs.size() ? kStart : kGoal;
       }
     }
@@ -55,12 +53,67 @@ class TwoTrees {
   using State = typename Edges::State;
   enum class Growth { trapped, advanced, reached };
   static constexpr int kDraws = 4;
+  static constexpr std::uint64_t kHardAfter = 1000;  ///< edges tried; open worlds take a tenth
+  static constexpr int kOnward = 8;                  ///< edges tried from a passage
 
   Tree& tree(int side) { return trees_[std::size_t(side)]; }
   const Vec3& point(int side, Node node) { return tree(side).legs.point(node); }
   static const Vec3& place(const State& state) { return Edges::place(state); }
   Node newest(int side) { return Node(tree(side).legs.size()) - 1; }
   bool is_done() const { return !route_.empty(); }
+
+  /// EXTEND, then CONNECT; where these alone do not suffice, every other time through a passage.
+  void grow(int side) {
+    find_passages();
+    if (expanded_ >= kHardAfter) {
+      is_turn_of_passage_ = !is_turn_of_passage_;
+      if (is_turn_of_passage_ && !passages_[std::size_t(side)].empty()) {
+        grow_into_passage(side);
+        return;
+      }
+    }
+    const State q_rand = sample();
+    if (extend(side, edges_.nearest(side, q_rand), q_rand) != Growth::trapped && !is_done()) {
+      connect(1 - side, newest(side));
+    }
+  }
+
+  /// Takes about as long as the edges since the last time.
+  void find_passages() {
+    constexpr int kTries = 50'000;
+    if (expanded_ >= passages_after_) {
+      passages_after_ = expanded_ + kHardAfter;
+      const std::vector<Bridge> found = find_bridges(box_, settings_.range, kTries, edges_.rules(),
+                                                     request_.random.sub("bridges", expanded_));
+      for (Passages& passages : passages_) {
+        passages.add(found);
+      }
+    }
+  }
+
+  /// Reaches a passage that this tree has not reached, from any node within the range (the nearest
+  /// one is often behind a wall, every time), and goes on from there: the nodes that it came from
+  /// are nearer to what lies behind.
+  void grow_into_passage(int side) {
+    Passages& passages = passages_[std::size_t(side)];
+    const State q = Edges::sampled(passages.sample(random_), random_);
+    near_.clear();
+    tree(side).points.within(place(q), settings_.range, near_);
+    const Node near =
+        near_.empty() ? edges_.nearest(side, q) : Node(near_[Passages::any(near_.size(), random_)]);
+    const Growth growth = extend(side, near, q);
+    if (growth == Growth::reached) {
+      passages.remove();
+    }
+    if (growth == Growth::trapped || is_done()) {
+      return;
+    }
+    const Node reached = newest(side);
+    connect(1 - side, reached);
+    for (int n = 0; n < kOnward && !is_done() && may_go_on(); ++n) {
+      extend(side, reached, sample());
+    }
+  }
 
   /// RANDOM_CONFIG: the first free one of a few samples.
   State sample() {
@@ -229,6 +282,10 @@ class TwoTrees {
   BudgetWatch watch_;
   Box box_;
   RandomStream random_;
+  std::array<Passages, 2> passages_;           ///< by tree
+  std::uint64_t passages_after_ = kHardAfter;  ///< edges tried before looking for more
+  bool is_turn_of_passage_ = false;
+  std::vector<std::uint32_t> near_;
   Route route_;
   bool ended_ = false;
   std::uint64_t expanded_ = 0;
