@@ -119,6 +119,52 @@ class Made(unittest.TestCase):
         self.assertIn("free_box", err)
 
 
+class Detours(unittest.TestCase):
+    """Maps made by `altiplan-bench detours`."""
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        if "left out" in subprocess.run([PROGRAM, "detours", "--help"], capture_output=True,
+                                        text=True, check=True).stdout:
+            self.skipTest("altiplan-bench detours is not in this build")
+
+    def make(self, kind, name, *more):
+        name = os.path.join(self.folder.name, name)
+        done = subprocess.run([PROGRAM, "detours", kind, "-o", name, "--queries", "5", "--json", *more],
+                              capture_output=True, text=True, timeout=600, check=False)
+        return name, done
+
+    def test_lengths(self):
+        for kind, least in (("walls", 1.05), ("canyons", 1.5), ("towers", 1.02)):
+            with self.subTest(kind):
+                name, done = self.make(kind, kind, "--cells", "48,40,24", "--seed", "3")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                made = json.loads(done.stdout)
+                self.assertGreater(made["detour"], least)
+                code, out, err = bench(made["map"], made["scenarios"], "--json", "--corner", "any")
+                self.assertEqual((code, err), (0, ""))
+                figures = json.loads(out)
+                self.assertEqual((figures["matched"], figures["unsound"]), (5, 0), out)
+                files = [made["map"], made["scenarios"]]
+                before = [open(file, "rb").read() for file in files]
+                self.make(kind, kind, "--cells", "48,40,24", "--seed", "3")
+                self.assertEqual([open(file, "rb").read() for file in files], before)
+                self.make(kind, kind, "--cells", "48,40,24", "--seed", "4")
+                self.assertNotEqual(open(files[0], "rb").read(), before[0])
+
+    def test_wrong_usage(self):
+        for kind, more, code, said in (("hills", (), 2, "hills"),
+                                       ("walls", ("--cells", "23,40,24"), 3, "at least 24"),
+                                       ("walls", ("--cells", "40,24"), 2, "--cells"),
+                                       ("walls", ("--queries", "0"), 2, "queries")):
+            done = self.make(kind, "wrong", *more)[1]
+            self.assertEqual(done.returncode, code, more)
+            self.assertIn(said, done.stderr)
+        name, done = self.make("walls", "nowhere/a")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn(name + ".3dmap", done.stderr)
+
+
 @unittest.skipUnless(os.path.isdir(os.path.join(DATA, "grid2d")),
                      "no test data: set ALTIPLAN_TEST_DATA")
 class Published(unittest.TestCase):

@@ -51,6 +51,7 @@ void add_airspace(Subcommands& all);
 void add_ants(Subcommands& all);
 void add_any_angle(Subcommands& all);
 void add_bodies(Subcommands& all);
+void add_detours(Subcommands& all);
 void add_dubins(Subcommands& all);
 void add_field(Subcommands& all);
 void add_grid(Subcommands& all);

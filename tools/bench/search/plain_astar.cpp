@@ -6,7 +6,6 @@
 #include <queue>
 
 namespace altiplan::bench {
-namespace {
 
 double octile(const Cell& a, const Cell& b) {
   std::array<double, 3> n{};
@@ -16,6 +15,8 @@ double octile(const Cell& a, const Cell& b) {
   std::sort(n.begin(), n.end());
   return n[0] * std::sqrt(3.0) + (n[1] - n[0]) * std::sqrt(2.0) + (n[2] - n[1]);
 }
+
+namespace {
 
 struct Open {
   double f;

@@ -10,6 +10,9 @@ struct PlainResult {
   std::size_t expanded = 0;
 };
 
+/// Octile distance, in cells.
+double octile(const Cell& a, const Cell& b);
+
 /// Textbook A*, the reference for the planners' lengths and times: a binary heap, floating-point
 /// costs, arrays cleared for each search, octile distance; a step needs its two cells free. Cells
 /// are cubes; steps stay within the level if there is only one.
