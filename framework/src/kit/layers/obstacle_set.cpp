@@ -117,32 +117,53 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
   }
 }
 
-/// True if `meets`(n) for one of the shapes whose boxes the leg may reach.
+/// The leaf in which a shape blocked the last leg, of whatever tree. Searches ask for many similar
+/// legs one after the other, which the same shape blocks.
+thread_local std::int32_t last_leaf = 0;
+
+/// True if `meets`(n) for one of the shapes whose boxes the leg may reach. Looks first where
+/// something blocked the last leg.
 template <class Meets>
-[[gnu::always_inline]] inline bool any_on(const BoxNode* nodes, const TreeLeg& leg,
+[[gnu::always_inline]] inline bool any_on(const std::vector<BoxNode>& nodes, const TreeLeg& leg,
                                           const Meets& meets) {
+  const auto any_in_leaf = [&](const BoxNode& leaf) {
+    std::uint32_t lanes = lanes_reached(leaf, leg);
+    while (lanes != 0 && !meets(std::size_t(leaf.box[std::countr_zero(lanes)]))) {
+      lanes &= lanes - 1;
+    }
+    return lanes != 0;
+  };
+  const std::int32_t likely = last_leaf;
+  if (std::size_t(likely) < nodes.size() && nodes[std::size_t(likely)].is_leaf() &&
+      any_in_leaf(nodes[std::size_t(likely)])) {
+    return true;
+  }
   std::array<std::int32_t, kMaxOpen> open{0};
   std::size_t waiting = 1;
   while (waiting > 0) {
-    const BoxNode& node = nodes[open[--waiting]];
-    for (std::uint32_t lanes = lanes_reached(node, leg); lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      if (!node.is_leaf()) {
-        open[waiting++] = node.first + lane;
-      } else if (meets(std::size_t(node.box[lane]))) {
+    const std::int32_t index = open[--waiting];
+    const BoxNode& node = nodes[std::size_t(index)];
+    if (node.is_leaf()) {
+      if (index != likely && any_in_leaf(node)) {
+        last_leaf = index;
         return true;
       }
+      continue;
+    }
+    for (std::uint32_t lanes = lanes_reached(node, leg); lanes != 0; lanes &= lanes - 1) {
+      open[waiting++] = node.first + std::countr_zero(lanes);
     }
   }
   return false;
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const Vec3& a, const Vec3& b,
-                               double r) {
+ALTIPLAN_CLONES bool any_meets(const std::vector<BoxNode>& nodes, Solids& shapes, const Vec3& a,
+                               const Vec3& b, double r) {
   return any_on(nodes, TreeLeg(a, b, r), [&](std::size_t n) { return meets(shapes[n], a, b, r); });
 }
 
-ALTIPLAN_CLONES bool any_meets(const BoxNode* nodes, Solids& shapes, const SweptVolume& volume) {
+ALTIPLAN_CLONES bool any_meets(const std::vector<BoxNode>& nodes, Solids& shapes,
+                               const SweptVolume& volume) {
   return any_on(nodes, TreeLeg(volume.from(), volume.to(), volume.reach()),
                 [&](std::size_t n) { return shape_parts::meets(shapes[n], volume); });
 }
@@ -271,7 +292,7 @@ double ObstacleSet::clearance(const Vec3& p) const {
 bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
   Solids solids = impl_->solids(shapes_);
   if (impl_->count > 0 && is_in_reach(a) && is_in_reach(b) && std::abs(r) <= kTreeReach) {
-    return any_meets(impl_->nodes.data(), solids, a, b, r);
+    return any_meets(impl_->nodes, solids, a, b, r);
   }
   bool meet = false;
   for (std::size_t n = 0; n < impl_->count && !meet; ++n) {
@@ -283,7 +304,7 @@ bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {
 bool ObstacleSet::meets(const SweptVolume& volume) const {
   Solids solids = impl_->solids(shapes_);
   if (impl_->count > 0 && is_in_reach(volume.from()) && is_in_reach(volume.to())) {
-    return any_meets(impl_->nodes.data(), solids, volume);
+    return any_meets(impl_->nodes, solids, volume);
   }
   for (std::size_t n = 0; n < impl_->count; ++n) {
     if (shape_parts::meets(solids[n], volume)) {
