@@ -14,7 +14,8 @@ namespace {
 /// The 27 cells at and around one, some of them blocked.
 class Around {
  public:
-  Around(DirectionMask blocked, CornerRule rule) : blocked_(blocked), rule_(rule) {}
+  Around(DirectionMask blocked, CornerRule rule, const Vec3& edges = Vec3::Ones())
+      : blocked_(blocked), rule_(rule), edges_(edges) {}
 
   bool is_free(const Cell& c) const { return (blocked_ >> direction(c[0], c[1], c[2]) & 1) == 0; }
   /// Length of the step between two of the cells, by the definition of the rule; infinite where it
@@ -25,7 +26,7 @@ class Around {
       if (std::abs(a[axis] - b[axis]) > 1) {
         return kInfinity;
       }
-      squared += std::abs(a[axis] - b[axis]);
+      squared += a[axis] != b[axis] ? edges_[Eigen::Index(axis)] * edges_[Eigen::Index(axis)] : 0;
     }
     for (int corner = 0; corner < 8; ++corner) {
       const Cell c = {corner & 1 ? a[0] : b[0], corner & 2 ? a[1] : b[1], corner & 4 ? a[2] : b[2]};
@@ -37,8 +38,9 @@ class Around {
   }
 
   /// Whether from the cell before, at -in, another way than over the middle reaches `out` sooner,
-  /// or as soon with the longer step first.
-  bool is_reached_otherwise(const Cell& in, const Cell& out) const {
+  /// or as soon with the longer step first (`by_number`: with one along fewer axes last, or along
+  /// as many and of a smaller number).
+  bool is_reached_otherwise(const Cell& in, const Cell& out, bool by_number = false) const {
     const Cell from = {-in[0], -in[1], -in[2]};
     const Cell middle = {0, 0, 0};
     const double first = step(from, middle);
@@ -49,8 +51,12 @@ class Around {
     for (int d = 0; d < kDirections; ++d) {
       const Cell over = offset(d);
       const double other = step(from, over) + step(over, out);
-      if (over != middle &&
-          (other < way - 1e-9 || (other < way + 1e-9 && step(from, over) > first + 1e-9))) {
+      const Cell last = {out[0] - over[0], out[1] - over[1], out[2] - over[2]};
+      const bool is_earlier = by_number
+                                  ? std::pair(axes(last), direction(last[0], last[1], last[2])) <
+                                        std::pair(axes(out), direction(out[0], out[1], out[2]))
+                                  : step(from, over) > first + 1e-9;
+      if (over != middle && (other < way - 1e-9 || (other < way + 1e-9 && is_earlier))) {
         return true;
       }
     }
@@ -58,8 +64,11 @@ class Around {
   }
 
  private:
+  static int axes(const Cell& o) { return (o[0] != 0) + (o[1] != 0) + (o[2] != 0); }
+
   DirectionMask blocked_;
   CornerRule rule_;
+  Vec3 edges_;
 };
 
 TEST(Pruning, OnALevelKeepsWhatNoOtherWayReaches) {
@@ -97,6 +106,42 @@ TEST(Pruning, InSpaceKeepsWhatNoOtherWayReachesWhereAllIsFree) {
       EXPECT_EQ(kNatural[std::size_t(in)] >> out & 1, unsigned(kept)) << in << " " << out;
     }
   }
+}
+
+TEST(Pruning, InSpaceKeepsWhatNoOtherWayReachesAmongBlockedCells) {
+  RandomStream random(7);
+  int all_kept = 0;
+  int all_needed = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const CornerRule rule = trial % 2 == 0 ? CornerRule::any : CornerRule::free_box;
+    DirectionMask blocked = 0;
+    const double share = random.uniform(0, 0.6);
+    for (int d = 0; d < kDirections; ++d) {
+      blocked |= DirectionMask(d != kHere && random.uniform() < share) << d;
+    }
+    const bool are_cubes = trial % 4 < 2;
+    const Vec3 edges =
+        are_cubes ? Vec3::Ones() : Vec3(random.in({Vec3::Constant(0.1), Vec3::Ones()}));
+    const Around around(blocked, rule, edges);
+    const DirectionMask free = free_steps(blocked, rule);
+    for (int in = 0; in < kDirections; ++in) {
+      if (in == kHere || around.step(offset(opposite(in)), {0, 0, 0}) == kInfinity) {
+        continue;
+      }
+      const DirectionMask kept = SpaceSuccessors::of(rule)(free, blocked, in);
+      for (int out = 0; out < kDirections; ++out) {
+        const bool is_needed = around.step({0, 0, 0}, offset(out)) < kInfinity &&
+                               !around.is_reached_otherwise(offset(in), offset(out), true);
+        const bool is_kept = (kept >> out & 1) != 0;
+        ASSERT_GE(is_kept, is_needed)
+            << "rule " << int(rule) << ", blocked " << blocked << ", in " << in << ", out " << out;
+        all_kept += is_kept && are_cubes;
+        all_needed += is_needed && are_cubes;
+      }
+    }
+  }
+  // Ways whose lengths are equal only because the cells are cubes do not count.
+  EXPECT_LT(all_kept, 1.1 * all_needed);
 }
 
 TEST(Pruning, NaturalStepsAreTheSameWhereNoStepIsRuledOut) {

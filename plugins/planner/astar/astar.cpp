@@ -12,19 +12,19 @@
 //   steps between them.
 // Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
 //   turn limits are first checked against the single parent of a cell, which is incomplete; closed
-//   nodes are never reopened; where cells or places decide (cell_search.hpp, step_search.hpp)
+//   nodes are never reopened; where cells or places decide (kit::CellSearch, step_search.hpp)
 //   lengths are integers (kit::StepCosts), and successors that another path reaches as cheaply are
 //   pruned.
 // Symbols: g cost-to-come, h heuristic, f = w_g g + w_h h.
 #include <memory>
 #include <utility>
 
+#include "altiplan/kit/lattice/cell_search.hpp"
 #include "altiplan/kit/lattice/heading_search.hpp"
 #include "altiplan/kit/lattice/search_params.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
-#include "cell_search.hpp"
 #include "step_search.hpp"
 
 namespace {
@@ -161,14 +161,14 @@ class AStar final : public Planner {
   std::optional<SearchResult> by_cells(const Request& request,
                                        const SearchSettings& settings) const {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
-                               {params_.max_bytes(), astar::CellMemory::kBytesPerCell});
+                               {params_.max_bytes(), kit::CellMemory::kBytesPerCell});
     if (auto refused =
-            kit::beyond_budget(lattice, astar::CellMemory::kBytesPerCell, request.budget)) {
+            kit::beyond_budget(lattice, kit::CellMemory::kBytesPerCell, request.budget)) {
       return SearchResult{*std::move(refused)};
     }
     const auto memory = cell_memory_.take();
     auto result = with_step_costs(request, settings, lattice, [&](const kit::StepCosts& costs) {
-      return astar::CellSearch(request, settings, lattice, costs, *memory).run();
+      return kit::CellSearch(request, settings, lattice, costs, *memory).run();
     });
     if (!result) {
       return std::nullopt;
@@ -184,7 +184,7 @@ class AStar final : public Planner {
   Params params_;
   mutable kit::ScratchPool<astar::Memory> memory_;
   mutable kit::ScratchPool<kit::HeadingMemory> heading_memory_;
-  mutable kit::ScratchPool<astar::CellMemory> cell_memory_;
+  mutable kit::ScratchPool<kit::CellMemory> cell_memory_;
   mutable kit::ScratchPool<astar::StepMemory> step_memory_;
 };
 }  // namespace

@@ -12,37 +12,34 @@
 #include "altiplan/kit/lattice/pruning.hpp"
 #include "altiplan/kit/scratch.hpp"
 
-namespace altiplan::astar {
-
-using kit::Heuristic;
-using Settings = kit::SearchSettings;
+namespace altiplan::kit {
 
 struct CellMemory {
-  kit::ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 if the cell was not reached
-  kit::ScratchArray<std::uint64_t> closed;      ///< one bit per cell, laid out like the occupancy
-  kit::BucketQueue open;
+  ScratchArray<std::uint32_t> complement;  ///< ~g by cell: 0 if the cell was not reached
+  ScratchArray<std::uint64_t> closed;      ///< one bit per cell, laid out like the occupancy
+  BucketQueue open;
 
   /// Without the open list, rounded up.
   static constexpr std::size_t kBytesPerCell = 5;
 };
 
-/// The same search for when the cells that a step passes through, and its direction, decide alone
-/// if it is free (MoveRules::cells_decide). A cell then needs only 4 bytes and two bits: g is an
-/// integer, parents are recovered from it, and bits store which cells are blocked and closed.
+/// A* for when the cells that a step passes through, and its direction, decide alone if it is free
+/// (MoveRules::cells_decide). A cell then needs only 4 bytes and two bits: g is an integer, parents
+/// are recovered from it, and bits store which cells are blocked and closed.
 ///
-/// A successor that the preceding cell reaches as cheaply on another path is pruned: everywhere in
-/// 2-D, in 3-D where nothing around the cell is blocked (kit/pruning.hpp). Most successors would
-/// otherwise be reached from many sides first, each time slightly more cheaply.
+/// A successor that the preceding cell reaches as cheaply on another path is pruned
+/// (kit/pruning.hpp). Most successors would otherwise be reached from many sides first, each time
+/// slightly more cheaply.
 class CellSearch {
  public:
   /// `costs` are those of the lattice. All arguments must outlive the search.
-  CellSearch(const Request& request, const Settings& settings, const kit::Lattice& lattice,
-             const kit::StepCosts& costs, CellMemory& memory)
+  CellSearch(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+             const StepCosts& costs, CellMemory& memory)
       : request_(request),
         settings_(settings),
         lattice_(lattice),
         costs_(costs),
-        rules_(request, lattice, kit::MoveCheck::cells, settings.corner),
+        rules_(request, lattice, MoveCheck::cells, settings.corner),
         grid_(*rules_.grid()),
         complement_(memory.complement),
         closed_(memory.closed),
@@ -52,17 +49,18 @@ class CellSearch {
         tracing_(request.trace != nullptr),
         consistent_(settings.consistent()),
         level_(lattice.spec().counts[2] == 1),
-        level_successors_(kit::LevelSuccessors::of(settings.corner)),
-        steps_(rules_.steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0})),
-        prune_(consistent_ && settings.neighbours == kit::Neighbourhood::all &&
+        level_successors_(LevelSuccessors::of(settings.corner)),
+        space_successors_(SpaceSuccessors::of(settings.corner)),
+        steps_(rules_.steps() & (level_ ? kLevelDirections : ~DirectionMask{0})),
+        prune_(consistent_ && settings.neighbours == Neighbourhood::all &&
                rules_.steps() == lattice.steps()),
         is_sum_(settings.weight_g == settings.weight_h),
         weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
         weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)),
         goal_node_(std::uint32_t(lattice.size())),
         goal_(request.goal.position) {
-    for (int d = 0; d < kit::kDirections; ++d) {
-      const Cell o = kit::offset(d);
+    for (int d = 0; d < kDirections; ++d) {
+      const Cell o = offset(d);
       moves_[std::size_t(d)] = {std::uint32_t(lattice.stride(d)), costs[d], o[0], o[1], o[2]};
     }
   }
@@ -90,7 +88,7 @@ class CellSearch {
     const std::size_t at = closed_bit(bit);
     return (closed_[at / 64] >> at % 64 & 1) != 0;
   }
-  std::uint32_t link_cost(const kit::Lattice::Link& link) const {
+  std::uint32_t link_cost(const Lattice::Link& link) const {
     return link.length > 0 ? std::max(costs_.of(link.length), 1U) : 0;
   }
 
@@ -98,7 +96,7 @@ class CellSearch {
     complement_.reset(lattice_.size());
     closed_.reset(level_ ? grid_.level_bits() / 64 + 1 : grid_.words().size());
     open_.clear();
-    for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
+    for (const Lattice::Link& link : lattice_.links(goal_)) {
       goal_links_.push_back({lattice_.index(link.cell), link_cost(link), link.cell});
       first_link_ = std::min(first_link_, goal_links_.back().index);
       last_link_ = std::max(last_link_, goal_links_.back().index);
@@ -107,12 +105,12 @@ class CellSearch {
       near_goal_ = &goal_links_.front();
     }
     const Vec3& start = request_.start.position;
-    for (const kit::Lattice::Link& link : lattice_.links(start)) {
+    for (const Lattice::Link& link : lattice_.links(start)) {
       if (!rules_.cell_blocked(link.cell) &&
           (link.length == 0 ||
            rules_.any_leg_ok(request_.before_start(), start, lattice_.position(link.cell)))) {
         const auto [x, y, z] = link.cell;
-        reach(lattice_.index(link.cell), link_cost(link), heuristic<false>(x, y, z), kit::kHere);
+        reach(lattice_.index(link.cell), link_cost(link), heuristic<false>(x, y, z), kHere);
       }
     }
   }
@@ -167,7 +165,7 @@ class CellSearch {
     PlanResult result;
     result.status = PlanStatus::no_route;
     while (!open_.empty()) {
-      const kit::BucketQueue::Entry entry = open_.pop();
+      const BucketQueue::Entry entry = open_.pop();
       if (entry.node == goal_node_) {
         return found(goal_parent_, true);
       }
@@ -186,7 +184,7 @@ class CellSearch {
       closed_.at(closed_at / 64) |= closed_mask;
       ++progress_.expanded;
       const std::uint32_t g_here = g(entry.node);
-      if (g_here > kit::StepCosts::kMax) {
+      if (g_here > StepCosts::kMax) {
         return std::nullopt;
       }
       if (tracing_) {
@@ -195,11 +193,10 @@ class CellSearch {
       if (entry.node - first_link_ <= last_link_ - first_link_) {
         try_goal(entry.node);
       }
-      const kit::DirectionMask open = successors<kLevel>(bit, entry.from);
-      // Among equals the last one is taken first: the step along most axes, as in kit::kNatural.
+      const DirectionMask open = successors<kLevel>(bit, entry.from);
+      // Among equals the last one is taken first: the step along most axes, as in kNatural.
       for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
-        for (kit::DirectionMask rest = open & kit::kAlongAxes[axes - 1]; rest != 0;
-             rest &= rest - 1) {
+        for (DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
           const int d = std::countr_zero(rest);
           const Move& move = moves_[std::size_t(d)];
           const std::uint32_t next = entry.node + move.stride;
@@ -215,19 +212,21 @@ class CellSearch {
 
   /// Directions to examine from a cell that was reached by the step `from`.
   template <bool kLevel>
-  kit::DirectionMask successors(std::size_t bit, std::uint32_t from) const {
-    const kit::DirectionMask blocked = kit::bits_around<kLevel>(grid_, grid_.words().data(), bit);
+  DirectionMask successors(std::size_t bit, std::uint32_t from) const {
+    const DirectionMask blocked = bits_around<kLevel>(grid_, grid_.words().data(), bit);
     if (prune_ && kLevel) {
       return level_successors_(blocked, int(from));
     }
     if (prune_ && blocked == 0) {
-      return kit::kNatural[from];
+      return kNatural[from];
     }
-    const kit::DirectionMask free = steps_ & kit::free_steps(blocked, settings_.corner);
+    const DirectionMask free = steps_ & free_steps(blocked, settings_.corner);
     // In 2-D it is as fast to find that a closed cell was reached at less cost.
-    return kLevel && consistent_
-               ? free
-               : free & ~kit::bits_around<kLevel>(grid_, closed_.data(), closed_bit(bit));
+    if (kLevel && consistent_) {
+      return free;
+    }
+    const DirectionMask open = free & ~bits_around<kLevel>(grid_, closed_.data(), closed_bit(bit));
+    return prune_ ? space_successors_(open, blocked, int(from)) : open;
   }
 
   void try_goal(std::uint32_t index) {
@@ -238,7 +237,7 @@ class CellSearch {
            rules_.any_leg_ok(std::nullopt, lattice_.position(link.cell), goal_))) {
         goal_g_ = at_goal;
         goal_parent_ = index;
-        open_.push(evaluation(at_goal, 0), goal_node_, kit::kHere);
+        open_.push(evaluation(at_goal, 0), goal_node_, kHere);
       }
     }
   }
@@ -247,34 +246,34 @@ class CellSearch {
 
   /// Direction of the step that led to the cell; kHere: it is linked to the start.
   int step_to(std::uint32_t index, int likely) const {
-    const kit::DirectionMask free =
-        kit::free_steps(kit::blocked_around(grid_, lattice_.cell(index)), settings_.corner);
+    const DirectionMask free =
+        free_steps(blocked_around(grid_, lattice_.cell(index)), settings_.corner);
     const auto led_here = [&](int d) {
       const auto from = std::uint32_t(std::int64_t(index) - lattice_.stride(d));
-      return (steps_ >> d & 1) != 0 && (free >> kit::opposite(d) & 1) != 0 &&
+      return (steps_ >> d & 1) != 0 && (free >> opposite(d) & 1) != 0 &&
              g(from) + costs_[d] == g(index) && is_closed(grid_.bit(lattice_.cell(from)));
     };
     if (led_here(likely)) {
       return likely;
     }
-    for (int d = 0; d < kit::kDirections; ++d) {
+    for (int d = 0; d < kDirections; ++d) {
       if (led_here(d)) {
         return d;
       }
     }
-    return kit::kHere;
+    return kHere;
   }
 
   PlanResult found(std::uint32_t last, bool at_goal) const {
-    Polyline route = kit::route_to(
+    Polyline route = route_to(
         last, request_, lattice_,
         [&](std::uint32_t index, int likely) { return step_to(index, likely); },
         [&](std::uint32_t index) { return g(index) == 0; });
     if (at_goal) {
-      kit::end_at_goal(route, goal_, g(last) == goal_g_);
+      end_at_goal(route, goal_, g(last) == goal_g_);
     }
-    PlanResult result = kit::solved(std::move(route), progress_, lattice_, rules_);
-    if (settings_.costs == kit::StepCosts::Scale::ratio) {
+    PlanResult result = solved(std::move(route), progress_, lattice_, rules_);
+    if (settings_.costs == StepCosts::Scale::ratio) {
       result.message += ", lengths by ratios of integers, up to " +
                         std::to_string(100 * costs_.error()) + " % off";
     }
@@ -302,11 +301,11 @@ class CellSearch {
       result.budget_hit = budget_hit;
       return result;
     }
-    for_each_closed([&](const Cell& c) { rules_.candidates(c, kit::kHere); });  // counts refusals
+    for_each_closed([&](const Cell& c) { rules_.candidates(c, kHere); });  // counts refusals
     progress_.memory_full = memory_full();
-    result.message = kit::explanation(result.status, progress_, request_, lattice_, rules_);
+    result.message = explanation(result.status, progress_, request_, lattice_, rules_);
     result.proved = result.status == PlanStatus::no_route;
-    result.counters = kit::counters(progress_, lattice_, rules_);
+    result.counters = counters(progress_, lattice_, rules_);
     return result;
   }
 
@@ -327,8 +326,8 @@ class CellSearch {
 
   void add_to_trace(std::uint32_t index) const {
     const Cell c = lattice_.cell(index);
-    const int d = step_to(index, kit::kHere);
-    const std::int64_t parent = d == kit::kHere ? -1 : std::int64_t(index) - lattice_.stride(d);
+    const int d = step_to(index, kHere);
+    const std::int64_t parent = d == kHere ? -1 : std::int64_t(index) - lattice_.stride(d);
     request_.trace->add(
         {TraceEvent::Kind::expanded, std::int64_t(index), parent, lattice_.position(c),
          settings_.weight_g * costs_.metres(g(index)) +
@@ -336,34 +335,35 @@ class CellSearch {
   }
 
   const Request& request_;
-  const Settings& settings_;
-  const kit::Lattice& lattice_;
-  const kit::StepCosts& costs_;
-  kit::MoveRules rules_;
+  const SearchSettings& settings_;
+  const Lattice& lattice_;
+  const StepCosts& costs_;
+  MoveRules rules_;
   const VoxelGrid& grid_;
-  kit::ScratchArray<std::uint32_t>& complement_;
-  kit::ScratchArray<std::uint64_t>& closed_;
-  kit::BucketQueue& open_;
+  ScratchArray<std::uint32_t>& complement_;
+  ScratchArray<std::uint64_t>& closed_;
+  BucketQueue& open_;
   BudgetWatch watch_;
   std::size_t max_open_bytes_;
   bool tracing_;
   bool consistent_;
   bool level_;
-  const kit::LevelSuccessors& level_successors_;
-  kit::DirectionMask steps_;
+  const LevelSuccessors& level_successors_;
+  const SpaceSuccessors& space_successors_;
+  DirectionMask steps_;
   bool prune_;   ///< the paths around a cell on which pruning relies consist of all steps
   bool is_sum_;  ///< f is g + h
   double weight_g_;
   double weight_h_;
   std::uint32_t goal_node_;
   Vec3 goal_;
-  std::array<Move, kit::kDirections> moves_{};
+  std::array<Move, kDirections> moves_{};
   std::vector<GoalLink> goal_links_;
   std::uint32_t first_link_ = ~std::uint32_t{0};  ///< minimum and maximum index of them
   std::uint32_t last_link_ = 0;
   const GoalLink* near_goal_ = nullptr;  ///< set if the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;
-  kit::SearchStats progress_;
+  SearchStats progress_;
 };
-}  // namespace altiplan::astar
+}  // namespace altiplan::kit
