@@ -82,14 +82,20 @@ class Search {
   }
   const Vertices& vertices() const { return vertices_; }
 
-  /// procedure Main, one round: the cheapest path from the start to the goal.
-  PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes) {
+  /// procedure Main, one round: the cheapest path from the start to the goal. Put off, for a later
+  /// round or go_on(), after work as for lowering `most` vertices.
+  PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes, std::uint64_t most) {
     watch_ = &watch;
     max_list_bytes_ = max_list_bytes;
-    ended_ = false;
     progress_ = {};
+    raises_ = 0;
     nearest_ = kNever;
     forget_stale_entries();
+    return go_on(most);
+  }
+  PlanStatus go_on(std::uint64_t most) {
+    most_ = most;
+    ended_ = put_off_ = false;
     do {
       compute_shortest_path();
     } while (!ended_ && !too_long_ && best_ != kNever && !walk());
@@ -103,10 +109,11 @@ class Search {
       progress_.nearest = problem_.lattice.position(graph_.cell(nearest_vertex_));
     }
     if (ended_ || too_long_) {
-      return watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+      return watch_->cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
     }
     return best_ == kNever ? PlanStatus::no_route : PlanStatus::solved;
   }
+  bool is_put_off() const { return put_off_; }
   /// True if a path is longer than the integers can represent.
   bool too_long() const { return too_long_; }
   /// The vertices of the route, from the start's neighbour to the goal's.
@@ -116,6 +123,7 @@ class Search {
  private:
   static constexpr std::uint32_t kMaxKm = 1'500'000'000;
   static constexpr std::size_t kFewEntries = 1 << 14;
+  static constexpr std::uint64_t kRaise = 4;  ///< how much longer a raise takes
 
   using Values = Vertices::Values;
 
@@ -219,6 +227,7 @@ class Search {
   /// Sets g of an underconsistent vertex to infinity.
   void raise(std::uint32_t u, const Values& old) {
     ++progress_.expanded;
+    ++raises_;
     vertices_.set(u, {kNever, kNever});
     update_rhs(u, graph_.cell(u), 0, true);
     trace(u, vertices_[u].rhs);
@@ -308,7 +317,8 @@ class Search {
   }
 
   bool spent() {
-    ended_ = ended_ || watch_->spent(progress_.expanded, open_.size()) || memory_full();
+    put_off_ = progress_.expanded + kRaise * raises_ >= most_;
+    ended_ = ended_ || put_off_ || watch_->spent(progress_.expanded, open_.size()) || memory_full();
     return ended_;
   }
   bool memory_full() const { return open_.bytes() + raised_.bytes() > max_list_bytes_; }
@@ -358,6 +368,9 @@ class Search {
   bool moved_ = false;  ///< the start has a position
   bool fresh_ = true;   ///< all legs are as they were initially
   bool ended_ = false;
+  bool put_off_ = false;
+  std::uint64_t most_ = 0;
+  std::uint64_t raises_ = 0;
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;
   kit::SearchStats progress_;

@@ -103,6 +103,44 @@ TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
   }
 }
 
+/// Nearly all that is known relies on the cells before the goal.
+TEST(DStarLiteSession, PlansAfreshWhereARepairTakesLongerAndGoesOnWithItLater) {
+  const Cell counts = {60, 60, 30};
+  VoxelGrid cells(spec_of(counts, {10, 10, 10}));
+  for (int k = 0; k < counts[2] - 1; ++k) {  // a wall that leads over
+    cells.block_run(30, 31, 0, k);
+    for (int j = 1; j < counts[1]; ++j) {
+      cells.block_run(30, 31, j, k);
+    }
+  }
+  const Cell goal = {50, 30, 15};
+  Flown flown("{moves: cells}", cells, {5, 30, 5}, goal);
+  flown.begin();
+  const auto astar = make_planner("astar", "{moves: cells}");
+  const std::int64_t first = expanded(flown.result());
+  const auto is_afresh = [&] {
+    return flown.result().message.find("planned afresh by A*") != std::string::npos;
+  };
+  for (int j = 26; j <= 34; ++j) {
+    for (int k = 11; k <= 19; ++k) {
+      flown.flip({46, j, k});
+    }
+  }
+  flown.update();
+  ASSERT_TRUE(is_afresh()) << flown.result().message;
+  ASSERT_NO_FATAL_FAILURE(expect_as_afresh(flown, *astar, "at once"));
+  EXPECT_LE(expanded(flown.result()), expanded(astar->plan(flown.request())) + first / 32 + 64);
+  int updates = 0;
+  for (; is_afresh() && updates < 200; ++updates) {
+    flown.update();
+    ASSERT_NO_FATAL_FAILURE(expect_as_afresh(flown, *astar, "later"));
+  }
+  EXPECT_GT(updates, 1);
+  EXPECT_LT(updates, 200);
+  flown.update();
+  EXPECT_EQ(expanded(flown.result()), 0);
+}
+
 TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
   const char* by_heading = "{moves: cells, state: cell_and_heading}";
   const Setting settings[] = {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "afresh.hpp"
 #include "answers.hpp"
 #include "changed_cells.hpp"
 #include "dstar_search.hpp"
@@ -18,6 +19,7 @@ namespace altiplan::dstar_lite {
 /// Work memory that persists between sessions.
 struct Pools {
   kit::ScratchPool<Memory> searches;
+  kit::ScratchPool<kit::CellMemory> astar;
   kit::ScratchPool<LegMemory> legs;
 };
 
@@ -55,7 +57,8 @@ class Plan {
         bits_(grid_),
         has_ground_(request.world->has_ground()),
         last_slack_(request.world->over_approximation()),
-        within_(within) {
+        within_(within),
+        afresh_(problem_, pools.astar) {
     begin(by_cell_);
   }
   Plan(const Plan&) = delete;
@@ -111,7 +114,18 @@ class Plan {
     if (state == kit::SearchState::cell_and_heading && looks_back) {
       return run_by_heading({});
     }
-    const PlanStatus status = by_cell_->search.plan(watch, max_list_bytes<CellGraph>(0));
+    Search<CellGraph>& search = by_cell_->search;
+    PlanStatus status = search.plan(watch, max_list_bytes<CellGraph>(0), longest_repair());
+    if (search.is_put_off()) {
+      const Counters spent = kit::counters(search.progress(), lattice_, legs_.rules());
+      if (auto afresh = afresh_.plan(spent, max_list_bytes<CellGraph>(0))) {
+        return *std::move(afresh);
+      }
+      status = search.go_on(kNoLimit);
+    }
+    if (!afresh_.is_known()) {
+      afresh_.remember(search.progress().expanded);
+    }
     if (status != PlanStatus::solved) {
       return without_route(by_cell_->search, status);
     }
@@ -128,6 +142,15 @@ class Plan {
   }
 
  private:
+  static constexpr std::uint64_t kNoLimit = Afresh::kNoLimit;
+
+  std::uint64_t longest_repair() const {
+    const bool by_cells_alone = !within_ && !legs_.judges() && !has_ground_;
+    const std::size_t bytes = bytes_of<CellGraph>() + Afresh::bytes(lattice_);
+    return by_cells_alone && bytes <= problem_.settings.max_bytes ? afresh_.longest_repair()
+                                                                  : kNoLimit;
+  }
+
   template <class Visit>
   void for_each_search(const Visit& visit) {
     visit(*by_cell_);
@@ -293,7 +316,8 @@ class Plan {
       rest.max_iterations -= std::uint64_t(by_cell.counters.front().value);
     }
     BudgetWatch watch(rest);
-    const PlanStatus status = by_heading_->search.plan(watch, max_list_bytes<HeadingGraph>(others));
+    const PlanStatus status =
+        by_heading_->search.plan(watch, max_list_bytes<HeadingGraph>(others), kNoLimit);
     PlanResult result = status == PlanStatus::solved
                             ? with_route(by_heading_->search, route_over(*by_heading_))
                             : without_route(by_heading_->search, status);
@@ -361,6 +385,7 @@ class Plan {
   double last_slack_;  ///< over-approximation of the world
   double slack_ = 0;   ///< maximum of the current one and the previous one
   bool within_;
+  Afresh afresh_;
   std::optional<Incremental<CellGraph>> by_cell_;
   std::optional<Incremental<HeadingGraph>> by_heading_;
 };
