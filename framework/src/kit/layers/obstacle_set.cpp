@@ -121,21 +121,25 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
 /// legs one after the other, which the same shape blocks.
 thread_local std::int32_t last_leaf = 0;
 
+// Inlined, as all of a query must be compiled for the same CPU.
+template <class Meets>
+[[gnu::always_inline]] inline bool any_in_leaf(const BoxNode& leaf, const TreeLeg& leg,
+                                               const Meets& meets) {
+  std::uint32_t lanes = lanes_reached(leaf, leg);
+  while (lanes != 0 && !meets(std::size_t(leaf.box[std::countr_zero(lanes)]))) {
+    lanes &= lanes - 1;
+  }
+  return lanes != 0;
+}
+
 /// True if `meets`(n) for one of the shapes whose boxes the leg may reach. Looks first where
 /// something blocked the last leg.
 template <class Meets>
 [[gnu::always_inline]] inline bool any_on(const std::vector<BoxNode>& nodes, const TreeLeg& leg,
                                           const Meets& meets) {
-  const auto any_in_leaf = [&](const BoxNode& leaf) {
-    std::uint32_t lanes = lanes_reached(leaf, leg);
-    while (lanes != 0 && !meets(std::size_t(leaf.box[std::countr_zero(lanes)]))) {
-      lanes &= lanes - 1;
-    }
-    return lanes != 0;
-  };
   const std::int32_t likely = last_leaf;
   if (std::size_t(likely) < nodes.size() && nodes[std::size_t(likely)].is_leaf() &&
-      any_in_leaf(nodes[std::size_t(likely)])) {
+      any_in_leaf(nodes[std::size_t(likely)], leg, meets)) {
     return true;
   }
   std::array<std::int32_t, kMaxOpen> open{0};
@@ -144,7 +148,7 @@ template <class Meets>
     const std::int32_t index = open[--waiting];
     const BoxNode& node = nodes[std::size_t(index)];
     if (node.is_leaf()) {
-      if (index != likely && any_in_leaf(node)) {
+      if (index != likely && any_in_leaf(node, leg, meets)) {
         last_leaf = index;
         return true;
       }
