@@ -45,10 +45,11 @@ class GoalFlood {
   /// True if the goal is shut in.
   bool is_shut_in() const { return !has_met_ && next_ == frontier_.size(); }
   std::size_t cells() const { return frontier_.size(); }
+  /// Every `stride`th of the cells.
   template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (const std::uint32_t number : frontier_) {
-      visit(tiles_.cell(number));
+  void for_each(std::size_t stride, const Visit& visit) const {
+    for (std::size_t n = 0; n < frontier_.size(); n += stride) {
+      visit(tiles_.cell(frontier_[n]));
     }
   }
   std::size_t bytes() const { return frontier_.size() * sizeof(std::uint32_t) + seen_.bytes(); }

@@ -317,10 +317,13 @@ class StepSearch {
     return found;
   }
 
-  /// What shuts the goal in: it alone is the cause, whatever the search was refused before.
+  /// What shuts the goal in: it alone is the cause, whatever the search was refused before. Of many
+  /// cells only a sample is looked at, as the budget may be used up.
   std::string shut_in() const {
+    constexpr std::size_t kLooks = 100'000;
     kit::MoveRules around(request_, lattice_, settings_.moves, settings_.corner);
-    flood_.for_each([&](const Cell& c) { around.places_free(c, around.out_of(c)); });
+    flood_.for_each(1 + flood_.cells() / kLooks,
+                    [&](const Cell& c) { around.places_free(c, around.out_of(c)); });
     return "no route: the goal is shut in: it can be reached from " +
            std::to_string(flood_.cells()) + " of " + std::to_string(lattice_.size()) +
            " cells alone, around which are refused " + around.refusals() + "; " +
