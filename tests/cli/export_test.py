@@ -73,6 +73,16 @@ class Flight(unittest.TestCase):
 
 
 class Export(Flight):
+    def test_format_by_the_file(self):
+        for to, extension in FORMATS.items():
+            path = os.path.join(self.folder, f"by_extension.{extension}")
+            self.assertEqual(altiplan("export", self.result, "-o", path)[0], 0)
+            self.assertEqual(text_of(path), self.export(to))
+        for options in ((), ("-o", os.path.join(self.folder, "route.dat"))):
+            code, out, err = altiplan("export", self.result, *options)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn("--to is required, or an output file (-o) that ends in .plan", err)
+
     def test_plan(self):
         for altitude, frame, mode in (("sea", 0, 2), ("ground", 10, 4), ("home", 3, 1)):
             with self.subTest(altitude):

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <iostream>
 #include <map>
 
@@ -13,7 +14,7 @@ using Format = kit::MissionFile::Format;
 
 struct Arguments {
   RouteExport route;
-  std::string to;
+  std::optional<std::string> to;
   std::optional<std::string> out;
   std::optional<std::string> fence;
 };
@@ -24,6 +25,25 @@ const std::map<std::string, std::optional<Format>>& formats() {
       {"kml", Format::kml},           {"geojson", Format::geojson},
       {"gpx", Format::gpx},           {"csv", std::nullopt}};
   return kAll;
+}
+
+/// The format's name: as given, or by the output file's extension.
+std::string format_of(const Arguments& arguments) {
+  if (arguments.to) {
+    return *arguments.to;
+  }
+  static const std::map<std::string, std::string> kExtensions{
+      {".plan", "qgc-plan"}, {".waypoints", "waypoints"},
+      {".kml", "kml"},       {".geojson", "geojson"},
+      {".gpx", "gpx"},       {".csv", "csv"}};
+  const auto found =
+      kExtensions.find(std::filesystem::path(arguments.out.value_or("")).extension().string());
+  if (found == kExtensions.end()) {
+    throw UsageError{
+        "--to is required, or an output file (-o) that ends in .plan, .waypoints, .kml, .geojson, "
+        ".gpx or .csv"};
+  }
+  return found->second;
 }
 
 /// The zones in a file of their own; false if there are none.
@@ -66,8 +86,8 @@ void add_export(App& app, Action& action) {
       app.add_subcommand("export", "write a result's route for ground control stations and maps");
   auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("--to", arguments->to, "format: qgc-plan, waypoints, kml, geojson, gpx or csv")
-      ->required()
+      ->add_option("--to", arguments->to,
+                   "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")
       ->type_name("FORMAT")
       ->check(Check::one_of({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
   command->add_option("-o,--out", arguments->out, "output file (default: stdout)")
@@ -79,9 +99,9 @@ void add_export(App& app, Action& action) {
   add_route_export(*command, arguments->route);
   command->add_flag("--flight", arguments->route.flight,
                     "export the flown track instead of the route");
-  set_example(*command, "altiplan export result.json --to qgc-plan --takeoff --land -o ridge.plan");
+  set_example(*command, "altiplan export result.json --takeoff --land -o ridge.plan");
   command->callback([&action, arguments] {
-    arguments->route.options.format = formats().at(arguments->to);
+    arguments->route.options.format = formats().at(format_of(*arguments));
     finish_options(arguments->route);
     action = [arguments] { return export_result(*arguments); };
   });
