@@ -4,6 +4,7 @@
 `python3 go_test.py PROGRAM SOURCES Go.test_a_wing` runs one case."""
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import tempfile
 import unittest
 
 PROGRAM, SOURCES = sys.argv[1:3]
+DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"))
 TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
 ENDS = ["--from", "-84.38,36.48", "--to", "-84.20,36.62"]
 UTM = ('PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,'
@@ -167,6 +169,17 @@ class Go(unittest.TestCase):
         self.go("--terrain", "utm.asc", "--from", "-118.080,34.252", "--to", "-118.055,34.268",
                 folder="utm")
         self.call("check", "utm/route.plan", "--terrain", "utm.asc", "--min-agl", "50")
+
+    def test_a_swiss_model(self):
+        """Its projection does not give degrees back to the last digit; its sides are no parallels."""
+        model = DATA / "dem/davosdorf.tif"
+        if not model.exists():
+            self.skipTest("no test data: set ALTIPLAN_TEST_DATA")
+        ends = ["--from", "9.80155,46.8021", "--to", "9.85405,46.8343"]
+        self.go("--terrain", str(model), *ends, "--via", "9.8128,46.8274", folder="davosdorf")
+        _, err = self.call("go", "--terrain", str(model), "--from", "9.79105,46.81822", *ends[2:],
+                           code=3)
+        self.assertIn("but not all of that", err)
 
     def test_points_that_are_no_good(self):
         terrain = ["--terrain", TERRAIN]

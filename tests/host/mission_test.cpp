@@ -142,7 +142,9 @@ TEST_F(MissionTest, JudgesViaPointsInOrder) {
   EXPECT_EQ(via_indices({start, two, one, two, goal}, made.via), (std::vector<std::size_t>{2, 3}));
   const CheckResult wrong = judge({start, two, one, goal}, made.request, made.via);
   ASSERT_EQ(wrong.violations.size(), 1U);
-  EXPECT_EQ(wrong.violations[0].message, "the route does not pass via point 1");
+  EXPECT_EQ(
+      wrong.violations[0].message,
+      "the route does not pass via point 1: its nearest waypoint is 200 m away, tolerance_m 0");
   EXPECT_EQ(violated_layer(wrong), nullptr);
   EXPECT_FALSE(judge({start, goal}, made.request, made.via).ok()) << "a via point is a waypoint";
   EXPECT_FALSE(judge({}, made.request, {}).ok());

@@ -134,14 +134,14 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
                      (corridor_.frame_line().empty() ? "" : "\n");
   text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
           "vehicle: " + vehicle() + "\nstart: " + point(wish_.points.front()) + "}\n";
+  const char* reached = ", tolerance_m: 1}\n";  // files of missions round points
   if (wish_.points.size() > 2) {
     text += "via:\n";
     for (std::size_t i = 1; i + 1 < wish_.points.size(); ++i) {
-      text += "  - " + point(wish_.points[i]) + "}\n";
+      text += "  - " + point(wish_.points[i]) + reached;
     }
   }
-  // Files of missions round points.
-  text += "goal: " + point(wish_.points.back()) + ", tolerance_m: 1}\n";
+  text += "goal: " + point(wish_.points.back()) + reached;
   if (wish_.start_time) {
     text += "start_time: " + Json(*wish_.start_time).dump() + "\n";
   }

@@ -218,7 +218,12 @@ void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   const auto range = [](double low, double high) {
     return with_digits(low, 7) + " to " + with_digits(high, 7);
   };
+  // The sides of a projected model are not meridians and parallels.
+  const bool beside = degrees.contains(Vec3(lon, lat, 0));
   throw Error(what + ", which covers longitude " + range(degrees.min.x(), degrees.max.x()) +
-              " and latitude " + range(degrees.min.y(), degrees.max.y()));
+              " and latitude " + range(degrees.min.y(), degrees.max.y()) +
+              (beside ? " but not all of that: its sides, or those of its tiles, do not run along "
+                        "meridians and parallels; give a point farther inside"
+                      : ""));
 }
 }  // namespace altiplan::host

@@ -2,8 +2,10 @@
 #include "host/judge/judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -81,8 +83,17 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
     check_via_course(route, request, via[i], indices[i], result.violations);
   }
   if (passed < via.size()) {
-    result.violations.push_back({"via", 0, double(passed), double(via.size()),
-                                 "the route does not pass via point " + std::to_string(passed)});
+    double least = kInfinity;
+    for (std::size_t i = passed > 0 ? indices.back() : 0; i < route.size(); ++i) {
+      least = std::min(least, (route[i] - via[passed].position).norm());
+    }
+    const std::string nearest =
+        std::isfinite(least) ? ": its nearest waypoint is " + with_digits(least, 3) +
+                                   " m away, tolerance_m " + with_digits(via[passed].tolerance_m, 6)
+                             : "";
+    result.violations.push_back(
+        {"via", 0, double(passed), double(via.size()),
+         "the route does not pass via point " + std::to_string(passed) + nearest});
   }
   for (const Layer& layer : request.world->layers()) {
     try {
