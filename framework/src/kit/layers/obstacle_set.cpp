@@ -117,9 +117,9 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
   }
 }
 
-/// The leaf in which a shape blocked the last leg, of whatever tree. Searches ask for many similar
-/// legs one after the other, which the same shape blocks.
-thread_local std::int32_t last_leaf = 0;
+/// The leaf in which a shape blocked the last leg, of whatever tree; -1 if that leg was free.
+/// Searches ask for many similar legs one after the other, which the same shape blocks.
+thread_local std::int32_t last_leaf = -1;
 
 // Inlined, as all of a query must be compiled for the same CPU.
 template <class Meets>
@@ -158,6 +158,7 @@ template <class Meets>
       open[waiting++] = node.first + std::countr_zero(lanes);
     }
   }
+  last_leaf = -1;
   return false;
 }
 
