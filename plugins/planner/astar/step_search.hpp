@@ -101,13 +101,9 @@ class StepSearch {
   static constexpr std::uint32_t kBetweenFloods = 4096;  ///< expansions
   static constexpr int kFlooded = 1024;                  ///< cells between them
 
-  std::uint32_t link_cost(const kit::Lattice::Link& link) const {
-    return link.length > 0 ? std::max(costs_.of(link.length), 1U) : 0;
-  }
-
   void begin() {
     for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
-      goal_links_.push_back({link.cell, tiles_.number(link.cell), link_cost(link)});
+      goal_links_.push_back({link.cell, tiles_.number(link.cell), costs_.of_link(link.length)});
     }
     begin_flood();
     for (const kit::Lattice::Link& link : lattice_.links(start_)) {
@@ -115,7 +111,7 @@ class StepSearch {
       if (!rules_.cell_blocked(link.cell) &&
           (link.length == 0 || rules_.any_leg_ok(request_.before_start(), start_, there))) {
         at_start_ = at_start_ || link.length == 0;
-        reach(tiles_.number(link.cell), link.cell, link_cost(link), kit::kHere);
+        reach(tiles_.number(link.cell), link.cell, costs_.of_link(link.length), kit::kHere);
       }
     }
   }

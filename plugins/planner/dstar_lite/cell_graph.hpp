@@ -170,14 +170,14 @@ class CellGraph {
           link.length == 0 || legs_.rules().any_leg_ok(std::nullopt, lattice_.position(link.cell),
                                                        problem_.request.goal.position);
       if (is_free) {
-        goal_.add(lattice_.index(link.cell), problem_.link_cost(link));
+        goal_.add(lattice_.index(link.cell), problem_.costs.of_link(link.length));
       }
     });
   }
   void find_start(const std::vector<kit::Lattice::Link>& links) {
     start_.clear();
     for_each_start_link(problem_, legs_, links, [&](const kit::Lattice::Link& link) {
-      start_.add(lattice_.index(link.cell), problem_.link_cost(link));
+      start_.add(lattice_.index(link.cell), problem_.costs.of_link(link.length));
     });
   }
 

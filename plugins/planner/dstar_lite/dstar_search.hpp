@@ -60,7 +60,7 @@ class Search {
     std::uint32_t fall = 0;
     for (const kit::Lattice::Link& link : moved_ ? links : std::vector<kit::Lattice::Link>()) {
       const std::uint32_t before = to_start_(link.cell);
-      const std::uint32_t now = problem_.link_cost(link);
+      const std::uint32_t now = problem_.costs.of_link(link.length);
       fall = std::max(fall, before > now ? before - now : 0);
     }
     moved_ = true;

@@ -107,13 +107,13 @@ class HeadingGraph {
   void find_goal(bool within) {
     goal_.clear();
     for_each_goal_link(problem_, legs_, within, [&](const kit::Lattice::Link& link) {
-      goal_.add(lattice_.index(link.cell), problem_.link_cost(link));
+      goal_.add(lattice_.index(link.cell), problem_.costs.of_link(link.length));
     });
   }
   void find_start(const std::vector<kit::Lattice::Link>& links) {
     start_.clear();
     for_each_start_link(problem_, legs_, links, [&](const kit::Lattice::Link& link) {
-      start_.add(node(lattice_.index(link.cell), kit::kHere), problem_.link_cost(link));
+      start_.add(node(lattice_.index(link.cell), kit::kHere), problem_.costs.of_link(link.length));
     });
   }
 

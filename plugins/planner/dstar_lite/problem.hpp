@@ -18,10 +18,6 @@ struct Problem {
   const kit::SearchSettings& settings;
   const kit::Lattice& lattice;
   const kit::StepCosts& costs;
-
-  std::uint32_t link_cost(const kit::Lattice::Link& link) const {
-    return link.length > 0 ? std::max(costs.of(link.length), 1U) : 0;
-  }
 };
 
 /// True if the cells that a step passes through, and its direction, decide alone if it is free.
@@ -99,7 +95,7 @@ class ToStart {
   void move(const std::vector<kit::Lattice::Link>& links, const Problem& problem) {
     others_.clear();
     for (const kit::Lattice::Link& link : links) {
-      others_.push_back({link.cell, problem.link_cost(link)});
+      others_.push_back({link.cell, problem.costs.of_link(link.length)});
     }
     first_ = others_.back();  // usually the only one
     others_.pop_back();

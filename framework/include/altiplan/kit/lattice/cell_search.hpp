@@ -5,11 +5,14 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "altiplan/kit/lattice/bucket_queue.hpp"
+#include "altiplan/kit/lattice/cell_estimate.hpp"
 #include "altiplan/kit/lattice/lattice_search.hpp"
 #include "altiplan/kit/lattice/pruning.hpp"
+#include "altiplan/kit/lattice/straight_runs.hpp"
 #include "altiplan/kit/scratch.hpp"
 
 namespace altiplan::kit {
@@ -29,7 +32,8 @@ struct CellMemory {
 ///
 /// A successor that the preceding cell reaches as cheaply on another path is pruned
 /// (kit/pruning.hpp). Most successors would otherwise be reached from many sides first, each time
-/// slightly more cheaply.
+/// slightly more cheaply. In space, a straight run where nothing else can be reached is one step
+/// (kit/straight_runs.hpp).
 class CellSearch {
  public:
   /// `costs` are those of the lattice. All arguments must outlive the search.
@@ -54,11 +58,13 @@ class CellSearch {
         steps_(rules_.steps() & (level_ ? kLevelDirections : ~DirectionMask{0})),
         prune_(consistent_ && settings.neighbours == Neighbourhood::all &&
                rules_.steps() == lattice.steps()),
+        runs_(grid_),
         is_sum_(settings.weight_g == settings.weight_h),
         weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
         weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)),
         goal_node_(std::uint32_t(lattice.size())),
-        goal_(request.goal.position) {
+        goal_(request.goal.position),
+        to_goal_(lattice, costs, settings.heuristic, request.goal) {
     for (int d = 0; d < kDirections; ++d) {
       const Cell o = offset(d);
       moves_[std::size_t(d)] = {std::uint32_t(lattice.stride(d)), costs[d], o[0], o[1], o[2]};
@@ -74,13 +80,6 @@ class CellSearch {
     std::uint32_t cost;
     int x, y, z;
   };
-  /// A cell from which the goal is one leg away.
-  struct GoalLink {
-    std::uint32_t index;
-    std::uint32_t cost;
-    Cell cell;
-  };
-
   std::uint32_t g(std::uint32_t index) const { return ~complement_[index]; }
   /// Position of a cell's bit; in 2-D the border level below it is omitted.
   std::size_t closed_bit(std::size_t bit) const { return level_ ? bit - grid_.level_bits() : bit; }
@@ -88,21 +87,18 @@ class CellSearch {
     const std::size_t at = closed_bit(bit);
     return (closed_[at / 64] >> at % 64 & 1) != 0;
   }
-  std::uint32_t link_cost(const Lattice::Link& link) const {
-    return link.length > 0 ? std::max(costs_.of(link.length), 1U) : 0;
-  }
-
   void begin() {
     complement_.reset(lattice_.size());
     closed_.reset(level_ ? grid_.level_bits() / 64 + 1 : grid_.words().size());
     open_.clear();
-    for (const Lattice::Link& link : lattice_.links(goal_)) {
-      goal_links_.push_back({lattice_.index(link.cell), link_cost(link), link.cell});
-      first_link_ = std::min(first_link_, goal_links_.back().index);
-      last_link_ = std::max(last_link_, goal_links_.back().index);
+    for (const CellEstimate::Link& link : to_goal_.links()) {
+      first_link_ = std::min(first_link_, link.index);
+      last_link_ = std::max(last_link_, link.index);
+      runs_.end_at(link.cell);
     }
-    if (settings_.heuristic == Heuristic::octile && goal_links_.size() == 1) {
-      near_goal_ = &goal_links_.front();
+    if (const double reach = request_.goal.tolerance_m; reach > 0) {
+      runs_.end_at(lattice_.nearest(goal_ - Vec3::Constant(reach)).cell);
+      runs_.end_at(lattice_.nearest(goal_ + Vec3::Constant(reach)).cell);
     }
     const Vec3& start = request_.start.position;
     for (const Lattice::Link& link : lattice_.links(start)) {
@@ -110,43 +106,10 @@ class CellSearch {
           (link.length == 0 ||
            rules_.any_leg_ok(request_.before_start(), start, lattice_.position(link.cell)))) {
         const auto [x, y, z] = link.cell;
-        reach(lattice_.index(link.cell), link_cost(link), heuristic<false>(x, y, z), kHere);
+        reach(lattice_.index(link.cell), costs_.of_link(link.length), to_goal_.at<false>(x, y, z),
+              kHere);
       }
     }
-  }
-
-  /// Lower bound of the cost from the cell to the goal (except for `manhattan`).
-  template <bool kLevel>
-  std::uint32_t heuristic(int x, int y, int z) const {
-    if (near_goal_ != nullptr) {
-      return costs_.apart(std::uint32_t(std::abs(x - near_goal_->cell[0])),
-                          std::uint32_t(std::abs(y - near_goal_->cell[1])),
-                          kLevel ? 0 : std::uint32_t(std::abs(z - near_goal_->cell[2]))) +
-             near_goal_->cost;
-    }
-    return other_heuristic({x, y, z});
-  }
-
-  [[gnu::noinline]] std::uint32_t other_heuristic(const Cell& c) const {
-    if (settings_.heuristic == Heuristic::octile && !goal_links_.empty()) {
-      std::uint32_t least = ~std::uint32_t{0};
-      for (const GoalLink& link : goal_links_) {
-        least = std::min(least, costs_.between(c, link.cell) + link.cost);
-      }
-      return least;
-    }
-    const Vec3 way = lattice_.position(c) - goal_;
-    switch (settings_.heuristic) {
-      case Heuristic::octile:  // only the goal's tolerance is on the lattice
-        return costs_.at_most(std::max(0.0, way.norm() - request_.goal.tolerance_m));
-      case Heuristic::euclidean:
-        return costs_.at_most(way.norm());
-      case Heuristic::manhattan:
-        return costs_.of(way.lpNorm<1>());
-      case Heuristic::zero:
-        break;
-    }
-    return 0;
   }
 
   std::uint32_t evaluation(std::uint32_t g, std::uint32_t h) const {
@@ -197,17 +160,32 @@ class CellSearch {
       // Among equals the last one is taken first: the step along most axes, as in kNatural.
       for (int axes = 1; axes <= (kLevel ? 2 : 3); ++axes) {
         for (DirectionMask rest = open & kAlongAxes[axes - 1]; rest != 0; rest &= rest - 1) {
-          const int d = std::countr_zero(rest);
-          const Move& move = moves_[std::size_t(d)];
-          const std::uint32_t next = entry.node + move.stride;
-          const std::uint32_t g_next = g_here + move.cost;
-          if (~g_next > complement_[next]) {  // not reached, or at a greater cost
-            reach(next, g_next, heuristic<kLevel>(x + move.x, y + move.y, z + move.z), d);
-          }
+          go<kLevel>(entry.node, {x, y, z}, bit, std::countr_zero(rest), g_here);
         }
       }
     }
     return without_goal(std::move(result));
+  }
+
+  /// Reaches the next cell in a direction.
+  template <bool kLevel>
+  void go(std::uint32_t index, const Cell& c, std::size_t bit, int d, std::uint32_t g_here) {
+    const Move& move = moves_[std::size_t(d)];
+    if (~(g_here + move.cost) <= complement_[index + move.stride]) {
+      return;  // was reached, at no greater cost
+    }
+    int steps = 1;
+    if (!kLevel && prune_ && (kAlongAxes[0] >> d & 1) != 0) {
+      steps = runs_.steps(c, bit, d);
+    }
+    const std::uint32_t next = index + std::uint32_t(steps) * move.stride;
+    const std::uint32_t g_next = g_here + std::uint32_t(steps) * move.cost;
+    if (steps == 1 || (steps > 1 && ~g_next > complement_[next])) {
+      reach(
+          next, g_next,
+          to_goal_.at<kLevel>(c[0] + steps * move.x, c[1] + steps * move.y, c[2] + steps * move.z),
+          d);
+    }
   }
 
   /// Directions to examine from a cell that was reached by the step `from`.
@@ -230,7 +208,7 @@ class CellSearch {
   }
 
   void try_goal(std::uint32_t index) {
-    for (const GoalLink& link : goal_links_) {
+    for (const CellEstimate::Link& link : to_goal_.links()) {
       const std::uint32_t at_goal = g(index) + link.cost;
       if (link.index == index && at_goal < goal_g_ &&
           (link.cost == 0 ||
@@ -264,11 +242,40 @@ class CellSearch {
     return kHere;
   }
 
+  /// Direction and number of steps of the run that led to the cell; kHere: it is linked to the
+  /// start.
+  std::pair<int, int> led_to(std::uint32_t index, int likely) const {
+    if (const int d = step_to(index, likely); d != kHere) {
+      return {d, 1};
+    }
+    const Cell c = lattice_.cell(index);
+    for (DirectionMask axes = level_ ? 0 : kAlongAxes[0]; axes != 0; axes &= axes - 1) {
+      const int d = std::countr_zero(axes);
+      const Cell o = offset(d);
+      Cell from = c;
+      for (int steps = 1; steps <= StraightRuns::kLongest; ++steps) {
+        from = {from[0] - o[0], from[1] - o[1], from[2] - o[2]};
+        if (grid_.blocked(from)) {
+          break;
+        }
+        if (is_closed(grid_.bit(from)) &&
+            g(lattice_.index(from)) + std::uint32_t(steps) * costs_[d] == g(index)) {
+          return {d, steps};
+        }
+      }
+    }
+    return {kHere, 0};
+  }
+
   PlanResult found(std::uint32_t last, bool at_goal) const {
-    Polyline route = route_to(
-        last, request_, lattice_,
-        [&](std::uint32_t index, int likely) { return step_to(index, likely); },
-        [&](std::uint32_t index) { return g(index) == 0; });
+    std::pair<int, int> led{kHere, 0};
+    const auto step_to = [&](std::uint32_t index, int likely) {
+      auto& [d, left] = led;
+      led = left > 1 ? std::pair{d, left - 1} : led_to(index, likely);
+      return d;
+    };
+    Polyline route = route_to(last, request_, lattice_, step_to,
+                              [&](std::uint32_t index) { return g(index) == 0; });
     if (at_goal) {
       end_at_goal(route, goal_, g(last) == goal_g_);
     }
@@ -280,20 +287,41 @@ class CellSearch {
     return result;
   }
 
+  /// Of the cell, and of those on runs from it to beside the goal.
+  void remember_nearest(const Cell& c) {
+    const auto remember = [&](const Cell& at) {
+      const Vec3 here = lattice_.position(at);
+      if ((here - goal_).norm() < nearest_) {
+        nearest_ = (here - goal_).norm();
+        progress_.nearest = here;
+      }
+    };
+    remember(c);
+    const Cell to = lattice_.nearest(goal_).cell;
+    for (std::size_t axis = 0; axis < 3 && !level_; ++axis) {
+      Vec3 beside = lattice_.position(c) - goal_;
+      beside[Eigen::Index(axis)] = 0;
+      for (Cell at = c; at[axis] != to[axis] && beside.norm() < nearest_;) {
+        at[axis] += at[axis] < to[axis] ? 1 : -1;
+        if (grid_.blocked(at)) {
+          break;
+        }
+        remember(at);
+      }
+    }
+  }
+
   /// The goal was not reached: a cell within its tolerance, or the reason.
   PlanResult without_goal(PlanResult result) {
     std::optional<std::uint32_t> nearest_start;
-    double nearest = kInfinity;
+    nearest_ = kInfinity;
     for_each_closed([&](const Cell& c) {
       const std::uint32_t index = lattice_.index(c);
-      const Vec3 here = lattice_.position(c);
-      if (request_.goal.reached_at(here) && (!nearest_start || g(index) < g(*nearest_start))) {
+      if (request_.goal.reached_at(lattice_.position(c)) &&
+          (!nearest_start || g(index) < g(*nearest_start))) {
         nearest_start = index;
       }
-      if ((here - goal_).norm() < nearest) {
-        nearest = (here - goal_).norm();
-        progress_.nearest = here;
-      }
+      remember_nearest(c);
     });
     if (nearest_start) {
       const bool budget_hit = result.budget_hit;
@@ -326,12 +354,12 @@ class CellSearch {
 
   void add_to_trace(std::uint32_t index) const {
     const Cell c = lattice_.cell(index);
-    const int d = step_to(index, kHere);
-    const std::int64_t parent = d == kHere ? -1 : std::int64_t(index) - lattice_.stride(d);
+    const auto [d, steps] = led_to(index, kHere);
+    const std::int64_t parent = d == kHere ? -1 : std::int64_t(index) - steps * lattice_.stride(d);
     request_.trace->add(
         {TraceEvent::Kind::expanded, std::int64_t(index), parent, lattice_.position(c),
          settings_.weight_g * costs_.metres(g(index)) +
-             settings_.weight_h * costs_.metres(heuristic<false>(c[0], c[1], c[2]))});
+             settings_.weight_h * costs_.metres(to_goal_.at<false>(c[0], c[1], c[2]))});
   }
 
   const Request& request_;
@@ -351,19 +379,20 @@ class CellSearch {
   const LevelSuccessors& level_successors_;
   const SpaceSuccessors& space_successors_;
   DirectionMask steps_;
-  bool prune_;   ///< the paths around a cell on which pruning relies consist of all steps
+  bool prune_;  ///< the paths around a cell on which pruning relies consist of all steps
+  StraightRuns runs_;
   bool is_sum_;  ///< f is g + h
   double weight_g_;
   double weight_h_;
   std::uint32_t goal_node_;
   Vec3 goal_;
+  CellEstimate to_goal_;
   std::array<Move, kDirections> moves_{};
-  std::vector<GoalLink> goal_links_;
   std::uint32_t first_link_ = ~std::uint32_t{0};  ///< minimum and maximum index of them
   std::uint32_t last_link_ = 0;
-  const GoalLink* near_goal_ = nullptr;  ///< set if the octile distance to it is the heuristic
   std::uint32_t goal_g_ = ~std::uint32_t{0};
   std::uint32_t goal_parent_ = 0;
+  double nearest_ = kInfinity;  ///< distance of progress_.nearest from the goal, metres
   SearchStats progress_;
 };
 }  // namespace altiplan::kit

@@ -33,6 +33,8 @@ class ALTIPLAN_API StepCosts {
   std::uint32_t operator[](int d) const { return costs_[std::size_t(d)]; }
   /// Cost nearest to a length.
   std::uint32_t of(double metres) const { return std::uint32_t(std::llround(metres * per_metre_)); }
+  /// Cost of the leg that joins a point to a cell; 0 only for none.
+  std::uint32_t of_link(double metres) const { return metres > 0 ? std::max(of(metres), 1U) : 0; }
   /// A lower bound of the cost of a path of that length, which falls by no more along a step than
   /// the step costs.
   std::uint32_t at_most(double metres) const { return std::uint32_t(metres * bound_per_metre_); }
