@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "altiplan/kit/zero_memory.hpp"
+
 namespace altiplan::kit {
 
 /// Work memory that outlives a call: owned by the plugin's object, leased to one call at a time,
@@ -107,38 +109,35 @@ class ScratchArray {
   /// Resets to `count` zeros.
   void reset(std::size_t count) {
     if (count > count_) {
-      values_.reset();
-      is_written_.reset();
       count_ = 0;
+      memory_ = {};
       const std::size_t blocks = count / kBlock + 1;
-      values_.reset(static_cast<T*>(std::calloc(blocks * kBlock, sizeof(T))));
-      is_written_.reset(static_cast<bool*>(std::calloc(blocks, sizeof(bool))));
-      if (!values_ || !is_written_) {
-        throw std::bad_alloc();
-      }
+      memory_ = ZeroMemory(blocks * kBlockBytes);
+      values_ = static_cast<T*>(memory_.data());
+      is_written_.assign(blocks, 0);
       written_ = {};
       written_.reserve(blocks);  // growing on demand would take twice the memory
       count_ = count;
     } else {
       for (const std::uint32_t block : written_) {
         // In pieces that compilers clear by plain stores: longer ones take several times as long.
-        T* const first = values_.get() + block * kBlock;
+        T* const first = values_ + block * kBlock;
         for (T* piece = first; piece != first + kBlock; piece += kPiece) {
           std::fill_n(piece, kPiece, T{0});
         }
-        is_written_.get()[block] = false;
+        is_written_[block] = 0;
       }
     }
     written_.clear();
   }
-  T operator[](std::size_t i) const { return values_.get()[i]; }
-  const T* data() const { return values_.get(); }
+  T operator[](std::size_t i) const { return values_[i]; }
+  const T* data() const { return values_; }
   /// For writing.
   T& at(std::size_t i) {
-    if (!is_written_.get()[i / kBlock]) {
+    if (is_written_[i / kBlock] == 0) {
       note(i / kBlock);
     }
-    return values_.get()[i];
+    return values_[i];
   }
   std::size_t bytes() const { return count_ * sizeof(T) + count_ / kBlock; }
   /// Bytes in the blocks written since the last reset.
@@ -146,18 +145,16 @@ class ScratchArray {
 
  private:
   [[gnu::noinline]] void note(std::size_t block) {
-    is_written_.get()[block] = true;
+    is_written_[block] = 1;
     written_.push_back(std::uint32_t(block));
   }
 
   static constexpr std::size_t kPiece = 64 / sizeof(T);
   static constexpr std::size_t kBlock = kBlockBytes / sizeof(T);
-  struct Free {
-    void operator()(void* memory) const { std::free(memory); }
-  };
-  std::unique_ptr<T, Free> values_;
-  std::unique_ptr<bool, Free> is_written_;  // by block
-  std::vector<std::uint32_t> written_;      // blocks
+  ZeroMemory memory_;
+  T* values_ = nullptr;
+  std::vector<std::uint8_t> is_written_;  // by block
+  std::vector<std::uint32_t> written_;    // blocks
   std::size_t count_ = 0;
 };
 }  // namespace altiplan::kit

@@ -177,6 +177,7 @@ class CellSearch {
     int steps = 1;
     if (!kLevel && prune_ && (kAlongAxes[0] >> d & 1) != 0) {
       steps = runs_.steps(c, bit, d);
+      complement_.at(index + move.stride) = ~(g_here + move.cost);  // the run is taken only once
     }
     const std::uint32_t next = index + std::uint32_t(steps) * move.stride;
     const std::uint32_t g_next = g_here + std::uint32_t(steps) * move.cost;

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <memory>
-#include <new>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "altiplan/error.hpp"
 #include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/zero_memory.hpp"
 
 /// \file Cells numbered by tiles, and arrays over them that take memory where a search writes: a
 /// lattice may have many more cells than a search reaches, and neighbours share cache lines and
@@ -100,16 +96,14 @@ class TiledArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  TiledArray() = default;
-  TiledArray(const TiledArray&) = delete;
-  TiledArray& operator=(const TiledArray&) = delete;
-  ~TiledArray() { release(); }
-
   /// All zero, for so many tiles.
   void reset(std::size_t tiles) {
-    if (tiles > tiles_) {
-      release();
-      reserve(tiles);
+    if (tiles > is_written_.size()) {
+      is_written_.clear();
+      memory_ = {};
+      memory_ = ZeroMemory(tiles * kTileBytes);
+      values_ = static_cast<T*>(memory_.data());
+      is_written_.assign(tiles, 0);
     } else {
       for (const std::uint32_t tile : written_) {
         std::memset(values_ + std::size_t(tile) * TileIndex::kCells, 0, kTileBytes);
@@ -134,44 +128,14 @@ class TiledArray {
 
  private:
   static constexpr std::size_t kTileBytes = TileIndex::kCells * sizeof(T);
-  /// Arrays up to this size are backed by huge pages: they are touched far faster, but a larger
-  /// array may be written in few places of each.
-  static constexpr std::size_t kHuge = std::size_t{256} << 20;
-  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
-  void reserve(std::size_t tiles) {
-    mapped_ = tiles * kTileBytes + kHugePage;
-    void* const memory = ::mmap(nullptr, mapped_, PROT_READ | PROT_WRITE,
-                                MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (memory == MAP_FAILED) {
-      throw std::bad_alloc();
-    }
-    memory_ = memory;
-    void* first = memory;
-    std::size_t left = mapped_;
-    values_ = static_cast<T*>(std::align(kHugePage, tiles * kTileBytes, first, left));
-    if (tiles * kTileBytes <= kHuge) {
-      ::madvise(values_, tiles * kTileBytes, MADV_HUGEPAGE);
-    }
-    is_written_.assign(tiles, 0);
-    tiles_ = tiles;
-  }
-  void release() {
-    if (memory_ != nullptr) {
-      ::munmap(memory_, mapped_);
-    }
-    memory_ = nullptr;
-    tiles_ = 0;
-  }
   [[gnu::noinline]] void note(std::size_t tile) {
     is_written_[tile] = 1;
     written_.push_back(std::uint32_t(tile));
   }
 
-  void* memory_ = nullptr;
-  std::size_t mapped_ = 0;
+  ZeroMemory memory_;
   T* values_ = nullptr;
-  std::size_t tiles_ = 0;
   std::vector<std::uint8_t> is_written_;  // by tile
   std::vector<std::uint32_t> written_;    // tiles
 };
