@@ -43,6 +43,11 @@ struct Params : kit::SearchParams {
             "where cells decide alone: step lengths exact (to 1e-7 on cubes and squares), or in "
             "the ratios 41 : 58 : 71 on cubes and 70 : 99 on squares, which gives more paths "
             "equal length (routes up to 0.05 % and 0.006 % longer; on other cells 2.5 %)");
+    f("runs", search.runs)
+        .doc(
+            "where cells decide alone, in space: a straight run beside which nothing changes is "
+            "one "
+            "step, and its cells are not among those expanded; false: every cell is expanded");
   }
 };
 

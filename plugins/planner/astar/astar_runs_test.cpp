@@ -144,6 +144,26 @@ TEST(AStarRuns, EqualDijkstra) {
   EXPECT_GT(solved, 200);
 }
 
+TEST(AStarRuns, AreCellByCellIfToldSo) {
+  SplitMix64 random(14);
+  double by_runs = 0;
+  double by_cells = 0;
+  for (int number = 0; number < 24; ++number) {
+    const Halls halls = random_halls(random, number);
+    const Request request =
+        halls.request(random_free_cell(random, halls), random_free_cell(random, halls));
+    std::string parameters = halls.planner("octile");
+    const PlanResult runs = make_planner("astar", parameters)->plan(request);
+    parameters.insert(1, "runs: false, ");
+    const PlanResult cells = make_planner("astar", parameters)->plan(request);
+    ASSERT_EQ(runs.status, cells.status);
+    EXPECT_NEAR(length(runs.route), length(cells.route), 1e-6 * length(cells.route));
+    by_runs += double(testing::counter(runs, "expanded"));
+    by_cells += double(testing::counter(cells, "expanded"));
+  }
+  EXPECT_LT(by_runs, by_cells / 2);
+}
+
 TEST(AStarRuns, EndAtEveryCellWithinTheGoalsTolerance) {
   SplitMix64 random(12);
   int solved = 0;

@@ -58,6 +58,7 @@ class CellSearch {
         steps_(rules_.steps() & (level_ ? kLevelDirections : ~DirectionMask{0})),
         prune_(consistent_ && settings.neighbours == Neighbourhood::all &&
                rules_.steps() == lattice.steps()),
+        by_runs_(prune_ && settings.runs),
         runs_(grid_),
         is_sum_(settings.weight_g == settings.weight_h),
         weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
@@ -175,7 +176,7 @@ class CellSearch {
       return;  // was reached, at no greater cost
     }
     int steps = 1;
-    if (!kLevel && prune_ && (kAlongAxes[0] >> d & 1) != 0) {
+    if (!kLevel && by_runs_ && (kAlongAxes[0] >> d & 1) != 0) {
       steps = runs_.steps(c, bit, d);
       complement_.at(index + move.stride) = ~(g_here + move.cost);  // the run is taken only once
     }
@@ -325,10 +326,9 @@ class CellSearch {
       remember_nearest(c);
     });
     if (nearest_start) {
-      const bool budget_hit = result.budget_hit;
-      result = found(*nearest_start, false);
-      result.budget_hit = budget_hit;
-      return result;
+      PlanResult within = found(*nearest_start, false);
+      within.budget_hit = result.budget_hit;
+      return within;
     }
     for_each_closed([&](const Cell& c) { rules_.candidates(c, kHere); });  // counts refusals
     progress_.memory_full = memory_full();
@@ -381,6 +381,7 @@ class CellSearch {
   const SpaceSuccessors& space_successors_;
   DirectionMask steps_;
   bool prune_;  ///< the paths around a cell on which pruning relies consist of all steps
+  bool by_runs_;
   StraightRuns runs_;
   bool is_sum_;  ///< f is g + h
   double weight_g_;

@@ -38,6 +38,7 @@ struct SearchSettings {
   SearchState state = SearchState::automatic;
   CostWeights cost;
   bool anytime = false;
+  bool runs = true;  ///< of CellSearch, in space: straight runs are one step
   std::size_t max_bytes = ~std::size_t{0};
 
   /// Maximum decrease of the heuristic along a step, in units of the step's length.
