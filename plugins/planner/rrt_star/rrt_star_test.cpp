@@ -22,10 +22,26 @@ TEST(RrtStar, BoundedItIsShorterForTheSameNodes) {
     const auto length_with = [&](const std::string& yaml) {
       return length(make_planner("rrt_star", yaml)->plan(request).route);
     };
-    bounded += length_with("{max_iterations: 6000}");
-    plain += length_with("{max_iterations: 6000, bound: false}");
+    bounded += length_with("{max_iterations: 6000, route_bias: 0}");
+    plain += length_with("{max_iterations: 6000, route_bias: 0, bound: false}");
   }
   EXPECT_LT(bounded, plain);
+}
+
+TEST(RrtStar, BesideTheRouteItIsShorterForTheSameSamples) {
+  Request request = around_a_wall();
+  double beside = 0;
+  double anywhere = 0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    request.random = RandomStream(seed);
+    const auto length_with = [&](const std::string& bias) {
+      const std::string yaml = "{max_iterations: 3000, route_bias: " + bias + "}";
+      return length(make_planner("rrt_star", yaml)->plan(request).route);
+    };
+    beside += length_with("0.25");
+    anywhere += length_with("0");
+  }
+  EXPECT_LT(beside, 0.99 * anywhere);
 }
 }  // namespace
 }  // namespace altiplan

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "altiplan/kit/sampling/star_search.hpp"
+#include "beside_route.hpp"
+#include "candidate.hpp"
 #include "pose_motion.hpp"
 #include "straight_motion.hpp"
 
@@ -61,12 +63,6 @@ class StarGrowth {
   static constexpr std::size_t kMaxShots = 64;
   using State = typename Motion::State;
   using Node = LegTree::Node;
-  struct Candidate {
-    Node node;
-    double metres;  ///< of the edge from it
-    double cost;    ///< of the path through it
-    bool exact;     ///< false: lower bounds
-  };
 
   bool may_go_on() {
     budget_ended_ =
@@ -80,6 +76,9 @@ class StarGrowth {
     if (!goal_is_in_ && random_.uniform() < settings_.goal_bias) {
       const auto last = std::int64_t(goals_.size()) - 1;
       return goals_[last == 0 ? 0 : std::size_t(random_.integer(0, last))];
+    }
+    if (!beside_route_.empty() && random_.uniform() < settings_.route_bias) {
+      return motion_.sampled(beside_route_.draw(random_, near_radius(), box_), random_);
     }
     const Vec3 p = settings_.informed ? set_.draw(random_) : random_.in(box_);
     return motion_.sampled(p, random_);
@@ -141,6 +140,12 @@ class StarGrowth {
     learn_length();
   }
 
+  void trace(const TraceEvent& event) const {
+    if (request_.trace != nullptr) {
+      request_.trace->add(event);
+    }
+  }
+
   static const Vec3& place(const State& state) { return Motion::place(state); }
   bool is_useful(const State& state) const {
     return set_.contains(place(state)) && motion_.rules().point_ok(place(state));
@@ -171,12 +176,7 @@ class StarGrowth {
     const double to_go = motion_.to_go(x_new);
     double known = kInfinity;  // the least of the exact costs in the list
     while (!candidates_.empty()) {
-      const auto best = std::min_element(candidates_.begin(), candidates_.end(),
-                                         [](const Candidate& a, const Candidate& b) {
-                                           return a.cost != b.cost     ? a.cost < b.cost
-                                                  : a.exact != b.exact ? a.exact
-                                                                       : a.node < b.node;
-                                         });
+      const auto best = std::min_element(candidates_.begin(), candidates_.end());
       if (!best->exact) {
         refine(*best, x_new, known);
         continue;
@@ -248,10 +248,8 @@ class StarGrowth {
           memory_.cost[std::size_t(legs.parent(node))] + motion_.metres_to(node);
       note_end(node);
     }
-    if (request_.trace != nullptr) {
-      request_.trace->add({TraceEvent::Kind::rewired, x_near, x_new, legs.point(x_near),
-                           memory_.cost[std::size_t(x_near)]});
-    }
+    trace({TraceEvent::Kind::rewired, x_near, x_new, legs.point(x_near),
+           memory_.cost[std::size_t(x_near)]});
   }
 
   /// Adds goals as children of a new node in range of them, until they are in the tree.
@@ -275,7 +273,8 @@ class StarGrowth {
     const std::size_t count = memory_.points.count();
     if (count < radius_for_ || count > radius_for_ + radius_for_ / 64) {
       radius_for_ = count;
-      radius_ = motion_.near_radius(double(std::max<std::size_t>(count, 2)), set_.measure());
+      const double anywhere = (1 - settings_.route_bias) * double(count);  // not beside the route
+      radius_ = motion_.near_radius(std::max(anywhere, 2.0), set_.measure());
     }
     return radius_;
   }
@@ -286,9 +285,7 @@ class StarGrowth {
     memory_.cost.push_back(0);
     memory_.ends.push_back(0);
     motion_.added(node);
-    if (request_.trace != nullptr) {
-      request_.trace->add({TraceEvent::Kind::added, node, -1, place(start), 0});
-    }
+    trace({TraceEvent::Kind::added, node, -1, place(start), 0});
   }
 
   Node add(const State& state, const Candidate& parent) {
@@ -307,9 +304,7 @@ class StarGrowth {
       goal_is_in_ = goal_is_in_ || reached_[g];
     }
     note_end(node);
-    if (request_.trace != nullptr) {
-      request_.trace->add({TraceEvent::Kind::added, node, parent.node, p, cost});
-    }
+    trace({TraceEvent::Kind::added, node, parent.node, p, cost});
     return node;
   }
 
@@ -332,10 +327,9 @@ class StarGrowth {
     request_.budget.show_best(best_);
     ++improved_;
     first_at_ = first_at_ == 0 ? std::int64_t(expanded_) : first_at_;
-    if (request_.trace != nullptr) {
-      request_.trace->add({TraceEvent::Kind::iteration, std::int64_t(expanded_), -1,
-                           request_.goal.position, best_});
-    }
+    trace(
+        {TraceEvent::Kind::iteration, std::int64_t(expanded_), -1, request_.goal.position, best_});
+    beside_route_.learn(memory_.legs, best_end_);
     if (settings_.bounded) {
       set_.set_length(motion_.reach(best_));
     }
@@ -387,6 +381,7 @@ class StarGrowth {
   bool budget_ended_ = false;
   Node best_end_ = LegTree::kNone;
   double best_ = kInfinity;
+  BesideRoute beside_route_;
   double known_ = kInfinity;  ///< the best of the previous iterations
   double forgotten_at_ = kInfinity;
   double nearest_ = kInfinity;  ///< of all nodes to the goal

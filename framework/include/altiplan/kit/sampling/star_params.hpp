@@ -12,6 +12,7 @@ namespace altiplan::kit {
 struct StarParams : SteeringParams {
   AutoNumber range_m;
   double goal_bias = 0.05;
+  double route_bias = 0.25;
   double radius_scale = 1.1;
   int max_iterations = 20'000;
 
@@ -27,6 +28,9 @@ struct StarParams : SteeringParams {
         .range(0, 1)
         .was("goal_share")
         .doc("probability of sampling the goal, until it is in the tree");
+    f("route_bias", route_bias)
+        .range(0, 0.9)
+        .doc("probability of sampling near a point of the best route, once there is one");
     f("radius_scale", radius_scale)
         .range(1, 10)
         .doc("neighbour radius relative to the smallest one with which the length converges");
@@ -41,6 +45,7 @@ struct StarParams : SteeringParams {
     settings.turn_radius = turn_radius(request);
     settings.range = range(range_of(range_m.value, request), !range_m.value, settings.turn_radius);
     settings.goal_bias = goal_bias;
+    settings.route_bias = route_bias;
     settings.radius_scale = radius_scale;
     settings.max_iterations = std::uint64_t(max_iterations);
     return settings;

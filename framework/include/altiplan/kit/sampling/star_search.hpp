@@ -15,6 +15,7 @@ namespace altiplan::kit {
 struct StarSettings {
   double range = 0;         ///< metres; maximum length of the tree's edges (eta)
   double goal_bias = 0;     ///< fraction of samples that are the goal, until it is in the tree
+  double route_bias = 0;    ///< fraction of samples near the best route's inner points
   double radius_scale = 1;  ///< in units of the smallest radius that converges
   std::uint64_t max_iterations = 0;
   bool bounded = false;    ///< once a route is known, restrict the tree to points on shorter ones
