@@ -19,6 +19,7 @@ void add_run(App& app, Action& action);
 void add_go(App& app, Action& action);
 void add_info(App& app, Action& action);
 void add_validate(App& app, Action& action);
+void add_set(App& app, Action& action);
 void add_explain(App& app, Action& action);
 void add_check(App& app, Action& action);
 void add_export(App& app, Action& action);

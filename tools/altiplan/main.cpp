@@ -149,6 +149,7 @@ int main_checked(int argc, char** argv) {
   add_info(app, action);
   add_run(app, action);
   add_validate(app, action);
+  add_set(app, action);
   add_explain(app, action);
   add_check(app, action);
   add_view(app, action);
