@@ -6,9 +6,9 @@
 //   doi:10.1177/0278364911406761
 //   `bound`: S. Karaman, M. R. Walter, A. Perez, E. Frazzoli, S. Teller: Anytime Motion Planning
 //   using the RRT*. IEEE International Conference on Robotics and Automation, 2011.
-//   `route_bias` after F. Islam, J. Nasir, U. Malik, Y. Ayaz, O. Hasan: RRT*-Smart: Rapid convergence
-//   implementation of RRT* towards optimal solution. IEEE International Conference on Mechatronics
-//   and Automation, 2012. doi:10.1109/ICMA.2012.6284384
+//   `route_bias` after F. Islam, J. Nasir, U. Malik, Y. Ayaz, O. Hasan: RRT*-Smart: Rapid
+//   convergence implementation of RRT* towards optimal solution. IEEE International Conference on
+//   Mechatronics and Automation, 2012. doi:10.1109/ICMA.2012.6284384
 // Guarantees: every leg satisfies every constraint; more iterations never give a longer route;
 //   without limits on two consecutive legs the length converges to the shortest with probability 1.
 // Complexity: O(log n) neighbours per node, found in O(log n); O(n) memory.
