@@ -157,7 +157,7 @@ class Cli(CliCase):
                              "1000]", "--set", "scenario.environment.0.box.min_m=[300, 0, 0]",
                              code=1)
         self.assertIsNone(taller["route"])
-        for wrong in ("steps.0.with.weight=1", "steps.1.plan=astar", "steps.0.with.cell_m=text",
+        for wrong in ("steps.0.with.weight=1", "steps.2.plan=astar", "steps.0.with.cell_m=text",
                       "scenario.goals={}"):
             out, err = self.call("run", self.pipeline, "--set", wrong, code=3)
             self.assertEqual(out, "")

@@ -53,6 +53,19 @@ class Set(unittest.TestCase):
         self.call("set", self.scenario, *[change.removeprefix("scenario.") for change in changes])
         self.assertEqual(self.result(), expected)
 
+    def test_a_layer_is_added_and_another_removed(self):
+        changes = ["scenario.environment.4={cylinder: {at_m: [12000, 9000], radius_m: 900}}",
+                   "~scenario.environment.1"]
+        expected = self.result(*[word for change in changes for word in ("--set", change)])
+        stored = json.loads((self.folder / "r.json").read_text())["overrides"]["set"]
+        self.assertEqual(stored, changes)
+        self.call("check", "r.json")  # with the same overrides
+        lines = self.scenario.read_text().splitlines()
+        self.call("set", self.pipeline, *changes)
+        left = self.scenario.read_text().splitlines()
+        self.assertEqual(len(left), len(lines) + 1 - len(set(lines) - set(left)))
+        self.assertEqual(self.result(), expected)
+
     def test_nothing_is_written_if_anything_is_wrong(self):
         before = [self.pipeline.read_bytes(), self.scenario.read_bytes()]
         for changes, sentence in (

@@ -238,6 +238,7 @@ TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
       {"framework/tune", "altiplan::tune"},
       {"framework/conformance", "altiplan::conformance"},
       {"tools/altiplan", "altiplan::cli"},
+      {"tools/serve", "altiplan::serve"},
       {"tools/bench", "altiplan::bench"}};
   const std::regex kOpened(R"(^namespace (altiplan[a-z_:]*) \{)");
   std::vector<std::string> found;

@@ -212,13 +212,15 @@ TEST_F(ConfigTest, OverridesReachAnyKey) {
 
 TEST_F(ConfigTest, BadOverridesAreToldByTheirText) {
   const Case cases[] = {
-      {"seed", "--set seed: expected KEY=VALUE"},
-      {"=3", "--set =3: expected KEY=VALUE"},
+      {"seed", "--set seed: expected KEY=VALUE, or ~KEY to remove"},
+      {"=3", "--set =3: expected KEY=VALUE, or ~KEY to remove"},
       {"steps.0.with.dose=3", "--set steps.0.with.dose=3: steps.0.with.dose: unknown key"},
-      {"steps.1.id=b",
-       "--set steps.1.id=b: steps.1.id: '1' is not an index of this list, which has 1 item, "
-       "counted "
-       "from 0"},
+      {"steps.2.id=b",
+       "--set steps.2.id=b: steps.2.id: '2' is not an index of this list, which has 1 item, "
+       "counted from 0; 1 adds one"},
+      {"steps.1.id=b", "--set steps.1.id=b: steps.1: expected one verb: plan, smooth or fly"},
+      {"~steps.1", "--set ~steps.1: steps.1: '1' is not an index of this list"},
+      {"~steps.0.dose", "--set ~steps.0.dose: steps.0.dose: there is no 'dose' to remove"},
       {"steps.x.id=b", "'x' is not an index of this list"},
       {"steps.-1.id=b", "'-1' is not an index of this list"},
       {"steps..id=b", "expected keys separated by single dots"},

@@ -22,7 +22,7 @@ TEST(SceneTurns, TheProfileRunsAlongTheCurves) {
   const Route route = turning();
   const Request request = altiplan::testing::request_in(World(), route.front(), route.back(),
                                                         {{-9e3, -9e3, 0}, {9e3, 9e3, 3e3}});
-  const Json profile = route_profile(route, request, 300);
+  const Json profile = route_profile(route, request, {300});
   const Json& s = profile.at("s");
   EXPECT_LE(s.size(), 300U);
   EXPECT_GT(s.size(), 250U);

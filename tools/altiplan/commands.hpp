@@ -29,6 +29,7 @@ void add_download(App& app, Action& action);
 void add_status(App& app, Action& action);
 void add_plugins(App& app, Action& action);
 void add_view(App& app, Action& action);
+void add_edit(App& app, Action& action);
 void add_merge(App& app, Action& action);
 void add_replay(App& app, Action& action);
 void add_compare(App& app, Action& action);

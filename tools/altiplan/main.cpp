@@ -6,6 +6,7 @@
 #include <map>
 
 #include "commands.hpp"
+#include "host/config/overrides.hpp"
 #include "interrupt.hpp"
 #include "study/figures/text.hpp"
 
@@ -49,8 +50,10 @@ void add_overrides(App& command, host::Overrides& overrides) {
       ->type_name("N")
       ->check(seed_problem);
   command
-      .add_option("--set", overrides.set,
-                  "override a key of the pipeline, or of the scenario as scenario.KEY; repeatable")
+      .add_option(
+          "--set", overrides.set,
+          "override a key of the pipeline, or of the scenario as scenario.KEY; ~KEY removes it; "
+          "repeatable")
       ->expected(1)
       ->type_name("KEY=VALUE")
       ->take_all()
@@ -81,9 +84,12 @@ std::string seed_problem(const std::string& text) {
 }
 
 std::string assignment_problem(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  return equals == 0 || equals == std::string::npos ? "expected KEY=VALUE, found '" + text + "'"
-                                                    : "";
+  try {
+    host::parse_set(text);
+    return "";
+  } catch (const ConfigError&) {
+    return "expected KEY=VALUE, or ~KEY to remove, found '" + text + "'";
+  }
 }
 
 std::string fixed(const std::optional<double>& value, int digits) {
@@ -153,6 +159,7 @@ int main_checked(int argc, char** argv) {
   add_explain(app, action);
   add_check(app, action);
   add_view(app, action);
+  add_edit(app, action);
   add_export(app, action);
   add_upload(app, action);
   add_fly(app, action);

@@ -37,7 +37,10 @@ int set(Arguments arguments) {
   }
   const bool is_scenario = kind == host::FileKind::scenario;
   for (const std::string& assignment : arguments.set) {
-    arguments.overrides.set.push_back((is_scenario ? "scenario." : "") + assignment);
+    const bool removes = assignment.starts_with('~');
+    arguments.overrides.set.push_back(std::string(removes ? "~" : "") +
+                                      (is_scenario ? "scenario." : "") +
+                                      assignment.substr(removes ? 1 : 0));
   }
   // As the files will be: whatever is wrong with a value shows before anything is written.
   const host::Config config = is_scenario ? host::load_scenario(arguments.file, arguments.overrides)
@@ -70,8 +73,9 @@ void add_set(App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "pipeline or scenario file (YAML)")->required();
   command
-      ->add_option("assignments", arguments->set,
-                   "KEY=VALUE; of a pipeline, scenario.KEY changes its scenario's file")
+      ->add_option(
+          "assignments", arguments->set,
+          "KEY=VALUE, or ~KEY to remove; of a pipeline, scenario.KEY changes its scenario's file")
       ->required();
   add_plugin_path(*command, arguments->overrides);
   set_example(

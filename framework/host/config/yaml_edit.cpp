@@ -55,6 +55,19 @@ class Places {
     return last;
   }
 
+  /// Offset of the first character of the line.
+  std::size_t line_begin(std::size_t from) const {
+    const std::size_t before = from > 0 ? text_.rfind('\n', from - 1) : text_.npos;
+    return before == text_.npos ? 0 : before + 1;
+  }
+  std::size_t after_line(std::size_t end) const { return std::min(end + 1, text_.size()); }
+  /// True if nothing but blanks stands before it in its line.
+  bool begins_line(std::size_t from) const {
+    const std::size_t first = text_.find_first_not_of(' ', line_begin(from));
+    return first >= from;
+  }
+  /// Offset of the comma before an item in brackets.
+  std::size_t before_comma(std::size_t from) const { return text_.rfind(',', from); }
   /// Offset of the end of the line.
   std::size_t line_end(std::size_t from) const {
     return std::min(text_.find('\n', from), text_.size());
@@ -149,6 +162,57 @@ const Value* child(const Value& of, const std::string& key) {
   return of.kind == Value::Kind::list && index < of.items.size() ? &of.items[index] : nullptr;
 }
 
+/// Adds an item to a list.
+Change appended(const Places& places, const Value& list, const std::string& value) {
+  if (places.is_flow(list)) {
+    const std::size_t end = places.end(list, true) - 1;
+    return {end, end, list.items.empty() ? value : ", " + value};
+  }
+  const int indent = list.where.column - 1;
+  const std::size_t end = places.line_end(places.end(list, false));
+  return {end, end, "\n" + std::string(std::size_t(indent), ' ') + "- " + value};
+}
+
+/// Takes away what stands from one offset to another in a list or map in brackets.
+Change without(const Places& places, const Value& holder, std::size_t n, std::size_t from,
+               std::size_t next, std::size_t to) {
+  const bool is_last = n + 1 == std::max(holder.items.size(), holder.entries.size());
+  return is_last ? Change{places.before_comma(from), to, ""} : Change{from, next, ""};
+}
+
+/// Takes the key, or the list's item, away from its holder.
+Change removed(const Places& places, const Value& holder, const std::string& key, bool in_flow) {
+  const std::size_t count = std::max(holder.items.size(), holder.entries.size());
+  const bool is_list = holder.kind == Value::Kind::list;
+  if (count == 1) {
+    return {places.at(holder.where), places.end(holder, in_flow), is_list ? "[]" : "{}"};
+  }
+  std::size_t n = 0;
+  if (is_list) {
+    std::from_chars(key.data(), key.data() + key.size(), n);
+  } else {
+    while (holder.entries[n].key != key) {
+      ++n;
+    }
+  }
+  const auto begin = [&](std::size_t which) {
+    return places.at(is_list ? holder.items[which].where : holder.entries[which].where);
+  };
+  const Value& value = is_list ? holder.items[n] : holder.entries[n].value;
+  const bool is_flow = places.is_flow(holder);
+  const std::size_t end = places.end(value, in_flow || is_flow);
+  if (is_flow) {
+    return without(places, holder, n, begin(n), n + 1 < count ? begin(n + 1) : end, end);
+  }
+  if (n == 0 && !is_list && !places.begins_line(begin(0))) {
+    return {begin(0), begin(1), ""};  // the dash before the first key stays
+  }
+  // Whole lines, with the comment behind the value.
+  const std::size_t last = places.line_end(end);
+  const std::size_t first = places.line_begin(begin(n));
+  return first > 0 ? Change{first - 1, last, ""} : Change{first, places.after_line(last), ""};
+}
+
 /// Adds the keys from `at` on to a map.
 Change added(const Places& places, const Value& map, const std::vector<std::string>& keys,
              std::size_t at, const std::string& value) {
@@ -163,14 +227,21 @@ Change added(const Places& places, const Value& map, const std::vector<std::stri
 }
 
 /// `tree` is the text's.
-Change change_of(std::string_view text, const Value& tree, const std::string& path,
-                 const std::string& value) {
+Change change_of(std::string_view text, const Value& tree, const SetText& set) {
   const Places places(text);
-  const std::vector<std::string> keys = split(path);
+  const std::vector<std::string> keys = split(set.path);
+  const std::string value = set.value.value_or("");
   const Value* here = &tree;
   bool in_flow = false;
   for (std::size_t n = 0; n < keys.size(); ++n) {
     const Value* next = child(*here, keys[n]);
+    if (!set.value && n + 1 == keys.size()) {
+      return removed(places, *here, keys[n], in_flow);
+    }
+    if (next == nullptr && here->kind == Value::Kind::list) {
+      return appended(places, *here,
+                      n + 1 == keys.size() ? value : "{" + nested(keys, n + 1, value) + "}");
+    }
     if (next == nullptr) {
       if (here->kind == Value::Kind::scalar || (here->entries.empty() && !places.is_flow(*here))) {
         const std::size_t from = places.at(here->where);
@@ -196,19 +267,18 @@ bool same_values(const Value& a, const Value& b) {
 
 std::string with_assignments(std::string text, const std::string& name,
                              const std::vector<std::string>& set, FileOfKey file) {
-  static constexpr std::string_view kScenario = "scenario.";
   for (const std::string& assignment : set) {
+    const SetText one = parse_set(assignment);
+    if (one.file != file) {
+      continue;
+    }
     Value wanted = parse_yaml(text, name);
     const Value before = wanted;
     apply_overrides(wanted, {assignment}, file);
     if (same_values(wanted, before)) {
       continue;
     }
-    const std::size_t equals = assignment.find('=');
-    const std::string path =
-        assignment.substr(file == FileOfKey::scenario ? kScenario.size() : 0,
-                          equals - (file == FileOfKey::scenario ? kScenario.size() : 0));
-    const Change change = change_of(text, before, path, assignment.substr(equals + 1));
+    const Change change = change_of(text, before, one);
     std::string changed = text;
     changed.replace(change.from, change.to - change.from, change.text);
     bool is_as_wanted = false;
@@ -218,7 +288,7 @@ std::string with_assignments(std::string text, const std::string& name,
       is_as_wanted = false;
     }
     if (!is_as_wanted) {
-      throw ConfigError({name, 0, 0, ""}, path,
+      throw ConfigError({name, 0, 0, ""}, one.path,
                         "cannot be changed without changing other parts of the text: change it by "
                         "hand");
     }

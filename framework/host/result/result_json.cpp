@@ -3,6 +3,7 @@
 
 #include "host/result/legs_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -134,6 +135,21 @@ Json lonlat_json(const Route& route, const Frame& frame) {
   return json;
 }
 
+/// A map of keys to values; where something is removed, which may happen twice at one key, a list.
+Json set_json(const std::vector<std::string>& set) {
+  const bool removes = std::any_of(set.begin(), set.end(),
+                                   [](const std::string& text) { return text.starts_with('~'); });
+  if (removes) {
+    return set;
+  }
+  Json json = Json::object();
+  for (const std::string& assignment : set) {
+    const std::size_t equals = assignment.find('=');
+    json[assignment.substr(0, equals)] = assignment.substr(equals + 1);
+  }
+  return json;
+}
+
 Json overrides_json(const Config& config) {
   Json json = Json::object();
   if (config.overrides.scenario) {
@@ -143,16 +159,21 @@ Json overrides_json(const Config& config) {
     json["seed"] = *config.overrides.seed;
   }
   if (!config.overrides.set.empty()) {
-    Json set = Json::object();
-    for (const std::string& assignment : config.overrides.set) {
-      const std::size_t equals = assignment.find('=');
-      set[assignment.substr(0, equals)] = assignment.substr(equals + 1);
-    }
-    json["set"] = std::move(set);
+    json["set"] = set_json(config.overrides.set);
   }
   return json;
 }
 }  // namespace
+
+std::vector<std::string> set_texts(const Json& overrides) {
+  std::vector<std::string> texts;
+  if (const auto set = overrides.find("set"); set != overrides.end()) {
+    for (const auto& [key, value] : set->items()) {
+      texts.push_back((set->is_object() ? key + "=" : "") + value.get<std::string>());
+    }
+  }
+  return texts;
+}
 
 Json plugins_json(const Config& config) {
   std::set<std::pair<std::string_view, std::string_view>> used;

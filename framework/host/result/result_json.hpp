@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "host/config/config.hpp"
 #include "host/run/run_result.hpp"
@@ -14,6 +15,9 @@ using Json = nlohmann::ordered_json;
 /// result.json, format 1 (docs/reference/result.md). Wall times appear only in keys that end in
 /// time_s.
 Json result_json(const Config& config, const RunResult& result);
+
+/// The assignments of `--set` in a result's overrides, in order.
+std::vector<std::string> set_texts(const Json& overrides);
 
 /// [{"kind", "name", "build", "checksum"}] of the plugins that the files name.
 Json plugins_json(const Config& config);

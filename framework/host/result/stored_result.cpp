@@ -49,11 +49,8 @@ Track track_of(const Json& json, const std::string& file) {
 Overrides stored_overrides(const Json& json, Overrides overrides) {
   overrides.scenario = json.at("scenario").get<std::string>();
   overrides.seed = json.at("seed").get<std::int64_t>();
-  const Json& stored = json.at("overrides");
-  if (stored.contains("set")) {
-    for (const auto& [key, value] : stored.at("set").items()) {
-      overrides.set.push_back(key + "=" + value.get<std::string>());
-    }
+  for (const std::string& assignment : set_texts(json.at("overrides"))) {
+    overrides.set.push_back(assignment);
   }
   return overrides;
 }

@@ -158,7 +158,7 @@ void expect_shape(const Json& result, const std::string& file) {
   expect_keys(result, kResult, file + ": ");
   if (result.contains("overrides") && result.at("overrides").contains("set")) {
     const Json& set = result.at("overrides").at("set");
-    expect_kinds(set, kObject, file + ": overrides.set");
+    expect_kinds(set, kObject | kList, file + ": overrides.set");
     for (const auto& [key, value] : set.items()) {
       expect_kinds(value, kText, file + ": overrides.set." + key);
     }

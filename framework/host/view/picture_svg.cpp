@@ -130,7 +130,7 @@ std::string profile_svg(const Route& route, const Request& request) {
   using namespace picture;
   constexpr std::size_t kSamples = 400;
   const Json ground = request.world->has_ground() ? Json(true) : Json(nullptr);
-  const Json scene{{"results", {{{"profile", route_profile(route, request, kSamples)}}}},
+  const Json scene{{"results", {{{"profile", route_profile(route, request, {kSamples})}}}},
                    {"ground", ground}};
   const double height = kProfile + kMargin;
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + pixels(kWidth) + " " +

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "host/config/overrides.hpp"
 #include "host/flight/events.hpp"
 #include "host/view/scene_parts.hpp"
 
@@ -77,24 +78,15 @@ Json attribution_json(const World& truth, const std::vector<FlightEvent>& events
 Json world_scene(const Config& config, const Mission& mission, const Box& box, SceneNotes& notes) {
   const std::vector<FlightEvent> events = build_events(config, mission);
   Json scene;
-  scene["altiplan_scene"] = 1;
+  scene["altiplan_scene"] = kSceneVersion;
   scene["title"] =
       config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
   scene["attribution"] = attribution_json(mission.truth, events);
   scene["box"] = Json::array();
   scene["corners_lonlat"] = corners_json(mission.truth.frame(), box);
-  scene["start"] = rounded(mission.request.start.position);
-  scene["goal"] = goal_json(mission.request.goal);
-  scene["via"] = Json::array();
-  for (const Goal& via : mission.via) {
-    scene["via"].push_back(goal_json(via));
-  }
-  scene["loiters"] = loiters_json(mission);
+  scene.update(ends_scene(mission));
   scene["ground"] = ground_json(mission.truth, box, notes);
-  for (const char* key : {"solids", "boxes", "meshes", "moving", "events"}) {
-    scene[key] = Json::array();
-  }
-  add_solids(scene, mission, events, box, notes);
+  scene.update(obstacles_scene(mission, events, box, notes));
   if (const auto& body = mission.request.vehicle.body) {
     scene["body"] = body_json(*body);
   }
@@ -105,12 +97,9 @@ Json world_scene(const Config& config, const Mission& mission, const Box& box, S
 /// The part of a run's overrides that changes its world.
 std::string scenario_overrides(const StoredResult& stored) {
   std::string text;
-  const Json& overrides = stored.json.at("overrides");
-  if (overrides.contains("set")) {
-    for (const auto& [key, value] : overrides.at("set").items()) {
-      if (key.starts_with("scenario.")) {
-        text += " --set " + key + "=" + value.get<std::string>();
-      }
+  for (const std::string& assignment : set_texts(stored.json.at("overrides"))) {
+    if (parse_set(assignment).file == FileOfKey::scenario) {
+      text += " --set " + assignment;
     }
   }
   return text;
@@ -226,7 +215,7 @@ class SceneBuilder {
     for (const std::size_t n : group) {
       by_json(results_[n], [&] {
         say("judging " + results_[n].file + number_of(n));
-        results[n] = result_scene(results_[n], mission, events, samples, notes_);
+        results[n] = result_scene(results_[n], mission, events, {samples}, notes_);
         results[n]["trace"] = trace_scene(results_[n], notes_, [&](double share) {
           say("reading the trace of " + results_[n].file + ": " + std::to_string(int(100 * share)) +
               " %");
@@ -254,6 +243,27 @@ class SceneBuilder {
   SceneNotes notes_;
 };
 }  // namespace
+
+Json ends_scene(const Mission& mission) {
+  Json scene{{"start", rounded(mission.request.start.position)},
+             {"goal", goal_json(mission.request.goal)},
+             {"via", Json::array()},
+             {"loiters", loiters_json(mission)}};
+  for (const Goal& via : mission.via) {
+    scene["via"].push_back(goal_json(via));
+  }
+  return scene;
+}
+
+Json obstacles_scene(const Mission& mission, const std::vector<FlightEvent>& events, const Box& box,
+                     SceneNotes& notes) {
+  Json scene;
+  for (const char* key : {"solids", "boxes", "meshes", "moving", "events"}) {
+    scene[key] = Json::array();
+  }
+  add_solids(scene, mission, events, box, notes);
+  return scene;
+}
 
 void SceneNotes::add(const std::string& line) {
   if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) {

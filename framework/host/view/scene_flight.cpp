@@ -266,6 +266,11 @@ TrackVerdict judged(const Track& track, bool telemetry, const Mission& mission,
   return judge_track(track, setup);
 }
 
+TrackVerdict verdict_of(const FlightResult& flight) {
+  return {flight.check, flight.collisions, flight.reached, flight.measures,
+          flight.min_separation_m};
+}
+
 /// The status of a flight with that verdict.
 std::string status_of(const TrackVerdict& verdict) {
   return name(verdict.collisions > 0 ? RunStatus::collided
@@ -298,7 +303,8 @@ Json recounted(Json check, const std::set<std::size_t>& shown) {
 }  // namespace
 
 Json flight_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
+                  const std::vector<FlightEvent>& events, const SceneDetail& detail,
+                  SceneNotes& notes) {
   if (!stored.track) {
     return nullptr;
   }
@@ -313,7 +319,9 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   }
   Json json;
   copy_texts(json, flight, {"status", "message"});
-  const TrackVerdict now = judged(track, stored.telemetry, mission, events);
+  const TrackVerdict now = detail.judged != nullptr
+                               ? verdict_of(detail.judged->flight.value())
+                               : judged(track, stored.telemetry, mission, events);
   const std::string whose = stored.file + ": the flight";
   set_status(json, stored.file, status_of(now), first_found(now, track));
   json["metrics"] = metrics_now(flight.at("metrics"), to_json(now.measures));
@@ -337,8 +345,10 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
   for (const auto& point : points) {
     json["event_times"].push_back(point ? rounded(track[*point].first) : Json(nullptr));
   }
-  json["profile"] = profile_of(track, thinned(track, must, samples),
-                               TruthAlong(mission, events, points), mission.track_request.volume);
+  json["profile"] =
+      detail.heights ? profile_of(track, thinned(track, must, detail.samples),
+                                  TruthAlong(mission, events, points), mission.track_request.volume)
+                     : Json(nullptr);
   return json;
 }
 }  // namespace altiplan::host

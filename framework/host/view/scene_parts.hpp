@@ -12,11 +12,15 @@
 #include "altiplan/check.hpp"
 #include "altiplan/measures.hpp"
 #include "host/mission/mission.hpp"
+#include "host/run/run_result.hpp"
 #include "host/view/scene.hpp"
 
 // The parts of a scene, one file each.
 
 namespace altiplan::host {
+
+/// Of the format.
+inline constexpr int kSceneVersion = 1;
 
 /// Notes about simplifications, each once.
 class SceneNotes {
@@ -43,6 +47,13 @@ Json ground_json(const World& world, const Box& box, SceneNotes& notes);
 
 /// The box to show: the volume and all routes and tracks, never flat.
 Box scene_box(const Mission& mission, const std::vector<StoredResult>& results);
+
+/// `start`, `goal`, `via` and `loiters`.
+Json ends_scene(const Mission& mission);
+
+/// `solids`, `boxes`, `meshes`, `moving` and `events`: everything in the world but its ground.
+Json obstacles_scene(const Mission& mission, const std::vector<FlightEvent>& events, const Box& box,
+                     SceneNotes& notes);
 
 /// Adds `solids`, `boxes`, `meshes`, `moving` and `events` to the scene: everything in the world,
 /// static or moving, and its changes.
@@ -79,10 +90,21 @@ class ClearanceProfile {
   Json to_ = Json::object();
 };
 
+/// How much of a result is shown, and who has judged it.
+struct SceneDetail {
+  std::size_t samples = 300;  ///< of each profile
+  /// With the heights that layers fill, and where a route may pass; and the profile of a flight.
+  /// Without, a scene takes a tenth of the time.
+  bool heights = true;
+  /// The run that has just made the result, in this world and this process: its verdicts hold, and
+  /// nothing is judged again.
+  const RunResult* judged = nullptr;
+};
+
 /// The profile of a route along its length, sampled at its waypoints, evenly between them, and at
-/// its minimum clearance from each kind of layer and minimum height above ground; `samples` points
-/// unless it has more waypoints.
-Json route_profile(const Route& route, const Request& request, std::size_t samples);
+/// its minimum clearance from each kind of layer and minimum height above ground; as many points as
+/// `detail` has samples unless it has more waypoints.
+Json route_profile(const Route& route, const Request& request, const SceneDetail& detail);
 
 /// The heights that each layer but the ground fills along a profile: `solid`, above and below the
 /// vehicle, and `beside`, there or within `beside_m` of it to either side. Within half a metre; at
@@ -110,10 +132,10 @@ SolidProfile solid_profile(const Json& profile, const Box& volume);
 /// metre; and its SolidProfile.
 void add_heights(Json& profile, const Request& request);
 
-/// The stored flight, judged now, its track thinned to what is visible, its profile to `samples`
-/// points.
+/// The stored flight, judged now, its track thinned to what is visible.
 Json flight_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
+                  const std::vector<FlightEvent>& events, const SceneDetail& detail,
+                  SceneNotes& notes);
 
 /// The search as recorded in its trace, thinned evenly, or null. `progress` gets the share read.
 Json trace_scene(const StoredResult& stored, SceneNotes& notes,
@@ -139,7 +161,8 @@ std::string first_found(const CheckResult& check);
 Json check_scene(Json check, const std::string& whose, SceneNotes& notes);
 
 /// One result: from the stored file what only the run can know, its routes and its flight judged
-/// now, and its profile, of `samples` points, in the known world; without its trace.
+/// now, and its profile in the known world; without its trace.
 Json result_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes);
+                  const std::vector<FlightEvent>& events, const SceneDetail& detail,
+                  SceneNotes& notes);
 }  // namespace altiplan::host

@@ -159,7 +159,7 @@ void ClearanceProfile::write(Json& profile) const {
   profile["to"] = to_;
 }
 
-Json route_profile(const Route& whole, const Request& request, std::size_t samples) {
+Json route_profile(const Route& whole, const Request& request, const SceneDetail& detail) {
   const World& world = *request.world;
   const Route route = without_repeats(whole);
   Json profile;
@@ -167,7 +167,7 @@ Json route_profile(const Route& whole, const Request& request, std::size_t sampl
     profile[key] = Json::array();
   }
   ClearanceProfile clearance;
-  for (const Sample& sample : samples_of(route, nearest_places(route, world), samples,
+  for (const Sample& sample : samples_of(route, nearest_places(route, world), detail.samples,
                                          request.vehicle.turns_on_the_spot)) {
     clearance.add(clearances(world, sample.at));
     profile["s"].push_back(rounded(sample.s));
@@ -178,7 +178,9 @@ Json route_profile(const Route& whole, const Request& request, std::size_t sampl
     profile["turn"].push_back(rounded(sample.turn_deg));
   }
   clearance.write(profile);
-  add_heights(profile, request);
+  if (detail.heights) {
+    add_heights(profile, request);
+  }
   return profile;
 }
 }  // namespace altiplan::host

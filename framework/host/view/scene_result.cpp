@@ -68,8 +68,15 @@ Json no_metrics() {
   return metrics;
 }
 
+/// The verdict of the run on a step's route; nothing where it ended before one.
+std::optional<Judged> judged(const Route& route, const StepResult& step) {
+  return step.check && step.measures ? std::optional(Judged{route, *step.check, *step.measures})
+                                     : std::nullopt;
+}
+
+/// `of_run`: null if the step is to be judged.
 Json step_scene(const Json& step, const StoredResult& stored, const std::optional<Judged>& accepted,
-                const Mission& mission, SceneNotes& notes) {
+                const StepResult* of_run, const Mission& mission, SceneNotes& notes) {
   const std::string whose = stored.file + ": " + step.at("id").get<std::string>();
   Json json;
   copy_texts(json, step, {"id", "verb", "plugin", "status", "message"});
@@ -83,7 +90,14 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
     return json;
   }
   Route places = route_of(step, stored.file);
-  const Judged now = accepted && accepted->route == places ? *accepted : judged(places, mission);
+  std::optional<Judged> verdict = accepted;
+  if (!accepted || !(accepted->route == places)) {
+    verdict = of_run != nullptr ? judged(places, *of_run) : judged(places, mission);
+  }
+  if (!verdict) {
+    verdict = judged(places, mission);
+  }
+  const Judged& now = *verdict;
   json["route"] = to_json(places);
   json["waypoints"] = waypoints_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
@@ -152,11 +166,14 @@ Json check_scene(Json check, const std::string& whose, SceneNotes& notes) {
 }
 
 Json result_scene(const StoredResult& stored, const Mission& mission,
-                  const std::vector<FlightEvent>& events, std::size_t samples, SceneNotes& notes) {
+                  const std::vector<FlightEvent>& events, const SceneDetail& detail,
+                  SceneNotes& notes) {
+  const RunResult* run = detail.judged;
   const Json& result = stored.json;
   std::optional<Judged> accepted;
   if (stored.route) {
-    accepted = judged(*stored.route, mission);
+    accepted = run != nullptr ? judged(*stored.route, run->steps.at(run->accepted.value()))
+                              : judged(*stored.route, mission);
   }
   Json json{{"name", std::filesystem::path(stored.file).stem().string()}, {"file", stored.file}};
   copy_texts(json, result, {"status", "message"});
@@ -169,17 +186,18 @@ Json result_scene(const StoredResult& stored, const Mission& mission,
       check_scene(accepted ? check_of_points(*accepted) : Json(nullptr), stored.file, notes);
   json["steps"] = Json::array();
   for (const Json& step : result.at("steps")) {
-    json["steps"].push_back(step_scene(step, stored, accepted, mission, notes));
+    const StepResult* of_run = run != nullptr ? &run->steps.at(json["steps"].size()) : nullptr;
+    json["steps"].push_back(step_scene(step, stored, accepted, of_run, mission, notes));
   }
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
   json["waypoints"] = accepted ? waypoints_json(accepted->route) : Json(nullptr);
   json["limits"] = limits_json(mission.request);
   json["profile"] =
-      accepted ? route_profile(accepted->route, mission.request, samples) : Json(nullptr);
+      accepted ? route_profile(accepted->route, mission.request, detail) : Json(nullptr);
   if (accepted && mission.request.vehicle.body != nullptr) {
     json["body"] = body_places_json(accepted->route, mission.request, stored.file, notes);
   }
-  json["flight"] = flight_scene(stored, mission, events, samples, notes);
+  json["flight"] = flight_scene(stored, mission, events, detail, notes);
   conclude(json, stored, accepted, notes);
   return json;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import {read_scene} from './scene.js';
+import {decode, read_scene} from './scene.js';
 import {set_series} from './colors.js';
+import {build_editor} from './edit/editor.js';
 import {by_id} from './dom.js';
+import {show_scene} from './live.js';
 import {Store} from './store.js';
 import {Frame, hidden_at_first, lines_of} from './world.js';
 import {build_film} from './ui/film.js';
@@ -37,7 +39,7 @@ function first_state(scene, lines) {
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
   return {shown, hidden: hidden_at_first(scene), selected, source: 'route', time: 0, playing: false, speed: 1,
-    follow: false, filmed: false, zoom: null, cursor: null, exaggeration, cut, grid: true, bodies: true,
+    follow: false, filmed: false, zoom: null, cursor: null, exaggeration, cut, grid: true, bodies: true, version: 0,
     everything: false, theme: 'light', tab: 'profiles',
     search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
 }
@@ -62,6 +64,13 @@ function still(view, store) {
   view.look('fit');
 }
 
+/** Shows another scene, or a part of one; resolves when it is drawn. */
+function show(next, view, world, store) {
+  decode(next);
+  show_scene(world, store, next);
+  return new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+}
+
 function start() {
   const scene = read_scene(by_id('scene').textContent);
   set_series(scene.results);
@@ -70,14 +79,15 @@ function start() {
   const store = new Store(first_state(scene, lines));
   follow_theme(store, query.get('theme'));
   for (const alone of ['still', 'film']) if (query.has(alone)) document.body.classList.add(alone);
-  const has_flight = lines.some(({kind}) => kind === 'track');
-  by_id('clock').hidden = !has_flight;
   const view = make_view(by_id('stage'), world, store);
   const {labels} = build_panels(view, world, store);
   if (query.has('still')) still(view, store);
   Object.assign(altiplan, {drawn: () => view.drawn(), camera: () => view.where(),
     project: (point) => view.project(point), labels, state: store.state, still: () => still(view, store),
-    film: build_film(view, world, store)});
+    film: build_film(view, world, store), show: (next) => show(next, view, world, store)});
+  if (scene.edit && !query.has('still') && !query.has('film')) {
+    altiplan.editor = build_editor(view, world, store, complain);
+  }
   view.first_frame();
   altiplan.ready_ms = performance.now();
   altiplan.ready = true;

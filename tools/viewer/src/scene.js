@@ -29,22 +29,27 @@ export function read_scene(text) {
     throw new Error(`This page reads scenes of version ${kVersion}, found ` +
       `${JSON.stringify(scene.altiplan_scene)}.`);
   }
+  decode(scene);
+  return scene;
+}
+
+/** Decodes the binary parts that are there: a scene that replaces another has no ground. */
+export function decode(scene) {
   const {ground} = scene;
   if (ground) {
     ground.heights = floats(ground.heights, ground.nx * ground.ny, 'heights');
     scene.ground = Object.assign(new Ground(ground), {of: ground.of ?? null});
   }
-  for (const boxes of scene.boxes) {
+  for (const boxes of scene.boxes ?? []) {
     boxes.data = floats(boxes.data, 6 * boxes.count, 'boxes');
   }
-  for (const mesh of scene.meshes) {
+  for (const mesh of scene.meshes ?? []) {
     mesh.triangles = triangle_corners(mesh.triangles);
   }
   if (scene.body) scene.body = joined(scene.body.map(({triangles}) => triangle_corners(triangles)));
-  for (const moving of scene.moving) {
+  for (const moving of scene.moving ?? []) {
     Object.assign(moving, {layer: 'moving', role: 'obstacle', name: moving.id, ...moving});
   }
-  return scene;
 }
 
 /** Decodes a trace on first use: it is large and seldom viewed. */

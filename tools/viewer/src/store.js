@@ -12,6 +12,10 @@ export class Store {
     this.#listeners.push({keys, listener});
   }
 
+  off(listeners) {
+    this.#listeners = this.#listeners.filter(({listener}) => !listeners.has(listener));
+  }
+
   /** Listeners run once per call, for all its changes. */
   set(patch) {
     for (const [key, value] of Object.entries(patch)) {
@@ -37,4 +41,42 @@ export class Store {
       if (keys.some((key) => changed.has(key))) listener(this.state, changed);
     }
   }
+}
+
+/** The store for a part that is built anew: `end` forgets the part's listeners. */
+class Scope {
+  #own = new Set();
+
+  constructor(store) {
+    this.store = store;
+    this.state = store.state;
+  }
+
+  on(keys, listener) {
+    this.#own.add(listener);
+    this.store.on(keys, listener);
+  }
+
+  set(patch) {
+    this.store.set(patch);
+  }
+
+  toggle(...change) {
+    this.store.toggle(...change);
+  }
+
+  end() {
+    this.store.off(this.#own);
+  }
+}
+
+/** Builds a part of the page, and again whenever another scene is shown. */
+export function keep_built(store, build) {
+  let scope = new Scope(store);
+  build(scope);
+  store.on(['version'], () => {
+    scope.end();
+    scope = new Scope(store);
+    build(scope);
+  });
 }

@@ -10,6 +10,8 @@ const kWatchSeconds = 40;
 /** The flight's time: slider, play, speed, and marks of handovers, replans and events. */
 export function build_clock(world, store) {
   const tracks = world.lines.filter(({kind}) => kind === 'track');
+  by_id('clock').hidden = tracks.length === 0;
+  by_id('clock').replaceChildren();
   if (tracks.length === 0) return;
   const last = Math.max(...tracks.map(({times}) => times.at(-1)));
   const play = element('button', {id: 'play', title: 'Play or pause (space)',
@@ -24,7 +26,10 @@ export function build_clock(world, store) {
   const speed = element('select', {id: 'speed', title: 'Speed',
     onchange: () => store.set({speed: Number(speed.value)})},
     kSpeeds.map((factor) => element('option', {value: factor}, `${factor}×`)));
-  store.set({speed: kSpeeds.find((factor) => last / factor <= kWatchSeconds) ?? kSpeeds.at(-1)});
+  // Another flight of about the same length is played as fast.
+  if (store.state.version === 0) {
+    store.set({speed: kSpeeds.find((factor) => last / factor <= kWatchSeconds) ?? kSpeeds.at(-1)});
+  }
   by_id('clock').append(play, follow, element('div', {className: 'rail'}, marks, slider), shown, speed);
 
   const reflect = () => {

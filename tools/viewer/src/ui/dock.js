@@ -7,13 +7,12 @@ import {build_violations, violations_of} from './violations.js';
 
 /** The four panes under the picture, one at a time. Returns `labels`, what its charts draw. */
 export function build_dock(view, world, store) {
-  const count = violations_of(world).length;
   const profiles = build_profiles(world, store);
   const search = build_search(world, store);
   const panes = {
     profiles: ['Profiles', profiles.pane],
-    metrics: ['Metrics', build_metrics(world, store)],
-    violations: [`Violations (${count})`, build_violations(view, world, store)],
+    metrics: ['Metrics', element('div', {})],
+    violations: ['Violations', element('div', {})],
     search: ['Search', search.pane],
   };
   const tabs = element('div', {className: 'tabs', role: 'tablist'});
@@ -39,5 +38,14 @@ export function build_dock(view, world, store) {
     reflect();
   });
   reflect();
+  // Tables take time: while scenes follow each other, what is behind another tab waits for it.
+  const fill = ({tab}, changed) => {
+    const is_due = (name) => tab === name || !changed.has('version');
+    by_id('tab_violations').textContent = `Violations (${violations_of(world).length})`;
+    if (is_due('metrics')) panes.metrics[1].replaceChildren(build_metrics(world, store.state));
+    if (is_due('violations')) panes.violations[1].replaceChildren(build_violations(view, world, store));
+  };
+  store.on(['version', 'theme', 'tab'], fill);
+  fill(store.state, new Set());
   return {labels: () => [...profiles.labels(), ...search.labels()]};
 }

@@ -40,6 +40,7 @@ export function listen_to_keys(world, store, actions) {
   addEventListener('keydown', (event) => {
     const {target} = event;
     if (event.ctrlKey || event.altKey || event.metaKey || by_id('help').open) return;
+    if (target.matches('input[type=text]')) return;
     if (target.matches('select, input[type=range]') && !/^[a-z?[\],. ]$/.test(event.key)) return;
     if (event.key === ' ' && target.matches('button, input, summary')) return;
     const digit = Number(event.key);

@@ -13,7 +13,7 @@ export function build_legend(world, store) {
   const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
     ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
     ...body(world.scene, store.state), grid(world, store.state), ...search(store.state));
-  store.on(['theme', 'shown', 'hidden', 'grid', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
+  store.on(['version', 'theme', 'shown', 'hidden', 'grid', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
   reflect();
   const fold = () => {
     by_id('legend').hidden = !store.state.legend;

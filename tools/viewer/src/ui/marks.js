@@ -2,6 +2,7 @@
 import {bodies_of, closeness} from '../body.js';
 import {route_color} from '../colors.js';
 import {by_id, element} from '../dom.js';
+import {keep_built} from '../store.js';
 import {between, flight_line, place_at} from '../world.js';
 import {violations_of} from './violations.js';
 
@@ -13,8 +14,20 @@ const kBodyRadius = 11;
 /** Marks of constant screen size: start, goal, vehicles, the cursor. Returns them with their labels,
  *  the most important first: {made, span, place, radius}; `build_labels` places both. */
 export function build_marks(view, world, store) {
-  const {scene} = world;
   const marks = [];
+  keep_built(store, () => {
+    const stood = new Map(marks.map((mark) => [mark.span.textContent, mark.stood]));
+    for (const {made} of marks) made.remove();
+    marks.length = 0;
+    fill(marks, view, world, store);
+    // A label stays where it stood.
+    for (const mark of marks) mark.stood = stood.get(mark.span.textContent);
+  });
+  return marks;
+}
+
+function fill(marks, view, world, store) {
+  const {scene} = world;
   const add = (name, text, place, {shape = '', radius = kRadius} = {}) => {
     const span = element('span', {}, text);
     const made = element('div', {className: `mark ${name}`}, shape, span);
@@ -36,7 +49,6 @@ export function build_marks(view, world, store) {
     add_vehicle(line, add, view, world, store);
   }
   add('cursor', '', () => store.state.cursor?.at ?? null);
-  return marks;
 }
 
 function add_vehicle(line, add, view, world, store) {

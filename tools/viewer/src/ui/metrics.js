@@ -15,13 +15,10 @@ function label(key) {
 }
 
 /** A table with a column per result. */
-export function build_metrics({scene: {results}}, store) {
+export function build_metrics({scene: {results}}, {theme}) {
   const head = element('tr', {}, element('th', {}), results.map(({name}, index) => {
     const mark = swatch('#000', 'line');
-    const reflect = () =>
-      mark.style.setProperty('--swatch', route_color(index, store.state.theme));
-    store.on(['theme'], reflect);
-    reflect();
+    mark.style.setProperty('--swatch', route_color(index, theme));
     return element('th', {}, mark, name);
   }));
   const rows = [

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {by_id} from '../dom.js';
+import {keep_built} from '../store.js';
 import {build_bar} from './bar.js';
 import {build_clock} from './clock.js';
 import {build_dock} from './dock.js';
@@ -25,14 +26,14 @@ export function build_panels(view, world, store) {
     help: () => by_id('help').showModal(),
     menu: () => document.body.classList.toggle('side_open'),
   };
-  build_bar(world, actions);
-  build_side(view, world, store);
-  build_clock(world, store);
+  build_bar(world, store, actions);
+  keep_built(store, (part) => build_side(view, world, part));
+  keep_built(store, (part) => build_clock(world, part));
   const {labels} = build_dock(view, world, store);
   build_legend(world, store);
   build_compass(view);
   build_scale(view);
-  build_telemetry(world, store);
+  keep_built(store, (part) => build_telemetry(world, part));
   // After the panels on the picture, of which the labels stay clear.
   build_labels(view, world, store, build_marks(view, world, store));
   build_pointer(view, world, store);

@@ -57,7 +57,7 @@ export function build_profiles(world, store) {
   };
   new ResizeObserver(() => fit(drawn)).observe(charts);
   store.on(['selected', 'source'], () => store.set({zoom: null}));
-  store.on(['selected', 'source', 'theme'], rebuild);
+  store.on(['selected', 'source', 'theme', 'version'], rebuild);
   store.on(['cursor', 'time'], reflect);
   store.on(['time'], scroll);
   store.on(['zoom'], show_part);

@@ -17,10 +17,13 @@ export function pill(status) {
 
 /** The left panel: the results with their lines, and the world's layers. */
 export function build_side(view, world, store) {
-  by_id('side').append(
+  const side = by_id('side');
+  const was_open = [...side.querySelectorAll('.result details')].map(({open}) => open);
+  side.replaceChildren(
     element('h2', {}, 'Results'),
     ...world.scene.results.map((result, index) => result_card(result, index, world, store)),
     element('h2', {}, 'World'), ...world_controls(view, world, store), ...notes(world.scene));
+  side.querySelectorAll('.result details').forEach((steps, nth) => { steps.open = was_open[nth] ?? false; });
 }
 
 function result_card(result, index, world, store) {

@@ -9,8 +9,9 @@ import {caption_at} from './happenings.js';
  *  happened to it. */
 export function build_telemetry(world, store) {
   const panel = by_id('telemetry');
-  if (!flight_line(world, store.state)) return;
-  panel.hidden = false;
+  panel.hidden = !flight_line(world, store.state);
+  panel.replaceChildren();
+  if (panel.hidden) return;
   const {ground} = world.scene;
   const name = element('b', {});
   const [speed, height, time] = ['Speed', ground ? 'Above ground' : 'Above sea', 'Time']

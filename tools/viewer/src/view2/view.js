@@ -28,7 +28,7 @@ export class View2 {
     new ResizeObserver(() => this.resize()).observe(stage);
     this.resize();
     this.look('fit');
-    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'bodies', 'theme',
+    store.on(['version', 'shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'bodies', 'theme',
       'search', 'searched'], () => this.draw());
     store.on(['follow', 'time', 'selected'], (state, changed) => this.#follow(state, changed));
   }
@@ -143,6 +143,10 @@ export class View2 {
       this.middle[1] - (y - this.stage.clientHeight / 2) / this.scale];
     const height = this.world.scene.ground?.height(...at);
     return [...at, height ?? NaN];
+  }
+
+  at_height(x, y, z) {
+    return [...this.ground_at(x, y).slice(0, 2), z];
   }
 
   solid_at(x, y) {

@@ -88,10 +88,13 @@ class Body {
 
 const same_fate = (thing) => `${layer_key(thing)}|${thing.added_by}|${thing.removed_by}`;
 
+const parts_of = ({solids, boxes, meshes, moving}) => [solids, boxes, meshes, moving];
+
 /** All obstacles, zones and moving shapes; those added or removed by events follow the time. */
 export class Solids {
   constructor(scene, frame) {
     this.frame = frame;
+    this.parts = parts_of(scene);
     this.object = new Group();
     this.bodies = [];
     const heights = obstacle_heights(scene, frame);
@@ -110,6 +113,11 @@ export class Solids {
     for (const boxes of scene.boxes) add(boxes, (cut) => box_field(boxes, frame, cut));
     for (const mesh of scene.meshes) add(mesh, (cut) => triangle_mesh(mesh, frame, cut));
     for (const moving of scene.moving) add(moving, (cut) => merged([moving], frame, cut), moving);
+  }
+
+  /** True if these are the scene's. */
+  is_of(scene) {
+    return parts_of(scene).every((part, nth) => part === this.parts[nth]);
   }
 
   update(state, times) {

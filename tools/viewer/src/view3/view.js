@@ -62,8 +62,32 @@ export class View3 {
     this.look('fit');
     // Shaders compile while the panels are built.
     this.renderer.compile(this.picture, this.camera.eye);
+    store.on(['version'], () => this.#rebuild());
     store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'bodies', 'theme',
       'exaggeration', 'cut', 'search', 'searched', 'follow'], (state, changed) => this.update(state, changed));
+  }
+
+  /** Everything that depends on the scene, but for its ground. */
+  #rebuild() {
+    const {scene, frame, lines} = this.world;
+    this.#replace('lines', new Lines(lines, scene.ground, frame));
+    this.#replace('goals', new Goals(scene, frame));
+    if (scene.body) this.#replace('bodies', new Bodies(scene, frame));
+    if (!this.solids.is_of(scene)) {
+      this.#replace('solids', new Solids(scene, frame));
+      this.chase.skyline = null;
+    }
+    this.update(this.store.state, new Set());
+  }
+
+  #replace(name, made) {
+    this.root.remove(this[name].object);
+    this[name].object.traverse(({geometry, material}) => {
+      geometry?.dispose();
+      for (const one of [material].flat()) one?.dispose();
+    });
+    this[name] = made;
+    this.root.add(made.object);
   }
 
   on_frame(listener) {
@@ -234,15 +258,25 @@ export class View3 {
 
   /** The point of the ground, or of the box's floor where there is none, at a pixel. */
   ground_at(x, y) {
-    const {origin, direction} = this.#ray(x, y).ray;
     const {frame, scene} = this.world;
-    const stretch = this.store.state.exaggeration;
-    const from = frame.world([origin.x, origin.y, origin.z / stretch]);
-    const along = [direction.x, direction.y, direction.z / stretch];
-    if (scene.ground) return scene.ground.hit(from, along, this.camera.eye.far,
-      this.store.state.cut);
-    const t = (frame.box[0][2] - from[2]) / along[2];
+    if (!scene.ground) return this.at_height(x, y, frame.box[0][2]);
+    const [from, along] = this.#sight(x, y);
+    return scene.ground.hit(from, along, this.camera.eye.far, this.store.state.cut);
+  }
+
+  /** The point at a height under a pixel; null where one looks away from it. */
+  at_height(x, y, z) {
+    const [from, along] = this.#sight(x, y);
+    const t = (z - from[2]) / along[2];
     return t > 0 ? from.map((value, axis) => value + t * along[axis]) : null;
+  }
+
+  /** The eye and the direction of a pixel, in the world. */
+  #sight(x, y) {
+    const {origin, direction} = this.#ray(x, y).ray;
+    const stretch = this.store.state.exaggeration;
+    return [this.world.frame.world([origin.x, origin.y, origin.z / stretch]),
+      [direction.x, direction.y, direction.z / stretch]];
   }
 
   /** The name of the solid at a pixel. */

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "host/describe/describe.hpp"
+#include "host/edit/movable.hpp"
+#include "host/edit/plan_task.hpp"
+#include "host/flight/events.hpp"
+#include "host/result/stored_result.hpp"
+#include "host/run/pipeline.hpp"
+#include "host/view/scene_parts.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Samples of a profile: finer than a chart has pixels, and fewer where every millisecond counts.
+constexpr std::size_t kSamples = 300;
+constexpr std::size_t kQuickSamples = 60;
+
+constexpr const char* kKinds[] = {"plan", "page", "plugins"};
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Limits plan steps that may take longer to a time in which one can wait for them.
+std::vector<std::string> quick_budgets(const Config& config) {
+  std::vector<std::string> set;
+  for (std::size_t n = 0; n < config.steps.size(); ++n) {
+    const StepEntry& step = config.steps[n];
+    if (step.verb == Verb::plan && step.within_s.value_or(kDefaultStepSeconds) > kQuickSeconds) {
+      set.push_back("steps." + std::to_string(n) + ".within_s=" + std::to_string(kQuickSeconds));
+    }
+  }
+  return set;
+}
+
+/// A pipeline run with these changes.
+struct Planned {
+  Config config;
+  RunResult run;
+  StoredResult result;
+};
+
+Planned planned(const EditedPipeline& pipeline, const std::vector<std::string>& set, bool quick,
+                const std::function<void(const std::string&)>& on_stuck) {
+  Overrides overrides = pipeline.config.overrides;
+  overrides.set = set;
+  if (quick) {
+    const std::vector<std::string> budgets = quick_budgets(pipeline.config);
+    overrides.set.insert(overrides.set.end(), budgets.begin(), budgets.end());
+  }
+  Config config = load_config(pipeline.config.pipeline_path, overrides, pipeline.config.registry);
+  RunOptions options;
+  options.on_stuck = [&](const RunResult& result) { on_stuck(error_answer(result.message)); };
+  RunResult result = run(config, options);
+  StoredResult stored =
+      stored_result(pipeline.name, result_json(config, result), pipeline.config.overrides);
+  return {std::move(config), std::move(result), std::move(stored)};
+}
+
+Json plan(const PlanTask& task, const EditedPipeline& pipeline,
+          const std::function<void(const std::string&)>& on_stuck) {
+  const Planned made = planned(pipeline, task.set.at(task.pipeline), task.quick, on_stuck);
+  const Mission mission = build_mission(made.config, 1);
+  const std::vector<FlightEvent> events = build_events(made.config, mission);
+  SceneNotes notes;
+  Json scene{{"altiplan_scene", kSceneVersion}};
+  scene.update(ends_scene(mission));
+  if (task.obstacles) {
+    scene.update(obstacles_scene(mission, events, scene_box(mission, {made.result}), notes));
+  }
+  const SceneDetail detail{task.quick ? kQuickSamples : kSamples, !task.quick, &made.run};
+  Json result = result_scene(made.result, mission, events, detail, notes);
+  result["trace"] = nullptr;
+  scene["results"] = Json::array({std::move(result)});
+  scene["notes"] = notes.lines();
+  scene["movable"] = movable(made.config.scenario_tree, mission.truth);
+  scene["result"] = made.result.json;
+  return scene;
+}
+
+Json page(const PlanTask& task, const std::vector<EditedPipeline>& pipelines,
+          const std::function<void(const std::string&)>& on_stuck) {
+  std::vector<StoredResult> results;
+  std::optional<Config> config;
+  for (std::size_t n = 0; n < task.files.size(); ++n) {
+    Planned made = planned(pipelines.at(task.files[n]), task.set.at(n), false, on_stuck);
+    results.push_back(std::move(made.result));
+    config.emplace(std::move(made.config));
+  }
+  Json scene = build_scene(results).json;
+
+  scene["movable"] = movable(config->scenario_tree, build_mission(*config, 1).truth);
+  return scene;
+}
+
+Json plugins(const std::vector<EditedPipeline>& pipelines) {
+  Registry& registry = *pipelines.front().config.registry;
+  Json all = Json::array();
+  std::set<std::string> seen;
+  for (const ListedPlugin& listed : listed_plugins(examine_all(registry))) {
+    if (!seen.insert(listed.name).second) {
+      continue;  // described with the first of its kinds
+    }
+    for (const Description& description : describe_plugin(registry, listed.name)) {
+      all.push_back(describe_json(description));
+    }
+  }
+  return all;
+}
+}  // namespace
+
+Json to_json(const PlanTask& task) {
+  return {{"kind", kKinds[int(task.kind)]},
+          {"number", task.number},
+          {"pipeline", task.pipeline},
+          {"files", task.files},
+          {"set", task.set},
+          {"quick", task.quick},
+          {"obstacles", task.obstacles}};
+}
+
+PlanTask plan_task(const Json& json) {
+  PlanTask task;
+  const std::string kind = json.at("kind");
+  while (kind != kKinds[int(task.kind)]) {
+    task.kind = PlanTask::Kind(int(task.kind) + 1);
+  }
+  task.number = json.at("number");
+  task.pipeline = json.at("pipeline");
+  task.files = json.at("files").get<std::vector<std::size_t>>();
+  task.set = json.at("set").get<std::vector<std::vector<std::string>>>();
+  task.quick = json.at("quick");
+  task.obstacles = json.at("obstacles");
+  return task;
+}
+
+std::string plan_answer(const PlanTask& task, const std::vector<EditedPipeline>& pipelines,
+                        const std::function<void(const std::string&)>& on_stuck) {
+  switch (task.kind) {
+    case PlanTask::Kind::plan:
+      return text_of(plan(task, pipelines.at(task.files.at(task.pipeline)), on_stuck));
+    case PlanTask::Kind::page:
+      return text_of(page(task, pipelines, on_stuck));
+    default:
+      return text_of(plugins(pipelines));
+  }
+}
+
+std::string error_answer(const std::string& text) { return text_of(Json{{"error", text}}); }
+}  // namespace altiplan::host

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/edit/session.hpp"
+
+#include "altiplan/kit/formats/input_file.hpp"
+#include "host/config/overrides.hpp"
+#include "host/config/yaml.hpp"
+#include "host/config/yaml_edit.hpp"
+#include "host/edit/movable.hpp"
+#include "host/view/viewer_page.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// The page may talk to its own server and to nobody else.
+constexpr std::string_view kNoNetwork = "default-src 'none';";
+constexpr std::string_view kOwnServer = "default-src 'none'; connect-src 'self';";
+
+constexpr std::size_t kMaxKey = 200;
+
+/// A process each, and a line on the picture.
+constexpr std::size_t kMostPipelines = 4;
+
+Json json_of(const Value& value) {
+  Json json;
+  switch (value.kind) {
+    case Value::Kind::scalar:
+      return value.text;
+    case Value::Kind::list:
+      json = Json::array();
+      for (const Value& item : value.items) {
+        json.push_back(json_of(item));
+      }
+      return json;
+    default:
+      json = Json::object();
+      for (const Value::Entry& entry : value.entries) {
+        json[entry.key] = json_of(entry.value);
+      }
+      return json;
+  }
+}
+
+Value applied(Value tree, const std::vector<std::string>& set, FileOfKey file) {
+  apply_overrides(tree, set, file);
+  return tree;
+}
+
+Vec3 vector_of(const Json& json) {
+  if (!json.is_array() || json.size() != 3) {
+    throw Error("expected [east, north, up] in metres");
+  }
+  const Vec3 by(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+  if (!by.allFinite()) {
+    throw Error("expected finite metres");
+  }
+  return by;
+}
+
+/// A problem of the wish in one line.
+std::string sentence_of(const std::exception& error) {
+  if (const auto* config = dynamic_cast<const ConfigError*>(&error)) {
+    const auto& problem = config->problems().front();
+    return problem.key.empty() ? problem.message : problem.key + ": " + problem.message;
+  }
+  if (dynamic_cast<const Json::exception*>(&error) != nullptr) {
+    const std::string why = error.what();
+    return "the request is not as expected: " + why.substr(why.find("] ") + 2);
+  }
+  return error.what();
+}
+}  // namespace
+
+EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assignment> given,
+                         Frame frame, std::filesystem::path folder, PlanLine& line)
+    : line_(line),
+      frame_(std::move(frame)),
+      folder_(std::move(folder)),
+      opened_(pipelines.size()),
+      pipelines_(std::move(pipelines)),
+      edits_(std::move(given)) {
+  for (const EditedPipeline& pipeline : pipelines_) {
+    files_.push_back({pipeline.config.pipeline_path, "", ""});
+  }
+  files_.push_back({pipelines_.front().config.scenario_path, "", ""});
+  for (OpenFile& file : files_) {
+    file.opened = file.on_disk = kit::read_file(file.path);
+    trees_.push_back(parse_yaml(file.opened, file.path.string()));
+  }
+}
+
+PageAnswer EditSession::answer(const PageRequest& request) {
+  try {
+    if (request.method == "GET" && request.path == "/") {
+      return page();
+    }
+    if (request.method == "GET" && request.path == "/plugins") {
+      const PlanTask task{PlanTask::Kind::plugins};
+      return {200, "application/json", line_.finish(line_.begin(task)).value_or("[]")};
+    }
+    if (request.method != "POST") {
+      return {404, "application/json", error_answer("there is nothing at this address")};
+    }
+    const Json wish = request.body.empty() ? Json::object() : Json::parse(request.body);
+    if (!wish.is_object()) {
+      throw Error("expected a JSON object");
+    }
+    if (request.path == "/export") {
+      return exported(wish);
+    }
+    const Json json = request.path == "/edit"      ? change(wish)
+                      : request.path == "/compare" ? compared()
+                      : request.path == "/save"    ? saved(wish)
+                      : request.path == "/upload"  ? uploaded(wish)
+                                                   : Json();
+    if (json.is_null()) {
+      return {404, "application/json", error_answer("there is nothing at this address")};
+    }
+    return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  } catch (const std::exception& error) {
+    return {400, "application/json", error_answer(sentence_of(error))};
+  }
+}
+
+PageAnswer EditSession::page() {
+  PlanTask task;
+  Json state_now;
+  {
+    const std::lock_guard lock(mutex_);
+    task = task_of(PlanTask::Kind::page);
+    state_now = state();
+  }
+  Json scene = Json::parse(line_.finish(line_.begin(task)).value_or(error_answer("superseded")));
+  if (scene.contains("error")) {
+    throw Error(scene.at("error").get<std::string>());
+  }
+  for (std::size_t n = 0; n < task.files.size(); ++n) {
+    scene["results"][n]["name"] = state_now.at("pipelines")[n].at("name");
+  }
+  scene["edit"] = std::move(state_now);
+  std::string page = viewer_page(scene);
+  page.replace(page.find(kNoNetwork), kNoNetwork.size(), kOwnServer);
+  return {200, "text/html; charset=utf-8", std::move(page)};
+}
+
+std::size_t EditSession::pipeline_of(const Json& wish) const {
+  const auto pipeline = wish.value("pipeline", std::size_t(0));
+  if (pipeline >= pipelines_.size()) {
+    throw Error("there is no pipeline " + std::to_string(pipeline));
+  }
+  return pipeline;
+}
+
+std::vector<Assignment> EditSession::assignments_of(const Json& wish) const {
+  const std::size_t pipeline = pipeline_of(wish);
+  std::vector<Assignment> assignments;
+  const auto add = [&](const std::string& text) {
+    Assignment one{text, pipeline};
+    if (one.key().empty() || one.key().size() > kMaxKey || text.find('\n') != text.npos ||
+        (!one.is_removal() && text.find('=') == text.npos)) {
+      throw Error("'" + text.substr(0, kMaxKey) + "': expected KEY=VALUE or ~KEY on one line");
+    }
+    assignments.push_back(std::move(one));
+  };
+  if (wish.contains("move")) {
+    const std::vector<Assignment> before = edits_.before(wish.value("gesture", std::uint64_t(0)));
+    const Value scenario = applied(trees_.back(), texts_for(before, 0), FileOfKey::scenario);
+    const Json& move = wish.at("move");
+    for (const std::string& text :
+         moved(scenario, move.at("key").get<std::string>(), vector_of(move.at("by")), frame_)) {
+      add(text);
+    }
+  }
+  for (const Json& text : wish.value("set", Json::array())) {
+    add(text.get<std::string>());
+  }
+  return assignments;
+}
+
+Json EditSession::change(const Json& wish) {
+  const std::string undo = wish.value("history", "");
+  Edits before;
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    before = edits_;
+    if (undo == "undo") {
+      edits_.undo();
+    } else if (undo == "redo") {
+      edits_.redo();
+    } else if (const auto assignments = assignments_of(wish); !assignments.empty()) {
+      edits_.add(assignments, wish.value("gesture", std::uint64_t(0)));
+    }
+    number = ++state_number_;
+  }
+  try {
+    return planned(wish.value("quick", false), wish.value("world", ""));
+  } catch (const std::exception&) {
+    // What cannot be planned with is not kept, unless it has been changed further meanwhile.
+    const std::lock_guard lock(mutex_);
+    if (state_number_ == number) {
+      edits_ = before;
+    }
+    throw;
+  }
+}
+
+Json EditSession::planned(bool quick, const std::string& world_of_page) {
+  Json json;
+  std::vector<std::uint64_t> numbers;
+  {
+    // One state is asked for in all processes before the next one is.
+    const std::lock_guard lock(mutex_);
+    json = state();
+    PlanTask task = task_of(PlanTask::Kind::plan);
+    task.quick = quick;
+    task.obstacles = world() != world_of_page;
+    for (task.pipeline = 0; task.pipeline < pipelines_.size(); ++task.pipeline) {
+      numbers.push_back(line_.begin(task));
+    }
+  }
+  json["quick"] = quick;
+  json["answers"] = Json::array();
+  std::string problem;
+  bool is_superseded = false;
+  for (const std::uint64_t number : numbers) {
+    const std::optional<std::string> text = line_.finish(number);
+    is_superseded = is_superseded || !text;
+    Json answer = Json::parse(text.value_or("{}"));
+    problem = answer.value("error", problem);
+    json["answers"].push_back(std::move(answer));
+  }
+  if (is_superseded) {
+    return {{"superseded", true}};
+  }
+  if (!problem.empty()) {
+    throw Error(problem);
+  }
+  const std::lock_guard lock(mutex_);
+  const bool is_newest = json.at("number") == state_number_;
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    Json& answer = json["answers"][n];
+    if (!quick && is_newest) {
+      results_[n] = std::move(answer["result"]);
+    }
+    answer.erase("result");
+    answer["results"][0]["name"] = json["pipelines"][n]["name"];
+  }
+  return json;
+}
+
+std::vector<std::vector<std::string>> EditSession::sets() const {
+  const std::vector<Assignment> all = edits_.all();
+  std::vector<std::vector<std::string>> sets;
+  for (std::size_t n = 0; n < pipelines_.size(); ++n) {
+    sets.push_back(texts_for(all, n));
+  }
+  return sets;
+}
+
+PlanTask EditSession::task_of(PlanTask::Kind kind) const {
+  PlanTask task;
+  task.kind = kind;
+  task.set = sets();
+  for (const EditedPipeline& pipeline : pipelines_) {
+    task.files.push_back(pipeline.file);
+  }
+  return task;
+}
+
+Json EditSession::compared() {
+  const std::lock_guard lock(mutex_);
+  if (pipelines_.size() == kMostPipelines) {
+    throw Error("at most " + std::to_string(kMostPipelines) +
+                " pipelines are planned side by side");
+  }
+  EditedPipeline copy = pipelines_.front();
+  const std::size_t number = pipelines_.size();
+  copy.name += "_" + std::to_string(number + 1);
+  pipelines_.push_back(std::move(copy));
+  std::vector<Assignment> same;
+  for (const Assignment& one : edits_.all()) {
+    if (!one.of_scenario() && one.pipeline == 0) {
+      same.push_back({one.text, number});
+    }
+  }
+  if (!same.empty()) {
+    edits_.add(same, 0);
+  }
+  return {{"pipelines", pipelines_.size()}};
+}
+
+std::string EditSession::world() const {
+  std::string text;
+  for (const Assignment& one : edits_.all()) {
+    const std::string key = one.key() + ".";
+    const bool is_end = key.starts_with("scenario.start.") || key.starts_with("scenario.goal.") ||
+                        key.starts_with("scenario.via.");
+    if (one.of_scenario() && !is_end) {
+      text += one.text + "\n";
+    }
+  }
+  return std::to_string(std::hash<std::string>()(text));
+}
+
+Json EditSession::state() const {
+  const std::vector<Assignment> all = edits_.all();
+  Json json{{"number", state_number_},
+            {"undo", edits_.can_undo()},
+            {"redo", edits_.can_redo()},
+            {"world", world()},
+            {"scenario", json_of(applied(trees_.back(), texts_for(all, 0), FileOfKey::scenario))},
+            {"pipelines", Json::array()}};
+  for (std::size_t n = 0; n < pipelines_.size(); ++n) {
+    const std::vector<std::string> set = texts_for(all, n);
+    json["pipelines"].push_back(
+        {{"name", pipelines_[n].name},
+         {"file", files_[pipelines_[n].file].path.string()},
+         {"tree", json_of(applied(trees_[pipelines_[n].file], set, FileOfKey::pipeline))},
+         {"set", set}});
+  }
+  return json;
+}
+}  // namespace altiplan::host
