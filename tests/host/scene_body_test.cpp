@@ -67,8 +67,8 @@ class SceneBody : public testing::SceneResult {
     Overrides only_plugins;
     only_plugins.plugin_path = overrides_.plugin_path;
     SceneNotes notes;
-    return result_scene(read_result((folder_ / "result.json").string(), only_plugins), made, {}, {60},
-                        notes);
+    return result_scene(read_result((folder_ / "result.json").string(), only_plugins), made, {},
+                        {60}, notes);
   }
 };
 

@@ -90,7 +90,9 @@ std::string random_yaml(SplitMix64& random, int depth, int indent, bool in_flow)
     // A list's item begins behind its dash, a key's block on the next line.
     const std::string begun = kind == 1 && on_lines ? value.substr(std::size_t(indent + 2)) : value;
     text += blanks + key + (kind == 2 && on_lines ? "\n" : "") + begun;
-    text += on_lines ? "" : pick(3) == 0 ? "  # c" + std::to_string(random.next() % 1000) + "\n" : "\n";
+    text += on_lines       ? ""
+            : pick(3) == 0 ? "  # c" + std::to_string(random.next() % 1000) + "\n"
+                           : "\n";
     text += pick(5) == 0 ? blanks + "# between\n" : "";
   }
   return text + (is_flow ? (kind == 1 ? "]" : "}") : "");
@@ -131,7 +133,7 @@ TEST(YamlEdit, RandomAssignmentsMeanTheSameInTheTextAndInTheTree) {
       const std::string one = random.next() % 3 == 0 ? "~" + place
                               : is_list ? place + "." + std::to_string(here->items.size()) + "=7"
                               : random.next() % 2 == 0 ? place + "=[8, {x: 9}]"
-                                                  : place + ".fresh=a";
+                                                       : place + ".fresh=a";
       apply_overrides(tree, {one}, FileOfKey::pipeline);
       try {
         text = edited(text, {one});

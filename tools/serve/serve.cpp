@@ -94,6 +94,11 @@ class Service {
     if (!origin.empty() && origin != "http://" + authority_) {
       return 403;
     }
+    // Refused before it is read.
+    if (request.has_header("Transfer-Encoding") ||
+        request.get_header_value<std::uint64_t>("Content-Length") > kMaxBody) {
+      return 413;
+    }
     const std::string& path = request.path;
     const std::size_t end = std::min(path.find('/', 1), path.size());
     return end > 1 && is_same(path.substr(1, end - 1), token_) ? 0 : 403;

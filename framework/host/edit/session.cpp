@@ -79,11 +79,11 @@ EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assi
       pipelines_(std::move(pipelines)),
       edits_(std::move(given)) {
   for (const EditedPipeline& pipeline : pipelines_) {
-    files_.push_back({pipeline.config.pipeline_path, "", ""});
+    files_.push_back({pipeline.config.pipeline_path, ""});
   }
-  files_.push_back({pipelines_.front().config.scenario_path, "", ""});
+  files_.push_back({pipelines_.front().config.scenario_path, ""});
   for (OpenFile& file : files_) {
-    file.opened = file.on_disk = kit::read_file(file.path);
+    file.opened = kit::read_file(file.path);
     trees_.push_back(parse_yaml(file.opened, file.path.string()));
   }
 }
@@ -170,7 +170,11 @@ std::vector<Assignment> EditSession::assignments_of(const Json& wish) const {
       add(text);
     }
   }
-  for (const Json& text : wish.value("set", Json::array())) {
+  const Json texts = wish.value("set", Json::array());
+  if (!texts.is_array()) {
+    throw Error("the request is not as expected: set must be a list of texts");
+  }
+  for (const Json& text : texts) {
     add(text.get<std::string>());
   }
   return assignments;

@@ -25,11 +25,10 @@ class EditSession {
   PageAnswer answer(const PageRequest& request);
 
  private:
-  /// A file as it was when it was opened, and as it was last written here.
+  /// A file as it was when it was opened, or last written here.
   struct OpenFile {
     std::filesystem::path path;
     std::string opened;
-    std::string on_disk;
   };
 
   Json change(const Json& wish);
@@ -37,6 +36,8 @@ class EditSession {
   Json compared();
   Json planned(bool quick, const std::string& world_of_page);
   Json saved(const Json& wish);
+  /// Once the changes are in the files.
+  void begin_anew();
   /// Files to be written.
   using Texts = std::vector<std::pair<std::filesystem::path, std::string>>;
   /// A file with the changes that concern it, and a pipeline's.
@@ -64,8 +65,8 @@ class EditSession {
   const Frame frame_;
   const std::filesystem::path folder_;
   const std::size_t opened_;  ///< the number of pipelines with a file of their own
-  std::vector<Value> trees_;  ///< of the files, as opened
   mutable std::mutex mutex_;  ///< guards what follows
+  std::vector<Value> trees_;  ///< of the files, as opened
   std::vector<EditedPipeline> pipelines_;
   std::vector<OpenFile> files_;  ///< of the opened pipelines, then the scenario's
   Edits edits_;

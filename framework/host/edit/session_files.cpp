@@ -4,6 +4,7 @@
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/program.hpp"
+#include "host/config/yaml.hpp"
 #include "host/config/yaml_edit.hpp"
 #include "host/edit/session.hpp"
 
@@ -63,13 +64,28 @@ Json EditSession::saved(const Json& wish) {
   for (const auto& [place, text] : written) {
     write_file(place, text);
     names.push_back(place.string());
-    for (OpenFile& file : files_) {
-      if (file.path == place) {
-        file.on_disk = text;
-      }
-    }
+  }
+  if (!is_new && !written.empty()) {
+    begin_anew();
   }
   return {{"files", names}};
+}
+
+void EditSession::begin_anew() {
+  // What is planned is what the files say now, and the changes that no file has.
+  std::vector<Assignment> left;
+  for (const Assignment& one : edits_.all()) {
+    if (!one.of_scenario() && one.pipeline >= opened_) {
+      left.push_back(one);
+    }
+  }
+  for (std::size_t n = 0; n <= opened_; ++n) {
+    files_[n].opened = kit::read_file(files_[n].path);
+    trees_[n] = parse_yaml(files_[n].opened, files_[n].path.string());
+  }
+  edits_ = Edits(std::move(left));
+  results_.clear();
+  ++state_number_;
 }
 
 std::string EditSession::text_of(std::size_t file, std::size_t pipeline) const {
@@ -83,10 +99,10 @@ EditSession::Texts EditSession::changed_texts() const {
   for (std::size_t n = 0; n <= opened_; ++n) {
     const OpenFile& file = files_[n];
     std::string text = text_of(n, n == opened_ ? 0 : n);
-    if (text == file.on_disk) {
+    if (text == file.opened) {
       continue;
     }
-    if (kit::read_file(file.path) != file.on_disk) {
+    if (kit::read_file(file.path) != file.opened) {
       throw Error(
           "'" + file.path.string() +
           "' has been changed by another program: save under another name, or open it anew");

@@ -122,6 +122,7 @@ export class Editor {
   async save(as) {
     const json = await this.#ask('save', as ? {as} : {});
     const files = json.files?.join(', ');
+    if (files && !as) await this.change({});
     this.say(json.error ?? (files ? `Saved: ${files}` : 'There is nothing to save.'));
     return json;
   }

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A running `altiplan edit`, talked to as its page does."""
+import http.client
+import json
+import subprocess
+import urllib.parse
+
+SCENARIO = """# The world of this test.
+altiplan: 1
+environment:
+  - cylinder: {at_m: [400, 480], radius_m: 60, floor_m: 0, ceiling_m: 300}   # in the middle
+  - box: {min_m: [600, 200, 0], max_m: [700, 420, 120]}
+    id: house
+  # Two radars would be too many.
+  - prism: {outline_m: [[200, 700], [300, 700], [250, 820]]}
+    known: false
+volume: {min_m: [0, 0, 0], max_m: [1000, 1000, 300]}
+vehicle: {radius_m: 2, speed_mps: 12}
+start: {at_m: [40, 40, 60]}          # the field
+goal: {at_m: [940, 930, 60], tolerance_m: 5}
+events:
+  - at_s: 20
+    add: {sphere: {at_m: [500, 520, 60], radius_m: 25}}
+"""
+PIPELINE = """# How it is planned.
+altiplan: 1
+scenario: scenario.yaml
+seed: 4
+steps:
+  - plan: astar        # cells first
+    with: {cell_m: [50, 50, 30]}
+  - smooth: prune
+  - fly: route
+"""
+
+
+class Session:
+    """`altiplan edit` of these files; `with` ends it."""
+
+    def __init__(self, program, *arguments):
+        self.process = subprocess.Popen([program, "edit", "--no-browser", *map(str, arguments)],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        line = self.process.stdout.readline()
+        while line and not line.startswith("http"):
+            line = self.process.stdout.readline()
+        if not line:
+            raise AssertionError(self.process.communicate()[1])
+        self.address = urllib.parse.urlsplit(line.strip())
+        self.shown = ""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.terminate()
+        self.process.wait(20)
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+    def request(self, method, path, body=None, headers=None, timeout=60):
+        """The status and the answer to a request below the server's root."""
+        connection = http.client.HTTPConnection(self.address.hostname, self.address.port,
+                                                timeout=timeout)
+        try:
+            connection.request(method, path, body, headers or {})
+            response = connection.getresponse()
+            return response.status, response.read()
+        finally:
+            connection.close()
+
+    def ask(self, path, wish=None, status=200):
+        """The answer to a wish of the page."""
+        found, body = self.request("POST", self.address.path + path, json.dumps(wish or {}))
+        if found != status:
+            raise AssertionError((path, wish, found, body[:500]))
+        return json.loads(body) if body else None
+
+    def edit(self, status=200, **wish):
+        answer = self.ask("edit", {"world": self.shown, **wish}, status)
+        self.shown = answer.get("world", self.shown)
+        return answer
