@@ -22,9 +22,13 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Limits plan steps that may take longer to a time in which one can wait for them.
-std::vector<std::string> quick_budgets(const Config& config) {
+/// Limits plan steps that may take longer to a time in which one can wait for them, and leaves the
+/// flight out unless it `flies`.
+std::vector<std::string> quick_changes(const Config& config, bool flies) {
   std::vector<std::string> set;
+  if (!flies && config.steps.back().verb == Verb::fly) {
+    set.push_back("~steps." + std::to_string(config.steps.size() - 1));
+  }
   for (std::size_t n = 0; n < config.steps.size(); ++n) {
     const StepEntry& step = config.steps[n];
     if (step.verb == Verb::plan && step.within_s.value_or(kDefaultStepSeconds) > kQuickSeconds) {
@@ -37,31 +41,38 @@ std::vector<std::string> quick_budgets(const Config& config) {
 /// A pipeline run with these changes.
 struct Planned {
   Config config;
+  Mission mission;
   RunResult run;
   StoredResult result;
 };
 
 Planned planned(const EditedPipeline& pipeline, const std::vector<std::string>& set, bool quick,
-                const std::function<void(const std::string&)>& on_stuck) {
+                bool flies, const std::function<void(const std::string&)>& on_stuck) {
   Overrides overrides = pipeline.config.overrides;
   overrides.set = set;
   if (quick) {
-    const std::vector<std::string> budgets = quick_budgets(pipeline.config);
-    overrides.set.insert(overrides.set.end(), budgets.begin(), budgets.end());
+    // The steps may be others than when the file was opened.
+    const Config as_set =
+        load_config(pipeline.config.pipeline_path, overrides, pipeline.config.registry);
+    const std::vector<std::string> changes = quick_changes(as_set, flies);
+    overrides.set.insert(overrides.set.end(), changes.begin(), changes.end());
   }
   Config config = load_config(pipeline.config.pipeline_path, overrides, pipeline.config.registry);
   RunOptions options;
   options.on_stuck = [&](const RunResult& result) { on_stuck(error_answer(result.message)); };
+  Mission mission;
+  options.on_mission = [&](const Mission& built) { mission = built; };
   RunResult result = run(config, options);
   StoredResult stored =
       stored_result(pipeline.name, result_json(config, result), pipeline.config.overrides);
-  return {std::move(config), std::move(result), std::move(stored)};
+  return {std::move(config), std::move(mission), std::move(result), std::move(stored)};
 }
 
 Json plan(const PlanTask& task, const EditedPipeline& pipeline,
           const std::function<void(const std::string&)>& on_stuck) {
-  const Planned made = planned(pipeline, task.set.at(task.pipeline), task.quick, on_stuck);
-  const Mission mission = build_mission(made.config, 1);
+  const Planned made =
+      planned(pipeline, task.set.at(task.pipeline), task.quick, task.flies, on_stuck);
+  const Mission& mission = made.mission;
   const std::vector<FlightEvent> events = build_events(made.config, mission);
   SceneNotes notes;
   Json scene{{"altiplan_scene", kSceneVersion}};
@@ -69,7 +80,9 @@ Json plan(const PlanTask& task, const EditedPipeline& pipeline,
   if (task.obstacles) {
     scene.update(obstacles_scene(mission, events, scene_box(mission, {made.result}), notes));
   }
-  const SceneDetail detail{task.quick ? kQuickSamples : kSamples, !task.quick, &made.run};
+  // Judged anew where there is time, as whoever opens the result has it.
+  const SceneDetail detail{task.quick ? kQuickSamples : kSamples, !task.quick,
+                           task.quick ? &made.run : nullptr};
   Json result = result_scene(made.result, mission, events, detail, notes);
   result["trace"] = nullptr;
   scene["results"] = Json::array({std::move(result)});
@@ -82,15 +95,15 @@ Json plan(const PlanTask& task, const EditedPipeline& pipeline,
 Json page(const PlanTask& task, const std::vector<EditedPipeline>& pipelines,
           const std::function<void(const std::string&)>& on_stuck) {
   std::vector<StoredResult> results;
-  std::optional<Config> config;
+  Json items;
   for (std::size_t n = 0; n < task.files.size(); ++n) {
-    Planned made = planned(pipelines.at(task.files[n]), task.set.at(n), false, on_stuck);
+    Planned made = planned(pipelines.at(task.files[n]), task.set.at(n), false, true, on_stuck);
     results.push_back(std::move(made.result));
-    config.emplace(std::move(made.config));
+    items = movable(made.config.scenario_tree, made.mission.truth);
   }
   Json scene = build_scene(results).json;
 
-  scene["movable"] = movable(config->scenario_tree, build_mission(*config, 1).truth);
+  scene["movable"] = std::move(items);
   return scene;
 }
 
@@ -117,7 +130,8 @@ Json to_json(const PlanTask& task) {
           {"files", task.files},
           {"set", task.set},
           {"quick", task.quick},
-          {"obstacles", task.obstacles}};
+          {"obstacles", task.obstacles},
+          {"flies", task.flies}};
 }
 
 PlanTask plan_task(const Json& json) {
@@ -132,6 +146,7 @@ PlanTask plan_task(const Json& json) {
   task.set = json.at("set").get<std::vector<std::vector<std::string>>>();
   task.quick = json.at("quick");
   task.obstacles = json.at("obstacles");
+  task.flies = json.at("flies");
   return task;
 }
 

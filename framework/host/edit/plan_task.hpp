@@ -28,6 +28,7 @@ struct PlanTask {
   std::vector<std::vector<std::string>> set{};  ///< `--set` of each pipeline
   bool quick = false;                           ///< of `plan`: something is being dragged
   bool obstacles = false;                       ///< of `plan`: the page has those of another world
+  bool flies = true;                            ///< of `plan`: with the flight
 };
 
 /// Seconds that a plan step may take while something is dragged.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/edit/session.hpp"
 
+#include <chrono>
+
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
@@ -16,6 +18,9 @@ constexpr std::string_view kNoNetwork = "default-src 'none';";
 constexpr std::string_view kOwnServer = "default-src 'none'; connect-src 'self';";
 
 constexpr std::size_t kMaxKey = 200;
+
+/// Slower answers are no longer seen as following the hand.
+constexpr std::chrono::milliseconds kFluent{60};
 
 /// A process each, and a line on the picture.
 constexpr std::size_t kMostPipelines = 4;
@@ -197,7 +202,7 @@ Json EditSession::change(const Json& wish) {
     number = ++state_number_;
   }
   try {
-    return planned(wish.value("quick", false), wish.value("world", ""));
+    return planned(wish);
   } catch (const std::exception&) {
     // What cannot be planned with is not kept, unless it has been changed further meanwhile.
     const std::lock_guard lock(mutex_);
@@ -208,7 +213,17 @@ Json EditSession::change(const Json& wish) {
   }
 }
 
-Json EditSession::planned(bool quick, const std::string& world_of_page) {
+bool EditSession::is_flown(std::uint64_t gesture) {
+  if (gesture != gesture_) {
+    gesture_ = gesture;
+    is_slow_ = false;
+  }
+  return !is_slow_;
+}
+
+Json EditSession::planned(const Json& wish) {
+  const bool quick = wish.value("quick", false);
+  const auto began = std::chrono::steady_clock::now();
   Json json;
   std::vector<std::uint64_t> numbers;
   {
@@ -217,7 +232,8 @@ Json EditSession::planned(bool quick, const std::string& world_of_page) {
     json = state();
     PlanTask task = task_of(PlanTask::Kind::plan);
     task.quick = quick;
-    task.obstacles = world() != world_of_page;
+    task.obstacles = world() != wish.value("world", "");
+    task.flies = !quick || is_flown(wish.value("gesture", std::uint64_t(0)));
     for (task.pipeline = 0; task.pipeline < pipelines_.size(); ++task.pipeline) {
       numbers.push_back(line_.begin(task));
     }
@@ -240,6 +256,7 @@ Json EditSession::planned(bool quick, const std::string& world_of_page) {
     throw Error(problem);
   }
   const std::lock_guard lock(mutex_);
+  is_slow_ = is_slow_ || (quick && std::chrono::steady_clock::now() - began > kFluent);
   const bool is_newest = json.at("number") == state_number_;
   for (std::size_t n = 0; n < numbers.size(); ++n) {
     Json& answer = json["answers"][n];

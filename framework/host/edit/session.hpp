@@ -34,7 +34,9 @@ class EditSession {
   Json change(const Json& wish);
   /// Adds a copy of the first pipeline, to be changed and compared.
   Json compared();
-  Json planned(bool quick, const std::string& world_of_page);
+  Json planned(const Json& wish);
+  /// Whether the flight is a part of quick answers: unless they have taken long in this gesture.
+  bool is_flown(std::uint64_t gesture);
   Json saved(const Json& wish);
   /// Once the changes are in the files.
   void begin_anew();
@@ -71,6 +73,8 @@ class EditSession {
   std::vector<OpenFile> files_;  ///< of the opened pipelines, then the scenario's
   Edits edits_;
   std::uint64_t state_number_ = 0;
+  std::uint64_t gesture_ = 0;
+  bool is_slow_ = false;                 ///< what that gesture has asked for
   std::map<std::size_t, Json> results_;  ///< of each pipeline, as last planned whole
 };
 }  // namespace altiplan::host

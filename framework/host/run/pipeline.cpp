@@ -37,6 +37,9 @@ RunResult Run::operator()() {
       enter(who);
     }
   });
+  if (options_.on_mission) {
+    options_.on_mission(mission_);
+  }
   result_.frame = mission_.truth.frame();
   result_.setup_time_s = mission_.setup_time_s;
   result_.notes = mission_.notes;

@@ -7,6 +7,7 @@
 
 #include "host/config/config.hpp"
 #include "host/flight/flown_vehicle.hpp"
+#include "host/mission/mission.hpp"
 #include "host/run/process_guard.hpp"
 #include "host/run/run_result.hpp"
 #include "host/run/watchdog.hpp"
@@ -45,6 +46,8 @@ struct RunOptions {
   /// Timeout of steps without `within_s` and of work without a budget: constructors, judging.
   double timeout_s = kDefaultStepSeconds;
   RunProgress* progress = nullptr;  ///< null where nobody watches
+  /// Called with the mission once it is built, for who shows its world afterwards.
+  std::function<void(const Mission&)> on_mission;
   /// If set, no step is done but the first attempt of the flight, without a time budget.
   std::optional<RealFlight> real;
 };

@@ -93,8 +93,9 @@ class ClearanceProfile {
 /// How much of a result is shown, and who has judged it.
 struct SceneDetail {
   std::size_t samples = 300;  ///< of each profile
-  /// With the heights that layers fill, and where a route may pass; and the profile of a flight.
-  /// Without, a scene takes a tenth of the time.
+  /// With the heights that layers fill, and where a route may pass; with the places of the least
+  /// clearances; and the profile of a flight. Without, a scene takes a tenth of the time, and has
+  /// no more samples than that.
   bool heights = true;
   /// The run that has just made the result, in this world and this process: its verdicts hold, and
   /// nothing is judged again.

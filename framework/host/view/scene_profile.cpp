@@ -167,14 +167,24 @@ Json route_profile(const Route& whole, const Request& request, const SceneDetail
     profile[key] = Json::array();
   }
   ClearanceProfile clearance;
-  for (const Sample& sample : samples_of(route, nearest_places(route, world), detail.samples,
-                                         request.vehicle.turns_on_the_spot)) {
+  const std::vector<LegPlace> places =
+      detail.heights ? nearest_places(route, world) : std::vector<LegPlace>();
+  const std::vector<Sample> samples =
+      samples_of(route, places, detail.samples, request.vehicle.turns_on_the_spot);
+  const std::size_t every = detail.heights ? 1 : 1 + samples.size() / (detail.samples + 1);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const Sample& sample = samples[n];
+    if (n % every != 0 && n + 1 < samples.size()) {
+      continue;
+    }
     clearance.add(clearances(world, sample.at));
     profile["s"].push_back(rounded(sample.s));
     profile["at"].push_back(rounded(sample.at));
     profile["altitude"].push_back(rounded(sample.at.z()));
     profile["ground"].push_back(rounded(world.ground(sample.at.x(), sample.at.y())));
-    profile["speed"].push_back(rounded(request.vehicle.speed_at(world.clearance(sample.at))));
+    // At constant speed nobody asks how near the world is.
+    const double nearest = request.vehicle.speed_near.empty() ? 0 : world.clearance(sample.at);
+    profile["speed"].push_back(rounded(request.vehicle.speed_at(nearest)));
     profile["turn"].push_back(rounded(sample.turn_deg));
   }
   clearance.write(profile);

@@ -83,7 +83,7 @@ function start() {
   const {labels} = build_panels(view, world, store);
   if (query.has('still')) still(view, store);
   Object.assign(altiplan, {drawn: () => view.drawn(), camera: () => view.where(),
-    project: (point) => view.project(point), labels, state: store.state, still: () => still(view, store),
+    project: (point) => view.project(point), memory: () => ({...view.memory(), ...store.memory()}), labels, state: store.state, still: () => still(view, store),
     film: build_film(view, world, store), show: (next) => show(next, view, world, store)});
   if (scene.edit && !query.has('still') && !query.has('film')) {
     altiplan.editor = build_editor(view, world, store, complain);

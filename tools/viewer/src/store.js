@@ -12,6 +12,11 @@ export class Store {
     this.#listeners.push({keys, listener});
   }
 
+  /** For tests: what must not grow while scenes follow each other. */
+  memory() {
+    return {listeners: this.#listeners.length};
+  }
+
   off(listeners) {
     this.#listeners = this.#listeners.filter(({listener}) => !listeners.has(listener));
   }

@@ -3,6 +3,7 @@ import {decode} from '../scene.js';
 import {show_scene} from '../live.js';
 import {build_handles} from './handles.js';
 import {build_panel} from './panel.js';
+import {build_timeline} from './timeline.js';
 
 // How many changes' times are kept, for who looks at them.
 const kTimes = 1000;
@@ -172,6 +173,7 @@ export function build_editor(view, world, store) {
   const editor = new Editor(world, store, (text) => { message.textContent = text; });
   document.body.classList.add('editing');
   build_handles(view, world, editor);
+  build_timeline(editor);
   build_panel(view, world, store, editor, message);
   stay();
   view.resize();

@@ -21,14 +21,16 @@ export function build_handles(view, world, editor) {
     made.style.transform = `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
   };
   const reflect = () => {
-    const present = new Set(editor.movable.map(({key}) => key));
+    const all = editor.movable.flatMap((item) => [item, ...heading_of(item, editor.state.scenario)]);
+    const present = new Set(all.map(({key}) => key));
     for (const [key, {made}] of handles) {
       if (present.has(key)) continue;
       made.remove();
       handles.delete(key);
     }
-    for (const item of editor.movable) {
-      const handle = handles.get(item.key) ?? new Handle(item, layer, {view, world, editor, place});
+    for (const item of all) {
+      const Kind = item.kind === 'heading' ? Heading : Handle;
+      const handle = handles.get(item.key) ?? new Kind(item, layer, {view, world, editor, place});
       handles.set(item.key, handle);
       handle.is(item, editor.selected === item.key);
     }
@@ -38,13 +40,22 @@ export function build_handles(view, world, editor) {
   reflect();
 }
 
+/** The heading of a point that has one, as something to turn. */
+function heading_of({key, kind, name, at}, scenario) {
+  const {heading_deg} = key.split('.').reduce((tree, part) => tree?.[part], scenario) ?? {};
+  return heading_deg === undefined || !['start', 'via', 'goal'].includes(kind) ? [] :
+    [{key: `${key}.heading_deg`, of: key, kind: 'heading', name: `Heading at ${name}`, middle: at,
+      degrees: Number(heading_deg), at}];
+}
+
 class Handle {
   constructor(item, layer, surroundings) {
-    Object.assign(this, surroundings, {item, at: item.at, gesture: null});
+    Object.assign(this, surroundings, {item, gesture: null});
+    this.at = this.rest(item);
     this.made = element('button', {className: 'handle', type: 'button',
       onpointerdown: (event) => this.#take(event), onpointermove: (event) => this.#drag(event),
       onpointerup: () => this.#drop(), onpointercancel: () => this.#drop(),
-      onfocus: () => this.editor.select(this.item.key),
+      onfocus: () => this.editor.select(this.item.of ?? this.item.key),
       onkeydown: (event) => this.#key(event)});
     layer.append(this.made);
   }
@@ -56,8 +67,13 @@ class Handle {
     this.made.title = `${item.name}: drag; with Shift in height. Arrow keys, Page up and down move it.`;
     this.made.ariaLabel = `${item.name}, ${item.kind}`;
     // What is dragged is where the pointer is, which is ahead of the answers.
-    if (this.gesture === null) this.at = item.at;
+    if (this.gesture === null) this.at = this.rest(item);
     this.place(this);
+  }
+
+  /** Where the handle is while it is not dragged. */
+  rest(item) {
+    return item.at;
   }
 
   #take(event) {
@@ -66,10 +82,10 @@ class Handle {
     this.made.setPointerCapture(event.pointerId);
     this.gesture = this.editor.new_gesture();
     this.editor.dragging = true;
-    this.from = this.item.at;
+    this.from = this.rest(this.item);
     this.begun = this.#pointed(event);
     this.by = null;
-    this.editor.select(this.item.key);
+    this.editor.select(this.item.of ?? this.item.key);
   }
 
   /** The stage's pixel under the pointer. */
@@ -86,7 +102,12 @@ class Handle {
     this.by = by;
     this.at = this.from.map((value, axis) => value + by[axis]);
     this.place(this);
-    this.editor.move(this.item.key, by, this.gesture, true);
+    this.ask(true);
+  }
+
+  /** Asks for what has been dragged so far. */
+  ask(quick) {
+    return this.editor.move(this.item.key, this.by, this.gesture, quick);
   }
 
   #across(x, y) {
@@ -105,10 +126,9 @@ class Handle {
   }
 
   async #drop() {
-    const {gesture, by} = this;
-    if (gesture === null) return;
+    if (this.gesture === null) return;
     this.editor.dragging = false;
-    if (by) await this.editor.move(this.item.key, by, gesture, false);
+    if (this.by) await this.ask(false);
     this.gesture = null;
     this.is(this.item, this.editor.selected === this.item.key);
   }
@@ -130,15 +150,33 @@ class Handle {
   #step(way, times) {
     if (this.gesture === null) {
       this.gesture = this.editor.new_gesture();
-      this.from = this.item.at;
+      this.from = this.rest(this.item);
       this.by = [0, 0, 0];
     }
     const step = times * round_step(this.world.frame.diagonal, kSteps);
     this.by = this.by.map((value, axis) => value + way[axis] * step * (axis === 2 ? 0.2 : 1));
     this.at = this.from.map((value, axis) => value + this.by[axis]);
     this.place(this);
-    this.editor.move(this.item.key, this.by, this.gesture, true);
+    this.ask(true);
     clearTimeout(this.still);
     this.still = setTimeout(() => this.#drop(), kStillMs);
+  }
+}
+
+// Of the box's diagonal, from a point to the handle of its heading.
+const kArm = 1 / 22;
+
+/** A heading, turned around its point. */
+class Heading extends Handle {
+  rest({middle, degrees}) {
+    const [angle, arm] = [degrees * Math.PI / 180, this.world.frame.diagonal * kArm];
+    return [middle[0] + arm * Math.sin(angle), middle[1] + arm * Math.cos(angle), middle[2]];
+  }
+
+  ask(quick) {
+    const {middle, of} = this.item;
+    const degrees = Math.atan2(this.at[0] - middle[0], this.at[1] - middle[1]) * 180 / Math.PI;
+    return this.editor.change({set: [`scenario.${of}.heading_deg=${((degrees + 360) % 360).toFixed(1)}`],
+      gesture: this.gesture, quick});
   }
 }

@@ -55,10 +55,11 @@ export function build_clock(world, store) {
   reflect_marks();
 }
 
-function sign({at_s, kind, text}, last, store) {
+function sign({at_s, kind, text, event}, last, store) {
   const made = element('button', {className: kind, title: `${number(at_s, 's')}: ${text}`,
     onclick: () => store.set({time: at_s, playing: false})});
   made.style.left = `${100 * at_s / last}%`;
+  if (event !== undefined) made.dataset.event = event;
   return made;
 }
 

@@ -9,7 +9,7 @@ export function happenings({results, events}, selected) {
     ...(flight.replans ?? []).map(({at_s, step, status, message}) =>
       ({at_s, kind: 'replan', text: `Replan with ${step}, ${status}: ${message}`})),
     ...(flight.event_times ?? []).map((at_s, event) =>
-      ({at_s, kind: 'event', text: events[event]?.text ?? ''})),
+      ({at_s, kind: 'event', event, text: events[event]?.text ?? ''})),
   ].filter(({at_s}) => at_s !== null).sort((a, b) => a.at_s - b.at_s);
 }
 

@@ -173,6 +173,10 @@ export class View2 {
       flying: false, following: this.store.state.follow};
   }
 
+  memory() {
+    return {marks: this.stage.querySelectorAll('.mark').length};
+  }
+
   /** The current drawing: the points that its paths were made of, since 2-D has no buffers. */
   drawn() {
     const lines = this.world.lines.filter(({key}) => this.store.state.shown.has(key))

@@ -325,6 +325,10 @@ export class View3 {
       flying: this.camera.flight !== null, following: this.store.state.follow};
   }
 
+  memory() {
+    return {geometries: this.renderer.info.memory.geometries, marks: this.stage.querySelectorAll('.mark').length};
+  }
+
   drawn() {
     return {view: '3d', ...this.lines.drawn(), ...this.solids.drawn(),
       moving: this.solids.moved(), bodies: this.bodies.drawn(),
