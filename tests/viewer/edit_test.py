@@ -175,7 +175,7 @@ class Page(unittest.TestCase):
         self.assertIn("events.1.add.cylinder", keys)
         self.assertIn("prism", self.find("#side").text)
         self.find("#save").click()
-        self.await_(lambda: "Saved" in self.find("#edit .message").text)
+        self.await_(lambda: "Saved" in self.find("#edit [role=status]").text)
         text = self.scenario.read_text()
         self.assertIn("# Two radars would be too many.", text)
         [outline] = re.findall(r"- {prism: {outline_m: (.*)}}", text)
@@ -205,7 +205,7 @@ class Page(unittest.TestCase):
                                  ".find((one) => one.innerText.includes('cell_m')).querySelector('input')")
         self.browser.run("arguments[0].value = ''", field)
         field.send_keys("none", Keys.TAB)
-        self.await_(lambda: "cell_m" in self.find("#edit .message").text)
+        self.await_(lambda: "cell_m" in self.find("#edit [role=status]").text)
         self.assertTrue(any("cell_m=[40, 40, 30]" in text for text in self.sets()))
 
     def test_another_scene_shows_what_a_page_of_its_own_shows(self):
@@ -226,6 +226,23 @@ class Page(unittest.TestCase):
             opened = self.texts()
             for key, value in opened.items():
                 self.assertEqual(changed[key], value, (wish, key))
+
+    def test_what_is_wrong_shows_where_and_by_how_much(self):
+        self.pipeline.write_text(PIPELINE.replace("steps:", "constraints:\n  - clearance: {min_m: 10}\nsteps:"))
+        self.open()
+        lines = "return altiplan.drawn().routes.length"
+        self.assertEqual(self.browser.run(lines), 1)
+        self.driver.execute_async_script(
+            "altiplan.editor.change({set: ['constraints.0.clearance.min_m=150']})"
+            ".then(() => arguments[0]());")
+        self.assertEqual(self.browser.run(lines), 1)
+        labels = self.browser.run("return [...document.querySelectorAll('.mark.violation > span')]"
+                                  ".map((one) => one.textContent)")
+        self.assertTrue(labels and "150.00 m" in labels[0], labels)
+        self.find("#undo").click()
+        self.await_(lambda: not self.sets())
+        self.still()
+        self.assertEqual(self.browser.run(lines), 1)
 
     def test_many_scenes_leave_nothing_behind(self):
         self.open()

@@ -22,17 +22,31 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// True of a planner that has a route at any time, which more time only improves.
+bool is_anytime(const Config& config, const std::string& name) {
+  for (const Description& one : describe_plugin(*config.registry, name)) {
+    if (one.kind == "planner" && one.traits) {
+      return one.traits->anytime;
+    }
+  }
+  return false;
+}
+
 /// Limits plan steps that may take longer to a time in which one can wait for them, and leaves the
 /// flight out unless it `flies`.
 std::vector<std::string> quick_changes(const Config& config, bool flies) {
   std::vector<std::string> set;
+  const auto limit = [&](std::size_t n, double seconds) {
+    if (config.steps[n].within_s.value_or(kDefaultStepSeconds) > seconds) {
+      set.push_back("steps." + std::to_string(n) + ".within_s=" + std::to_string(seconds));
+    }
+  };
   if (!flies && config.steps.back().verb == Verb::fly) {
     set.push_back("~steps." + std::to_string(config.steps.size() - 1));
   }
   for (std::size_t n = 0; n < config.steps.size(); ++n) {
-    const StepEntry& step = config.steps[n];
-    if (step.verb == Verb::plan && step.within_s.value_or(kDefaultStepSeconds) > kQuickSeconds) {
-      set.push_back("steps." + std::to_string(n) + ".within_s=" + std::to_string(kQuickSeconds));
+    if (config.steps[n].verb == Verb::plan) {
+      limit(n, is_anytime(config, config.steps[n].plugin) ? kQuickSeconds : kLongestSeconds);
     }
   }
   return set;

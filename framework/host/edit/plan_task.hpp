@@ -31,8 +31,10 @@ struct PlanTask {
   bool flies = true;                            ///< of `plan`: with the flight
 };
 
-/// Seconds that a plan step may take while something is dragged.
+/// Seconds that a plan step may take while something is dragged: an anytime planner, and another,
+/// which has no route before it ends.
 inline constexpr double kQuickSeconds = 0.1;
+inline constexpr double kLongestSeconds = 2;
 
 Json to_json(const PlanTask& task);
 PlanTask plan_task(const Json& json);

@@ -11,16 +11,14 @@
 namespace altiplan::host {
 namespace {
 
-enum Kind : unsigned {
-  kText = 1,
-  kNumber = 2,
-  kTruth = 4,
-  kList = 8,
-  kObject = 16,
-  kNull = 32,
-  kStatus = 64,
-  kSeed = 128,
-};
+constexpr unsigned kText = 1;
+constexpr unsigned kNumber = 2;
+constexpr unsigned kTruth = 4;
+constexpr unsigned kList = 8;
+constexpr unsigned kObject = 16;
+constexpr unsigned kNull = 32;
+constexpr unsigned kStatus = 64;
+constexpr unsigned kSeed = 128;
 
 struct Key {
   const char* name;

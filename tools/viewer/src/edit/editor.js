@@ -124,7 +124,7 @@ export class Editor {
     const json = await this.#ask('save', as ? {as} : {});
     const files = json.files?.join(', ');
     if (files && !as) await this.change({});
-    this.say(json.error ?? (files ? `Saved: ${files}` : 'There is nothing to save.'));
+    this.say(json.error ?? (files ? `Saved: ${files}` : 'There is nothing to save.'), Boolean(json.error));
     return json;
   }
 
@@ -145,9 +145,9 @@ export class Editor {
   }
 
   async upload(address, pipeline) {
-    this.say('Uploading …');
+    this.say('Uploading …', false);
     const json = await this.#ask('upload', {address, pipeline});
-    this.say(json.error ?? json.said ?? 'Uploaded.');
+    this.say(json.error || json.said || 'Uploaded.', Boolean(json.error));
   }
 
   /** The plugins with their parameters, asked for once. */
@@ -170,7 +170,10 @@ async function stay() {
 
 export function build_editor(view, world, store) {
   const message = document.createElement('p');
-  const editor = new Editor(world, store, (text) => { message.textContent = text; });
+  const editor = new Editor(world, store, (text, is_problem = true) => {
+    message.textContent = text;
+    message.className = is_problem ? 'message' : 'note';
+  });
   document.body.classList.add('editing');
   build_handles(view, world, editor);
   build_timeline(editor);

@@ -28,7 +28,6 @@ const owner_of = (key) => key.split('.').slice(0, -1).join('.');
 export function build_panel(view, world, store, editor, message) {
   const panel = element('aside', {id: 'edit', ariaLabel: 'Edit'});
   by_id('side').after(panel);
-  message.className = 'message';
   message.setAttribute('role', 'status');
   const placing = build_placing(view, world, store, editor);
   const [history, items, steps, limits, command] = ['div', 'div', 'div', 'div', 'div']

@@ -7,6 +7,7 @@ import {between, flight_line, place_at} from '../world.js';
 import {violations_of} from './violations.js';
 
 const kMaxViolations = 200;
+const kToldViolations = 3;
 // Pixels from a mark's middle to its rim.
 const kRadius = 8;
 const kBodyRadius = 11;
@@ -42,9 +43,11 @@ function fill(marks, view, world, store) {
       store.state.bodies && store.state.shown.has(key) ? nearest.at : null, {radius: kBodyRadius});
   }
   (scene.via ?? []).forEach(({at}, index) => add('via', `Via ${index + 1}`, () => at));
-  for (const {place, line} of violations_of(world).slice(0, kMaxViolations)) {
-    add('violation', '', () => store.state.shown.has(line) ? place : null);
-  }
+  violations_of(world).slice(0, kMaxViolations).forEach(({place, line, message}, nth) => {
+    // While one edits, the first ones say by how much.
+    const text = scene.edit && nth < kToldViolations ? message : '';
+    add('violation', text, () => store.state.shown.has(line) ? place : null);
+  });
   for (const line of world.lines.filter(({kind}) => kind === 'track')) {
     add_vehicle(line, add, view, world, store);
   }
