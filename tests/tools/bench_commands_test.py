@@ -26,6 +26,7 @@ CALLS = {
                  "nearest/scattered/1000/tree"),
     "search": (["--paper-worlds", "--benchmark_filter=fitted/plan$", "--benchmark_min_time=0.001"],
                "fusion_fitted/plan"),
+    "terrain": (["--cells", "100", "--fine-cells", "100", "--passes", "1"], {"plans": "warm_ms"}),
 }
 
 

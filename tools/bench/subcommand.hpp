@@ -61,5 +61,6 @@ void add_queries(Subcommands& all);
 void add_replan(Subcommands& all);
 void add_sampling(Subcommands& all);
 void add_search(Subcommands& all);
+void add_terrain(Subcommands& all);
 void add_wing_flights(Subcommands& all);
 }  // namespace altiplan::bench
