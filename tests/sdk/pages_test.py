@@ -27,6 +27,7 @@ NOT_RUN = {
     r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.":
         "study.yaml is the reader's; tests/study",
     r"altiplan (fly result|view result\.flown)": "needs a vehicle; tests/link flies such results",
+    r"altiplan edit ": "lasts as long as its page; viewer_edit opens one",
     r"altiplan view .*--png": "needs a browser; the tests viewer_… look at pictures",
     r"gdb\b|~/altiplan-asan|altiplan (run first\.yaml|check-plugin)":
         "of the reader's plugin, in a debugger or with sanitizers; sdk_walk and sdk_new make such",

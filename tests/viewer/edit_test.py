@@ -4,6 +4,7 @@ saved, and another scene in an open page.
 
 `edit_test.py PROGRAM Page.test_a_drag` runs one case; skipped without Chromium. With
 ALTIPLAN_PICTURES in the environment, a picture of each case goes into that folder."""
+import contextlib
 import json
 import os
 import pathlib
@@ -14,6 +15,7 @@ import time
 import unittest
 
 import browser
+from selenium.common.exceptions import NoSuchElementException, StaleElementReferenceException
 from selenium.webdriver import ActionChains, Keys
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select
@@ -71,10 +73,13 @@ class Page(unittest.TestCase):
 
     def await_(self, holds, seconds=30):
         deadline = time.monotonic() + seconds
-        while not (found := holds()):
+        while True:
+            # Forms are built anew at each answer: an element may be gone when it is asked.
+            with contextlib.suppress(StaleElementReferenceException, NoSuchElementException):
+                if found := holds():
+                    return found
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
-        return found
 
     def find(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
