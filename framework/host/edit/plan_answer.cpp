@@ -34,22 +34,16 @@ bool is_anytime(const Config& config, const std::string& name) {
 
 /// Limits plan steps that may take longer to a time in which one can wait for them, and leaves the
 /// flight out unless it `flies`.
-std::vector<std::string> quick_changes(const Config& config, bool flies) {
-  std::vector<std::string> set;
-  const auto limit = [&](std::size_t n, double seconds) {
-    if (config.steps[n].within_s.value_or(kDefaultStepSeconds) > seconds) {
-      set.push_back("steps." + std::to_string(n) + ".within_s=" + std::to_string(seconds));
-    }
-  };
+void make_quick(Config& config, bool flies) {
   if (!flies && config.steps.back().verb == Verb::fly) {
-    set.push_back("~steps." + std::to_string(config.steps.size() - 1));
+    config.steps.pop_back();
   }
-  for (std::size_t n = 0; n < config.steps.size(); ++n) {
-    if (config.steps[n].verb == Verb::plan) {
-      limit(n, is_anytime(config, config.steps[n].plugin) ? kQuickSeconds : kLongestSeconds);
+  for (StepEntry& step : config.steps) {
+    if (step.verb == Verb::plan) {
+      const double most = is_anytime(config, step.plugin) ? kQuickSeconds : kLongestSeconds;
+      step.within_s = std::min(step.within_s.value_or(kDefaultStepSeconds), most);
     }
   }
-  return set;
 }
 
 /// A pipeline run with these changes.
@@ -64,14 +58,10 @@ Planned planned(const EditedPipeline& pipeline, const std::vector<std::string>& 
                 bool flies, const std::function<void(const std::string&)>& on_stuck) {
   Overrides overrides = pipeline.config.overrides;
   overrides.set = set;
-  if (quick) {
-    // The steps may be others than when the file was opened.
-    const Config as_set =
-        load_config(pipeline.config.pipeline_path, overrides, pipeline.config.registry);
-    const std::vector<std::string> changes = quick_changes(as_set, flies);
-    overrides.set.insert(overrides.set.end(), changes.begin(), changes.end());
-  }
   Config config = load_config(pipeline.config.pipeline_path, overrides, pipeline.config.registry);
+  if (quick) {
+    make_quick(config, flies);
+  }
   RunOptions options;
   options.on_stuck = [&](const RunResult& result) { on_stuck(error_answer(result.message)); };
   Mission mission;
