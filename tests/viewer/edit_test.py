@@ -252,10 +252,10 @@ class Page(unittest.TestCase):
     def test_many_scenes_leave_nothing_behind(self):
         self.open()
         first = self.browser.run("return altiplan.memory()")
-        for _ in range(6):
+        for _ in range(16):
             self.driver.execute_async_script("""const done = arguments[0]; (async () => {
               const {editor} = altiplan;
-              for (let n = 0; n < 20; n++) await editor.move('goal', [-n, 0, 0], 1, true);
+              for (let n = 0; n < 5; n++) await editor.move('goal', [-n, 0, 0], 1, true);
             })().then(() => done());""")
         self.still()
         last = self.browser.run("return altiplan.memory()")
