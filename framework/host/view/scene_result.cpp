@@ -90,14 +90,11 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
     return json;
   }
   Route places = route_of(step, stored.file);
-  std::optional<Judged> verdict = accepted;
-  if (!accepted || !(accepted->route == places)) {
-    verdict = of_run != nullptr ? judged(places, *of_run) : judged(places, mission);
-  }
-  if (!verdict) {
-    verdict = judged(places, mission);
-  }
-  const Judged& now = *verdict;
+  const bool is_accepted = accepted && accepted->route == places;
+  const std::optional<Judged> known = is_accepted         ? accepted
+                                      : of_run != nullptr ? judged(places, *of_run)
+                                                          : std::nullopt;
+  const Judged now = known ? *known : judged(places, mission);
   json["route"] = to_json(places);
   json["waypoints"] = waypoints_json(places);
   json["metrics"] = metrics_now(step.at("metrics"), to_json(now.measures));
