@@ -2,8 +2,14 @@
 """A running `altiplan edit`, talked to as its page does."""
 import http.client
 import json
+import pathlib
 import subprocess
+import sys
+import tempfile
+import unittest
 import urllib.parse
+
+PROGRAM = sys.argv[1]
 
 SCENARIO = """# The world of this test.
 altiplan: 1
@@ -35,10 +41,10 @@ steps:
 
 
 class Session:
-    """`altiplan edit` of these files; `with` ends it."""
+    """`altiplan edit` of these files."""
 
-    def __init__(self, program, *arguments):
-        self.process = subprocess.Popen([program, "edit", "--no-browser", *map(str, arguments)],
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([PROGRAM, "edit", "--no-browser", *map(str, arguments)],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.process.stdout.readline()
         while line and not line.startswith("http"):
@@ -48,10 +54,7 @@ class Session:
         self.address = urllib.parse.urlsplit(line.strip())
         self.shown = ""
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
+    def end(self):
         if self.process.poll() is None:
             self.process.terminate()
         self.process.wait(20)
@@ -80,3 +83,21 @@ class Session:
         answer = self.ask("edit", {"world": self.shown, **wish}, status)
         self.shown = answer.get("world", self.shown)
         return answer
+
+
+class EditCase(unittest.TestCase):
+    """Both files in a folder of the test's own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.pipeline = self.folder / "pipeline.yaml"
+        self.scenario = self.folder / "scenario.yaml"
+        self.pipeline.write_text(PIPELINE)
+        self.scenario.write_text(SCENARIO)
+
+    def begin(self, *arguments):
+        session = Session(*(arguments or [self.pipeline]))
+        self.addCleanup(session.end)
+        return session

@@ -11,31 +11,16 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-from edit_session import PIPELINE, SCENARIO, Session
+from edit_session import PIPELINE, PROGRAM, SCENARIO, EditCase
 
-PROGRAM, SOURCES = sys.argv[1:3]
+SOURCES = sys.argv[2]
 CHANGES = int(sys.argv.pop(3)) if len(sys.argv) > 3 and sys.argv[3].isdigit() else 150
 
 
-class Edit(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.pipeline = self.folder / "pipeline.yaml"
-        self.scenario = self.folder / "scenario.yaml"
-        self.pipeline.write_text(PIPELINE)
-        self.scenario.write_text(SCENARIO)
-
-    def open(self, *arguments):
-        session = Session(PROGRAM, *(arguments or [self.pipeline]))
-        self.addCleanup(session.__exit__)
-        return session
-
+class Edit(EditCase):
     def run_of(self, pipeline):
         out = self.folder / "out.json"
         done = subprocess.run([PROGRAM, "run", pipeline, "--out", out], capture_output=True,
@@ -46,7 +31,7 @@ class Edit(unittest.TestCase):
     # Changes.
 
     def test_each_kind_of_thing_moves(self):
-        session = self.open()
+        session = self.begin()
         cases = {
             "start": ["scenario.start.at_m=[45, 42, 60]"],
             "environment.0.cylinder": ["scenario.environment.0.cylinder.at_m=[405, 482]"],
@@ -83,7 +68,7 @@ class Edit(unittest.TestCase):
         self.pipeline.write_text(
             "altiplan: 1\nscenario: scenario.yaml\nsteps:\n"
             "  - plan: astar\n    with: {cell_m: [400, 400, 50]}\n")
-        session = self.open()
+        session = self.begin()
         before = session.edit()["answers"][0]
         after = session.edit(move={"key": "goal", "by": [300, -200, 25]})
         [goal, height] = after["pipelines"][0]["set"]
@@ -94,7 +79,7 @@ class Edit(unittest.TestCase):
                                    before["goal"]["at"][axis] + by, delta=0.02)
 
     def test_a_drag_is_one_change(self):
-        session = self.open()
+        session = self.begin()
         session.edit()
         numbers = []
         for step in range(1, 9):
@@ -109,7 +94,7 @@ class Edit(unittest.TestCase):
         self.assertEqual((again["undo"], again["redo"]), (True, False))
 
     def test_what_cannot_be_planned_is_not_kept(self):
-        session = self.open()
+        session = self.begin()
         for wish, sentence in (
                 ({"set": ["steps.0.with.cell_m=no"]}, "cell_m"),
                 ({"set": ["scenario.goal.at_m=[5000]"]}, "goal"),
@@ -118,6 +103,7 @@ class Edit(unittest.TestCase):
                 ({"set": ["a"]}, "KEY=VALUE"), ({"set": ["a=1\nb=2"]}, "one line"),
                 ({"set": [7]}, "request"), ({"set": "a=1"}, "request"),
                 ({"pipeline": 3, "set": ["seed=1"]}, "pipeline 3"),
+                ({"sett": ["seed=1"]}, "unknown key 'sett'"), ({"history": "back"}, "undo or redo"),
                 ({"move": {"key": "nowhere", "by": [1, 2, 3]}}, "nowhere"),
                 ({"move": {"key": "goal", "by": [1, 2]}}, "[east, north, up]"),
                 ({"move": {"key": "goal"}}, "by"), ({"gesture": -1.5, "move": 3}, "request")):
@@ -130,7 +116,7 @@ class Edit(unittest.TestCase):
     def test_two_pipelines_on_one_world(self):
         other = self.folder / "other.yaml"
         other.write_text(PIPELINE.replace("astar", "theta_star"))
-        session = self.open(self.pipeline, other)
+        session = self.begin(self.pipeline, other)
         answer = session.edit(pipeline=1, set=["steps.0.with.cell_m=[100, 100, 60]"])
         self.assertEqual([one["set"] for one in answer["pipelines"]],
                          [[], ["steps.0.with.cell_m=[100, 100, 60]"]])
@@ -148,22 +134,33 @@ class Edit(unittest.TestCase):
 
     def test_a_scenario_alone_and_a_result(self):
         self.pipeline.unlink()
-        session = self.open(self.scenario)
+        session = self.begin(self.scenario)
         self.assertEqual(session.edit()["answers"][0]["results"][0]["status"], "solved")
         made = self.folder / "scenario_pipeline.yaml"
         self.assertIn("astar", made.read_text())
         out = self.folder / "r.json"
         subprocess.run([PROGRAM, "run", made, "--set", "scenario.goal.at_m=[900, 900, 60]", "--out", out],
                        stdout=subprocess.DEVNULL, timeout=60, check=True)
-        opened = self.open(out)
+        opened = self.begin(out)
         self.assertEqual(opened.edit()["answers"][0]["goal"]["at"], [900, 900, 60])
         opened.ask("save")
         self.assertIn("at_m: [900, 900, 60]", self.scenario.read_text())
 
+    def test_obstacles_that_follow_the_seed(self):
+        self.scenario.write_text("altiplan: 1\nenvironment:\n  - city: {generate: complex}\n"
+                                 "start: {at_m: [15, 25, 45]}\ngoal: {at_m: [675, 645, 45]}\n")
+        self.pipeline.write_text("altiplan: 1\nscenario: scenario.yaml\nseed: 3\nsteps:\n  - plan: astar\n")
+        session = self.begin()
+        first = session.edit()["answers"][0]
+        moved = session.edit(move={"key": "goal", "by": [-10, 0, 0]})["answers"][0]
+        self.assertNotIn("solids", moved)  # the page has them
+        other = session.edit(set=["seed=4"])["answers"][0]
+        self.assertNotEqual((other["solids"], other["boxes"]), (first["solids"], first["boxes"]))
+
     # Files.
 
     def test_saving_changes_what_has_changed(self):
-        session = self.open()
+        session = self.begin()
         session.edit(move={"key": "goal", "by": [-40, 0, 0]})
         session.edit(set=["scenario.environment.3={cylinder: {at_m: [100, 600], radius_m: 30}}"])
         session.edit(set=["~scenario.environment.1"])
@@ -192,7 +189,7 @@ class Edit(unittest.TestCase):
             self.assertIn("expected a name", session.ask("save", {"as": name}, 400)["error"])
 
     def test_export_is_that_of_the_command(self):
-        session = self.open()
+        session = self.begin()
         session.edit(move={"key": "goal", "by": [-40, 0, 0]})
         status, exported = session.request("POST", session.address.path + "export",
                                            json.dumps({"to": "csv"}))
@@ -203,6 +200,12 @@ class Edit(unittest.TestCase):
                               capture_output=True, timeout=60, check=True)
         self.assertEqual(exported, done.stdout)
         session.edit()
+        # What the page was opened with can be exported before anything is changed.
+        opened = self.begin()
+        self.assertEqual(opened.request("GET", opened.address.path)[0], 200)
+        status, again = opened.request("POST", opened.address.path + "export",
+                                       json.dumps({"to": "csv"}))
+        self.assertEqual((status, again), (200, exported))
         # This world has no place on the earth.
         self.assertIn("georeference", session.ask("export", {"to": "qgc-plan"}, 400)["error"])
         self.assertIn("address", session.ask("upload", {"address": "nowhere"}, 400)["error"].lower())
@@ -211,7 +214,7 @@ class Edit(unittest.TestCase):
 
     def test_random_changes(self):
         draw = random.Random(3)
-        session = self.open()
+        session = self.begin()
         comments = re.findall(r"# .*", SCENARIO + PIPELINE)
         solved = 0
         answer = session.edit()
@@ -263,7 +266,7 @@ class Edit(unittest.TestCase):
     # Attacks.
 
     def test_refused_requests(self):
-        session = self.open()
+        session = self.begin()
         mine = session.address.path
         host = session.address.netloc
         for path in ("/", "/edit", "/" + "0" * 32 + "/", mine[:-2] + "/", mine[:-1] + "0/", mine[:10],
@@ -288,7 +291,7 @@ class Edit(unittest.TestCase):
         self.assertEqual(session.edit()["pipelines"][0]["set"], [])
 
     def test_a_body_without_end(self):
-        session = self.open()
+        session = self.begin()
         with socket.create_connection((session.address.hostname, session.address.port)) as link:
             link.sendall(f"POST {session.address.path}edit HTTP/1.1\r\nHost: {session.address.netloc}\r\n"
                          f"Content-Length: {10**9}\r\n\r\n".encode())
@@ -303,7 +306,7 @@ class Edit(unittest.TestCase):
         self.assertEqual(session.edit()["pipelines"][0]["set"], [])
 
     def test_a_thousand_requests_at_once(self):
-        session = self.open()
+        session = self.begin()
         def ask(number):
             try:
                 return session.request("POST", session.address.path + "edit", json.dumps(
@@ -325,7 +328,7 @@ class Edit(unittest.TestCase):
         slow = PIPELINE.replace("plan: astar        # cells first\n    with: {cell_m: [50, 50, 30]}",
                                 "plan: rrt_star\n    within_s: 20\n    with: {max_iterations: 100000000}")
         self.pipeline.write_text(slow)
-        session = self.open()
+        session = self.begin()
         with concurrent.futures.ThreadPoolExecutor(1) as one:
             answer = one.submit(session.edit, 400)
             time.sleep(1.5)
@@ -341,7 +344,7 @@ class Edit(unittest.TestCase):
         slow = PIPELINE.replace("plan: astar        # cells first\n    with: {cell_m: [50, 50, 30]}",
                                 "plan: rrt_star\n    within_s: 30\n    with: {max_iterations: 100000000}")
         self.pipeline.write_text(slow)
-        session = self.open()
+        session = self.begin()
         with concurrent.futures.ThreadPoolExecutor(1) as one:
             older = one.submit(session.ask, "edit", {"set": ["scenario.vehicle.speed_mps=9"]})
             time.sleep(1)
@@ -354,7 +357,7 @@ class Edit(unittest.TestCase):
     # The process.
 
     def test_listens_on_the_loopback_alone(self):
-        session = self.open()
+        session = self.begin()
         self.assertEqual(session.address.hostname, "127.0.0.1")
         port = session.address.port
         for table in ("tcp", "tcp6"):
@@ -363,7 +366,7 @@ class Edit(unittest.TestCase):
             self.assertEqual(listening, [f"0100007F:{port:04X}"] if table == "tcp" else [])
 
     def test_ends_with_its_page_or_its_terminal(self):
-        session = self.open()
+        session = self.begin()
         page = socket.create_connection((session.address.hostname, session.address.port))
         page.sendall(f"GET {session.address.path}alive HTTP/1.1\r\nHost: {session.address.netloc}\r\n\r\n"
                      .encode())
@@ -372,7 +375,7 @@ class Edit(unittest.TestCase):
         self.assertIsNone(session.process.poll())  # the page is open
         page.close()
         self.assertEqual(session.process.wait(20), 0)
-        other = self.open()
+        other = self.begin()
         own = other.process.pid
         [server] = pathlib.Path(f"/proc/{own}/task/{own}/children").read_text().split()
         other.process.send_signal(signal.SIGINT)

@@ -10,7 +10,6 @@ import os
 import pathlib
 import re
 import sys
-import tempfile
 import time
 import unittest
 
@@ -21,9 +20,8 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
-from edit_session import PIPELINE, SCENARIO, Session  # noqa: E402
+from edit_session import PIPELINE, EditCase  # noqa: E402
 
-PROGRAM = sys.argv[1]
 PICTURES = os.environ.get("ALTIPLAN_PICTURES")
 # The text of all that a scene fills.
 TEXTS = """const text = (id) => document.getElementById(id).innerText;
@@ -42,22 +40,15 @@ return {metrics, violations, profiles: text('dock'), side: text('side'), verdict
   drawn: altiplan.drawn()};"""
 
 
-class Page(unittest.TestCase):
+class Page(EditCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.pipeline = self.folder / "pipeline.yaml"
-        self.scenario = self.folder / "scenario.yaml"
-        self.pipeline.write_text(PIPELINE)
-        self.scenario.write_text(SCENARIO)
+        super().setUp()
         self.browser = browser.shared()
         self.browser.size(1400, 900)
         self.driver = self.browser.driver
 
     def open(self, query=""):
-        session = Session(PROGRAM, self.pipeline)
-        self.addCleanup(session.__exit__)
+        session = self.begin()
         self.driver.get("about:blank")
         self.browser.console()
         self.driver.get(session.address.geturl() + query)
@@ -200,8 +191,12 @@ class Page(unittest.TestCase):
         field = self.browser.run("return [...document.querySelectorAll('#edit div.step .field')]"
                                  ".find((one) => one.innerText.includes('cell_m')).querySelector('input')")
         field.send_keys("[40, 40, 30]", Keys.TAB)
+        focus = "return document.activeElement.ariaLabel"
+        beside = self.browser.run(focus)
         self.await_(lambda: any("cell_m=[40, 40, 30]" in text for text in self.sets()))
         self.still()
+        self.assertEqual(self.browser.run(focus), beside)  # in the form that was built anew
+        self.assertIsNotNone(beside)
         self.find("#compare").click()
         self.await_(lambda: len(self.state()["pipelines"]) == 2)
         self.await_(lambda: len(self.driver.find_elements(By.CSS_SELECTOR, "#side .result")) == 2)

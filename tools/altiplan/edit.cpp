@@ -90,7 +90,7 @@ Opened open_all(const Arguments& arguments) {
     for (const std::string& text : config.overrides.set) {
       const host::Assignment one{text, all.pipelines.size()};
       // Those of the scenario are every pipeline's, and the same for all.
-      if (!one.of_scenario() || all.pipelines.empty()) {
+      if (one.parts().file == host::FileOfKey::pipeline || all.pipelines.empty()) {
         all.given.push_back(one);
       }
     }

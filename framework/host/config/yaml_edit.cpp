@@ -157,9 +157,10 @@ const Value* child(const Value& of, const std::string& key) {
   if (of.kind == Value::Kind::map) {
     return of.find(key);
   }
-  std::size_t index = 0;
-  std::from_chars(key.data(), key.data() + key.size(), index);
-  return of.kind == Value::Kind::list && index < of.items.size() ? &of.items[index] : nullptr;
+  std::size_t index = of.items.size();
+  const auto [stop, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+  const bool is_index = error == std::errc() && stop == key.data() + key.size();
+  return is_index && index < of.items.size() ? &of.items[index] : nullptr;
 }
 
 /// Adds an item to a list.
@@ -255,6 +256,14 @@ Change change_of(std::string_view text, const Value& tree, const SetText& set) {
   return {places.at(here->where), places.end(*here, in_flow), value};
 }
 }  // namespace
+
+const Value* value_at(const Value& tree, const std::string& path) {
+  const Value* here = &tree;
+  for (const std::string& key : split(path)) {
+    here = here != nullptr ? child(*here, key) : nullptr;
+  }
+  return here;
+}
 
 bool same_values(const Value& a, const Value& b) {
   return a.kind == b.kind && a.text == b.text && a.quoted == b.quoted &&

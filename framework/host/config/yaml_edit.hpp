@@ -16,6 +16,9 @@ namespace altiplan::host {
 std::string with_assignments(std::string text, const std::string& name,
                              const std::vector<std::string>& set, FileOfKey file);
 
+/// The value at a dotted path; null if there is none.
+const Value* value_at(const Value& tree, const std::string& path);
+
 /// True if two trees mean the same: their kinds, texts, keys and order; not where they stand.
 bool same_values(const Value& a, const Value& b);
 }  // namespace altiplan::host

@@ -14,26 +14,21 @@ bool covers(const std::string& key, const std::string& other) {
 /// Adds an assignment in place of those that it replaces. What stands before a removal stays: list
 /// items have other numbers after it.
 void put(std::vector<Assignment>& all, const Assignment& next) {
-  if (!next.is_removal()) {
-    const auto last_removal = std::find_if(all.rbegin(), all.rend(),
-                                           [](const Assignment& one) { return one.is_removal(); });
+  const SetText set = next.parts();
+  if (set.value) {
+    const auto last_removal = std::find_if(
+        all.rbegin(), all.rend(), [](const Assignment& one) { return !one.parts().value; });
     all.erase(std::remove_if(last_removal.base(), all.end(),
                              [&](const Assignment& one) {
-                               return one.of_scenario() == next.of_scenario() &&
-                                      (next.of_scenario() || one.pipeline == next.pipeline) &&
-                                      covers(next.key(), one.key());
+                               const SetText other = one.parts();
+                               return other.file == set.file && one.is_for(next.pipeline) &&
+                                      covers(set.path, other.path);
                              }),
               all.end());
   }
   all.push_back(next);
 }
 }  // namespace
-
-bool Assignment::of_scenario() const { return key().starts_with("scenario."); }
-
-std::string Assignment::key() const {
-  return is_removal() ? text.substr(1) : text.substr(0, text.find('='));
-}
 
 void Edits::add(const std::vector<Assignment>& assignments, std::uint64_t gesture) {
   changes_.resize(done_);
@@ -64,7 +59,7 @@ std::vector<Assignment> Edits::before(std::uint64_t gesture) const {
 std::vector<std::string> texts_for(const std::vector<Assignment>& all, std::size_t pipeline) {
   std::vector<std::string> texts;
   for (const Assignment& one : all) {
-    if (one.of_scenario() || one.pipeline == pipeline) {
+    if (one.is_for(pipeline)) {
       texts.push_back(one.text);
     }
   }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "host/config/overrides.hpp"
+
 namespace altiplan::host {
 
 /// An assignment of `--set`. Those of the scenario are every pipeline's.
@@ -13,11 +15,11 @@ struct Assignment {
   std::string text;
   std::size_t pipeline = 0;  ///< whose steps it changes
 
-  bool of_scenario() const;
-  /// What it changes: KEY of KEY=VALUE.
-  std::string key() const;
-  /// `~KEY`, which takes something away.
-  bool is_removal() const { return text.starts_with('~'); }
+  /// The text's parts; throws as parse_set.
+  SetText parts() const { return parse_set(text); }
+  bool is_for(std::size_t other) const {
+    return pipeline == other || parts().file == FileOfKey::scenario;
+  }
 };
 
 /// What has been changed since the files were read, with undo and redo.

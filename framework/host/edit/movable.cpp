@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "host/config/yaml_edit.hpp"
+
 namespace altiplan::host {
 namespace {
 
@@ -231,31 +233,17 @@ Numbers moved_point(Numbers at, Form form, const Vec3& by, const Frame& frame) {
   return at;
 }
 
-const Value& map_at(const Value& scenario, const std::string& path) {
-  const Value* here = &scenario;
-  std::size_t begin = 0;
-  while (begin <= path.size() && here != nullptr) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string key = path.substr(begin, end - begin);
-    std::size_t index = 0;
-    std::from_chars(key.data(), key.data() + key.size(), index);
-    here = here->kind == Value::Kind::map                                  ? here->find(key)
-           : here->kind == Value::Kind::list && index < here->items.size() ? &here->items[index]
-                                                                           : nullptr;
-    begin = end + 1;
-  }
-  if (here == nullptr || here->kind != Value::Kind::map) {
-    throw Error("nothing can be moved at '" + path + "'");
-  }
-  return *here;
-}
 }  // namespace
 
 Json movable(const Value& scenario, const World& world) { return Movable(scenario, world)(); }
 
 std::vector<std::string> moved(const Value& scenario, const std::string& key, const Vec3& by,
                                const Frame& frame) {
-  const Value& map = map_at(scenario, key);
+  const Value* found = value_at(scenario, key);
+  if (found == nullptr || found->kind != Value::Kind::map) {
+    throw Error("nothing can be moved at '" + key + "'");
+  }
+  const Value& map = *found;
   const std::string prefix = "scenario." + key + ".";
   std::vector<std::string> assignments;
   const std::vector<Written> all = written_in(map);

@@ -92,7 +92,9 @@ Json plan(const PlanTask& task, const EditedPipeline& pipeline,
   scene["results"] = Json::array({std::move(result)});
   scene["notes"] = notes.lines();
   scene["movable"] = movable(made.config.scenario_tree, mission.truth);
-  scene["result"] = made.result.json;
+  if (!task.quick) {
+    scene["result"] = made.result.json;
+  }
   return scene;
 }
 
@@ -100,12 +102,15 @@ Json page(const PlanTask& task, const std::vector<EditedPipeline>& pipelines,
           const std::function<void(const std::string&)>& on_stuck) {
   std::vector<StoredResult> results;
   Json items;
+  Json kept = Json::array();
   for (std::size_t n = 0; n < task.files.size(); ++n) {
     Planned made = planned(pipelines.at(task.files[n]), task.set.at(n), false, true, on_stuck);
+    kept.push_back(made.result.json);
     results.push_back(std::move(made.result));
     items = movable(made.config.scenario_tree, made.mission.truth);
   }
   Json scene = build_scene(results).json;
+  scene["result"] = std::move(kept);
 
   scene["movable"] = std::move(items);
   return scene;

@@ -25,36 +25,32 @@ struct Header {
   std::uint64_t is_superseded = 0;
 };
 
-bool send_all(int to, const void* bytes, std::size_t count) {
-  const char* from = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t n = ::send(to, from, count, MSG_NOSIGNAL);
-    if (n < 0 && errno == EINTR) {
-      continue;
-    }
-    if (n <= 0) {
+/// Calls `move(offset, count)`, a system call that takes a part, until all bytes are moved; false
+/// if it fails or nothing comes any more.
+template <class Move>
+bool all_moved(std::size_t count, const Move& move) {
+  std::size_t done = 0;
+  while (done < count) {
+    const ssize_t n = move(done, count - done);
+    if (n > 0) {
+      done += std::size_t(n);
+    } else if (n == 0 || errno != EINTR) {
       return false;
     }
-    from += n;
-    count -= std::size_t(n);
   }
   return true;
 }
 
+bool send_all(int to, const void* bytes, std::size_t count) {
+  return all_moved(count, [&](std::size_t from, std::size_t left) {
+    return ::send(to, static_cast<const char*>(bytes) + from, left, MSG_NOSIGNAL);
+  });
+}
+
 bool read_all(int from, void* bytes, std::size_t count) {
-  char* to = static_cast<char*>(bytes);
-  while (count > 0) {
-    const ssize_t n = ::read(from, to, count);
-    if (n < 0 && errno == EINTR) {
-      continue;
-    }
-    if (n <= 0) {
-      return false;
-    }
-    to += n;
-    count -= std::size_t(n);
-  }
-  return true;
+  return all_moved(count, [&](std::size_t to, std::size_t left) {
+    return ::read(from, static_cast<char*>(bytes) + to, left);
+  });
 }
 
 bool send(int to, Header header, const std::string& text) {

@@ -41,8 +41,9 @@ PlanTask plan_task(const Json& json);
 
 /// The answer, a JSON text:
 ///  plan: {"results": [one], "start", "goal", "via", "loiters", "notes", "movable", "result"} as in
-///  a scene, with all that a scene has of obstacles if they are asked for; "result" is result.json.
-///  page: a whole scene with the results of all pipelines, and "movable".
+///  a scene, with all that a scene has of obstacles if they are asked for; "result" is result.json,
+///  and left out if quick.
+///  page: a whole scene with the results of all pipelines, "movable", and a list "result".
 ///  plugins: the kinds, names and parameters of all plugins.
 /// Throws as load_config, build_mission and run do. `on_stuck` gets the answer if a plugin never
 /// returns, and must not.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/edit/session.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "altiplan/kit/formats/input_file.hpp"
@@ -18,6 +19,10 @@ constexpr std::string_view kNoNetwork = "default-src 'none';";
 constexpr std::string_view kOwnServer = "default-src 'none'; connect-src 'self';";
 
 constexpr std::size_t kMaxKey = 200;
+
+/// What a change may say.
+constexpr std::string_view kWishes[] = {"move",    "set",   "pipeline", "history",
+                                        "gesture", "quick", "world"};
 
 /// Slower answers are no longer seen as following the hand.
 constexpr std::chrono::milliseconds kFluent{60};
@@ -141,6 +146,13 @@ PageAnswer EditSession::page() {
   for (std::size_t n = 0; n < task.files.size(); ++n) {
     scene["results"][n]["name"] = state_now.at("pipelines")[n].at("name");
   }
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t n = 0; n < task.files.size() && state_now.at("number") == state_number_; ++n) {
+      results_[n] = std::move(scene["result"][n]);
+    }
+  }
+  scene.erase("result");
   scene["edit"] = std::move(state_now);
   std::string page = viewer_page(scene);
   page.replace(page.find(kNoNetwork), kNoNetwork.size(), kOwnServer);
@@ -159,12 +171,10 @@ std::vector<Assignment> EditSession::assignments_of(const Json& wish) const {
   const std::size_t pipeline = pipeline_of(wish);
   std::vector<Assignment> assignments;
   const auto add = [&](const std::string& text) {
-    Assignment one{text, pipeline};
-    if (one.key().empty() || one.key().size() > kMaxKey || text.find('\n') != text.npos ||
-        (!one.is_removal() && text.find('=') == text.npos)) {
+    if (parse_set(text).path.size() > kMaxKey || text.find('\n') != text.npos) {
       throw Error("'" + text.substr(0, kMaxKey) + "': expected KEY=VALUE or ~KEY on one line");
     }
-    assignments.push_back(std::move(one));
+    assignments.push_back({text, pipeline});
   };
   if (wish.contains("move")) {
     const std::vector<Assignment> before = edits_.before(wish.value("gesture", std::uint64_t(0)));
@@ -186,7 +196,15 @@ std::vector<Assignment> EditSession::assignments_of(const Json& wish) const {
 }
 
 Json EditSession::change(const Json& wish) {
+  for (const auto& [key, value] : wish.items()) {
+    if (std::find(std::begin(kWishes), std::end(kWishes), key) == std::end(kWishes)) {
+      throw Error("the request is not as expected: unknown key '" + key + "'");
+    }
+  }
   const std::string undo = wish.value("history", "");
+  if (!undo.empty() && undo != "undo" && undo != "redo") {
+    throw Error("history: expected undo or redo, found '" + undo + "'");
+  }
   Edits before;
   std::uint64_t number = 0;
   {
@@ -232,9 +250,10 @@ Json EditSession::planned(const Json& wish) {
     json = state();
     PlanTask task = task_of(PlanTask::Kind::plan);
     task.quick = quick;
-    task.obstacles = world() != wish.value("world", "");
+    const bool is_other_world = world() != wish.value("world", "");
     task.flies = !quick || is_flown(wish.value("gesture", std::uint64_t(0)));
     for (task.pipeline = 0; task.pipeline < pipelines_.size(); ++task.pipeline) {
+      task.obstacles = is_other_world && task.pipeline == 0;  // which are the same for all
       numbers.push_back(line_.begin(task));
     }
   }
@@ -263,7 +282,7 @@ Json EditSession::planned(const Json& wish) {
     if (!quick && is_newest) {
       results_[n] = std::move(answer["result"]);
     }
-    answer.erase("result");
+    answer.erase("result");  // the page has no use for it
     answer["results"][0]["name"] = json["pipelines"][n]["name"];
   }
   return json;
@@ -300,7 +319,7 @@ Json EditSession::compared() {
   pipelines_.push_back(std::move(copy));
   std::vector<Assignment> same;
   for (const Assignment& one : edits_.all()) {
-    if (!one.of_scenario() && one.pipeline == 0) {
+    if (one.pipeline == 0 && one.parts().file == FileOfKey::pipeline) {
       same.push_back({one.text, number});
     }
   }
@@ -313,10 +332,11 @@ Json EditSession::compared() {
 std::string EditSession::world() const {
   std::string text;
   for (const Assignment& one : edits_.all()) {
-    const std::string key = one.key() + ".";
-    const bool is_end = key.starts_with("scenario.start.") || key.starts_with("scenario.goal.") ||
-                        key.starts_with("scenario.via.");
-    if (one.of_scenario() && !is_end) {
+    const SetText set = one.parts();
+    const std::string first = set.path.substr(0, set.path.find('.'));
+    const bool is_end = first == "start" || first == "goal" || first == "via";
+    // Layers may be drawn from the run's seed.
+    if (set.file == FileOfKey::scenario ? !is_end : first == "seed") {
       text += one.text + "\n";
     }
   }

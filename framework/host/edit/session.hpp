@@ -50,8 +50,9 @@ class EditSession {
   PageAnswer page();
   PageAnswer exported(const Json& wish);
   Json uploaded(const Json& wish);
-  /// Runs this program with the result of a pipeline as a file; returns what it says on stderr.
-  Json run_command(std::size_t pipeline, const std::vector<std::string>& before,
+  /// Runs this program with the result of the wish's pipeline as a file; returns what it says on
+  /// stderr.
+  Json run_command(const Json& wish, const std::vector<std::string>& before,
                    const std::vector<std::string>& after);
 
   std::vector<Assignment> assignments_of(const Json& wish) const;
@@ -67,6 +68,7 @@ class EditSession {
   const Frame frame_;
   const std::filesystem::path folder_;
   const std::size_t opened_;  ///< the number of pipelines with a file of their own
+  std::mutex commands_;       ///< held while one runs: it has files in the folder
   mutable std::mutex mutex_;  ///< guards what follows
   std::vector<Value> trees_;  ///< of the files, as opened
   std::vector<EditedPipeline> pipelines_;

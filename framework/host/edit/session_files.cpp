@@ -75,7 +75,7 @@ void EditSession::begin_anew() {
   // What is planned is what the files say now, and the changes that no file has.
   std::vector<Assignment> left;
   for (const Assignment& one : edits_.all()) {
-    if (!one.of_scenario() && one.pipeline >= opened_) {
+    if (one.pipeline >= opened_ && one.parts().file == FileOfKey::pipeline) {
       left.push_back(one);
     }
   }
@@ -126,11 +126,12 @@ EditSession::Texts EditSession::new_texts(const std::string& suffix) const {
   return written;
 }
 
-Json EditSession::run_command(std::size_t pipeline, const std::vector<std::string>& before,
+Json EditSession::run_command(const Json& wish, const std::vector<std::string>& before,
                               const std::vector<std::string>& after) {
   fs::path result;
   {
     const std::lock_guard lock(mutex_);
+    const std::size_t pipeline = pipeline_of(wish);
     result = folder_ / (pipelines_[pipeline].name + ".json");
     const auto found = results_.find(pipeline);
     if (found == results_.end()) {
@@ -154,13 +155,14 @@ Json EditSession::run_command(std::size_t pipeline, const std::vector<std::strin
 
 PageAnswer EditSession::exported(const Json& wish) {
   const std::string format = wish.at("to");
-  const std::size_t pipeline = pipeline_of(wish);
+  const std::lock_guard one_at_a_time(commands_);
   const fs::path file = folder_ / "exported";
-  run_command(pipeline, {"export"}, {"--to", format, "--out", file.string()});
+  run_command(wish, {"export"}, {"--to", format, "--out", file.string()});
   return {200, "application/octet-stream", kit::read_file(file)};
 }
 
 Json EditSession::uploaded(const Json& wish) {
-  return run_command(pipeline_of(wish), {"upload"}, {"--to", wish.at("address")});
+  const std::lock_guard one_at_a_time(commands_);
+  return run_command(wish, {"upload"}, {"--to", wish.at("address")});
 }
 }  // namespace altiplan::host

@@ -17,7 +17,8 @@ export class Editor {
   #gesture = Date.now();
 
   constructor(world, store, say) {
-    Object.assign(this, {world, store, say, selected: null, times: []});
+    // `open`: the steps whose parameters are unfolded, "pipeline.step".
+    Object.assign(this, {world, store, say, selected: null, dragging: false, open: new Set(), times: []});
     this.state = world.scene.edit;
     this.movable = world.scene.movable;
   }

@@ -47,18 +47,21 @@ export function build_panel(view, world, store, editor, message) {
       pipeline_form(pipeline, nth, editor, plugins)));
     limits.replaceChildren(...constraints_form(editor, plugins));
     command.replaceChildren(...commands(editor.state.pipelines));
+    // The forms are built anew, and in another order where a value has been given: each field is known
+    // by its key and by how many of that key stand before it.
+    const seen = new Map();
+    for (const field of panel.querySelectorAll('.field')) {
+      const key = field.firstChild.textContent;
+      seen.set(key, (seen.get(key) ?? 0) + 1);
+      field.dataset.field = `${key} ${seen.get(key)}`;
+    }
     if (focused) panel.querySelector(`[data-field="${CSS.escape(focused)}"] :is(input, select)`)?.focus();
   };
-  const named = () => {
-    reflect();
-    // So that the focus is found again in the forms that are built anew.
-    panel.querySelectorAll('.field').forEach((field, nth) => { field.dataset.field ??= String(nth); });
-  };
-  editor.on_change(() => { if (!editor.dragging) named(); });
-  named();
+  editor.on_change(() => { if (!editor.dragging) reflect(); });
+  reflect();
   editor.plugins().then((all) => {
     plugins = Array.isArray(all) ? all : [];
-    named();
+    reflect();
   });
   listen_to_keys(editor);
 }
@@ -77,7 +80,7 @@ function history_buttons(editor) {
 }
 
 const add_buttons = (placing) => element('div', {className: 'row'}, Object.entries(kTools)
-  .map(([tool, {name}]) => button(name, `Then click on the picture`, () => placing.begin(tool),
+  .map(([tool, {name}]) => button(name, 'Then click on the picture', () => placing.begin(tool),
     {id: `add_${tool}`})));
 
 const spec_of = (plugins, kinds, name) =>
@@ -140,9 +143,8 @@ function pipeline_form({name, tree}, nth, editor, plugins) {
           set([text === null ? `~steps.${at}.${key}` : `steps.${at}.${key}=${text}`]));
       const own = rows(spec_of(plugins, kinds, step[verb]), step.with ?? {}, (key, text) =>
         set([text === null ? `~steps.${at}.with.${key}` : `steps.${at}.with.${key}=${text}`]));
-      const details = element('details', {open: editor.open?.has(`${nth}.${at}`) ?? false,
+      const details = element('details', {open: editor.open.has(`${nth}.${at}`),
         ontoggle: (event) => {
-          editor.open ??= new Set();
           editor.open[event.target.open ? 'add' : 'delete'](`${nth}.${at}`);
         }}, element('summary', {}, 'parameters'), own, parameters);
       return element('div', {className: 'step'}, element('span', {}, verb), plugin, details);

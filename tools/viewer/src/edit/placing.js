@@ -57,7 +57,7 @@ export function build_placing(view, world, store, editor) {
     tool = name;
     places = [];
     document.body.classList.add('placing');
-    hint.textContent = kTools[name].places === 1 ? `Click where it shall be; Esc cancels.` :
+    hint.textContent = kTools[name].places === 1 ? 'Click where it shall be; Esc cancels.' :
       'Click its corners; Enter ends, Esc cancels.';
     view.canvas.focus();
   }};
