@@ -134,6 +134,25 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
     m.min_radius_m = radius;
   }
 }
+/// The layers by their least clearance from a waypoint: where a near one is measured first, one
+/// query a leg shows that the others are further away.
+std::vector<const Environment*> nearest_first(const World& world, const Route& route) {
+  std::vector<std::pair<double, const Environment*>> layers;
+  for (const Layer& layer : world.layers()) {
+    double least = kInfinity;
+    for (std::size_t i = 0; i < route.size(); ++i) {
+      least = std::min(least, layer.environment->clearance(route[i]));
+    }
+    layers.emplace_back(least, layer.environment.get());
+  }
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const Environment*> sorted;
+  for (const auto& [least, layer] : layers) {
+    sorted.push_back(layer);
+  }
+  return sorted;
+}
 }  // namespace
 
 Measures measure(const Route& route, const Request& request) {
@@ -157,8 +176,8 @@ Measures measure(const Route& route, const Request& request) {
     points.push_back(points.front());
   }
   double clearance = kInfinity;
-  for (const Layer& layer : world.layers()) {
-    if (const auto nearest = nearest_leg(*layer.environment, points, clearance)) {
+  for (const Environment* layer : nearest_first(world, legs)) {
+    if (const auto nearest = nearest_leg(*layer, points, clearance)) {
       clearance = nearest->distance;
     }
   }

@@ -115,15 +115,23 @@ double nearest_share(const Environment& environment, const Vec3& a, const Vec3& 
 }
 
 std::optional<NearestLeg> lowest_leg(const World& world, const Polyline& route) {
-  std::optional<NearestLeg> lowest;
+  // Legs that begin low first: the others are then known to be higher without a search.
+  std::vector<NearestLeg> legs;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    legs.push_back({i, world.ground_gap(route[i], route[i], kInfinity)});
+  }
+  std::stable_sort(legs.begin(), legs.end(), [](const NearestLeg& x, const NearestLeg& y) {
+    return x.distance < y.distance;
+  });
+  std::optional<NearestLeg> lowest;
+  for (const auto& [leg, begins] : legs) {
     const double least = lowest ? lowest->distance : kInfinity;
-    const double gap = world.ground_gap(route[i], route[i + 1], least);
+    const double gap = world.ground_gap(route[leg], route[leg + 1], least);
     if (gap == -kInfinity) {
       return std::nullopt;
     }
     if (gap < least) {
-      lowest = {i, gap};
+      lowest = {leg, gap};
     }
   }
   return lowest;
