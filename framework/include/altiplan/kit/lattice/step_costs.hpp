@@ -52,7 +52,8 @@ class ALTIPLAN_API StepCosts {
   /// (see Lattice::distance).
   std::uint32_t apart(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     if (!alike_) {
-      return apart_unlike({x, y, z});
+      const std::array<std::uint32_t, 3>& marginal = marginal_[order_of({x, y, z})];
+      return x * marginal[0] + y * marginal[1] + z * marginal[2];
     }
     const std::uint32_t most = std::max({x, y, z});
     const std::uint32_t least = std::min({x, y, z});
@@ -65,12 +66,18 @@ class ALTIPLAN_API StepCosts {
   }
 
  private:
-  std::uint32_t apart_unlike(std::array<std::uint32_t, 3> n) const;
+  /// Which of the numbers of steps on the axes is larger, of each two.
+  static std::size_t order_of(const std::array<std::uint32_t, 3>& n) {
+    return std::size_t(n[0] > n[1]) | std::size_t(n[0] > n[2]) << 1 | std::size_t(n[1] > n[2]) << 2;
+  }
 
   std::array<std::uint32_t, kDirections> costs_{};
   std::array<std::uint32_t, 8> along_{};  ///< cost of a step by its set of axes, as bits
-  bool alike_ = false;                    ///< true if steps along the same number of axes cost the
-                                          ///< same
+  /// By that order: the cost of a step along each axis, beyond that of the steps along those with
+  /// more of them.
+  std::array<std::array<std::uint32_t, 3>, 8> marginal_{};
+  bool alike_ = false;  ///< true if steps along the same number of axes cost the
+                        ///< same
   double per_metre_ = 1;
   double bound_per_metre_ = 1;
   double error_ = 0;
