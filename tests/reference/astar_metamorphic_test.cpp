@@ -7,13 +7,16 @@
 namespace altiplan::reference {
 namespace {
 
+/// By cell and heading, which turns need for the shortest route.
 PlanResult plan(const Problem& problem) {
   char yaml[256];
   const Vec3& c = problem.lattice.cell;
-  std::snprintf(
-      yaml, sizeof yaml, "{cell_m: [%.17g, %.17g, %.17g], neighbours: %d, corner: %s, moves: %s}",
-      c.x(), c.y(), c.z(), problem.lattice.neighbours,
-      problem.lattice.free_box ? "free_box" : "any", problem.lattice.cells ? "cells" : "exact");
+  std::snprintf(yaml, sizeof yaml,
+                "{cell_m: [%.17g, %.17g, %.17g], neighbours: %d, corner: %s, moves: %s, "
+                "state: cell_and_heading}",
+                c.x(), c.y(), c.z(), problem.lattice.neighbours,
+                problem.lattice.free_box ? "free_box" : "any",
+                problem.lattice.cells ? "cells" : "exact");
   return testing::make_planner("astar", yaml)->plan(problem.request);
 }
 

@@ -11,11 +11,15 @@ namespace altiplan::reference {
 
 /// The length of the shortest route over the cells of a lattice, by Dijkstra's algorithm over
 /// (cell, step into it) with real numbers; every leg is judged by leg_ok, and nothing is
-/// remembered of legs. Infinite where there is no route.
+/// remembered of legs. Infinite where there is no route. Cells at most `edges` away on each axis
+/// are joined to the goal.
 class PlainLatticeSearch {
  public:
-  PlainLatticeSearch(const Request& request, const kit::Lattice& lattice)
-      : request_(request), lattice_(lattice), by_step_(request.limits.turns()) {}
+  PlainLatticeSearch(const Request& request, const kit::Lattice& lattice, int edges = 1)
+      : request_(request),
+        lattice_(lattice),
+        by_step_(request.limits.turns()),
+        goal_links_(lattice.links(request.goal.position, edges)) {}
 
   double length() {
     const std::size_t states = lattice_.size() * (by_step_ ? kit::kDirections : 1);
@@ -65,7 +69,7 @@ class PlainLatticeSearch {
     if (entry.in != kit::kHere) {
       before = Approach(here - lattice_.step(entry.in));
     }
-    for (const kit::Lattice::Link& link : lattice_.links(request_.goal.position)) {
+    for (const kit::Lattice::Link& link : goal_links_) {
       if (link.cell == entry.cell &&
           (link.length == 0 || leg_ok(before, here, request_.goal.position, request_))) {
         open_.push({entry.g + link.length, entry.cell, entry.in, true});
@@ -85,6 +89,7 @@ class PlainLatticeSearch {
   const Request& request_;
   const kit::Lattice& lattice_;
   bool by_step_;  ///< a cell's arrivals differ in what they may do next
+  std::vector<kit::Lattice::Link> goal_links_;
   std::vector<double> best_;
   std::priority_queue<Entry> open_;
 };

@@ -46,6 +46,16 @@ struct Problem {
   LatticeOptions lattice;
 };
 
+/// True of a last leg from a cell that is more than an edge from the goal: where turns refuse the
+/// others, it may make a route that the lattice has not.
+inline bool has_long_last_leg(const Route& route, const Problem& problem) {
+  if (route.size() < 2) {
+    return false;
+  }
+  const Vec3 leg = route[route.size() - 1] - route[route.size() - 2];
+  return (leg.cwiseAbs().cwiseQuotient(problem.lattice.cell).array() > 1 + 1e-9).any();
+}
+
 /// The scene as a world, `layers` of them for the solids, the ground last.
 inline World world_of(const Scene& scene, std::size_t layers = 1) {
   World world;

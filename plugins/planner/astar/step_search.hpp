@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <optional>
@@ -53,7 +52,8 @@ class StepSearch {
         has_turns_(request.limits.turns()),
         prunes_(!has_turns_),
         weight_g_(settings.weight_g / std::max(settings.weight_g, settings.weight_h)),
-        weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)) {
+        weight_h_(settings.weight_h / std::max(settings.weight_g, settings.weight_h)),
+        may_widen_(settings.state == kit::SearchState::automatic) {
     complement_.reset(tiles.tiles());
     in_.reset(tiles.tiles());
     memory.seen.reset(tiles.tiles());
@@ -64,8 +64,11 @@ class StepSearch {
   std::optional<kit::SearchResult> run() {
     begin();
     PlanStatus status = PlanStatus::no_route;
-    while (!open_.empty()) {
+    while (!open_.empty() || widen()) {
       const kit::BucketQueue::Entry entry = open_.pop();
+      if (entry.key > enough_) {
+        widen();
+      }
       if (entry.node == kGoal) {
         return with(goal_parent_, true, false);
       }
@@ -98,12 +101,24 @@ class StepSearch {
   static constexpr std::uint8_t kClosed = 0x80;
   static constexpr std::uint8_t kStep = 0x7f;
   static constexpr std::uint32_t kGoal = ~std::uint32_t{0};
+  static constexpr std::uint32_t kUnreached = ~std::uint32_t{0};
+  static constexpr int kFurthestLink = 3;  ///< edges between the goal and a cell of a wide link
   static constexpr std::uint32_t kBetweenFloods = 4096;  ///< expansions
   static constexpr int kFlooded = 1024;                  ///< cells between them
 
+  /// A cell from which the goal is one leg away.
+  struct GoalLink {
+    Cell cell;
+    std::uint32_t number;
+    std::uint32_t cost;
+  };
+  GoalLink goal_link(const kit::Lattice::Link& link) const {
+    return {link.cell, tiles_.number(link.cell), costs_.of_link(link.length)};
+  }
+
   void begin() {
     for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
-      goal_links_.push_back({link.cell, tiles_.number(link.cell), costs_.of_link(link.length)});
+      goal_links_.push_back(goal_link(link));
     }
     begin_flood();
     for (const kit::Lattice::Link& link : lattice_.links(start_)) {
@@ -125,10 +140,9 @@ class StepSearch {
     if (!may_flood_) {
       return;
     }
-    for (const kit::Lattice::Link& link : lattice_.links(goal_)) {
+    for (const GoalLink& link : goal_links_) {
       if (!rules_.cell_blocked(link.cell) &&
-          (link.length == 0 ||
-           leg_ok(std::nullopt, lattice_.position(link.cell), goal_, request_))) {
+          (link.cost == 0 || leg_ok(std::nullopt, lattice_.position(link.cell), goal_, request_))) {
         flood_.begin_at(link.cell);
       }
     }
@@ -195,11 +209,7 @@ class StepSearch {
     const std::optional<Approach> from =
         is_first ? rules_.approach(step, here, at_start_) : std::nullopt;
     const bool is_open = rules_.grid() == nullptr && rules_.all_free_around(c);
-    const std::array<std::array<std::uint32_t, 3>, 3> parts = parts_around(c);
-    const auto number_of = [&](int d) {
-      return parts[0][std::size_t(d % 3)] + parts[1][std::size_t(d / 3 % 3)] +
-             parts[2][std::size_t(d / 9)];
-    };
+    const kit::NumbersAround number_of(tiles_, c);
     kit::DirectionMask better = 0;
     for (kit::DirectionMask left = is_open && prunes_ ? natural_[step] & lattice_.inside(c)
                                                       : rules_.candidates(c, step);
@@ -222,18 +232,6 @@ class StepSearch {
     }
   }
 
-  /// The parts of the numbers of the cells around, by axis.
-  std::array<std::array<std::uint32_t, 3>, 3> parts_around(const Cell& c) const {
-    std::array<std::array<std::uint32_t, 3>, 3> parts;
-    for (int by = -1; by <= 1; ++by) {
-      const auto at = std::size_t(by + 1);
-      parts[0][at] = tiles_.x_part(c[0] + by);
-      parts[1][at] = tiles_.y_part(c[1] + by);
-      parts[2][at] = tiles_.z_part(c[2] + by);
-    }
-    return parts;
-  }
-
   void note_place(std::uint32_t number, std::uint32_t g, const Vec3& here) {
     const double distance = (here - goal_).squaredNorm();
     if (distance < nearest_) {
@@ -247,15 +245,42 @@ class StepSearch {
   }
 
   void try_goal(std::uint32_t number, std::uint32_t g, int step, const Vec3& here) {
-    for (const GoalLink& link : goal_links_) {
-      if (link.number == number && g + link.cost < goal_g_ &&
-          (link.cost == 0 ||
-           rules_.any_leg_ok(rules_.approach(step, here, at_start_), here, goal_))) {
-        goal_g_ = g + link.cost;
-        goal_parent_ = number;
-        open_.push(evaluation(goal_g_, 0), kGoal, 0);
+    for (const GoalLink& link : is_wide_ ? wide_links_ : goal_links_) {
+      if (link.number == number) {
+        try_link(link, g, step, here);
       }
     }
+  }
+
+  void try_link(const GoalLink& link, std::uint32_t g, int step, const Vec3& here) {
+    if (g + link.cost >= goal_g_) {
+      return;
+    }
+    if (link.cost == 0 || rules_.any_leg_ok(rules_.approach(step, here, at_start_), here, goal_)) {
+      goal_g_ = g + link.cost;
+      goal_parent_ = link.number;
+      open_.push(evaluation(goal_g_, 0), kGoal, 0);
+    } else if (may_widen_ && !is_wide_ && leg_ok(std::nullopt, here, goal_, request_)) {
+      enough_ = std::min(enough_, evaluation(g + link.cost + costs_[kit::direction(1, 1, 0)], 0));
+    }
+  }
+
+  /// Where turns refused legs to the goal, each from the one parent of its cell, until all that is
+  /// open costs a step more: tries those from cells further away, now where they are closed, else
+  /// as they are expanded. True if one reaches the goal now.
+  bool widen() {
+    if (enough_ == kUnreached || goal_g_ != kUnreached) {
+      return false;
+    }
+    enough_ = kUnreached;
+    is_wide_ = true;
+    for (const kit::Lattice::Link& away : lattice_.links(goal_, kFurthestLink)) {
+      const GoalLink& link = wide_links_.emplace_back(goal_link(away));
+      if (const int in = in_[link.number]; (in & kClosed) != 0) {
+        try_link(link, ~complement_[link.number], in & kStep, lattice_.position(link.cell));
+      }
+    }
+    return goal_g_ != kUnreached;
   }
 
   /// Lets the flood go on; true if it proves that the goal cannot be reached.
@@ -336,13 +361,6 @@ class StepSearch {
          settings_.weight_g * costs_.metres(g) + settings_.weight_h * costs_.metres(heuristic(c))});
   }
 
-  /// A cell from which the goal is one leg away.
-  struct GoalLink {
-    Cell cell;
-    std::uint32_t number;
-    std::uint32_t cost;
-  };
-
   const Request& request_;
   const kit::SearchSettings& settings_;
   const kit::Lattice& lattice_;
@@ -364,7 +382,11 @@ class StepSearch {
   double weight_h_;
   bool at_start_ = false;  ///< the start is the centre of its cell
   std::vector<GoalLink> goal_links_;
-  std::uint32_t goal_g_ = ~std::uint32_t{0};
+  std::vector<GoalLink> wide_links_;
+  bool may_widen_;
+  bool is_wide_ = false;
+  std::uint32_t goal_g_ = kUnreached;
+  std::uint32_t enough_ = kUnreached;  ///< f up to which legs refused for a turn are waited for
   std::uint32_t goal_parent_ = 0;
   std::optional<std::uint32_t> fallback_;  ///< a cell within the tolerance, where the goal is not
                                            ///< reached

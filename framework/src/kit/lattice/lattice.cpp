@@ -179,7 +179,7 @@ Lattice::Link Lattice::nearest(const Vec3& p) const {
   return {c, centred ? 0 : way.norm()};
 }
 
-std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
+std::vector<Lattice::Link> Lattice::links(const Vec3& p, int edges) const {
   if (const Link own = nearest(p); own.length == 0) {
     return {own};
   }
@@ -194,9 +194,9 @@ std::vector<Lattice::Link> Lattice::links(const Vec3& p) const {
     const double at = (p[axis] - spec_.origin[axis]) / spec_.cell[axis] - 0.5;
     // Level with a centre: the cells on both sides of it.
     const bool level = std::abs(at - std::round(at)) * spec_.cell[axis] <= kLengthTolerance / 2;
-    const double clamped = std::clamp(at, -2.0, spec_.counts[a] + 1.0);
-    low[a] = level ? int(std::round(clamped)) - 1 : int(std::floor(clamped));
-    high[a] = low[a] + (level ? 2 : 1);
+    const double clamped = std::clamp(at, -1.0 - edges, double(spec_.counts[a] + edges));
+    low[a] = level ? int(std::round(clamped)) - edges : int(std::floor(clamped)) + 1 - edges;
+    high[a] = low[a] + 2 * edges - (level ? 0 : 1);
   }
   std::vector<Link> found;
   for (int k = low[2]; k <= high[2]; ++k) {

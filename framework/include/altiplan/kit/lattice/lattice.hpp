@@ -157,7 +157,9 @@ class ALTIPLAN_API Lattice {
   Link nearest(const Vec3& p) const;
   /// Connections of a point to the lattice: its own cell alone where it is that cell's centre, else
   /// every cell at most one edge away from it on each axis.
-  std::vector<Link> links(const Vec3& p) const;
+  std::vector<Link> links(const Vec3& p) const { return links(p, 1); }
+  /// The same with every cell at most that many edges away.
+  std::vector<Link> links(const Vec3& p, int edges) const;
 
  private:
   GridSpec spec_;

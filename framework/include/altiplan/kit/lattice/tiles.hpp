@@ -89,6 +89,24 @@ class TileIndex {
   std::uint32_t level_ = 0;
 };
 
+/// The numbers of the cells around a cell, by direction.
+class NumbersAround {
+ public:
+  NumbersAround(const TileIndex& tiles, const Cell& c) {
+    for (int by = -1; by <= 1; ++by) {
+      x_[by + 1] = tiles.x_part(c[0] + by);
+      y_[by + 1] = tiles.y_part(c[1] + by);
+      z_[by + 1] = tiles.z_part(c[2] + by);
+    }
+  }
+  std::uint32_t operator()(int d) const { return x_[d % 3] + y_[d / 3 % 3] + z_[d / 9]; }
+
+ private:
+  std::uint32_t x_[3];
+  std::uint32_t y_[3];
+  std::uint32_t z_[3];
+};
+
 /// A number for each cell of some tiles, 0 until written. The system gives memory to pages that are
 /// written, and a reset clears the tiles that were.
 template <class T>
