@@ -108,7 +108,7 @@ std::vector<PluginFolder> plugin_folders() {
 }
 
 TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
-  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|link|study|tune)");
+  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|link|study|tune|py)");
   EXPECT_GT(sources("framework/include").size(), 20u);
   EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
 }
@@ -126,7 +126,7 @@ std::vector<std::string> rooms() {
 }
 
 TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
-  const std::regex kInside(R"(^(host|link|study|tune|src|\.\.)/)");
+  const std::regex kInside(R"(^(host|link|study|tune|python|src|\.\.)/)");
   std::set<std::string> open;
   std::vector<std::string> found;
   for (const std::string& room : rooms()) {
@@ -145,13 +145,14 @@ TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
 TEST(Structure, EveryFolderIsARoomThatTheReadmeShows) {
   std::set<std::string> folders;
   for (const char* part :
-       {"framework/host", "framework/link", "framework/study", "framework/tune"}) {
+       {"framework/host", "framework/link", "framework/study", "framework/tune",
+        "framework/python"}) {
     for (const fs::path& file : sources(part)) {
       folders.insert(fs::relative(file.parent_path(), kSource / "framework").string());
     }
   }
   std::vector<std::string> all = rooms();
-  const std::regex kRow("^\\| `((host|link|study|tune)[a-z_/]*)` \\|");
+  const std::regex kRow("^\\| `((host|link|study|tune|python)[a-z_/]*)` \\|");
   std::vector<std::string> shown;
   std::istringstream page(text_of(kSource / "framework/README.md"));
   for (std::string line; std::getline(page, line);) {
@@ -236,6 +237,7 @@ TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
       {"framework/link", "altiplan::link"},
       {"framework/study", "altiplan::study"},
       {"framework/tune", "altiplan::tune"},
+      {"framework/python", "altiplan::python"},
       {"framework/conformance", "altiplan::conformance"},
       {"tools/altiplan", "altiplan::cli"},
       {"tools/serve", "altiplan::serve"},

@@ -6,10 +6,7 @@
 namespace altiplan::host {
 
 /// The folder that contains this program's bin folder, in an installation or a build; empty if
-/// unknown.
-inline std::filesystem::path install_root() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path();
-}
+/// unknown. Within Python, whose program lies elsewhere, the one that contains
+/// lib/python3/dist-packages/altiplan, where the module lies.
+std::filesystem::path install_root();
 }  // namespace altiplan::host

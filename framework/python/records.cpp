@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/records.hpp"
+
+#include <cmath>
+
+#include "host/result/legs_json.hpp"
+#include "python/arrays.hpp"
+
+namespace altiplan::python {
+namespace {
+
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void add_metrics(py::module_& module) {
+  auto metrics = record_class<Metrics>(
+      module, "Metrics", "Measures of a route or a track; None where one does not apply.",
+      {{"length_m", "sum of leg lengths (m)"},
+       {"waypoints", "number of points"},
+       {"max_turn_deg", "largest turn at a waypoint, seen from above (degrees)"},
+       {"max_climb_deg", "steepest leg, up or down (degrees)"},
+       {"min_radius_m", "smallest turn radius (m)"},
+       {"min_clearance_m", "minimum distance to an obstacle, in any direction (m)"},
+       {"min_ground_clearance_m", "minimum height above the ground (m)"},
+       {"smoothness_rad", "sum of turns and changes of climb (radians)"},
+       {"duration_s", "flying time by the vehicle's speed model (s)"},
+       {"plan_time_s", "search time of all plan attempts (s); of a whole run only"},
+       {"smooth_time_s", "time of all smoothing (s); of a whole run only"},
+       {"expanded", "sum over all plan attempts; of a whole run only"}});
+  add_text(metrics, "Metrics");
+}
+
+void add_check(py::module_& module) {
+  auto violation =
+      record_class<Violation>(module, "Violation", "What a route violates at one place.",
+                              {{"constraint", "name of the constraint"},
+                               {"at", "index of the waypoint, or of the leg's first waypoint"},
+                               {"value", "in metres or degrees"},
+                               {"limit", "in metres or degrees"},
+                               {"message", "a sentence with the place"}});
+  add_text(violation, "Violation");
+  auto check =
+      record_class<Check>(module, "Check", "The judge's verdict on a route; true if it is ok.",
+                          {{"ok", "True if nothing is violated"}});
+  check.def_property_readonly(
+      "violations", [](const Check& c) { return list_of<Violation>(c.json.at("violations")); },
+      "list of Violation");
+  add_text(check, "Check");
+  check.def("__bool__", [](const Check& c) { return c.json.at("ok").get<bool>(); });
+}
+
+void add_leg(py::module_& module) {
+  auto leg = record_class<LegRecord>(
+      module, "Leg", "What joins two waypoints; the turn's attributes are None of a straight leg.",
+      {{"kind", "'straight', 'arc' or 'trochoid'"},
+       {"end", "[x, y, z] in metres of the scenario's frame"},
+       {"turn_deg", "degrees through the air, positive to the left"},
+       {"radius_m", "metres through the air"},
+       {"heading_deg", "at the beginning, through the air, degrees clockwise from north"},
+       {"drift_m", "[east, north] of the air during the leg (m)"}});
+  add_text(leg, "Leg");
+}
+
+void add_flight(py::module_& module) {
+  auto flight = record_class<Flight>(
+      module, "Flight", "The flight of a run, simulated or with a vehicle.",
+      {{"status", "'solved' if it arrived"},
+       {"reason", "its machine-readable cause, or None"},
+       {"message", "a sentence"},
+       {"link", "address of the vehicle, None if simulated"},
+       {"counters", "dict of the pilot's counters"},
+       {"collisions", "number of contacts with obstacles"},
+       {"min_separation_m", "minimum distance from any surface (m), negative inside"},
+       {"reached", "True if it reached the goal"},
+       {"cross_track_max_m", "largest horizontal distance from the route (m)"},
+       {"cross_track_p999_m", "the distance exceeded for 0.1 % of the time (m)"},
+       {"height_error_max_m", "largest height difference from the route (m)"},
+       {"handovers", "list of dicts: at_s, to, why"},
+       {"replans", "list of dicts: at_s, step, status, reason, message, time_s, counters"}});
+  add_text(flight, "Flight");
+  flight.def_property_readonly(
+      "metrics", [](const Flight& f) { return record_or_none<Metrics>(f.json.at("metrics")); },
+      "Metrics of the track");
+  flight.def_property_readonly(
+      "check", [](const Flight& f) { return record_or_none<Check>(f.json.at("check")); },
+      "Check of the track");
+  flight.def_property_readonly(
+      "track", [](const Flight& f) { return to_array(f.json.at("track"), 4); },
+      "(n, 4) read-only float64 array: seconds, then metres of the scenario's frame");
+}
+}  // namespace
+
+py::object to_python(const Json& json) {
+  return py::module_::import("json").attr("loads")(dumped(json));
+}
+
+py::object to_array(const Json& json, std::size_t columns) {
+  if (json.is_null()) {
+    return py::none();
+  }
+  Rows rows = fresh_rows(py::ssize_t(json.size()), py::ssize_t(columns));
+  double* to = rows.mutable_data();
+  for (const Json& row : json) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      *to++ = row.at(i).is_number() ? row.at(i).get<double>() : std::nan("");
+    }
+  }
+  rows.attr("setflags")(py::arg("write") = false);
+  return rows;
+}
+
+std::string record_text(const std::string& name, const Json& json) {
+  constexpr std::size_t kLong = 80;
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    const std::string one = py::repr(to_python(value)).cast<std::string>();
+    text += (text.empty() ? "" : ", ") + key + "=" + (one.size() > kLong ? "…" : one);
+  }
+  return name + "(" + text + ")";
+}
+
+py::list legs_of(const Route& route) { return list_of<LegRecord>(host::legs_json(route)); }
+
+void add_records(py::module_& module) {
+  add_metrics(module);
+  add_check(module);
+  add_leg(module);
+  add_flight(module);
+}
+}  // namespace altiplan::python

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "altiplan/route.hpp"
+#include "host/result/result_json.hpp"
+#include "python/bindings.hpp"
+
+namespace altiplan::python {
+
+using host::Json;
+
+/// A part of a result: its attributes are the keys of result.json, and nothing can be set.
+struct Record {
+  Json json;
+};
+struct Metrics : Record {};
+struct Violation : Record {};
+struct Check : Record {};
+struct Flight : Record {};
+struct LegRecord : Record {};
+/// One attempt of a step, with its route; null where it has none.
+struct Step : Record {
+  std::shared_ptr<const Route> route;
+};
+
+/// Lists, dicts, texts and numbers; invalid UTF-8 is replaced.
+py::object to_python(const Json& json);
+/// A read-only array of shape (n, columns) of a list of lists; null becomes nan.
+py::object to_array(const Json& json, std::size_t columns);
+/// "Metrics(length_m=28029.1, …)"; long values are left out.
+std::string record_text(const std::string& name, const Json& json);
+
+/// Null becomes None.
+template <class T>
+py::object record_or_none(const Json& json) {
+  return json.is_null() ? py::none() : py::cast(T{{json}});
+}
+
+template <class T>
+py::list list_of(const Json& json) {
+  py::list list;
+  for (const Json& one : json) {
+    list.append(T{{one}});
+  }
+  return list;
+}
+
+/// The legs of a route, as in result.json.
+py::list legs_of(const Route& route);
+
+using Keys = std::initializer_list<std::pair<const char*, const char*>>;
+
+/// Adds an attribute for each key, with its docstring; a key that is missing is None.
+template <class Class>
+void add_keys(Class& type, const Keys& keys) {
+  for (const auto& [key, doc] : keys) {
+    type.def_property_readonly(
+        key,
+        [key = std::string(key)](const typename Class::type& record) {
+          return to_python(record.json.value(key, Json()));
+        },
+        doc);
+  }
+}
+
+/// Prints all keys.
+template <class Class>
+void add_text(Class& type, const std::string& name) {
+  type.def("__repr__",
+           [name](const typename Class::type& record) { return record_text(name, record.json); });
+}
+
+/// A class without a constructor, equal by value, with the keys as attributes.
+template <class T>
+auto record_class(py::module_& module, const char* name, const char* doc, const Keys& keys) {
+  py::class_<T, std::shared_ptr<T>> type(module, name, doc);
+  add_keys(type, keys);
+  type.def(
+      "to_dict", [](const T& record) { return to_python(record.json); },
+      "All of it as a dict, as in result.json.");
+  type.def(
+      "__eq__", [](const T& a, const T& b) { return a.json == b.json; }, py::is_operator());
+  return type;
+}
+}  // namespace altiplan::python

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "altiplan/error.hpp"
+#include "host/base/output_file.hpp"
+#include "host/run/pipeline.hpp"
+#include "host/view/scene.hpp"
+#include "host/view/viewer_page.hpp"
+#include "python/arrays.hpp"
+#include "python/attended.hpp"
+#include "python/records.hpp"
+
+namespace altiplan::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A result with what result.json does not hold.
+struct Result : Record {
+  std::vector<std::shared_ptr<Step>> steps;
+  std::shared_ptr<const Route> route;  ///< the accepted one, or null
+  std::vector<fs::path> plugin_path;
+  std::vector<std::string> warnings;
+  std::vector<std::string> notes;
+};
+
+struct RunCall {
+  fs::path pipeline;
+  host::Overrides overrides;
+  int threads = 1;
+  double timeout_s = host::kDefaultStepSeconds;
+  std::optional<std::string> out;
+};
+
+/// Before any computation: the file can be written, and is not one of those that are read.
+void expect_writable(const std::string& out, const host::Config& config) {
+  if (const std::string why = host::output_problem(out); !why.empty()) {
+    throw Error("out: " + why);
+  }
+  std::vector<fs::path> read{config.pipeline_path, config.scenario_path};
+  read.insert(read.end(), config.files.begin(), config.files.end());
+  for (const fs::path& file : read) {
+    std::error_code error;
+    if (fs::equivalent(out, file, error)) {
+      throw Error("out: '" + out + "' is already read by this run: give another name");
+    }
+  }
+}
+
+/// The result in Python's form; written to the file first, as `altiplan run --out` does.
+Result hand_over(const RunCall& call, const host::Config& config, const host::RunResult& run) {
+  Result result;
+  result.json = host::result_json(config, run);
+  if (call.out) {
+    host::write_file(*call.out, host::file_text(result.json));
+  }
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    auto step = std::make_shared<Step>(Step{{result.json.at("steps").at(i)}, nullptr});
+    if (!run.steps[i].route.empty()) {
+      step->route = std::make_shared<const Route>(run.steps[i].route);
+    }
+    result.steps.push_back(std::move(step));
+  }
+  if (run.accepted) {
+    result.route = result.steps.at(*run.accepted)->route;
+  }
+  result.plugin_path = call.overrides.plugin_path;
+  result.warnings = run.warnings;
+  result.notes = run.notes;
+  return result;
+}
+
+Result run(const RunCall& given) {
+  return attended<Result>(
+      [call = given](const std::shared_ptr<Outcome<Result>>& outcome, const std::stop_token& stop) {
+        const host::Config config = host::load_config(call.pipeline, call.overrides);
+        if (call.out) {
+          expect_writable(*call.out, config);
+        }
+        host::RunOptions options;
+        options.threads = call.threads;
+        options.timeout_s = call.timeout_s;
+        options.stop = stop;
+        if (call.out) {
+          options.out = *call.out;
+        }
+        // The program ends itself here. A script goes on, and leaves the step that never stops to
+        // its thread.
+        options.on_stuck = [&](const host::RunResult& so_far) {
+          try {
+            outcome->give(hand_over(call, config, so_far));
+          } catch (...) {
+            outcome->fail(std::current_exception());
+          }
+          while (true) {
+            ::pause();
+          }
+        };
+        return hand_over(call, config, host::run(config, options));
+      });
+}
+
+/// The page of `altiplan view`, of the world built again from the run's files.
+std::string page_of(const Result& result) {
+  return attended<std::string>(
+      [json = result.json, plugin_path = result.plugin_path](const auto&, const std::stop_token&) {
+        host::Overrides overrides;
+        overrides.plugin_path = plugin_path;
+        // Where the result was written, its files are where it says.
+        const std::string name = fs::path(json.at("pipeline").get<std::string>()).stem().string();
+        const fs::path folder = json.value("folder", std::string());
+        const host::Scene scene =
+            host::build_scene({host::stored_result((folder / name).string(), json, overrides)});
+        return host::viewer_page(scene.json);
+      });
+}
+
+std::string framed(const std::string& page) {
+  std::string text = "<iframe style=\"width: 100%; height: 480px; border: 0\" srcdoc=\"";
+  for (const char c : page) {
+    text += c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+  }
+  return text + "\"></iframe>";
+}
+
+template <class Class>
+void add_outcome(Class& type) {
+  using T = typename Class::type;
+  add_keys(type, {{"status", "the outcome; 'solved' only with an accepted route and flight"},
+                  {"reason", "its machine-readable cause, or None"},
+                  {"message", "a sentence"},
+                  {"budget_hit", "True if a budget ended it"},
+                  {"setup_time_s", "wall time of the setup (s)"}});
+  type.def_property_readonly(
+      "route", [](const T& t) { return t.route; }, "Route, or None where there is none.");
+  type.def_property_readonly(
+      "legs",
+      [](const T& t) -> py::object { return t.route ? py::object(legs_of(*t.route)) : py::none(); },
+      "list of Leg of that route, or None.");
+  type.def_property_readonly(
+      "metrics", [](const T& t) { return record_or_none<Metrics>(t.json.at("metrics")); },
+      "Metrics of that route, or None.");
+  type.def_property_readonly(
+      "check", [](const T& t) { return record_or_none<Check>(t.json.at("check")); },
+      "Check of that route, or None.");
+}
+
+void add_step(py::module_& module) {
+  auto step =
+      record_class<Step>(module, "Step", "One attempt of a step of a pipeline.",
+                         {{"id", "name of the step"},
+                          {"verb", "'plan', 'smooth' or 'fly'"},
+                          {"plugin", "name of the plugin"},
+                          {"instead_of", "id of the step that this attempt replaces, or None"},
+                          {"accepted", "True if the route is accepted"},
+                          {"proved", "True if the planner's search space contains no route"},
+                          {"time_s", "wall time of the call (s)"},
+                          {"counters", "dict of the plugin's counters, including 'expanded'"}});
+  add_outcome(step);
+  step.def("__repr__", [](const Step& s) {
+    const std::string status = s.json.at("accepted").get<bool>() ? "accepted" : s.json.at("status");
+    return "<altiplan.Step '" + s.json.at("id").get<std::string>() + "' " +
+           s.json.at("plugin").get<std::string>() + ": " + status + ">";
+  });
+}
+
+void add_result_class(py::module_& module) {
+  auto result = record_class<Result>(module, "Result",
+                                     "What a run gave: its attributes are the keys of result.json.",
+                                     {{"version", "of altiplan"},
+                                      {"folder", "where `out` was written, or None"},
+                                      {"pipeline", "absolute path"},
+                                      {"scenario", "absolute path"},
+                                      {"files", "list of dicts: path, sha256"},
+                                      {"plugins", "list of dicts: kind, name, build, checksum"},
+                                      {"overrides", "dict of what replaced values of the files"},
+                                      {"seed", "the seed"}});
+  add_outcome(result);
+  result.def_property_readonly(
+      "steps", [](const Result& r) { return r.steps; }, "list of Step: every attempt, in order.");
+  result.def_property_readonly(
+      "flight", [](const Result& r) { return record_or_none<Flight>(r.json.at("flight")); },
+      "Flight, or None.");
+  result.def_property_readonly(
+      "route_lonlat", [](const Result& r) { return to_array(r.json.at("route_lonlat"), 3); },
+      "(m, 3) read-only array of degrees east, degrees north and metres above sea level of\n"
+      "route.chords(); None without a route or a georeference.");
+  result.def_property_readonly(
+      "warnings", [](const Result& r) { return r.warnings; }, "list of sentences to check.");
+  result.def_property_readonly(
+      "notes", [](const Result& r) { return r.notes; }, "list of sentences on the data read.");
+  result.def(
+      "to_json", [](const Result& r) { return host::file_text(r.json); },
+      "The text of result.json, as `altiplan run --out` writes it.");
+  result.def("__repr__", [](const Result& r) {
+    return "<altiplan.Result " + r.json.at("status").get<std::string>() + ": " +
+           r.json.at("message").get<std::string>() + ">";
+  });
+  result.def(
+      "_repr_html_", [](const Result& r) { return framed(page_of(r)); },
+      "The page of `altiplan view` in a frame, which works offline. Builds the world again;\n"
+      "altiplan.Error if its files are gone.");
+}
+}  // namespace
+
+void add_result(py::module_& module) {
+  add_step(module);
+  add_result_class(module);
+  module.def(
+      "run",
+      [](const fs::path& pipeline, std::optional<std::int64_t> seed,
+         const std::vector<std::string>& set, const std::vector<fs::path>& plugin_path, int threads,
+         double timeout_s, const std::optional<std::string>& out) {
+        RunCall call{pipeline, {}, threads, timeout_s, out};
+        call.overrides.seed = seed;
+        call.overrides.set = set;
+        call.overrides.plugin_path = plugin_path;
+        return run(call);
+      },
+      py::arg("pipeline"), py::arg("seed"), py::arg("set"), py::arg("plugin_path"),
+      py::arg("threads"), py::arg("timeout_s"), py::arg("out"));
+}
+}  // namespace altiplan::python
