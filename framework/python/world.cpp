@@ -62,6 +62,21 @@ WorldPointer open(const fs::path& file, const std::vector<std::string>& set,
       [=](const auto&, const std::stop_token&) { return build(file, overrides, known); });
 }
 
+/// "scenario", "pipeline", "study" or "paper".
+const char* kind_of(const fs::path& file) {
+  switch (host::kind_of(host::load_yaml(file))) {
+    case host::FileKind::scenario:
+      return "scenario";
+    case host::FileKind::study:
+      return "study";
+    case host::FileKind::paper:
+      return "paper";
+    case host::FileKind::pipeline:
+      break;
+  }
+  return "pipeline";
+}
+
 py::list layers_of(const FileWorld& world) {
   py::list ids;
   for (const Layer& layer : world.world().layers()) {
@@ -170,6 +185,7 @@ void add_world(py::module_& module) {
       "warnings", [](const FileWorld& w) { return w.mission.warnings; },
       "list of sentences to check.");
   add_queries(world);
+  module.def("kind_of", &kind_of, py::arg("file"));
   world.def("__repr__", [](const FileWorld& w) {
     const std::size_t count = w.world().layers().size();
     return "<altiplan.World '" + w.config.scenario_path.stem().string() + "' of " +

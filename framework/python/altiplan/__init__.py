@@ -9,7 +9,9 @@
 Points are [x, y, z] in metres of the scenario's frame: x east, y north, z above sea level. What
 altiplan refuses raises altiplan.Error; an argument of the wrong type raises TypeError, one out of
 range or of the wrong shape ValueError. That no route is found is a result, not an error."""
+import json as _json
 import os as _os
+import tempfile as _tempfile
 import warnings as _warnings
 from typing import Any as _Any
 from typing import List as _List
@@ -23,11 +25,11 @@ from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violat
 from ._error import Error
 
 __all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "Result", "Route", "Step", "Violation",
-           "World", "check", "run"]
+           "World", "check", "plan", "run"]
 
 _Path = _Union[str, "_os.PathLike[str]"]
 
-for _type in (Check, Flight, Leg, Metrics, Result, Route, Step, Violation):
+for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Violation):
     _type.__module__ = "altiplan"
 Result.plot = _plot.plot
 
@@ -53,6 +55,43 @@ def run(pipeline: _Path, *, seed: _Optional[int] = None, set: _Mapping[str, _Any
         _values.seconds(timeout_s, "timeout_s"), None if out is None else _values.path(out, "out"))
     _warn(result.warnings)
     return result
+
+
+def _end(values: dict, name: str, end: _Any) -> None:
+    """Adds what replaces the start or the goal, with all of its keys."""
+    if isinstance(end, _Mapping):
+        values[f"scenario.{name}"] = dict(end)
+    elif end is not None:
+        values[f"scenario.{name}"] = {"at_m": _values.point(end, name)}
+
+
+def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed: int = 0,
+         within_s: _Optional[float] = None, *, set: _Mapping[str, _Any] = {},
+         plugin_path: _Sequence[_Path] = (), **parameters: _Any) -> Step:
+    """Plans one route with a planner in a scenario, or in that of a pipeline under its constraints.
+
+    `start` and `goal` replace those of the scenario with all of their keys: [x, y, z] in metres of
+    its frame, or a dict such as {"at_m": [4000, 6000], "above_ground_m": 80, "tolerance_m": 5}.
+    `parameters` are the
+    planner's, checked as in a file; `within_s` is its time budget (s). Returns the Step: its `route`
+    is the planner's, `accepted` and `check` tell what the judge holds of it. Raises as `run`."""
+    if not isinstance(planner, str):
+        raise TypeError(f"planner: expected a name, found {type(planner).__name__}")
+    step = {"plan": planner, "with": parameters}
+    if within_s is not None:
+        step["within_s"] = _values.seconds(within_s, "within_s")
+    values = {**set, "steps": [step]}
+    _end(values, "start", start)
+    _end(values, "goal", goal)
+    file = _os.path.abspath(_values.path(file, "file"))
+    more = {"set": values, "seed": seed, "plugin_path": plugin_path}
+    if _altiplan.kind_of(file) != "scenario":
+        return run(file, **more).steps[0]
+    with _tempfile.TemporaryDirectory(prefix="altiplan_") as folder:
+        pipeline = _os.path.join(folder, "plan.yaml")
+        with open(pipeline, "w", encoding="utf-8") as stream:
+            _json.dump({"altiplan": 1, "scenario": file}, stream)
+        return run(pipeline, **more).steps[0]
 
 
 def _route(route: _Any) -> Route:

@@ -27,7 +27,7 @@ def plot(result, figure=None):
             top.plot(points[:, 0], points[:, 1], linewidth=0.8, color="0.6", label=step.id)
     lines = []
     if result.route is not None:
-        lines.append(("route", result.route.chords(), "C0"))
+        lines.append(("accepted route", result.route.chords(), "C0"))
     if result.flight is not None and len(result.flight.track) > 0:
         lines.append(("flight", result.flight.track[:, 1:], "C1"))
     for name, points, color in lines:

@@ -23,7 +23,7 @@ def _plain(value: Any, key: str) -> Any:
         return int(value)
     if isinstance(value, numbers.Real):
         if not math.isfinite(value):
-            raise ValueError(f"set: {key}: expected a finite number, found {value}")
+            raise ValueError(f"{key}: expected a finite number, found {value}")
         return float(value)
     if isinstance(value, Mapping):
         return {str(name): _plain(each, key) for name, each in value.items()}
@@ -31,7 +31,7 @@ def _plain(value: Any, key: str) -> Any:
         return [_plain(each, key) for each in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise TypeError(f"set: {key}: expected a number, a text, a list or a dict, "
+    raise TypeError(f"{key}: expected a number, a text, a list or a dict, "
                     f"found {type(value).__name__}")
 
 
@@ -53,6 +53,17 @@ def assignments(values: Mapping) -> List[str]:
             raise ValueError(f"set: {key!r} is no key, such as 'steps.0.with.weight_g'")
         texts.append(f"~{key}" if value is None else f"{key}={_text(_plain(value, key))}")
     return texts
+
+
+def point(value: Any, name: str) -> List[float]:
+    """Three finite numbers."""
+    numbers_of = _plain(value, name) if hasattr(value, "tolist") else value
+    if not isinstance(numbers_of, (list, tuple)) or len(numbers_of) != 3:
+        raise ValueError(f"{name}: expected [x, y, z] in metres, found {value!r}")
+    for number in numbers_of:
+        if isinstance(number, bool) or not isinstance(number, numbers.Real):
+            raise TypeError(f"{name}: expected numbers, found {type(number).__name__}")
+    return _plain(numbers_of, name)
 
 
 def path(value: Any, name: str) -> str:
