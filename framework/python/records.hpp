@@ -78,7 +78,11 @@ void add_text(Class& type, const std::string& name) {
 /// A class without a constructor, equal by value, with the keys as attributes.
 template <class T>
 auto record_class(py::module_& module, const char* name, const char* doc, const Keys& keys) {
-  py::class_<T, std::shared_ptr<T>> type(module, name, doc);
+  py::class_<T, std::shared_ptr<T>> type(module, name, doc, py::is_final());
+  // pybind11's own would make an object of uninitialised memory.
+  type.def_static("__new__", [text = std::string(name)](const py::args&, const py::kwargs&) {
+    throw py::type_error(text + " has no constructor: it is part of what altiplan gives");
+  });
   add_keys(type, keys);
   type.def(
       "to_dict", [](const T& record) { return to_python(record.json); },

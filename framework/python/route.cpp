@@ -47,8 +47,9 @@ py::object chords_of(const Route& route, double tolerance_m) {
   return rows;
 }
 
-/// The exact legs, for pickling: numbers of result.json would be rounded by their conversions.
-py::tuple state_of(const py::object& self) {
+/// How pickle makes it again: from the exact legs, since numbers of result.json would be rounded by
+/// their conversions.
+py::tuple reduced(const py::object& self) {
   const auto& route = self.cast<const Route&>();
   Rows legs = fresh_rows(py::ssize_t(route.is_straight() ? 0 : route.leg_count()), kLegNumbers);
   double* to = legs.mutable_data();
@@ -61,16 +62,14 @@ py::tuple state_of(const py::object& self) {
     }
     to = std::copy_n(leg.drift.data(), 3, to);
   }
-  return py::make_tuple(points_of(self).attr("copy")(), legs);
+  const py::object make = py::module_::import("altiplan._values").attr("route_of_state");
+  return py::make_tuple(make, py::make_tuple(points_of(self).attr("copy")(), legs));
 }
 
-std::shared_ptr<Route> route_of_state(const py::tuple& state) {
-  if (state.size() != 2) {
-    throw py::value_error("this is not the state of a Route");
-  }
-  const Rows legs = rows_of(state[1], kLegNumbers, "legs");
+std::shared_ptr<Route> route_of_state(const py::object& points, const py::object& exact_legs) {
+  const Rows legs = rows_of(exact_legs, kLegNumbers, "legs");
   if (legs.shape(0) == 0) {
-    return route_of_points(state[0]);
+    return route_of_points(points);
   }
   auto route = std::make_shared<Route>();
   for (py::ssize_t i = 0; i < legs.shape(0); ++i) {
@@ -110,8 +109,9 @@ void add_route(py::module_& module) {
       module, "Route",
       "Waypoints joined by legs, in metres of the scenario's frame: x east, y north, z above sea\n"
       "level. Route(points) joins points of shape (n, 3) by straight legs; ValueError for another\n"
-      "shape or numbers that are not finite, TypeError for what is no number. Nothing changes it.");
-  route.def(py::init(&route_of_points), py::arg("points"));
+      "shape or numbers that are not finite, TypeError for what is no number. Nothing changes it.",
+      py::is_final());
+  add_constructor(route, &route_of_points, py::arg("points"));
   route.def_property_readonly("points", &points_of,
                               "(n, 3) read-only float64 view of the waypoints (m).");
   route.def("to_numpy", &points_of, "The same as `points`.");
@@ -131,6 +131,7 @@ void add_route(py::module_& module) {
   route.def(
       "__eq__", [](const Route& a, const Route& b) { return a == b; }, py::is_operator());
   route.def("__repr__", &text_of);
-  route.def(py::pickle(&state_of, &route_of_state));
+  route.def("__reduce__", &reduced);
+  module.def("route_of_state", &route_of_state, py::arg("points"), py::arg("legs"));
 }
 }  // namespace altiplan::python

@@ -53,13 +53,23 @@ WorldPointer build(const fs::path& file, host::Overrides overrides, bool known) 
   return world;
 }
 
-WorldPointer open(const fs::path& file, const std::vector<std::string>& set,
-                  const std::vector<fs::path>& plugin_path, bool known) {
+WorldPointer open(const py::object& file, const py::object& set, const py::object& plugin_path,
+                  bool known) {
+  const py::module_ values = py::module_::import("altiplan._values");
+  const auto path = values.attr("path")(file, "file").cast<std::string>();
   host::Overrides overrides;
-  overrides.set = set;
-  overrides.plugin_path = plugin_path;
-  return attended<WorldPointer>(
-      [=](const auto&, const std::stop_token&) { return build(file, overrides, known); });
+  overrides.set = values.attr("assignments")(set).cast<std::vector<std::string>>();
+  for (const py::handle folder : values.attr("paths")(plugin_path, "plugin_path")) {
+    overrides.plugin_path.emplace_back(folder.cast<std::string>());
+  }
+  WorldPointer world = attended<WorldPointer>(
+      [=](const auto&, const std::stop_token&) { return build(path, overrides, known); });
+  for (const std::string& warning : world->mission.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) {
+      throw py::error_already_set();
+    }
+  }
+  return world;
 }
 
 /// "scenario", "pipeline", "study" or "paper".
@@ -130,8 +140,11 @@ py::array_t<double> ground(const FileWorld& world, const py::object& points_xy) 
   return heights;
 }
 
-Check check(const FileWorld& world, const std::shared_ptr<const Route>& route) {
-  if (route == nullptr || route->empty()) {
+Check check(const FileWorld& world, const py::object& given) {
+  const py::object type = py::type::of<Route>();
+  const py::object object = py::isinstance<Route>(given) ? given : type(given);
+  const auto route = object.cast<std::shared_ptr<const Route>>();
+  if (route->empty()) {
     throw py::value_error("route: expected at least one point");
   }
   const py::gil_scoped_release released;
@@ -163,15 +176,25 @@ void add_queries(py::class_<FileWorld, WorldPointer>& world) {
       "ground", &ground, py::arg("points_xy"),
       "Heights of the ground above sea level (m) at points of shape (n, 2): float64 of shape\n"
       "(n,), nan where there is none; ValueError for another shape.");
-  world.def("_check", &check, py::arg("route"));
+  world.def(
+      "check", &check, py::arg("route"),
+      "The judge's verdict on a Route, or on points of shape (n, 3) in metres, in the world known\n"
+      "at take-off: a Check of ends, volume, every leg, limit and constraint of the file.");
 }
 }  // namespace
 
 void add_world(py::module_& module) {
   py::class_<FileWorld, WorldPointer> world(
-      module, "_World", "Base of altiplan.World, which converts its arguments.");
-  world.def(py::init(&open), py::arg("file"), py::arg("set"), py::arg("plugin_path"),
-            py::arg("known"));
+      module, "World",
+      "The layers of a scenario, or of a pipeline's, with the problem posed there; nothing changes "
+      "it.\n"
+      "World(file, set={}, plugin_path=(), known=False): `set` replaces values of the scenario, as "
+      "of\n"
+      "altiplan.run. All layers count; with `known`, only those that planners know at take-off.\n"
+      "altiplan.Error for files and plugins that are refused.",
+      py::is_final());
+  add_constructor(world, &open, py::arg("file"), py::arg("set") = py::dict(),
+                  py::arg("plugin_path") = py::tuple(), py::arg("known") = false);
   world.def_property_readonly("layers", &layers_of, "list of the layers' ids.");
   world.def_property_readonly("volume", &volume_of,
                               "(2, 3) float64: lowest and highest corner of the volume (m).");

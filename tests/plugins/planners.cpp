@@ -18,7 +18,7 @@ struct Params {
   void describe(Fields& f) {
     f("does", does)
         .one_of({"straight", "past", "never_stops", "throws", "throws_int", "nan", "huge",
-                 "wrong_end", "no_points", "endless_turn", "allocates", "uses_budget",
+                 "wrong_end", "no_points", "endless_turn", "allocates", "waits", "uses_budget",
                  "refuses_does", "no_route"})
         .doc("what it does");
     f("past_m", past_m).unit("m").doc("of past: the one waypoint between");
@@ -98,10 +98,12 @@ class Told final : public Planner {
         pause();
       }
     }
-    if (does == "allocates") {
+    if (does == "allocates" || does == "waits") {
       std::vector<std::vector<char>> hoard;
       while (!request.budget.stop.stop_requested()) {
-        hoard.emplace_back(1 << 20, 'x');
+        if (does == "allocates") {
+          hoard.emplace_back(1 << 20, 'x');
+        }
         pause();
       }
       PlanResult result;

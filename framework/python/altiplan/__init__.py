@@ -21,7 +21,8 @@ from typing import Sequence as _Sequence
 from typing import Union as _Union
 
 from . import _altiplan, _plot, _values
-from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violation, __version__)
+from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violation, World,
+                        __version__)
 from ._error import Error
 
 __all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "Result", "Route", "Step", "Violation",
@@ -29,7 +30,7 @@ __all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "Result", "Route", "Ste
 
 _Path = _Union[str, "_os.PathLike[str]"]
 
-for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Violation):
+for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Violation, World):
     _type.__module__ = "altiplan"
 Result.plot = _plot.plot
 
@@ -94,23 +95,7 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
         return run(pipeline, **more).steps[0]
 
 
-def _route(route: _Any) -> Route:
-    return route if isinstance(route, Route) else Route(route)
-
-
-class World(_altiplan._World):
-    """The layers of a scenario, or of a pipeline's, with the problem posed there; it never changes.
-
-    `set` replaces values of the scenario, as of `run`. All layers count; with `known`, only those
-    that planners know at take-off. Raises Error for files and plugins that are refused."""
-
-    def __init__(self, file: _Path, set: _Mapping[str, _Any] = {},
-                 plugin_path: _Sequence[_Path] = (), known: bool = False):
-        super().__init__(_values.path(file, "file"), _values.assignments(set),
-                         _values.paths(plugin_path, "plugin_path"), bool(known))
-        _warn(self.warnings)
-
-    def check(self, route: _Union[Route, _Any]) -> Check:
+def check(self, route: _Union[Route, _Any]) -> Check:
         """The judge's verdict on a Route, or points of shape (n, 3), in the world known at take-off:
         ends, volume, every leg, limit and constraint of the file."""
         return super()._check(_route(route))
@@ -120,4 +105,4 @@ def check(route: _Union[Route, _Any], file: _Path, set: _Mapping[str, _Any] = {}
           plugin_path: _Sequence[_Path] = ()) -> Check:
     """The judge's verdict on a Route, or points of shape (n, 3) in metres, in a scenario, or under
     the constraints of a pipeline too; as `altiplan check`. Raises Error as World does."""
-    return World(file, set, plugin_path).check(_route(route))
+    return World(file, set, plugin_path).check(route)

@@ -104,3 +104,10 @@ def seconds(value: Any, name: str) -> float:
     if not 0.001 <= value <= 1e8:
         raise ValueError(f"{name}: expected a number from 0.001 to 1e8, found {value}")
     return float(value)
+
+
+def route_of_state(points: Any, legs: Any) -> Any:
+    """What unpickles a Route: pickle finds functions of Python by their names, no others."""
+    from . import _altiplan
+
+    return _altiplan.route_of_state(points, legs)
