@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """world_test.py PROGRAM PLUGINS SOURCES: routes, worlds, verdicts and plans as values of Python."""
+import ast
 import gc
 import json
 import math
@@ -170,6 +171,32 @@ class Plans(PythonCase):
         self.assertEqual((step.status, step.accepted), ("rejected", False))
         self.assertEqual(step.route.points.tolist(), THROUGH)
         self.assertFalse(step.check)
+
+
+class Stubs(PythonCase):
+    def test_they_name_what_there_is(self):
+        """Every public name of each class in _altiplan.pyi, and none besides."""
+        tree = ast.parse((SOURCES / "framework/python/altiplan/_altiplan.pyi").read_text())
+        classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+
+        def names(node):
+            found = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+            return found.union(*(names(classes[base.id]) for base in node.bases))
+
+        for name, node in classes.items():
+            if not name.startswith("_"):
+                there = {one for one in dir(getattr(altiplan, name)) if not one.startswith("_")}
+                self.assertEqual({one for one in names(node) if not one.startswith("_")}, there)
+        self.assertEqual({name for name in classes if not name.startswith("_")} | {
+            "Error", "check", "plan", "run"}, set(altiplan.__all__))
+
+    def test_everything_has_a_docstring(self):
+        for name in altiplan.__all__:
+            public = getattr(altiplan, name)
+            self.assertTrue(public.__doc__, name)
+            for attribute in vars(public) if isinstance(public, type) else []:
+                if not attribute.startswith("_"):
+                    self.assertTrue(getattr(public, attribute).__doc__, f"{name}.{attribute}")
 
 
 class Pictures(PythonCase):
