@@ -57,7 +57,7 @@ void translate(const Error& error) {
 }  // namespace
 
 void add_errors() {
-  py::register_exception_translator([](std::exception_ptr thrown) {
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) {
         std::rethrow_exception(thrown);

@@ -225,13 +225,6 @@ class Objects(PythonCase):
             self.assertRaises(TypeError, copy.copy, value)
             self.assertRaises(TypeError, pickle.dumps, value)
 
-    def test_made_twice(self):
-        route = altiplan.Route([[1, 2, 3], [4, 5, 6]])
-        view = route.points
-        route.__init__([[7, 8, 9]])
-        self.assertEqual(view.tolist(), [[1, 2, 3], [4, 5, 6]])
-        self.assertEqual(len(route), 2)
-
     def test_states_that_no_route_has(self):
         make = altiplan.Route([[1, 2, 3]]).__reduce__()[0]
         for state in ((None, None), ([[1, 2, 3]], [[1] * 11]), ("a", "b"), ([], [[math.nan] * 12]),

@@ -103,6 +103,12 @@ class Run(PythonCase):
 
 
 class Interruption(PythonCase):
+    def setUp(self):
+        super().setUp()
+        # A shell starts what it runs in the background with Ctrl-C ignored.
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+
     def test_other_threads_go_on(self):
         times = []
         done = threading.Event()

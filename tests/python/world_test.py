@@ -114,12 +114,6 @@ class Worlds(PythonCase):
     def test_of_a_pipeline(self):
         self.assertEqual(altiplan.World(self.pipeline).layers, ["wall", "post"])
 
-    def test_a_world_outlives_its_file(self):
-        world = altiplan.World(RIDGE)
-        before = world.clearance([world.start])
-        gc.collect()
-        self.assertEqual(world.clearance([world.start]), before)
-
 
 class Verdicts(PythonCase):
     def test_check(self):
