@@ -4,7 +4,7 @@
 namespace altiplan::python {
 
 std::optional<py::error_already_set> attend(
-    const std::function<bool(std::chrono::milliseconds)>& wait, std::stop_source stop) {
+    const std::function<bool(std::chrono::milliseconds)>& wait, const std::stop_source& stop) {
   constexpr std::chrono::milliseconds kLookEvery(50);
   constexpr std::chrono::milliseconds kPatience(2000);
   std::optional<py::error_already_set> raised;

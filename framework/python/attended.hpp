@@ -64,7 +64,7 @@ class Outcome {
 /// meanwhile, as Ctrl-C does, requests a stop, waits for a short while, and returns what was
 /// raised.
 std::optional<py::error_already_set> attend(
-    const std::function<bool(std::chrono::milliseconds)>& wait, std::stop_source stop);
+    const std::function<bool(std::chrono::milliseconds)>& wait, const std::stop_source& stop);
 
 /// Does the work in a thread of its own, so that the calling thread can attend to Ctrl-C. `work`
 /// gets an outcome, for a value that is ready before it returns (if ever), and a stop token. It

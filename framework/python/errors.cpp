@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/error.hpp"
+
+#include <utility>
+
 #include "python/bindings.hpp"
 
 namespace altiplan::python {
@@ -60,7 +63,7 @@ void add_errors() {
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) {
-        std::rethrow_exception(thrown);
+        std::rethrow_exception(std::move(thrown));
       }
     } catch (const Error& error) {
       try {
