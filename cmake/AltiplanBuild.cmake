@@ -18,8 +18,8 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(ALTIPLAN_PLUGIN_DIR ${CMAKE_BINARY_DIR}/lib/altiplan/plugins)
 set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "$ORIGIN" "$ORIGIN/../..")
 
-# What is installed belongs to one of the components program, library, geo, sdk and bench; a package
-# is made of one or two.
+# What is installed belongs to one of the components program, library, geo, sdk, bench and python; a
+# package is made of one or two, and none of python yet.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 
 option(ALTIPLAN_PACKAGES "Debian packages by cpack (tools/package)" OFF)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/route.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "altiplan/constraint.hpp"
 #include "python/arrays.hpp"
 #include "python/records.hpp"
