@@ -25,9 +25,9 @@ GROUPS = [
     ("How-to guides", [f"docs/how-to/{page}.md" for page in (
         "install", "view-results", "gallery", "exchange-missions", "flying", "tune-parameters",
         "run-large-studies", "write-a-plugin", "plan-with-the-kit", "debug-a-plugin")]),
-    ("Reference", [f"docs/reference/{page}.md" for page in (
+    ("Reference", [*(f"docs/reference/{page}.md" for page in (
         "cli", "files", "result", "plugins", "studies", "report", "statistics", "run-outcomes",
-        "study-database", "check-plugin", "conformance", "abi", "api")]),
+        "study-database", "check-plugin", "conformance", "abi", "api")), "framework/python/README.md"]),
     ("Interfaces", ["docs/interfaces/README.md", "docs/interfaces/request-and-world.md",
                     *(f"docs/interfaces/{kind}.md" for kind in plugins.KINDS),
                     "docs/interfaces/*.md"]),
@@ -131,6 +131,7 @@ def main():
     problems = []
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("tools/viewer/*.md"),
                  *ROOT.glob("tests/*/README.md"), *ROOT.glob("framework/*.md"),
+                 *ROOT.glob("framework/python/*.md"),
                  *ROOT.glob("plugins/*/*/design.md")]:
         write(page.relative_to(ROOT), page.read_text(), problems)
     for page, text in plugins.pages(ROOT, PROGRAM, problems):
