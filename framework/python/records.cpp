@@ -2,6 +2,7 @@
 #include "python/records.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "host/result/legs_json.hpp"
 #include "python/arrays.hpp"
@@ -31,6 +32,14 @@ void add_metrics(py::module_& module) {
   add_text(metrics, "Metrics");
 }
 
+py::object place_of(const Violation& violation) {
+  const std::size_t at = violation.json.at("at");
+  if (violation.route == nullptr || at >= violation.route->size()) {
+    return py::none();
+  }
+  return py::array_t<double>(py::ssize_t(3), violation.route->at(at).data());
+}
+
 void add_check(py::module_& module) {
   auto violation =
       record_class<Violation>(module, "Violation", "What a route violates at one place.",
@@ -39,12 +48,21 @@ void add_check(py::module_& module) {
                                {"value", "in metres or degrees"},
                                {"limit", "in metres or degrees"},
                                {"message", "a sentence with the place"}});
+  violation.def_property_readonly("place", &place_of,
+                                  "(3,) float64: the waypoint `at` (m); None of a track's.");
   add_text(violation, "Violation");
   auto check =
       record_class<Check>(module, "Check", "The judge's verdict on a route; true if it is ok.",
                           {{"ok", "True if nothing is violated"}});
   check.def_property_readonly(
-      "violations", [](const Check& c) { return list_of<Violation>(c.json.at("violations")); },
+      "violations",
+      [](const Check& c) {
+        py::list list;
+        for (const Json& one : c.json.at("violations")) {
+          list.append(Violation{{one}, c.route});
+        }
+        return list;
+      },
       "list of Violation");
   add_text(check, "Check");
   check.def("__bool__", [](const Check& c) { return c.json.at("ok").get<bool>(); });
@@ -83,7 +101,7 @@ void add_flight(py::module_& module) {
       "metrics", [](const Flight& f) { return record_or_none<Metrics>(f.json.at("metrics")); },
       "Metrics of the track");
   flight.def_property_readonly(
-      "check", [](const Flight& f) { return record_or_none<Check>(f.json.at("check")); },
+      "check", [](const Flight& f) { return check_or_none(f.json.at("check"), nullptr); },
       "Check of the track");
   flight.def_property_readonly(
       "track", [](const Flight& f) { return to_array(f.json.at("track"), 4); },
@@ -118,6 +136,10 @@ std::string record_text(const std::string& name, const Json& json) {
     text += (text.empty() ? "" : ", ") + key + "=" + (one.size() > kLong ? "…" : one);
   }
   return name + "(" + text + ")";
+}
+
+py::object check_or_none(const Json& json, std::shared_ptr<const Route> route) {
+  return json.is_null() ? py::none() : py::cast(Check{{json}, std::move(route)});
 }
 
 py::list legs_of(const Route& route) { return list_of<LegRecord>(host::legs_json(route)); }

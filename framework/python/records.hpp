@@ -19,8 +19,13 @@ struct Record {
   Json json;
 };
 struct Metrics : Record {};
-struct Violation : Record {};
-struct Check : Record {};
+/// With the judged route, in which it has its place; null where a track was judged.
+struct Violation : Record {
+  std::shared_ptr<const Route> route{};
+};
+struct Check : Record {
+  std::shared_ptr<const Route> route{};
+};
 struct Flight : Record {};
 struct LegRecord : Record {};
 /// One attempt of a step, with its route; null where it has none.
@@ -49,6 +54,9 @@ py::list list_of(const Json& json) {
   }
   return list;
 }
+
+/// The verdict on a route; None of null.
+py::object check_or_none(const Json& json, std::shared_ptr<const Route> route);
 
 /// The legs of a route, as in result.json.
 py::list legs_of(const Route& route);

@@ -145,7 +145,7 @@ void add_outcome(Class& type) {
       "metrics", [](const T& t) { return record_or_none<Metrics>(t.json.at("metrics")); },
       "Metrics of that route, or None.");
   type.def_property_readonly(
-      "check", [](const T& t) { return record_or_none<Check>(t.json.at("check")); },
+      "check", [](const T& t) { return check_or_none(t.json.at("check"), t.route); },
       "Check of that route, or None.");
 }
 

@@ -151,7 +151,8 @@ Check check(const FileWorld& world, const py::object& given) {
     throw py::value_error("route: expected at least one point");
   }
   const py::gil_scoped_release released;
-  return Check{{host::to_json(host::judge(*route, world.mission.request, world.mission.via))}};
+  return Check{{host::to_json(host::judge(*route, world.mission.request, world.mission.via))},
+               route};
 }
 
 py::array vector_of(const Vec3& v) { return py::array_t<double>(py::ssize_t(3), v.data()); }

@@ -124,6 +124,9 @@ class Verdicts(PythonCase):
         violation = verdict.violations[0]
         self.assertEqual((violation.constraint, violation.at, violation.limit), ("clearance", 0, 2))
         self.assertIn("'wall'", violation.message)
+        self.assertEqual(violation.place.tolist(), THROUGH[0])
+        outside = altiplan.check([*ROUND[:2], [900, 100, 500], ROUND[2]], self.scenario).violations
+        self.assertEqual({tuple(one.place) for one in outside if one.at == 2}, {(900, 100, 500)})
 
     def test_as_the_program(self):
         (self.folder / "route.json").write_text(json.dumps(THROUGH))
