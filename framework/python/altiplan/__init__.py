@@ -73,9 +73,9 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
 
     `start` and `goal` replace those of the scenario with all of their keys: [x, y, z] in metres of
     its frame, or a dict such as {"at_m": [4000, 6000], "above_ground_m": 80, "tolerance_m": 5}.
-    `parameters` are the
-    planner's, checked as in a file; `within_s` is its time budget (s). Returns the Step: its `route`
-    is the planner's, `accepted` and `check` tell what the judge holds of it. Raises as `run`."""
+    `parameters` are the planner's, checked as in a file; `within_s` is its time budget (s). Returns
+    the Step: its `route` is the planner's, `accepted` and `check` tell what the judge holds of it.
+    Raises as `run`."""
     if not isinstance(planner, str):
         raise TypeError(f"planner: expected a name, found {type(planner).__name__}")
     step = {"plan": planner, "with": parameters}
@@ -93,12 +93,6 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
         with open(pipeline, "w", encoding="utf-8") as stream:
             _json.dump({"altiplan": 1, "scenario": file}, stream)
         return run(pipeline, **more).steps[0]
-
-
-def check(self, route: _Union[Route, _Any]) -> Check:
-        """The judge's verdict on a Route, or points of shape (n, 3), in the world known at take-off:
-        ends, volume, every leg, limit and constraint of the file."""
-        return super()._check(_route(route))
 
 
 def check(route: _Union[Route, _Any], file: _Path, set: _Mapping[str, _Any] = {},
