@@ -2,25 +2,22 @@
 #include "host/plugins/install_root.hpp"
 
 #include <dlfcn.h>
-#include <sys/auxv.h>
+#include <link.h>
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
 
 fs::path install_root() {
   Dl_info here{};
-  Dl_info program{};
+  link_map* object = nullptr;  // that this code belongs to; the program is the first one
   const auto* code = reinterpret_cast<const void*>(&install_root);
-  const auto* headers = reinterpret_cast<const void*>(::getauxval(AT_PHDR));
+  const bool is_found =
+      ::dladdr1(code, &here, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0;
   std::error_code error;
-  // The headers of the program lie in its first mapping; this code lies in another one only if it
-  // belongs to a module that the program has loaded.
-  const bool is_module = ::dladdr(code, &here) != 0 && ::dladdr(headers, &program) != 0 &&
-                         here.dli_fbase != program.dli_fbase;
-  if (!is_module) {
+  if (!is_found || object->l_prev == nullptr) {
     return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
   }
-  fs::path folder = fs::canonical(here.dli_fname, error).parent_path();
+  fs::path folder = fs::canonical(object->l_name, error).parent_path();
   for (int up = 0; up < 4; ++up) {
     folder = folder.parent_path();
   }

@@ -36,8 +36,9 @@ double nearest_about(const Ground& ground, const Vec3& p, const Vec3& point) {
   for (double step = 0.01 * best; step > kFine;) {
     const Vec3 from = at;
     for (int n = 0; n < 9; ++n) {
+      const int row = n / 3;
       const double x = from.x() + step * (n % 3 - 1);
-      const double y = from.y() + step * (n / 3 - 1);
+      const double y = from.y() + step * (row - 1);
       const Vec3 next(x, y, ground.height(x, y).value_or(-kInfinity));
       if (const double distance = (p - next).norm(); distance < best) {
         best = distance;
