@@ -60,20 +60,22 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
     };
     along_[std::size_t(set)] = faces ? cost(set & 1) + cost(set & 2) + cost(set & 4) : cost(set);
   }
-  std::array<std::size_t, 3> axes = {0, 1, 2};
-  do {
-    std::array<std::uint32_t, 3> n{};
-    n[axes[0]] = 2;
-    n[axes[1]] = 1;
-    const std::size_t one = std::size_t{1} << axes[0];
-    const std::size_t two = one | std::size_t{1} << axes[1];
-    auto& marginal = marginal_[order_of(n)];
-    marginal[axes[0]] = along_[one];
-    marginal[axes[1]] = along_[two] - along_[one];
-    marginal[axes[2]] = along_[7] - along_[two];
-  } while (std::next_permutation(axes.begin(), axes.end()));
   alike_ = along_[1] == along_[2] && along_[2] == along_[4] && along_[3] == along_[5] &&
            along_[5] == along_[6];
+  if (!alike_) {
+    std::array<std::size_t, 3> axes = {0, 1, 2};
+    do {
+      std::array<std::uint32_t, 3> n{};
+      n[axes[0]] = 2;
+      n[axes[1]] = 1;
+      const std::size_t one = std::size_t{1} << axes[0];
+      const std::size_t two = one | std::size_t{1} << axes[1];
+      auto& marginal = marginal_[order_of(n)];
+      marginal[axes[0]] = along_[one];
+      marginal[axes[1]] = along_[two] - along_[one];
+      marginal[axes[2]] = along_[7] - along_[two];
+    } while (std::next_permutation(axes.begin(), axes.end()));
+  }
 }
 
 StepCosts::Scale StepCosts::between(Scale wanted, const Lattice& lattice, const Vec3& start,
