@@ -124,6 +124,27 @@ class Page(EditCase):
         self.still()
         self.assertEqual(self.route(), before)
 
+    def test_sizes_are_pulled(self):
+        self.open("?flat")
+        radius = self.handle("environment.0.cylinder.radius_m")
+        ActionChains(self.driver).drag_and_drop_by_offset(radius, 30, 0).perform()
+        self.await_(self.sets)
+        self.still()
+        [text] = self.sets()
+        self.assertGreater(float(text.removeprefix("scenario.environment.0.cylinder.radius_m=")), 61)
+        corner = self.handle("environment.1.box.max_m")
+        ActionChains(self.driver).drag_and_drop_by_offset(corner, 20, -20).perform()
+        self.await_(lambda: len(self.sets()) == 2)
+        self.still()
+        x, y, z = json.loads(self.sets()[1].removeprefix("scenario.environment.1.box.max_m="))
+        self.assertGreater(x, 701)
+        self.assertGreater(y, 421)
+        self.assertEqual(z, 120)
+        # The opposite corner cannot be passed.
+        ActionChains(self.driver).drag_and_drop_by_offset(corner, -400, 300).perform()
+        self.await_(lambda: json.loads(self.sets()[1].split("=")[1])[:2] == [600.1, 200.1])
+        self.still()
+
     def test_heights_and_keys(self):
         self.open()
         cylinder = self.handle("environment.0.cylinder")

@@ -21,7 +21,10 @@ export function build_handles(view, world, editor) {
     made.style.transform = `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
   };
   const reflect = () => {
-    const all = editor.movable.flatMap((item) => [item, ...heading_of(item, editor.state.scenario)]);
+    const all = editor.movable.flatMap((item) => {
+      const written = at_path(editor.state.scenario, item.key);
+      return [item, ...heading_of(item, written), ...size_of(item, written)];
+    });
     const present = new Set(all.map(({key}) => key));
     for (const [key, {made}] of handles) {
       if (present.has(key)) continue;
@@ -29,7 +32,7 @@ export function build_handles(view, world, editor) {
       handles.delete(key);
     }
     for (const item of all) {
-      const Kind = item.kind === 'heading' ? Heading : Handle;
+      const Kind = {heading: Heading, radius: Radius, corner: Corner}[item.kind] ?? Handle;
       const handle = handles.get(item.key) ?? new Kind(item, layer, {view, world, editor, place});
       handles.set(item.key, handle);
       handle.is(item, editor.selected === item.key);
@@ -40,12 +43,28 @@ export function build_handles(view, world, editor) {
   reflect();
 }
 
+/** What the scenario says at a key such as "environment.0.cylinder". */
+function at_path(scenario, key) {
+  return key.split('.').reduce((tree, part) => tree?.[part], scenario) ?? {};
+}
+
 /** The heading of a point that has one, as something to turn. */
-function heading_of({key, kind, name, at}, scenario) {
-  const {heading_deg} = key.split('.').reduce((tree, part) => tree?.[part], scenario) ?? {};
+function heading_of({key, kind, name, at}, {heading_deg}) {
   return heading_deg === undefined || !['start', 'via', 'goal'].includes(kind) ? [] :
     [{key: `${key}.heading_deg`, of: key, kind: 'heading', name: `Heading at ${name}`, middle: at,
       degrees: Number(heading_deg), at}];
+}
+
+/** The radius of what is round, and the corners of a box, as something to pull. */
+function size_of({key, name, at, kind}, written) {
+  const part = {of: key, name: `Size of ${name}`, middle: at};
+  const radius = ['radius_m', 'range_m'].find((one) => Number(written[one]) > 0);
+  if (radius && !['start', 'via', 'goal'].includes(kind)) {
+    return [{...part, key: `${key}.${radius}`, kind: 'radius', radius: Number(written[radius]), at}];
+  }
+  return ['min_m', 'max_m'].filter((one) => written.min_m?.length >= 2 && written[one]?.length >= 2).map((one) =>
+    ({...part, key: `${key}.${one}`, kind: 'corner', corner: written[one].map(Number),
+      other: written[one === 'min_m' ? 'max_m' : 'min_m'].map(Number), at}));
 }
 
 class Handle {
@@ -64,7 +83,9 @@ class Handle {
     this.item = item;
     this.made.classList.toggle('selected', selected);
     this.made.dataset.key = item.key;
-    this.made.title = `${item.name}: drag; with Shift in height. Arrow keys, Page up and down move it.`;
+    this.made.classList.toggle('size', ['radius', 'corner'].includes(item.kind));
+    this.made.title = item.of ? `${item.name}: drag, or move it by the arrow keys.` :
+      `${item.name}: drag; with Shift in height. Arrow keys, Page up and down move it.`;
     this.made.ariaLabel = `${item.name}, ${item.kind}`;
     // What is dragged is where the pointer is, which is ahead of the answers.
     if (this.gesture === null) this.at = this.rest(item);
@@ -140,7 +161,7 @@ class Handle {
       event.preventDefault();
       event.stopPropagation();
       this.#step(way, event.shiftKey ? 10 : 1);
-    } else if (event.key === 'Delete') {
+    } else if (event.key === 'Delete' && !this.item.of) {
       event.stopPropagation();
       this.editor.remove(this.item);
     }
@@ -178,5 +199,38 @@ class Heading extends Handle {
     const degrees = Math.atan2(this.at[0] - middle[0], this.at[1] - middle[1]) * 180 / Math.PI;
     return this.editor.change({set: [`scenario.${of}.heading_deg=${((degrees + 360) % 360).toFixed(1)}`],
       gesture: this.gesture, quick});
+  }
+}
+
+// The least radius, and edge of a box (m).
+const kLeastSize = 0.1;
+
+/** A radius, pulled at the point in the east. */
+class Radius extends Handle {
+  rest({middle, radius}) {
+    return [middle[0] + radius, middle[1], middle[2]];
+  }
+
+  ask(quick) {
+    const {middle, key} = this.item;
+    const radius = Math.max(kLeastSize, Math.hypot(this.at[0] - middle[0], this.at[1] - middle[1]));
+    return this.editor.change({set: [`scenario.${key}=${radius.toFixed(1)}`], gesture: this.gesture, quick});
+  }
+}
+
+/** A corner of a box, pulled while the opposite one stays. */
+class Corner extends Handle {
+  rest({middle, corner}) {
+    return [corner[0], corner[1], middle[2]];
+  }
+
+  ask(quick) {
+    const {key, corner, other} = this.item;
+    const pulled = corner.map((value, axis) => {
+      const way = Math.sign(value - other[axis]) || 1;
+      return axis === 2 ? value : other[axis] + way * Math.max(kLeastSize, way * (this.at[axis] - other[axis]));
+    });
+    const text = pulled.map((value) => Number(value.toFixed(2))).join(', ');
+    return this.editor.change({set: [`scenario.${key}=[${text}]`], gesture: this.gesture, quick});
   }
 }
