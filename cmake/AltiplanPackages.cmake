@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Three Debian packages, which `cpack` makes in the build folder: altiplan, altiplan-dev, and
-# altiplan-plugins-geo for the plugins whose libraries are large.
+# Four Debian packages, which `cpack` makes in the build folder: altiplan, altiplan-dev,
+# altiplan-plugins-geo for the plugins whose libraries are large, and python3-altiplan.
 
 foreach(plugin IN ITEMS environment_terrain environment_mesh planner_ompl)
   if(NOT TARGET altiplan_${plugin})
@@ -8,6 +8,9 @@ foreach(plugin IN ITEMS environment_terrain environment_mesh planner_ompl)
       "packages hold every plugin: ${plugin} is off, see above (tools/setup package)")
   endif()
 endforeach()
+if(NOT TARGET altiplan_python)
+  message(FATAL_ERROR "packages hold the Python bindings: off, see above (tools/setup package)")
+endif()
 find_program(GZIP gzip REQUIRED)
 find_program(HELP2MAN help2man REQUIRED)
 
@@ -20,11 +23,12 @@ set(packages ${PROJECT_BINARY_DIR}/packages)
 set(package_of_program altiplan)
 set(package_of_sdk altiplan-dev)
 set(package_of_geo altiplan-plugins-geo)
+set(package_of_python python3-altiplan)
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/packages/changelog.in ${packages}/changelog @ONLY)
 altiplan_gzip(${packages}/changelog ${packages}/changelog.Debian.gz)
 altiplan_gzip(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${packages}/changelog.gz)
-foreach(component IN ITEMS program sdk geo)
+foreach(component IN ITEMS program sdk geo python)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/${package_of_${component}})
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/packages/copyright ${packages}/changelog.Debian.gz
     ${packages}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
@@ -57,7 +61,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each description begins with its ow
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL program library sdk bench geo)
+set(CPACK_COMPONENTS_ALL program library sdk bench geo python)
 set(CPACK_COMPONENT_PROGRAM_GROUP altiplan)
 set(CPACK_COMPONENT_LIBRARY_GROUP altiplan)
 set(CPACK_COMPONENT_SDK_GROUP dev)
@@ -115,4 +119,21 @@ set(CPACK_DEBIAN_GEO_DESCRIPTION "planning of routes for unmanned aircraft: geod
 Plugins of altiplan that need large libraries: the environment 'terrain' reads
 elevation models by GDAL, the environment 'mesh' reads models of solids by
 assimp, and the planner 'ompl' runs those of the Open Motion Planning Library.")
+
+# A module in C++ works with the version of Python that it was compiled for.
+set(Python3_EXECUTABLE /usr/bin/python3)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-altiplan)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "altiplan ${same_version}, \
+python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}~), \
+python3 (<< ${Python3_VERSION_MAJOR}.${next_minor}), python3:any, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+  "${CMAKE_CURRENT_LIST_DIR}/packages/postinst;${CMAKE_CURRENT_LIST_DIR}/packages/prerm")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "planning of routes for unmanned aircraft: Python 3 package
+The module altiplan runs pipelines and studies, plans and judges routes, and
+queries worlds. Points go in and come out as arrays of numpy, and tables of a
+study as those of pandas.")
 include(CPack)

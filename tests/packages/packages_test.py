@@ -59,7 +59,7 @@ class System:
 
 
 def program_alone(system):
-    """The package altiplan needs neither of the others."""
+    """The package altiplan needs none of the others."""
     output, _ = system.do("apt-get install --yes --no-install-recommends /packages/altiplan_*.deb")
     assert "gdal" not in output, output
     system.as_author("altiplan --version")
@@ -68,13 +68,23 @@ def program_alone(system):
     system.as_author("altiplan check alone.json && altiplan view alone.json -o page.html")
 
 
-def all_three(system):
+def all_of_them(system):
     system.do("apt-get install --yes /packages/*.deb")
     output, _ = system.as_author("altiplan plugins --strict")
     for name in ("terrain", "mesh", "ompl"):
         assert name in output, output
     system.as_author(f"altiplan run {PIPELINES}/ridge_crossing.yaml")  # terrain, by GDAL
     system.as_author(f"altiplan run {PIPELINES}/city_theta_star.yaml")
+
+
+def python_package(system):
+    """The Python package runs a pipeline; an import by root leaves nothing behind, see removed()."""
+    for shell in (system.root, system.author):
+        output, _ = system.do(
+            "/usr/bin/python3 -c 'import altiplan; "
+            f"print(altiplan.__file__, altiplan.run(\"{PIPELINES}/hills_astar.yaml\").status)'", shell)
+        assert output == "/usr/lib/python3/dist-packages/altiplan/__init__.py solved\n", output
+    system.as_author("/usr/bin/python3 -c 'import pandas, matplotlib'")  # recommended
 
 
 def plugin_of_ones_own(system):
@@ -92,7 +102,8 @@ def plugin_of_ones_own(system):
 
 
 def removed(system):
-    system.do("apt-get remove --yes altiplan altiplan-dev altiplan-plugins-geo")
+    system.do("apt-get remove --yes altiplan altiplan-dev altiplan-plugins-geo "
+              "python3-altiplan")
     output, _ = system.do("find / -xdev -iname '*altiplan*' -not -path '/packages/*' "
                           "-not -path '/home/*' -not -path '/var/lib/dpkg/*'")
     assert output == "", output
@@ -112,7 +123,8 @@ def main():
         system = System(root)
         system.do("apt-get update")
         program_alone(system)
-        all_three(system)
+        all_of_them(system)
+        python_package(system)
         plugin_of_ones_own(system)
         removed(system)
 
