@@ -24,13 +24,15 @@ from . import _altiplan, _plot, _values
 from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violation, World,
                         __version__)
 from ._error import Error
+from ._study import Study, study
 
-__all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "Result", "Route", "Step", "Violation",
-           "World", "check", "plan", "run"]
+__all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "Result", "Route", "Step", "Study",
+           "Violation", "World", "check", "plan", "run", "study"]
 
 _Path = _Union[str, "_os.PathLike[str]"]
 
-for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Violation, World):
+for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Study, Violation, World,
+              study):
     _type.__module__ = "altiplan"
 Result.plot = _plot.plot
 

@@ -106,6 +106,24 @@ def seconds(value: Any, name: str) -> float:
     return float(value)
 
 
+def fraction(value: Any, name: str) -> float:
+    """A part of a whole."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name}: expected a fraction, found {type(value).__name__}")
+    if not 0 < value <= 1:
+        raise ValueError(f"{name}: expected a number above 0, up to 1, found {value}")
+    return float(value)
+
+
+def text(value: Any, name: str) -> str:
+    """A text that can be an argument of a program."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a text, found {type(value).__name__}")
+    if "\0" in value:
+        raise ValueError(f"{name}: a text has no zero byte")
+    return value
+
+
 def route_of_state(points: Any, legs: Any) -> Any:
     """What unpickles a Route: pickle finds functions of Python by their names, no others."""
     from . import _altiplan
