@@ -56,6 +56,7 @@ void add_dubins(Subcommands& all);
 void add_field(Subcommands& all);
 void add_grid(Subcommands& all);
 void add_hybrid_astar(Subcommands& all);
+void add_legs(Subcommands& all);
 void add_pilot(Subcommands& all);
 void add_queries(Subcommands& all);
 void add_replan(Subcommands& all);
