@@ -34,7 +34,7 @@ _Path = _Union[str, "_os.PathLike[str]"]
 for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Study, Violation, World,
               study):
     _type.__module__ = "altiplan"
-Result.plot = _plot.plot
+setattr(Result, "plot", _plot.plot)
 
 
 def _warn(sentences: _List[str]) -> None:
@@ -60,7 +60,7 @@ def run(pipeline: _Path, *, seed: _Optional[int] = None, set: _Mapping[str, _Any
     return result
 
 
-def _end(values: dict, name: str, end: _Any) -> None:
+def _end(values: "dict[str, _Any]", name: str, end: _Any) -> None:
     """Adds what replaces the start or the goal, with all of its keys."""
     if isinstance(end, _Mapping):
         values[f"scenario.{name}"] = dict(end)
@@ -80,14 +80,14 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
     Raises as `run`."""
     if not isinstance(planner, str):
         raise TypeError(f"planner: expected a name, found {type(planner).__name__}")
-    step = {"plan": planner, "with": parameters}
+    step: _Any = {"plan": planner, "with": parameters}
     if within_s is not None:
         step["within_s"] = _values.seconds(within_s, "within_s")
     values = {**set, "steps": [step]}
     _end(values, "start", start)
     _end(values, "goal", goal)
     file = _os.path.abspath(_values.path(file, "file"))
-    more = {"set": values, "seed": seed, "plugin_path": plugin_path}
+    more: _Any = {"set": values, "seed": seed, "plugin_path": plugin_path}
     if _altiplan.kind_of(file) != "scenario":
         return run(file, **more).steps[0]
     with _tempfile.TemporaryDirectory(prefix="altiplan_") as folder:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of the part of altiplan that is written in C++. Metres are of the scenario's frame."""
 import os
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union, final
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ class _Record:
     def to_dict(self) -> Dict[str, Any]: ...
     def __eq__(self, other: object) -> bool: ...
 
+@final
 class Metrics(_Record):
     @property
     def length_m(self) -> Optional[float]: ...
@@ -41,6 +42,7 @@ class Metrics(_Record):
     @property
     def expanded(self) -> Optional[int]: ...
 
+@final
 class Violation(_Record):
     @property
     def constraint(self) -> str: ...
@@ -55,6 +57,7 @@ class Violation(_Record):
     @property
     def message(self) -> str: ...
 
+@final
 class Check(_Record):
     @property
     def ok(self) -> bool: ...
@@ -62,6 +65,7 @@ class Check(_Record):
     def violations(self) -> List[Violation]: ...
     def __bool__(self) -> bool: ...
 
+@final
 class Leg(_Record):
     @property
     def kind(self) -> str: ...
@@ -76,6 +80,7 @@ class Leg(_Record):
     @property
     def drift_m(self) -> Optional[List[float]]: ...
 
+@final
 class Flight(_Record):
     @property
     def status(self) -> str: ...
@@ -110,6 +115,7 @@ class Flight(_Record):
     @property
     def track(self) -> _Floats: ...
 
+@final
 class Route:
     def __init__(self, points: ArrayLike) -> None: ...
     @property
@@ -146,6 +152,7 @@ class _Outcome(_Record):
     @property
     def check(self) -> Optional[Check]: ...
 
+@final
 class Step(_Outcome):
     @property
     def id(self) -> str: ...
@@ -164,6 +171,7 @@ class Step(_Outcome):
     @property
     def counters(self) -> Dict[str, int]: ...
 
+@final
 class Result(_Outcome):
     @property
     def version(self) -> str: ...
@@ -195,6 +203,7 @@ class Result(_Outcome):
     def plot(self, figure: Any = ...) -> Any: ...
     def _repr_html_(self) -> str: ...
 
+@final
 class World:
     def __init__(self, file: _Path, set: Mapping[str, Any] = ..., plugin_path: Sequence[_Path] = ...,
                  known: bool = ...) -> None: ...

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exception of the package, in Python so that it can be pickled."""
-from typing import Optional, Sequence
+from typing import Any, Dict, Optional, Sequence, Tuple
 
 
 class Error(Exception):
@@ -12,7 +12,7 @@ class Error(Exception):
 
     def __init__(self, message: str = "", file: Optional[str] = None, line: Optional[int] = None,
                  column: Optional[int] = None, key: Optional[str] = None,
-                 reason: Optional[str] = None, problems: Sequence[dict] = ()):
+                 reason: Optional[str] = None, problems: Sequence[Dict[str, Any]] = ()):
         super().__init__(message)
         self.message = message
         self.file = file
@@ -22,6 +22,6 @@ class Error(Exception):
         self.reason = reason
         self.problems = list(problems)
 
-    def __reduce__(self):
+    def __reduce__(self) -> Tuple[Any, ...]:
         return type(self), (self.message, self.file, self.line, self.column, self.key,
                             self.reason, self.problems)

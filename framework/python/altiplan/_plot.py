@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of results, with matplotlib where it is installed."""
 import math
+from typing import TYPE_CHECKING, List, Optional
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ._altiplan import Result
 
 
-def _along(points):
+def _along(points: List[List[float]]) -> List[float]:
     """Horizontal distances from the first point, along the points (m)."""
     distances = [0.0]
     for a, b in zip(points, points[1:]):
@@ -11,7 +17,7 @@ def _along(points):
     return distances
 
 
-def plot(result, figure=None):
+def plot(result: "Result", figure: "Optional[Figure]" = None) -> "Figure":
     """A top view and the height profile of the accepted route, and of the flight's track; the routes
     of other steps are thin. Axes are in metres of the scenario's frame. Returns the
     matplotlib.figure.Figure, a new one unless `figure` is given; ImportError without matplotlib."""

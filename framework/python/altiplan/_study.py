@@ -123,7 +123,8 @@ class Study:
                 values[[row_of[run] for run, _, _ in some],
                        [column_of[quantity] for _, quantity, _ in some]] = [one[2] for one in some]
         parameters = [_parameters(*row[len(_COLUMNS):]) for row in rows]
-        table = {name: [row[i] for row in rows] for i, name in enumerate(_COLUMNS)}
+        table: Dict[str, Any] = {name: [row[i] for row in rows]
+                                 for i, name in enumerate(_COLUMNS)}
         for name in dict.fromkeys(name for each in parameters for name in each):
             table[name] = [each.get(name) for each in parameters]
         for quantity, i in column_of.items():

@@ -41,7 +41,7 @@ def _text(value: Any) -> str:
     return json.dumps(value)
 
 
-def assignments(values: Mapping) -> List[str]:
+def assignments(values: "Mapping[str, Any]") -> List[str]:
     """{"steps.0.with.weight_g": 0.6} as the texts of --set; None removes a key."""
     if not isinstance(values, Mapping):
         raise TypeError(f"set: expected a dict of keys and values, found {type(values).__name__}")
@@ -63,7 +63,8 @@ def point(value: Any, name: str) -> List[float]:
     for number in numbers_of:
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise TypeError(f"{name}: expected numbers, found {type(number).__name__}")
-    return _plain(numbers_of, name)
+    plain: List[float] = _plain(numbers_of, name)
+    return plain
 
 
 def path(value: Any, name: str) -> str:
@@ -87,9 +88,10 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
     """A whole number in a range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(f"{name}: expected a whole number, found {type(value).__name__}")
-    if not low <= value <= high:
+    number = int(value)
+    if not low <= number <= high:
         raise ValueError(f"{name}: expected a whole number from {low} to {high}, found {value}")
-    return int(value)
+    return number
 
 
 def seed(value: Any) -> Optional[int]:
@@ -101,18 +103,20 @@ def seconds(value: Any, name: str) -> float:
     """A time that a step may take."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name}: expected a number of seconds, found {type(value).__name__}")
-    if not 0.001 <= value <= 1e8:
+    number = float(value)
+    if not 0.001 <= number <= 1e8:
         raise ValueError(f"{name}: expected a number from 0.001 to 1e8, found {value}")
-    return float(value)
+    return number
 
 
 def fraction(value: Any, name: str) -> float:
     """A part of a whole."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name}: expected a fraction, found {type(value).__name__}")
-    if not 0 < value <= 1:
+    number = float(value)
+    if not 0 < number <= 1:
         raise ValueError(f"{name}: expected a number above 0, up to 1, found {value}")
-    return float(value)
+    return number
 
 
 def text(value: Any, name: str) -> str:
