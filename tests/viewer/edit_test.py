@@ -75,6 +75,9 @@ class Page(EditCase):
     def find(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
+    def press(self, selector):
+        self.await_(lambda: self.find(selector).click() or True)
+
     def handle(self, key):
         return self.find(f'.handle[data-key="{key}"]')
 
@@ -119,7 +122,7 @@ class Page(EditCase):
         numbers = [one["number"] for one in times]
         self.assertEqual(numbers, sorted(numbers))
         self.assertEqual(times[-1]["quick"], False)
-        self.find("#undo").click()
+        self.press("#undo")
         self.await_(lambda: not self.sets())
         self.still()
         self.assertEqual(self.route(), before)
@@ -229,6 +232,57 @@ class Page(EditCase):
         self.await_(lambda: "cell_m" in self.find("#edit [role=status]").text)
         self.assertTrue(any("cell_m=[40, 40, 30]" in text for text in self.sets()))
 
+    def test_a_constraint_is_of_one_pipeline(self):
+        self.open()
+        self.find("#compare").click()
+        self.await_(lambda: len(self.state()["pipelines"]) == 2)
+        self.await_(lambda: len(self.driver.find_elements(By.CSS_SELECTOR, "#edit h3")) == 2)
+        choices = self.driver.find_elements(By.CSS_SELECTOR, "[aria-label='A further constraint']")
+        Select(choices[1]).select_by_value("climb_angle")
+        form = choices[1].find_element(By.XPATH, "..")
+        form.find_element(By.CSS_SELECTOR, "[aria-label=max_deg]").send_keys("12")
+        form.find_element(By.CSS_SELECTOR, "button").click()
+        self.await_(lambda: any("climb_angle" in text for text in self.sets(1)))
+        self.assertEqual(self.sets(0), [])
+
+    def test_a_click_selects_and_moves_nothing(self):
+        self.open()
+        for key, by in (("environment.1.box", 0), ("goal", 2)):
+            ActionChains(self.driver).click_and_hold(self.handle(key)).move_by_offset(by, 0).release().perform()
+            self.await_(lambda key=key: Select(self.find("#items")).first_selected_option.get_attribute("value") == key)
+        self.still()
+        self.assertEqual(self.sets(), [])
+
+    def test_an_event_is_dragged_on_the_clock(self):
+        self.open()
+        self.await_(lambda: self.find("#clock [data-event='0']"))
+        height = self.find("#stage").size["height"]
+        drag = ActionChains(self.driver, duration=50).click_and_hold(self.find("#clock [data-event='0']"))
+        for _ in range(10):
+            drag.move_by_offset(10, 0)
+        drag.perform()
+        self.assertEqual(self.find("#stage").size["height"], height)
+        time.sleep(0.3)
+        ActionChains(self.driver).move_by_offset(5, 0).release().perform()
+        self.await_(lambda: self.sets() and not self.state()["quick"])
+        self.still()
+        [text] = self.sets()
+        second = float(text.removeprefix("scenario.events.0.at_s="))
+        wide = self.find("#clock .marks").size["width"]
+        last = float(self.find("#time").get_attribute("max"))
+        self.assertAlmostEqual(second, 20 + 105 / wide * last, delta=0.15 * last)
+
+    def test_a_narrow_window_shows_all(self):
+        self.addCleanup(self.browser.size, 1400, 900)
+        for width, height in ((800, 600), (390, 844)):
+            self.browser.size(width, height)
+            self.open()
+            for part in ("#stage", "#edit"):
+                rect = self.find(part).rect
+                self.assertGreater(rect["width"], 0.9 * width, (width, part))
+                self.assertGreater(rect["height"], 150, (width, part))
+                self.assertLessEqual(rect["y"] + rect["height"], height + 1, (width, part))
+
     def test_another_scene_shows_what_a_page_of_its_own_shows(self):
         session = self.open()
         first = self.texts()
@@ -260,7 +314,7 @@ class Page(EditCase):
         labels = self.browser.run("return [...document.querySelectorAll('.mark.violation > span')]"
                                   ".map((one) => one.textContent)")
         self.assertTrue(labels and "150.00 m" in labels[0], labels)
-        self.find("#undo").click()
+        self.press("#undo")
         self.await_(lambda: not self.sets())
         self.still()
         self.assertEqual(self.browser.run(lines), 1)

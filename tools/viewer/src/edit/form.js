@@ -43,7 +43,8 @@ export function row({key, unit, doc, choices = [], type = '', ...spec}, written,
 export function rows(parameters, written, change) {
   const known = new Set(parameters.map(({key}) => key));
   const others = Object.keys(written).filter((key) => !known.has(key)).map((key) => ({key}));
-  return [...parameters, ...others]
+  // Some parameters are written by several keys, and have a sentence for a name.
+  return [...parameters.filter(({key}) => /^\w+$/.test(key)), ...others]
     .toSorted((a, b) => (b.key in written) - (a.key in written))
     .map((spec) => row(spec, written[spec.key], (text) => change(spec.key, text)));
 }

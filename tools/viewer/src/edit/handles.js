@@ -6,6 +6,8 @@ import {round_step} from '../units.js';
 const kSteps = 200;
 // After a key, before the whole plan is made.
 const kStillMs = 400;
+// Pixels by which a pointer may move in a click.
+const kJitter = 4;
 const kArrows = {ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0],
   PageUp: [0, 0, 1], PageDown: [0, 0, -1]};
 
@@ -32,7 +34,7 @@ export function build_handles(view, world, editor) {
       handles.delete(key);
     }
     for (const item of all) {
-      const Kind = {heading: Heading, radius: Radius, corner: Corner}[item.kind] ?? Handle;
+      const Kind = {heading: Heading, radius: Radius, corner: Corner, vertex: Vertex}[item.kind] ?? Handle;
       const handle = handles.get(item.key) ?? new Kind(item, layer, {view, world, editor, place});
       handles.set(item.key, handle);
       handle.is(item, editor.selected === item.key);
@@ -55,12 +57,16 @@ function heading_of({key, kind, name, at}, {heading_deg}) {
       degrees: Number(heading_deg), at}];
 }
 
-/** The radius of what is round, and the corners of a box, as something to pull. */
+/** The radius of what is round, and the corners of a box or an outline, as something to pull. */
 function size_of({key, name, at, kind}, written) {
   const part = {of: key, name: `Size of ${name}`, middle: at};
   const radius = ['radius_m', 'range_m'].find((one) => Number(written[one]) > 0);
   if (radius && !['start', 'via', 'goal'].includes(kind)) {
     return [{...part, key: `${key}.${radius}`, kind: 'radius', radius: Number(written[radius]), at}];
+  }
+  if (written.outline_m) {
+    return written.outline_m.map(([x, y], nth) =>
+      ({...part, key: `${key}.outline_m.${nth}`, kind: 'vertex', at: [Number(x), Number(y), at[2]]}));
   }
   return ['min_m', 'max_m'].filter((one) => written.min_m?.length >= 2 && written[one]?.length >= 2).map((one) =>
     ({...part, key: `${key}.${one}`, kind: 'corner', corner: written[one].map(Number),
@@ -74,6 +80,7 @@ class Handle {
     this.made = element('button', {className: 'handle', type: 'button',
       onpointerdown: (event) => this.#take(event), onpointermove: (event) => this.#drag(event),
       onpointerup: () => this.#drop(), onpointercancel: () => this.#drop(),
+      onlostpointercapture: () => this.#drop(),
       onfocus: () => this.editor.select(this.item.of ?? this.item.key),
       onkeydown: (event) => this.#key(event)});
     layer.append(this.made);
@@ -83,7 +90,7 @@ class Handle {
     this.item = item;
     this.made.classList.toggle('selected', selected);
     this.made.dataset.key = item.key;
-    this.made.classList.toggle('size', ['radius', 'corner'].includes(item.kind));
+    this.made.classList.toggle('size', ['radius', 'corner', 'vertex'].includes(item.kind));
     this.made.title = item.of ? `${item.name}: drag, or move it by the arrow keys.` :
       `${item.name}: drag; with Shift in height. Arrow keys, Page up and down move it.`;
     this.made.ariaLabel = `${item.name}, ${item.kind}`;
@@ -105,6 +112,7 @@ class Handle {
     this.editor.dragging = true;
     this.from = this.rest(this.item);
     this.begun = this.#pointed(event);
+    this.grabbed = this.view.at_height(...this.begun, this.from[2]);
     this.by = null;
     this.editor.select(this.item.of ?? this.item.key);
   }
@@ -118,6 +126,7 @@ class Handle {
   #drag(event) {
     if (this.gesture === null) return;
     const [x, y] = this.#pointed(event);
+    if (!this.by && Math.hypot(x - this.begun[0], y - this.begun[1]) < kJitter) return;
     const by = event.shiftKey ? this.#up(y) : this.#across(x, y);
     if (!by) return;
     this.by = by;
@@ -132,8 +141,8 @@ class Handle {
   }
 
   #across(x, y) {
-    const height = this.from[2];
-    const [from, to] = [this.begun, [x, y]].map((pixel) => this.view.at_height(...pixel, height));
+    // The place is kept, not its pixel: the picture's size may change meanwhile.
+    const [from, to] = [this.grabbed, this.view.at_height(x, y, this.from[2])];
     return from && to && [to[0] - from[0], to[1] - from[1], 0];
   }
 
@@ -147,9 +156,12 @@ class Handle {
   }
 
   async #drop() {
-    if (this.gesture === null) return;
+    if (this.gesture === null || this.dropping) return;
+    this.dropping = true;
     this.editor.dragging = false;
     if (this.by) await this.ask(false);
+    else this.editor.select(this.item.of ?? this.item.key);
+    this.dropping = false;
     this.gesture = null;
     this.is(this.item, this.editor.selected === this.item.key);
   }
@@ -232,5 +244,13 @@ class Corner extends Handle {
     });
     const text = pulled.map((value) => Number(value.toFixed(2))).join(', ');
     return this.editor.change({set: [`scenario.${key}=[${text}]`], gesture: this.gesture, quick});
+  }
+}
+
+/** A corner of an outline. */
+class Vertex extends Handle {
+  ask(quick) {
+    const at = this.at.slice(0, 2).map((value) => Number(value.toFixed(1)));
+    return this.editor.change({set: [`scenario.${this.item.key}=[${at.join(', ')}]`], gesture: this.gesture, quick});
   }
 }

@@ -149,26 +149,30 @@ function pipeline_form({name, tree}, nth, editor, plugins) {
         }}, element('summary', {}, 'parameters'), own, parameters);
       return element('div', {className: 'step'}, element('span', {}, verb), plugin, details);
     }),
-    nth > 0 ? null : button('Compare with another', 'Plan with a second pipeline on the same world',
+    nth > 0 ? null : button('Compare with another', editor.state.pipelines.length > 1 ?
+      'Two are compared: open the page anew for another comparison' :
+      'Plan with a second pipeline on the same world; "Save as" writes it into a file of its own',
       () => editor.compare(), {id: 'compare', disabled: editor.state.pipelines.length > 1}));
 }
 
 function constraints_form(editor, plugins) {
-  const entries = (tree, prefix) => (tree.constraints ?? []).map((constraint, at) => {
+  const entries = (tree, prefix, nth) => (tree.constraints ?? []).map((constraint, at) => {
     const name = Object.keys(constraint)[0];
     const path = `${prefix}constraints.${at}`;
     return element('div', {className: 'step'}, element('b', {}, name),
       rows(spec_of(plugins, ['constraint'], name), constraint[name] ?? {}, (key, text) =>
-        editor.set([text === null ? `~${path}.${name}.${key}` : `${path}.${name}.${key}=${text}`])),
-      button('Remove', 'Remove this constraint', () => editor.set([`~${path}`])));
+        editor.set([text === null ? `~${path}.${name}.${key}` : `${path}.${name}.${key}=${text}`], nth)),
+      button('Remove', 'Remove this constraint', () => editor.set([`~${path}`], nth)));
   });
   const {pipelines, scenario} = editor.state;
-  const [{tree}] = pipelines;
-  return [...entries(tree, ''), ...entries(scenario, 'scenario.'), new_constraint(tree, editor, plugins)];
+  const own = pipelines.flatMap(({name, tree}, nth) => [
+    ...pipelines.length > 1 ? [element('h3', {}, `of ${name}`)] : [],
+    ...entries(tree, '', nth), new_constraint(tree, nth, editor, plugins)]);
+  return [...entries(scenario, 'scenario.', 0), ...own];
 }
 
 /** A constraint needs its limits before it can be checked. */
-function new_constraint(tree, editor, plugins) {
+function new_constraint(tree, nth, editor, plugins) {
   const names = plugins.filter(({kind}) => kind === 'constraint').map(({name}) => name);
   const name = element('select', {ariaLabel: 'A further constraint'}, element('option', {value: ''}, 'add …'),
     names.map((one) => element('option', {value: one}, one)));
@@ -182,7 +186,7 @@ function new_constraint(tree, editor, plugins) {
       const keys = Object.entries(written).filter(([, text]) => text !== null)
         .map(([key, text]) => `${key}: ${text}`);
       const text = `{${name.value}: {${keys.join(', ')}}}`;
-      editor.set([count > 0 ? `constraints.${count}=${text}` : `constraints=[${text}]`]);
+      editor.set([count > 0 ? `constraints.${count}=${text}` : `constraints=[${text}]`], nth);
     }));
   };
   return element('div', {className: 'step'}, name, limits);

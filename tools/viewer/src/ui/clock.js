@@ -10,7 +10,12 @@ const kWatchSeconds = 40;
 /** The flight's time: slider, play, speed, and marks of handovers, replans and events. */
 export function build_clock(world, store) {
   const tracks = world.lines.filter(({kind}) => kind === 'track');
-  by_id('clock').hidden = tracks.length === 0;
+  const is_editing = document.body.classList.contains('editing');
+  by_id('clock').hidden = tracks.length === 0 && !is_editing;
+  // While one drags, the picture above keeps its size.
+  if (tracks.length === 0 && is_editing) {
+    by_id('clock').style.minHeight = `${by_id('clock').offsetHeight}px`;
+  }
   by_id('clock').replaceChildren();
   if (tracks.length === 0) return;
   const last = Math.max(...tracks.map(({times}) => times.at(-1)));
