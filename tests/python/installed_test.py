@@ -2,6 +2,7 @@
 """installed_test.py PROGRAM PLUGINS SOURCES: the package works where the build has been installed to."""
 import os
 import subprocess
+import sys
 
 import case
 from case import PROGRAM, PythonCase
@@ -29,6 +30,18 @@ class Installed(PythonCase):
         self.assertIn("solved", text)
         self.assertRegex(text, rf"searched: {tree}/lib[^ ]*/altiplan/plugins")
         self.assertNotIn(build + "/", text)
+        self.new_planner(tree / "bin/altiplan", {**path, "ALTIPLAN_PYTHON": sys.executable})
+
+    def new_planner(self, program, environment):
+        """A planner in Python is written and found by an installed program, without PYTHONPATH."""
+        environment.pop("PYTHONPATH")
+        for arguments in (["new", "planner", "bends", "--python"],
+                          ["run", self.write("p.yaml", self.pipeline.read_text().replace(
+                              "astar\n    with: {cell_m: [50, 50, 50]}", "bends")),
+                           "--plugin-path", "."]):
+            done = subprocess.run([program, *arguments], cwd=self.folder, env=environment, text=True,
+                                  capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string kind;
   std::string name;
+  bool python = false;
 };
 
 constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner",
@@ -73,6 +74,10 @@ std::string usage_problem(const Arguments& arguments) {
       kinds += (kinds.empty() ? "" : ", ") + std::string(kind);
     }
     return "KIND: expected one of " + kinds + ", found '" + arguments.kind + "'";
+  }
+  if (arguments.python && arguments.kind != "planner" && arguments.kind != "smoother") {
+    return "--python: planners and smoothers alone are written in Python, found '" +
+           arguments.kind + "'";
   }
   if (!host::is_snake_case(arguments.name)) {
     return "NAME: expected lower-case letters, digits and '_', the first a letter" + found;
@@ -144,11 +149,29 @@ Files project(const Arguments& arguments) {
   return files;
 }
 
+/// A plugin in Python is one file, in the current folder.
+int new_script(const Arguments& arguments) {
+  const fs::path file = arguments.name + ".py";
+  if (fs::exists(fs::symlink_status(file))) {
+    throw Error("'" + file.string() + "' exists and is not overwritten: choose another name");
+  }
+  const fs::path templates = host::install_root() / "share/altiplan/templates";
+  std::string text = kit::read_file((templates / "python" / (arguments.kind + ".py")).string());
+  replace_all(text, "@name@", arguments.name);
+  host::write_file(file, text);
+  std::cout << file.string() << " is a " << arguments.kind << ": altiplan check-plugin "
+            << file.string() << " checks it, and --plugin-path . finds it\n";
+  return kDone;
+}
+
 int new_project(const Arguments& arguments) {
   const std::string problem = usage_problem(arguments);
   if (!problem.empty()) {
     std::cerr << "altiplan: new: " << problem << '\n';
     return kUsage;
+  }
+  if (arguments.python) {
+    return new_script(arguments);
   }
   const Files files = project(arguments);
   const fs::path folder = arguments.name;
@@ -185,6 +208,9 @@ void add_new(App& app, Action& action) {
   command
       ->add_option("name", arguments->name, "name of the plugin and of its folder, in snake_case")
       ->required();
+  command->add_flag(
+      "--python", arguments->python,
+      "write a planner or smoother in Python: the file NAME.py, which needs no build");
   set_example(*command, "altiplan new planner my_planner");
   command->callback(
       [&action, arguments] { action = [arguments] { return new_project(*arguments); }; });

@@ -47,8 +47,12 @@ class Descriptors {
   Descriptors(const ProgramFiles& files, int end) {
     posix_spawn_file_actions_init(&actions_);
     add(STDIN_FILENO, "/dev/null", O_RDONLY);
-    add(STDOUT_FILENO, "/dev/null", O_WRONLY);
-    add(STDERR_FILENO, files.errors.c_str(), O_WRONLY | O_CREAT);
+    if (files.errors.empty()) {
+      posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+    } else {
+      add(STDOUT_FILENO, "/dev/null", O_WRONLY);
+      add(STDERR_FILENO, files.errors.c_str(), O_WRONLY | O_CREAT);
+    }
     for (const int descriptor : files.wired) {
       posix_spawn_file_actions_adddup2(&actions_, end, descriptor);
     }
@@ -94,8 +98,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
 bool wait_for(int socket, short events, Program::Clock::time_point until) {
   pollfd ready{socket, events, 0};
   while (true) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(until - Program::Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Program::Clock::now());
     const int found = ::poll(&ready, 1, int(std::clamp<long>(left.count(), 0, 1'000'000)));
     if (found > 0) {
       return true;
@@ -198,15 +201,17 @@ bool Program::receive(std::string& to, Clock::time_point until) {
 }
 
 std::optional<int> Program::ended(Clock::time_point until) const {
-  do {
+  while (true) {
     siginfo_t info{};
     // Not reaped yet, so that its id is not reused before its group has ended.
     if (::waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
         info.si_pid == pid_) {
       return info.si_code == CLD_EXITED ? info.si_status : -1;
     }
+    if (Clock::now() >= until) {
+      return std::nullopt;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  } while (Clock::now() < until);
-  return std::nullopt;
+  }
 }
 }  // namespace altiplan::host

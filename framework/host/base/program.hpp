@@ -32,7 +32,8 @@ class TemporaryFolder {
 /// The surroundings of a program.
 struct ProgramFiles {
   std::vector<int> wired{};                    ///< descriptors at which it talks to this one
-  std::filesystem::path errors = "/dev/null";  ///< receives its standard error
+  std::filesystem::path errors = "/dev/null";  ///< receives its standard error; "": that of this
+                                               ///< program receives both, output and error
   std::filesystem::path temporary{};           ///< its TMPDIR, "" for that of this program
 };
 

@@ -10,6 +10,7 @@
 #include "host/base/machine_fault.hpp"
 #include "host/plugins/checksum.hpp"
 #include "host/plugins/registry.hpp"
+#include "host/plugins/script.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -153,6 +154,9 @@ bool is_snake_case(std::string_view name) {
 }
 
 Library examine_library(const std::filesystem::path& file) {
+  if (is_script(file)) {
+    return examine_script(file);
+  }
   Library library;
   library.file = file;
   try {

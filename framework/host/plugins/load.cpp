@@ -17,6 +17,7 @@
 #include "host/plugins/checksum.hpp"
 #include "host/plugins/private_copy.hpp"
 #include "host/plugins/registry.hpp"
+#include "host/plugins/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -195,6 +196,9 @@ struct Loaded {
 }  // namespace
 
 std::vector<const PluginEntry*> load_library(const Library& library) {
+  if (is_script(library.file)) {
+    return load_script(library);
+  }
   static std::mutex mutex;
   static std::map<std::string, Loaded>& loaded = *new std::map<std::string, Loaded>;
   const std::string key =
@@ -213,6 +217,9 @@ std::vector<const PluginEntry*> load_library(const Library& library) {
 }
 
 bool is_unchanged(const Library& library) {
+  if (is_script(library.file)) {
+    return examine_script(library.file).build == library.build;
+  }
   try {
     const PrivateCopy copy(library.file);
     verify(library, copy);

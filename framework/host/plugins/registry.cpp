@@ -12,6 +12,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/plugins/install_root.hpp"
+#include "host/plugins/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -30,7 +31,7 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".so") {
+    if (it->path().extension() == ".so" || offers_scripts(it->path())) {
       files.push_back(it->path());
     }
   }

@@ -11,6 +11,7 @@
 #include "check_plugin/verdicts.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
+#include "host/plugins/script.hpp"
 #include "host/result/result_json.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -104,6 +105,7 @@ std::vector<PluginTest> chosen(const Arguments& arguments, const PluginToCheck& 
 /// Runs one test in this process: for a debugger, or for the parent process that reads --answer.
 int run_here(const Arguments& arguments, const PluginTest& test, const CheckedLibrary& library) {
   Outcome outcome;
+  host::keep_script_processes();
   try {
     outcome = test.run();
   } catch (const std::exception& error) {
@@ -219,10 +221,12 @@ std::string regex_problem(const std::string& text) {
 void add_check_plugin(App& app, Action& action) {
   App* command =
       app.add_subcommand("check-plugin",
-                         "check a plugin library against the contract of its interface, each test "
+                         "check a plugin against the contract of its interface, each test "
                          "in its own process");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("library", arguments->library, "plugin library (.so)")
+  command
+      ->add_option("library", arguments->library,
+                   "plugin library (.so), or planner in Python (.py)")
       ->required()
       ->type_name("LIB");
   command

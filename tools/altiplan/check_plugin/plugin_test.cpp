@@ -7,6 +7,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/plugins/elf_file.hpp"
+#include "host/plugins/script.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -217,9 +218,11 @@ void expect_known_plugins(const PluginToCheck& what, const host::Library& librar
 std::vector<PluginTest> tests_of(const PluginToCheck& what) {
   const host::Library library = host::examine_library(what.library);
   expect_known_plugins(what, library);
-  std::vector<PluginTest> all{
-      {"library/manifest", [library] { return manifest_fits(library); }},
-      {"library/exports_one_symbol", [library] { return exports_one_symbol(library); }}};
+  std::vector<PluginTest> all{{"library/manifest", [library] { return manifest_fits(library); }}};
+  if (!host::is_script(library.file)) {
+    all.push_back(
+        {"library/exports_one_symbol", [library] { return exports_one_symbol(library); }});
+  }
   if (!library.refused.empty()) {
     return all;  // none of its code may run
   }

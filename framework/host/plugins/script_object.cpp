@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/plugins/script_object.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <map>
+
+#include "altiplan/error.hpp"
+#include "host/plugins/script.hpp"
+#include "host/plugins/script_plan.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Processes without a planner, which have run the file; closed unless it is asked for.
+class Waiting {
+ public:
+  void open() { is_open_ = true; }
+  void give(const std::filesystem::path& file, std::unique_ptr<ScriptWorker> worker) {
+    const std::lock_guard lock(mutex_);
+    if (is_open_) {
+      workers_[file].push_back(std::move(worker));
+    }
+  }
+  std::unique_ptr<ScriptWorker> take(const std::filesystem::path& file) {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::unique_ptr<ScriptWorker>>& waiting = workers_[file];
+    if (waiting.empty()) {
+      return nullptr;
+    }
+    std::unique_ptr<ScriptWorker> worker = std::move(waiting.back());
+    waiting.pop_back();
+    return worker;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<bool> is_open_ = false;
+  std::map<std::filesystem::path, std::vector<std::unique_ptr<ScriptWorker>>> workers_;
+};
+
+Waiting& waiting() {
+  static Waiting all;  // destroyed at the end of the program, with the processes
+  return all;
+}
+
+Traits traits_of(const Json& told) {
+  Traits traits;
+  for (const auto& [name, value] :
+       {std::pair("complete", &traits.complete), std::pair("optimal", &traits.optimal),
+        std::pair("any_angle", &traits.any_angle), std::pair("anytime", &traits.anytime),
+        std::pair("planar", &traits.planar), std::pair("spatial", &traits.spatial),
+        std::pair("avoids_obstacles", &traits.avoids_obstacles)}) {
+    *value = told.value(name, *value);
+  }
+  return traits;
+}
+}  // namespace
+
+void keep_script_processes() { waiting().open(); }
+
+ScriptObject::ScriptObject(ScriptSource source) : source_(std::move(source)), owner_(::getpid()) {
+  idle_.push_back(make_worker(&traits_));
+}
+
+ScriptObject::~ScriptObject() {
+  for (std::unique_ptr<ScriptWorker>& worker : idle_) {
+    if (::getpid() != owner_) {
+      (void)worker.release();
+    } else {
+      waiting().give(source_.file, std::move(worker));
+    }
+  }
+}
+
+std::unique_ptr<ScriptWorker> ScriptObject::make_worker(Traits* traits) const {
+  std::unique_ptr<ScriptWorker> worker = waiting().take(source_.file);
+  if (worker == nullptr) {
+    worker = std::make_unique<ScriptWorker>(source_.file);
+  }
+  const ScriptMessage made = worker->answer_to(
+      {{"make", source_.name}, {"kind", source_.kind}, {"with", source_.parameters}});
+  if (traits != nullptr) {
+    *traits = traits_of(made.head.value("traits", Json::object()));
+  }
+  return worker;
+}
+
+std::unique_ptr<ScriptWorker> ScriptObject::take_worker() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty() && ::getpid() == owner_) {
+      std::unique_ptr<ScriptWorker> worker = std::move(idle_.back());
+      idle_.pop_back();
+      return worker;
+    }
+  }
+  return make_worker(nullptr);
+}
+
+PlanResult ScriptObject::answer(const Request& request, const Polyline* route) const {
+  std::unique_ptr<ScriptWorker> worker = take_worker();
+  PlanResult result = ScriptPlan(request, route, *worker).result();
+  const std::lock_guard lock(mutex_);
+  if (::getpid() == owner_) {
+    idle_.push_back(std::move(worker));
+  }
+  return result;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/plugins/script_plan.hpp"
+
+#include <cmath>
+
+#include "altiplan/error.hpp"
+#include "host/plugins/script_answers.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr auto kGrace = std::chrono::milliseconds(500);  ///< to heed a stop
+constexpr auto kLook = std::chrono::milliseconds(20);    ///< between two looks at the budget
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// JSON has no infinity.
+Json bound(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+template <class T>
+Json maybe(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json limits_of(const Limits& limits) {
+  Json bands = Json::array();
+  for (const AltitudeBand& band : limits.altitude) {
+    bands.push_back({{"above_ground", band.datum == AltitudeBand::Datum::ground},
+                     {"min_m", bound(band.min)},
+                     {"max_m", bound(band.max)}});
+  }
+  return {{"min_clearance_m", limits.min_clearance},
+          {"min_ground_clearance_m", maybe(limits.min_ground_clearance)},
+          {"altitude", bands},
+          {"min_leg_m", limits.min_leg},
+          {"max_leg_m", bound(limits.max_leg)},
+          {"max_turn", limits.max_turn_horizontal},
+          {"max_turn_in_space", limits.max_turn_space},
+          {"min_turn_radius_m", limits.min_turn_radius},
+          {"max_climb", limits.max_climb},
+          {"max_descent", limits.max_descent()},
+          {"max_route_m", bound(limits.max_route_length)}};
+}
+
+Json vehicle_of(const Vehicle& vehicle) {
+  Json json = {{"radius_m", vehicle.radius_m},
+               {"speed_mps", vehicle.speed_mps},
+               {"sensing_m", bound(vehicle.sensing_m)},
+               {"wing", Json()}};
+  if (vehicle.wing) {
+    const Wing& wing = *vehicle.wing;
+    json["wing"] = {{"airspeed_mps", wing.airspeed_mps},
+                    {"bank", wing.bank},
+                    {"climb", wing.climb},
+                    {"sink", wing.sink},
+                    {"turn_radius_m", wing.turn_radius()}};
+  }
+  return json;
+}
+
+Json wind_of(const Wind& wind) {
+  Json layers = Json::array();
+  for (const Wind::Layer& layer : wind.layers) {
+    layers.push_back({{"above_m", bound(layer.above_m)}, {"velocity", numbers(layer.velocity)}});
+  }
+  return layers;
+}
+
+Json budget_of(const Budget& budget) {
+  Json json = {{"deadline", Json()}, {"max_iterations", budget.max_iterations}};
+  if (budget.deadline) {  // of the clock that Python calls monotonic
+    json["deadline"] = std::chrono::duration<double>(budget.deadline->time_since_epoch()).count();
+  }
+  return json;
+}
+
+Json values_of(const Request& request) {
+  RandomStream random = request.random;
+  Json layers = Json::array();
+  for (const Layer& layer : request.world->layers()) {
+    layers.push_back(layer.id);
+  }
+  const bool is_moving = !request.start.velocity.isZero(0);
+  return {{"start", numbers(request.start.position)},
+          {"start_velocity", is_moving ? numbers(request.start.velocity) : Json()},
+          {"goal", numbers(request.goal.position)},
+          {"goal_tolerance_m", request.goal.tolerance_m},
+          {"goal_heading", maybe(request.goal.heading)},
+          {"volume",
+           {request.volume.min.x(), request.volume.min.y(), request.volume.min.z(),
+            request.volume.max.x(), request.volume.max.y(), request.volume.max.z()}},
+          {"level_m", maybe(request.level_m)},
+          {"vehicle", vehicle_of(request.vehicle)},
+          {"limits", limits_of(request.limits)},
+          {"wind", wind_of(request.wind)},
+          {"threads", request.threads},
+          {"seed", random()},
+          {"budget", budget_of(request.budget)},
+          {"layers", layers}};
+}
+}  // namespace
+
+ScriptPlan::ScriptPlan(const Request& request, const Polyline* route, ScriptWorker& worker)
+    : request_(request),
+      route_(route),
+      worker_(worker),
+      memory_before_mb_(worker.memory_mb()),
+      memory_seen_(Clock::now()) {}
+
+PlanResult ScriptPlan::result() {
+  std::vector<double> points;
+  for (const Vec3& point : route_ != nullptr ? *route_ : Polyline()) {
+    points.insert(points.end(), point.begin(), point.end());
+  }
+  worker_.send({{route_ != nullptr ? "smooth" : "plan", values_of(request_)}}, points);
+  while (true) {
+    watch_budget();
+    const std::optional<ScriptMessage> message = worker_.receive(Clock::now() + kLook);
+    if (!message) {
+      continue;
+    }
+    if (!message->head.contains("ask")) {
+      return result_of(*message);
+    }
+    watch_budget();  // a stop comes before the answer
+    answer(*message);
+  }
+}
+
+void ScriptPlan::watch_budget() {
+  const Clock::time_point now = Clock::now();
+  watch_memory(now);
+  const Budget& budget = request_.budget;
+  const bool is_spent =
+      too_large_ || budget.stop.stop_requested() || (budget.deadline && now >= *budget.deadline);
+  if (!told_ && is_spent) {
+    told_ = now;
+    worker_.send({{"stop", true}});
+  } else if (told_ && now - *told_ > kGrace) {
+    throw PluginError(
+        too_large_ ? "used more memory than its within_mb and did not stop when told to"
+                   : "did not stop within half a second of the end of its time, and was ended",
+        Reason::never_stopped);
+  }
+}
+
+void ScriptPlan::watch_memory(Clock::time_point now) {
+  const double limit_mb = double(request_.budget.max_memory_bytes) / double(1 << 20);
+  if (request_.budget.max_memory_bytes == Budget().max_memory_bytes || now - memory_seen_ < kLook) {
+    return;
+  }
+  memory_seen_ = now;
+  const double grown = worker_.memory_mb() - memory_before_mb_;
+  too_large_ = too_large_ || grown > limit_mb;
+  if (grown > 2 * limit_mb + 64) {  // spare the machine
+    throw PluginError("used more memory than its within_mb and did not stop when told to",
+                      Reason::never_stopped);
+  }
+}
+
+void ScriptPlan::answer(const ScriptMessage& question) {
+  const ScriptMessage answer = script_answer(question, request_);
+  worker_.send(answer.head, answer.numbers);
+}
+
+PlanResult ScriptPlan::result_of(const ScriptMessage& answer) const {
+  PlanResult result;
+  const Json& head = answer.head;
+  const Json counters = head.value("counters", Json::object());
+  for (const auto& [name, value] : counters.items()) {
+    result.counters.push_back({name, value.get<std::int64_t>()});
+  }
+  const bool is_spent = told_.has_value() || head.value("spent", false);
+  if (head.contains("none") && route_ == nullptr) {
+    take_failure(head, result);
+    return result;
+  }
+  result.status = PlanStatus::solved;
+  if (head.contains("none")) {
+    result.route = *route_;
+    result.message = "left unchanged: " + head.value("none", "");
+  } else {
+    Polyline points;
+    for (std::size_t i = 0; i + 2 < answer.numbers.size(); i += 3) {
+      points.emplace_back(answer.numbers[i], answer.numbers[i + 1], answer.numbers[i + 2]);
+    }
+    result.route = std::move(points);
+  }
+  result.budget_hit = route_ != nullptr && is_spent;
+  return result;
+}
+
+void ScriptPlan::take_failure(const Json& head, PlanResult& result) const {
+  const bool is_spent = told_.has_value() || head.value("spent", false);
+  const bool is_cancelled = !too_large_ && request_.budget.stop.stop_requested();
+  result.status = !is_spent      ? PlanStatus::no_route
+                  : is_cancelled ? PlanStatus::cancelled
+                                 : PlanStatus::timed_out;
+  result.budget_hit = result.status == PlanStatus::timed_out;
+  result.proved = !is_spent && head.value("proved", false);
+  result.message = head.value("none", "");
+  if (too_large_) {
+    result.reason = Reason::memory;
+    result.message = "stopped: it used more memory than its within_mb";
+  } else if (result.message.empty()) {
+    result.message = is_spent ? "the budget ended before a route was found" : "found no route";
+  }
+}
+}  // namespace altiplan::host
