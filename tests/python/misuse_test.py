@@ -218,6 +218,13 @@ class Objects(PythonCase):
                 self.assertRaises(TypeError, object.__new__, kind)
                 self.assertRaises(TypeError, type, "Sub", (kind,), {})
 
+    def test_the_base_of_all_classes(self):
+        base = altiplan.Route.__base__
+        for make in (base, lambda: base.__new__(base), lambda: type(base)("Mine", (base,), {})()):
+            with self.assertRaises(TypeError):
+                make()
+        self.assertRaises(TypeError, base.__init__, altiplan.Route([[1, 2, 3]]))
+
     def test_copies(self):
         route = altiplan.Route([[1, 2, 3], [4, 5, 6]])
         self.assertEqual(copy.deepcopy(route), route)
