@@ -43,6 +43,23 @@ class Arguments(PythonCase):
                 for message in messages:
                     self.assertRegex(message, r"shape \(n, 3\)|beyond 1e8 m")
 
+    def test_callbacks_that_raise(self):
+        class Raises:
+            def fail(self, *_):
+                raise ZeroDivisionError("mine")
+
+            __array__ = __float__ = __fspath__ = fail
+
+        class Values(dict):
+            def items(self):
+                raise ZeroDivisionError("mine")
+
+        world = altiplan.World(self.scenario)
+        for call in (lambda: altiplan.Route(Raises()), lambda: world.clearance(Raises()),
+                     lambda: world.legs_blocked([[1, 2, 3]], Raises()), lambda: world.check(Raises()),
+                     lambda: world.ground(Raises()), lambda: altiplan.run(self.pipeline, set=Values())):
+            self.assertEqual(self.refuses(ZeroDivisionError, call), "mine")
+
     def test_other_shapes(self):
         world = altiplan.World(self.scenario)
         message = self.refuses(ValueError, world.ground, [[1, 2, 3]])
