@@ -24,11 +24,12 @@ from . import _altiplan, _plot, _values
 from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violation, World,
                         __version__)
 from ._error import Error
+from ._go import go
 from ._planner import NoRoute, parameter, parameters, planner, smoother
 from ._study import Study, study
 
 __all__ = ["Check", "Error", "Flight", "Leg", "Metrics", "NoRoute", "Result", "Route", "Step",
-           "Study", "Violation", "World", "check", "parameter", "parameters", "plan", "planner",
+           "Study", "Violation", "World", "check", "go", "parameter", "parameters", "plan", "planner",
            "run", "smoother", "study"]
 
 _Path = _Union[str, "_os.PathLike[str]"]

@@ -38,9 +38,9 @@ def _refuse(text: str, code: int) -> NoReturn:
                 first.get("key"), problems=problems)
 
 
-def call(*arguments: str) -> List[str]:
-    """Runs a command; returns the lines of its warnings. Error with its message if it fails. Ctrl-C
-    stops it as it stops the program, which keeps what is done, and raises KeyboardInterrupt."""
+def call(*arguments: str, results: Sequence[int] = (0,)) -> List[str]:
+    """Runs a command; returns the lines of its warnings. Error with its message if it ends with an exit
+    code that is not one of `results`. Ctrl-C stops it as it stops the program, which keeps what is done, and raises KeyboardInterrupt."""
     # In a session of its own, so that Ctrl-C in a terminal reaches it once: from here.
     with subprocess.Popen([_path(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, start_new_session=True) as process:
@@ -52,7 +52,7 @@ def call(*arguments: str) -> List[str]:
     text = said.decode("utf-8", "replace")
     if process.returncode == _INTERRUPTED:  # by somebody else's signal
         raise KeyboardInterrupt
-    if process.returncode != 0:
+    if process.returncode not in results:
         _refuse(text, process.returncode)
     return text.splitlines()
 
