@@ -65,6 +65,12 @@ class Notebooks(PythonCase):
         self.assertIn("accepted: True", found[2][1])
         self.assertIn("m above the ground", "".join(printed for _, printed in found))
 
+    def test_planner(self):
+        found = self.run_all("planner")
+        self.assertRegex(found[1][1], "^solved True [0-9]+ m")
+        self.assertIn("step_m: expected more than 0 m, found -1", found[2][1])
+        self.assertRegex(found[3][1], "my_tree +solved [0-9]+ m")
+
     def test_study(self):
         found = self.run_all("study")
         self.assertIn("<iframe", found[0][0])
