@@ -108,7 +108,8 @@ std::vector<PluginFolder> plugin_folders() {
 }
 
 TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
-  const std::regex kOthers("^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|link|study|tune|py)");
+  const std::regex kOthers(
+      "^(yaml-cpp|boost|fcl|gdal|ogr|cpl_|nlohmann|CLI|host|link|study|tune|py)");
   EXPECT_GT(sources("framework/include").size(), 20u);
   EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
 }
@@ -144,9 +145,8 @@ TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
 
 TEST(Structure, EveryFolderIsARoomThatTheReadmeShows) {
   std::set<std::string> folders;
-  for (const char* part :
-       {"framework/host", "framework/link", "framework/study", "framework/tune",
-        "framework/python"}) {
+  for (const char* part : {"framework/host", "framework/link", "framework/study", "framework/tune",
+                           "framework/python"}) {
     for (const fs::path& file : sources(part)) {
       folders.insert(fs::relative(file.parent_path(), kSource / "framework").string());
     }
