@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "host/config/yaml.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
+#include "host/plugins/asked_world.hpp"
 #include "python/arrays.hpp"
 #include "python/attended.hpp"
 #include "python/records.hpp"
@@ -103,8 +103,7 @@ py::array_t<double> clearance(const FileWorld& world, const py::object& points) 
   py::array_t<double> answers(rows.shape(0));
   double* to = answers.mutable_data();
   for_each_row(rows.shape(0), [&](py::ssize_t i) {
-    const Vec3 point = point_at(rows, i, "points");
-    to[i] = is_finite(point) ? world.world().clearance(point) : -kInfinity;
+    to[i] = host::asked_clearance(world.world(), point_at(rows, i, "points"));
   });
   return answers;
 }
@@ -123,9 +122,8 @@ py::array_t<bool> legs_blocked(const FileWorld& world, const py::object& a, cons
   py::array_t<bool> answers(from.shape(0));
   bool* answer = answers.mutable_data();
   for_each_row(from.shape(0), [&](py::ssize_t i) {
-    const Vec3 begin = point_at(from, i, "a");
-    const Vec3 end = point_at(to, i, "b");
-    answer[i] = !is_finite(begin) || !is_finite(end) || world.world().blocked(begin, end, radius_m);
+    answer[i] =
+        host::asked_blocked(world.world(), point_at(from, i, "a"), point_at(to, i, "b"), radius_m);
   });
   return answers;
 }
@@ -136,9 +134,7 @@ py::array_t<double> ground(const FileWorld& world, const py::object& points_xy) 
   double* to = heights.mutable_data();
   for_each_row(rows.shape(0), [&](py::ssize_t i) {
     const double* xy = rows.data() + 2 * i;
-    const bool finite = std::isfinite(xy[0]) && std::isfinite(xy[1]);
-    to[i] = (finite ? world.world().ground(xy[0], xy[1]) : std::nullopt)
-                .value_or(std::numeric_limits<double>::quiet_NaN());
+    to[i] = host::asked_ground(world.world(), xy[0], xy[1]);
   });
   return heights;
 }

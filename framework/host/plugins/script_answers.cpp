@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/plugins/script_answers.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "host/plugins/asked_world.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -35,8 +33,7 @@ class Points {
 std::vector<double> clearances(const Points& points, const Request& request) {
   std::vector<double> answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 point = points.at(0, i);
-    answers.push_back(is_finite(point) ? request.world->clearance(point) : -kInfinity);
+    answers.push_back(asked_clearance(*request.world, points.at(0, i)));
   }
   return answers;
 }
@@ -44,9 +41,7 @@ std::vector<double> clearances(const Points& points, const Request& request) {
 std::vector<double> heights(const std::vector<double>& xy, const Request& request) {
   std::vector<double> answers;
   for (std::size_t i = 0; i + 1 < xy.size(); i += 2) {
-    const bool finite = std::isfinite(xy[i]) && std::isfinite(xy[i + 1]);
-    answers.push_back((finite ? request.world->ground(xy[i], xy[i + 1]) : std::nullopt)
-                          .value_or(std::numeric_limits<double>::quiet_NaN()));
+    answers.push_back(asked_ground(*request.world, xy[i], xy[i + 1]));
   }
   return answers;
 }
@@ -54,10 +49,9 @@ std::vector<double> heights(const std::vector<double>& xy, const Request& reques
 std::vector<double> blocked(const Points& points, double radius, const Request& request) {
   std::vector<double> answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 a = points.at(0, i);
-    const Vec3 b = points.at(1, i);
-    const bool finite = is_finite(a) && is_finite(b) && radius >= 0;
-    answers.push_back(!finite || request.world->blocked(a, b, radius) ? 1 : 0);
+    const bool meets =
+        !(radius >= 0) || asked_blocked(*request.world, points.at(0, i), points.at(1, i), radius);
+    answers.push_back(meets ? 1 : 0);
   }
   return answers;
 }
