@@ -136,7 +136,8 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
 }
 /// The layers by their least clearance from a waypoint: where a near one is measured first, one
 /// query a leg shows that the others are further away.
-std::vector<const Environment*> nearest_first(const World& world, const Route& route) {
+std::vector<std::pair<double, const Environment*>> nearest_first(const World& world,
+                                                                 const Route& route) {
   std::vector<std::pair<double, const Environment*>> layers;
   for (const Layer& layer : world.layers()) {
     double least = kInfinity;
@@ -147,11 +148,7 @@ std::vector<const Environment*> nearest_first(const World& world, const Route& r
   }
   std::stable_sort(layers.begin(), layers.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<const Environment*> sorted;
-  for (const auto& [least, layer] : layers) {
-    sorted.push_back(layer);
-  }
-  return sorted;
+  return layers;
 }
 }  // namespace
 
@@ -176,7 +173,7 @@ Measures measure(const Route& route, const Request& request) {
     points.push_back(points.front());
   }
   double clearance = kInfinity;
-  for (const Environment* layer : nearest_first(world, legs)) {
+  for (const auto& [least, layer] : nearest_first(world, legs)) {
     if (const auto nearest = nearest_leg(*layer, points, clearance)) {
       clearance = nearest->distance;
     }
