@@ -192,7 +192,9 @@ class Commands(ScriptCase):
         self.planner(f"return {AROUND}")
         self.planner("while True: pass", name="hangs")
         self.planner("import ctypes; ctypes.string_at(0)", name="crashes")
-        self.planner("import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(100)\n"
+        # The child has left the group before the planner returns, so that it is found.
+        self.planner("import os, time\nends, begins = os.pipe()\nif os.fork() == 0:\n    os.setsid()\n"
+                     "    os.write(begins, b'1')\n    time.sleep(100)\nos.read(ends, 1)\n"
                      f"return {AROUND}", name="forks")
         self.planner("kept = []\nwhile True: kept.append(bytearray(1 << 20))", name="hoards")
         expected = {"astar_alone": "solved", "tested": "solved", "hangs": "failed",
