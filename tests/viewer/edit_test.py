@@ -221,7 +221,7 @@ class Page(EditCase):
         self.still()
         self.assertEqual(self.browser.run(focus), beside)  # in the form that was built anew
         self.assertIsNotNone(beside)
-        self.find("#compare").click()
+        self.press("#compare")
         self.await_(lambda: len(self.state()["pipelines"]) == 2)
         self.await_(lambda: len(self.driver.find_elements(By.CSS_SELECTOR, "#side .result")) == 2)
         self.assertEqual(len(self.route()), 2)
@@ -234,9 +234,10 @@ class Page(EditCase):
 
     def test_a_constraint_is_of_one_pipeline(self):
         self.open()
-        self.find("#compare").click()
+        self.press("#compare")
         self.await_(lambda: len(self.state()["pipelines"]) == 2)
         self.await_(lambda: len(self.driver.find_elements(By.CSS_SELECTOR, "#edit h3")) == 2)
+        self.still()
         choices = self.driver.find_elements(By.CSS_SELECTOR, "[aria-label='A further constraint']")
         Select(choices[1]).select_by_value("climb_angle")
         form = choices[1].find_element(By.XPATH, "..")

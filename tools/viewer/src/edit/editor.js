@@ -151,9 +151,9 @@ export class Editor {
     this.say(json.error || json.said || 'Uploaded.', Boolean(json.error));
   }
 
-  /** The plugins with their parameters, asked for once. */
+  /** The plugins with their parameters, asked for once; none where the server has ended meanwhile. */
   plugins() {
-    this.known_plugins ??= fetch('plugins').then((response) => response.json());
+    this.known_plugins ??= fetch('plugins').then((response) => response.json()).catch(() => []);
     return this.known_plugins;
   }
 }

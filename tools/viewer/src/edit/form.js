@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import {element} from '../dom.js';
 
+/** The value at a dotted path of a tree. */
+export const at_path = (tree, path) => path.split('.').reduce((value, key) => value?.[key], tree);
+
 /** A value of the scenario's tree as one writes it in YAML, on one line. */
 export function yaml_text(value) {
   if (Array.isArray(value)) return `[${value.map(yaml_text).join(', ')}]`;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {by_id, element} from '../dom.js';
 import {round_step} from '../units.js';
+import {at_path} from './form.js';
 
 // Of the box's diagonal: what an arrow key moves.
 const kSteps = 200;
@@ -24,7 +25,7 @@ export function build_handles(view, world, editor) {
   };
   const reflect = () => {
     const all = editor.movable.flatMap((item) => {
-      const written = at_path(editor.state.scenario, item.key);
+      const written = at_path(editor.state.scenario, item.key) ?? {};
       return [item, ...heading_of(item, written), ...size_of(item, written)];
     });
     const present = new Set(all.map(({key}) => key));
@@ -43,11 +44,6 @@ export function build_handles(view, world, editor) {
   editor.on_change(reflect);
   view.on_frame(() => handles.forEach(place));
   reflect();
-}
-
-/** What the scenario says at a key such as "environment.0.cylinder". */
-function at_path(scenario, key) {
-  return key.split('.').reduce((tree, part) => tree?.[part], scenario) ?? {};
 }
 
 /** The heading of a point that has one, as something to turn. */

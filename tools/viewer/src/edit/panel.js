@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {by_id, element} from '../dom.js';
-import {row, rows} from './form.js';
+import {at_path, row, rows} from './form.js';
 import {build_placing} from './placing.js';
 import {kTools} from './tools.js';
 
@@ -17,9 +17,6 @@ const kEnds = {
 
 const button = (text, title, onclick, more = {}) =>
   element('button', {type: 'button', title, onclick, ...more}, text);
-
-/** The value at a dotted path of a tree. */
-const at_path = (tree, path) => path.split('.').reduce((value, key) => value?.[key], tree);
 
 /** The map that an item's form shows, and the key before its own. */
 const owner_of = (key) => key.split('.').slice(0, -1).join('.');
