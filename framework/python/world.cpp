@@ -9,7 +9,7 @@
 #include "host/config/yaml.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
-#include "host/plugins/asked_world.hpp"
+#include "host/scripts/asked_world.hpp"
 #include "python/arrays.hpp"
 #include "python/attended.hpp"
 #include "python/records.hpp"

@@ -31,8 +31,8 @@ AROUND = "[request.start, (300, 250, 100), (320, 250, 100), request.goal]"
 class ScriptCase(PythonCase):
     def setUp(self):
         super().setUp()
-        self.environment = {**os.environ, "ALTIPLAN_PYTHON": sys.executable,
-                            "ALTIPLAN_PLUGIN_PATH": str(self.folder)}
+        os.environ["ALTIPLAN_PYTHON"] = sys.executable  # of the package in this process, too
+        self.environment = {**os.environ, "ALTIPLAN_PLUGIN_PATH": str(self.folder)}
 
     def planner(self, body, name="tested", parameters="step_m: float = altiplan.parameter("
                 "50.0, unit='m', above=0, doc='length of a step')", head=""):

@@ -185,8 +185,8 @@ class Stubs(PythonCase):
                 there = {one for one in dir(getattr(altiplan, name)) if not one.startswith("_")}
                 self.assertEqual({one for one in names(node) if not one.startswith("_")}, there)
         self.assertEqual({name for name in classes if not name.startswith("_")} | {
-            "Error", "NoRoute", "Study", "check", "go", "parameter", "parameters", "plan", "planner", "run",
-            "smoother", "study"},
+            "Cells", "Error", "Ground", "NoRoute", "Study", "check", "constraint", "environment", "go",
+            "parameter", "parameters", "plan", "planner", "run", "smoother", "study"},
             set(altiplan.__all__))
 
     def test_everything_has_a_docstring(self):

@@ -7,10 +7,11 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
+#include "host/base/words.hpp"
 #include "host/base/output_file.hpp"
+#include "host/base/shapes.hpp"
 #include "host/base/unfinished.hpp"
-#include "host/config/shapes.hpp"
-#include "host/plugins/install_root.hpp"
+#include "host/base/install_root.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::cli {
@@ -26,6 +27,7 @@ struct Arguments {
 
 constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner",
                                        "planner",    "smoother",    "tuner"};
+constexpr std::string_view kKindsInPython[] = {"constraint", "environment", "planner", "smoother"};
 
 /// The C++ keywords, each between spaces.
 constexpr std::string_view kKeywords =
@@ -44,6 +46,15 @@ constexpr std::string_view kOwnWords[] = {"id", "known", "null", "route"};
 template <class Words>
 bool contains(const Words& words, std::string_view word) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+template <class Words>
+std::string listed(const Words& words) {
+  std::string text;
+  for (const std::string_view word : words) {
+    text += (text.empty() ? "" : ", ") + std::string(word);
+  }
+  return text;
 }
 
 /// A description of the plugin with that name; "" if the name is free. Kinds may share names, but
@@ -69,15 +80,11 @@ std::string offered_by(const std::string& name) {
 std::string usage_problem(const Arguments& arguments) {
   const std::string found = ", found '" + arguments.name + "'";
   if (!contains(kKinds, arguments.kind)) {
-    std::string kinds;
-    for (const std::string_view kind : kKinds) {
-      kinds += (kinds.empty() ? "" : ", ") + std::string(kind);
-    }
-    return "KIND: expected one of " + kinds + ", found '" + arguments.kind + "'";
+    return "KIND: expected one of " + listed(kKinds) + ", found '" + arguments.kind + "'";
   }
-  if (arguments.python && arguments.kind != "planner" && arguments.kind != "smoother") {
-    return "--python: planners and smoothers alone are written in Python, found '" +
-           arguments.kind + "'";
+  if (arguments.python && !contains(kKindsInPython, arguments.kind)) {
+    return "--python: a " + arguments.kind + " is not written in Python; expected one of " +
+           listed(kKindsInPython);
   }
   if (!host::is_snake_case(arguments.name)) {
     return "NAME: expected lower-case letters, digits and '_', the first a letter" + found;
@@ -210,7 +217,8 @@ void add_new(App& app, Action& action) {
       ->required();
   command->add_flag(
       "--python", arguments->python,
-      "write a planner or smoother in Python: the file NAME.py, which needs no build");
+      "write a constraint, environment, planner or smoother in Python: the file NAME.py, "
+      "which needs no build");
   set_example(*command, "altiplan new planner my_planner");
   command->callback(
       [&action, arguments] { action = [arguments] { return new_project(*arguments); }; });

@@ -8,6 +8,13 @@
 
 namespace altiplan::host {
 
+bool is_snake_case(std::string_view name) {
+  const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && small(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return small(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
 std::string with_digits(double number, int digits) {
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number,

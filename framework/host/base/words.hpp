@@ -9,6 +9,10 @@
 
 namespace altiplan::host {
 
+/// True for lower-case letters, digits and '_', beginning with a letter: the form of plugin and
+/// parameter names.
+bool is_snake_case(std::string_view name);
+
 /// Formats a number with `digits` significant digits.
 std::string with_digits(double number, int digits);
 

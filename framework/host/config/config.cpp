@@ -2,10 +2,10 @@
 #include "host/config/config.hpp"
 
 #include "host/base/input.hpp"
+#include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/config/overrides.hpp"
-#include "host/config/shapes.hpp"
 #include "host/config/yaml.hpp"
 
 namespace altiplan::host {

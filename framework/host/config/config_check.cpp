@@ -7,7 +7,7 @@
 #include "altiplan/attributed.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/config/shapes.hpp"
+#include "host/base/shapes.hpp"
 #include "host/config/yaml.hpp"
 
 namespace altiplan::host {

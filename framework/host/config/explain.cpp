@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
-#include "host/config/shapes.hpp"
 
 namespace altiplan::host {
 namespace {

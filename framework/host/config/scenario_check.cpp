@@ -3,8 +3,8 @@
 #include <set>
 
 #include "altiplan/kit/formats/iso_time.hpp"
+#include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
-#include "host/config/shapes.hpp"
 
 namespace altiplan::host {
 namespace {

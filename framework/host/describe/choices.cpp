@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <set>
 
+#include "host/base/shapes.hpp"
 #include "host/config/config.hpp"
-#include "host/config/shapes.hpp"
 #include "host/describe/describe.hpp"
 #include "host/describe/schema.hpp"
 

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "host/base/shapes.hpp"
 #include "host/config/config.hpp"
-#include "host/config/shapes.hpp"
 
 namespace altiplan::host {
 namespace {

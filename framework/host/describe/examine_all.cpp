@@ -2,7 +2,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/in_child.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/config/shapes.hpp"
+#include "host/base/shapes.hpp"
 #include "host/describe/describe.hpp"
 
 namespace altiplan::host {

@@ -8,9 +8,10 @@
 #include <cstring>
 
 #include "host/base/machine_fault.hpp"
+#include "host/base/words.hpp"
 #include "host/plugins/checksum.hpp"
 #include "host/plugins/registry.hpp"
-#include "host/plugins/script.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -145,13 +146,6 @@ std::string hash_of(const std::filesystem::path& file) {
   return digest.data();
 }
 }  // namespace
-
-bool is_snake_case(std::string_view name) {
-  const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !name.empty() && small(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
-    return small(c) || (c >= '0' && c <= '9') || c == '_';
-  });
-}
 
 Library examine_library(const std::filesystem::path& file) {
   if (is_script(file)) {

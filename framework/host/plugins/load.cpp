@@ -14,10 +14,11 @@
 #include "altiplan/error.hpp"
 #include "host/base/in_child.hpp"
 #include "host/base/machine_fault.hpp"
+#include "host/base/words.hpp"
 #include "host/plugins/checksum.hpp"
 #include "host/plugins/private_copy.hpp"
 #include "host/plugins/registry.hpp"
-#include "host/plugins/script.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

@@ -10,9 +10,9 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "host/base/install_root.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/plugins/install_root.hpp"
-#include "host/plugins/script.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;

@@ -17,18 +17,9 @@
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"
 #include "altiplan/tuner.hpp"
+#include "host/base/plugin_file.hpp"
 
 namespace altiplan::host {
-
-/// A plugin library as described by its file; none of its code has run.
-struct Library {
-  std::filesystem::path file;
-  std::string build;              ///< GNU build id, else a hash of the file; hexadecimal
-  std::string checksum;           ///< of the loaded bytes, as stated in the file; hexadecimal
-  std::vector<Manifest> plugins;  ///< empty if refused before the manifest could be read
-  std::string refused;            ///< the reason, naming both sides; "" if it may be loaded
-  bool is_machine_fault = false;  ///< refused because the machine failed to read it
-};
 
 /// File metadata for a cheap test whether a file was modified or replaced.
 class FileStamp {
@@ -102,8 +93,4 @@ std::vector<const PluginEntry*> load_library(const Library& library);
 
 /// True if the file is unchanged since it was examined.
 bool is_unchanged(const Library& library);
-
-/// True for lower-case letters, digits and '_', beginning with a letter: the form of plugin and
-/// parameter names.
-bool is_snake_case(std::string_view name);
 }  // namespace altiplan::host

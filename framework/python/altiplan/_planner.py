@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How planners and smoothers are written in Python: decorators, and the request that they get.
+"""How plugins are written in Python: decorators, and what their methods get.
 
-Stands alone, so that the process of a planner starts without the rest of the package."""
+Stands alone, so that the process of a plugin starts without the rest of the package."""
 import dataclasses
 import inspect
 import math
@@ -70,6 +70,24 @@ def smoother(name: str, sentence: str,
     """As planner, of a class with a method smooth(route, request), which returns a better route with
     the same ends, or None for no better one. `route` is a list of points, or an array."""
     return _announced("smoother", name, sentence, params)
+
+
+def environment(name: str, sentence: str,
+                params: type = _NoParameters) -> typing.Callable[[_Made], _Made]:
+    """As planner, of a class with a method build(site), which returns what the layer consists of:
+    solids, each as in a scenario, such as {"box": {"min_m": (0, 0, 0), "max_m": (20, 20, 40)}}, or
+    Ground, or Cells. It depends on the parameters and the site alone."""
+    return _announced("environment", name, sentence, params)
+
+
+def constraint(name: str, sentence: str,
+               params: type = _NoParameters) -> typing.Callable[[_Made], _Made]:
+    """As planner, of a class with one or more of the methods tighten(request), which returns limits
+    as in request.limits, stricter ones alone have an effect; admits(leg), whether a straight leg
+    keeps the constraint, depending on the leg alone; violations(points, request), which returns of
+    a whole route (at, value, limit, message) for each place where it is violated. Its attribute
+    `applies_to` is "both" unless it says "route" or "track"."""
+    return _announced("constraint", name, sentence, params)
 
 
 def _announced(kind: str, name: str, sentence: str,
@@ -150,6 +168,20 @@ def made(plugin: typing.Dict[str, typing.Any], values: typing.Dict[str, typing.A
     return plugin["class"](params) if takes else plugin["class"]()
 
 
+def told(kind: str, plugin: typing.Any) -> typing.Dict[str, typing.Any]:
+    """What an object says of itself."""
+    needs = {"planner": ("plan",), "smoother": ("smooth",), "environment": ("build",),
+             "constraint": ("tighten", "admits", "violations")}[kind]
+    methods = [name for name in needs if callable(getattr(plugin, name, None))]
+    if not methods:
+        raise TypeError(f"a class of a {kind} needs a method {' or '.join(needs)}")
+    applies_to = getattr(plugin, "applies_to", "both")
+    if kind == "constraint" and applies_to not in ("both", "route", "track"):
+        raise ValueError(f"applies_to: expected 'both', 'route' or 'track', found {applies_to!r}")
+    traits = getattr(plugin, "traits", {}) if kind == "planner" else {}
+    return {"methods": methods, "applies_to": applies_to, "traits": dict(traits)}
+
+
 def numbers_of(points: typing.Any, columns: int, name: str) -> "array[float]":
     """The numbers of points, row by row; ValueError unless each has as many."""
     if hasattr(points, "tolist"):  # numpy's arrays
@@ -174,6 +206,22 @@ def listed(numbers: typing.Any, columns: int = 1) -> typing.Any:
     if columns == 1:
         return list(numbers)
     return list(zip(*(numbers[column::columns] for column in range(columns))))
+
+
+class Ground(typing.NamedTuple):
+    """Ground from heights above sea level (m) at posts, bilinear between them: heights[j, i] is i
+    spacings east and j spacings north of the origin. Each post needs a height."""
+    heights: typing.Any  # rows from the south, of at least 2 posts each
+    spacing_m: typing.Any  # one number, or (east, north)
+    origin_m: typing.Tuple[float, float] = (0.0, 0.0)  # of the post in the south west
+
+
+class Cells(typing.NamedTuple):
+    """Cells that are blocked or free: blocked[i, j, k] is i cells east, j north and k above the lower
+    corner of the grid."""
+    blocked: typing.Any  # of three dimensions
+    cell_m: typing.Any  # edges: one number, or (east, north, up)
+    origin_m: typing.Tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class Budget:
@@ -206,9 +254,13 @@ class Budget:
 class World:
     """The known world of a request, asked of the program: its answers are those of the judge."""
 
-    def __init__(self, layers: typing.List[str], ask: _Ask):
-        self.layers = layers
+    def __init__(self, ask: _Ask):
         self._ask = ask
+
+    @property
+    def layers(self) -> typing.List[str]:
+        """The layers' ids."""
+        return list(self._ask({"ask": "layers"}, ())[0]["layers"])
 
     def clearance(self, points: typing.Any) -> typing.Any:
         """Signed distances from the nearest obstacle or ground (m) of points (n, 3)."""
@@ -256,18 +308,50 @@ class World:
         return begins + ends
 
 
+def _point(given: typing.Any) -> typing.Any:
+    """A tuple of numbers, or an array in a script that imports numpy; None of None."""
+    if given is None:
+        return None
+    return tuple(given) if sys.modules.get("numpy") is None else listed(given)
+
+
+class Leg:
+    """A straight motion that a constraint admits or refuses."""
+
+    def __init__(self, numbers: "array[float]", ask: typing.Optional[_Ask]):
+        self.start, self.end = _point(numbers[:3]), _point(numbers[3:6])  # metres
+        self.before = _point(numbers[6:]) if len(numbers) > 6 else None  # whence start is reached
+        self.world = None if ask is None else World(ask)  # None: nothing is known of it
+
+
+class Site:
+    """Where a layer is built: values, and the layers before it to ask. Points are in metres."""
+
+    def __init__(self, given: typing.Dict[str, typing.Any], ask: _Ask):
+        # The lowest and the highest corner; infinite where the scenario leaves it to the layers.
+        self.volume = listed([(-math.inf if n < 3 else math.inf) if number is None else number
+                              for n, number in enumerate(given["volume"])], 3)
+        self.start, self.goal = _point(given["start"]), _point(given["goal"])  # None: not yet known
+        self.vehicle = given["vehicle"]  # as of a request
+        self.start_time_s = given["start_time_s"]  # since 1970-01-01 UTC; None where none is given
+        self.seed = given["seed"]
+        self.rng = random.Random(self.seed)
+        self.world = World(ask)
+        self._ask = ask
+
+    def to_local(self, lonlat: typing.Any) -> typing.Any:
+        """Degrees east and north (n, 2) as metres east and north (n, 2) of the scenario's frame."""
+        return listed(self._ask({"ask": "local"}, numbers_of(lonlat, 2, "lonlat"))[1], 2)
+
+
 class Request:
     """A planning problem: values, and the world to ask. Points are in metres of the scenario's frame."""
 
     def __init__(self, given: typing.Dict[str, typing.Any], ask: _Ask,
                  is_stopped: typing.Callable[[], bool]):
-        def point(name: str) -> typing.Any:
-            return None if given[name] is None else listed(given[name])
-
-        self.start, self.goal = point("start"), point("goal")
-        if sys.modules.get("numpy") is None:
-            self.start, self.goal = tuple(self.start), tuple(self.goal)
-        self.start_velocity = point("start_velocity")  # m/s; None where no heading is given
+        self.start, self.goal = _point(given["start"]), _point(given["goal"])
+        velocity = given["start_velocity"]  # m/s; None where no heading is given
+        self.start_velocity = None if velocity is None else listed(velocity)
         self.goal_tolerance_m = given["goal_tolerance_m"]
         self.goal_heading = given["goal_heading"]  # radians, counter-clockwise from east, or None
         self.volume = listed(given["volume"], 3)  # the lowest and the highest corner
@@ -279,4 +363,4 @@ class Request:
         self.seed = given["seed"]
         self.rng = random.Random(self.seed)
         self.budget = Budget(given["budget"], is_stopped)
-        self.world = World(given["layers"], ask)
+        self.world = World(ask)

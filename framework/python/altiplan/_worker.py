@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""_worker.py FILE: the process in which a file of planners runs; altiplan talks to it at descriptor 3.
+"""_worker.py FILE: the process in which a file of plugins runs; altiplan talks to it at descriptor 3.
 
 A message is two lengths, a header in JSON and float64 numbers. A first process keeps the second, which
 runs the file: it tells how that ended, and ends it with altiplan."""
@@ -20,7 +20,7 @@ from array import array
 
 _Json = typing.Dict[str, typing.Any]
 _Message = typing.Tuple[_Json, "array[float]"]
-_LONGEST = 2000  # characters of a message of an exception
+_Answer = typing.Tuple[_Json, typing.Iterable[float]]
 _LENGTHS = struct.Struct("<II")  # bytes of the header, numbers after it
 
 
@@ -133,13 +133,13 @@ def failure(error: BaseException, file: str) -> _Json:
     if isinstance(error, SystemExit):
         return {"failed": f"ended the process by sys.exit({error.code!r})", "how": "exit",
                 "place": place_of(error, file)}
-    text = traceback.format_exception_only(type(error), error)[-1].strip()[:_LONGEST]
+    text = traceback.format_exception_only(type(error), error)[-1].strip()[:2000]
     return {"failed": text, "how": "memory" if isinstance(error, MemoryError) else "threw",
             "place": place_of(error, file)}
 
 
-def answered(call: typing.Callable[..., typing.Any], arguments: typing.List[typing.Any],
-             api: typing.Any) -> typing.Tuple[_Json, typing.Iterable[float]]:
+def planned(call: typing.Callable[..., typing.Any], arguments: typing.List[typing.Any],
+            api: typing.Any) -> _Answer:
     """What plan or smooth returns, as a message."""
     request = arguments[-1]
     try:
@@ -153,7 +153,7 @@ def answered(call: typing.Callable[..., typing.Any], arguments: typing.List[typi
                 **{str(name): int(value) for name, value in counters.items()}}
     answer: _Json = {"counters": counters, "spent": request.budget.was_spent}
     if returned is None or isinstance(returned, api.NoRoute):
-        answer["none"] = "" if returned is None else str(returned)[:_LONGEST]
+        answer["none"] = "" if returned is None else api.returned.text(returned)
         answer["proved"] = getattr(returned, "proved", False)
         return answer, ()
     return answer, api.numbers_of(returned, 3, "the returned route")
@@ -174,8 +174,7 @@ class Worker:
         sys.modules[name] = module  # dataclasses look for it there
         spec.loader.exec_module(module)
 
-    def _answer(self, message: _Json,
-                numbers: "array[float]") -> typing.Tuple[_Json, typing.Iterable[float]]:
+    def _answer(self, message: _Json, numbers: "array[float]") -> _Answer:
         if "load" in message:
             self._load()
             return {"plugins": [self._api.described(one) for one in self._api.offered]}, ()
@@ -183,13 +182,28 @@ class Worker:
             plugin = next(one for one in self._api.offered
                           if (one["kind"], one["name"]) == (message["kind"], message["make"]))
             self._object = self._api.made(plugin, message["with"])
-            return {"made": True, "traits": dict(getattr(self._object, "traits", {}))}, ()
+            return self._api.told(plugin["kind"], self._object), ()
         self._connection.stopped = False
-        task = "plan" if "plan" in message else "smooth"
-        request = self._api.Request(message[task], self._connection.ask,
-                                    self._connection.is_stopped)
-        given = [] if task == "plan" else [self._api.listed(numbers, 3)]
-        return answered(getattr(self._object, task), [*given, request], self._api)
+        return self._called(next(iter(message)), message, numbers)
+
+    def _called(self, task: str, message: _Json, numbers: "array[float]") -> _Answer:
+        """The answer of a method of the object: the message begins with its name."""
+        method, ask, returned = getattr(self._object, task), self._connection.ask, self._api.returned
+        if task == "admits":
+            leg = self._api.Leg(numbers, ask if message[task] else None)
+            return {"yes": bool(method(leg))}, ()
+        if task == "build":
+            layer: _Answer = returned.built(method(self._api.Site(message[task], ask)))
+            return layer
+        request = self._api.Request(message[task], ask, self._connection.is_stopped)
+        if task == "tighten":
+            return {"limits": returned.limits(method(request))}, ()
+        if task == "plan":
+            return planned(method, [request], self._api)
+        points = self._api.listed(numbers, 3)
+        if task == "smooth":
+            return planned(method, [points, request], self._api)
+        return {"violations": returned.violations(method(points, request), len(points))}, ()
 
     def serve(self) -> None:
         own = os.getpid()
@@ -209,10 +223,12 @@ def light_package() -> typing.Any:
     package = types.ModuleType("altiplan")
     package.__path__ = [os.path.dirname(os.path.abspath(__file__))]
     sys.modules["altiplan"] = package
-    from altiplan import _planner
+    from altiplan import _planner, _returned
 
-    for name in ("NoRoute", "parameter", "parameters", "planner", "smoother"):
+    for name in ("Cells", "Ground", "NoRoute", "constraint", "environment", "parameter", "parameters",
+                 "planner", "smoother"):
         setattr(package, name, getattr(_planner, name))
+    setattr(_planner, "returned", _returned)
     return _planner
 
 

@@ -3,6 +3,7 @@
 
 #include "altiplan/kit/formats/input_file.hpp"
 #include "host/base/input.hpp"
+#include "host/base/words.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"

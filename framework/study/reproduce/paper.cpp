@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "host/base/install_root.hpp"
 #include "host/config/config_check.hpp"
-#include "host/plugins/install_root.hpp"
 
 namespace altiplan::study {
 namespace fs = std::filesystem;

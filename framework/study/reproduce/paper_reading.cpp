@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "host/base/input.hpp"
+#include "host/base/words.hpp"
 #include "host/config/config.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/yaml.hpp"

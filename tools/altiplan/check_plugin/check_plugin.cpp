@@ -11,7 +11,7 @@
 #include "check_plugin/verdicts.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/plugins/script.hpp"
+#include "host/scripts/script.hpp"
 #include "host/result/result_json.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -226,7 +226,7 @@ void add_check_plugin(App& app, Action& action) {
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("library", arguments->library,
-                   "plugin library (.so), or planner in Python (.py)")
+                   "plugin library (.so), or plugins in Python (.py)")
       ->required()
       ->type_name("LIB");
   command

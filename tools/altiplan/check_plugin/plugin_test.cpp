@@ -7,7 +7,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/plugins/elf_file.hpp"
-#include "host/plugins/script.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "altiplan/planner.hpp"
-#include "host/plugins/script_worker.hpp"
+#include "host/scripts/worker.hpp"
 
 namespace altiplan::host {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -8,13 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/constraint.hpp"
+#include "altiplan/environment.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/smoother.hpp"
-#include "host/plugins/script_worker.hpp"
+#include "host/scripts/answers.hpp"
+#include "host/scripts/worker.hpp"
 
 namespace altiplan::host {
 
-/// What a planner or smoother of a file of Python is made of.
+/// What an object of a plugin in a file of Python is made of.
 struct ScriptSource {
   std::filesystem::path file;
   std::string kind;
@@ -32,32 +36,40 @@ class ScriptObject {
   ScriptObject(const ScriptObject&) = delete;
   ScriptObject& operator=(const ScriptObject&) = delete;
 
-  const Traits& traits() const { return traits_; }
+  /// What the object tells of itself.
+  const nlohmann::ordered_json& made() const { return made_; }
   /// Plans, or smooths the route if there is one.
   PlanResult answer(const Request& request, const Polyline* route) const;
+  /// The answer to a call that has no budget, within `patience`; its questions are about `asked`.
+  /// Throws PluginError if the call raises or does not end.
+  ScriptMessage answer(const ScriptMessage& call, const ScriptAsked& asked,
+                       std::chrono::seconds patience) const;
 
  private:
-  std::unique_ptr<ScriptWorker> make_worker(Traits* traits) const;
+  std::unique_ptr<ScriptWorker> make_worker(nlohmann::ordered_json* made) const;
   std::unique_ptr<ScriptWorker> take_worker() const;
+  void give_back(std::unique_ptr<ScriptWorker> worker) const;
+  void forget_those_of_a_parent() const;
 
   ScriptSource source_;
-  Traits traits_;
-  pid_t owner_;  ///< a forked copy of this process must leave the processes of `idle_` alone
+  nlohmann::ordered_json made_;
   mutable std::mutex mutex_;
+  mutable pid_t owner_;  ///< a forked copy of this process must leave the others of `idle_` alone
   mutable std::vector<std::unique_ptr<ScriptWorker>> idle_;
 };
 
 class ScriptPlanner final : public Planner {
  public:
-  explicit ScriptPlanner(ScriptSource source) : object_(std::move(source)) {}
+  explicit ScriptPlanner(ScriptSource source);
 
  private:
   PlanResult do_plan(const Request& request) const override {
     return object_.answer(request, nullptr);
   }
-  Traits do_traits() const override { return object_.traits(); }
+  Traits do_traits() const override { return traits_; }
 
   ScriptObject object_;
+  Traits traits_;
 };
 
 class ScriptSmoother final : public Smoother {
@@ -71,4 +83,11 @@ class ScriptSmoother final : public Smoother {
 
   ScriptObject object_;
 };
+
+/// A constraint that asks its object in Python about one leg, or one route, at a time.
+std::unique_ptr<Constraint> script_constraint(ScriptSource source);
+
+/// A layer of what `build` in Python returns: solids, the cells of a grid, or ground. Its process
+/// ends with the call; the layer is one of the kit.
+std::unique_ptr<Environment> script_environment(ScriptSource source, const Site& site);
 }  // namespace altiplan::host

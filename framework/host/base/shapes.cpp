@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/config/shapes.hpp"
+#include "host/base/shapes.hpp"
 
 #include <algorithm>
 

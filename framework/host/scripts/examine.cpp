@@ -10,14 +10,15 @@
 #include "altiplan/error.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
-#include "host/plugins/script.hpp"
+#include "host/base/words.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kOffer = "@altiplan.";
-constexpr std::string_view kKinds[] = {"planner", "smoother"};
+constexpr std::string_view kKinds[] = {"environment", "constraint", "planner", "smoother"};
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);

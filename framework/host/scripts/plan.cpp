@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/plugins/script_plan.hpp"
-
-#include <cmath>
+#include "host/scripts/plan.hpp"
 
 #include "altiplan/error.hpp"
-#include "host/plugins/script_answers.hpp"
+#include "host/scripts/answers.hpp"
+#include "host/scripts/values.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -13,93 +12,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kGrace = std::chrono::milliseconds(500);  ///< to heed a stop
 constexpr auto kLook = std::chrono::milliseconds(20);    ///< between two looks at the budget
-
-Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// JSON has no infinity.
-Json bound(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-template <class T>
-Json maybe(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json limits_of(const Limits& limits) {
-  Json bands = Json::array();
-  for (const AltitudeBand& band : limits.altitude) {
-    bands.push_back({{"above_ground", band.datum == AltitudeBand::Datum::ground},
-                     {"min_m", bound(band.min)},
-                     {"max_m", bound(band.max)}});
-  }
-  return {{"min_clearance_m", limits.min_clearance},
-          {"min_ground_clearance_m", maybe(limits.min_ground_clearance)},
-          {"altitude", bands},
-          {"min_leg_m", limits.min_leg},
-          {"max_leg_m", bound(limits.max_leg)},
-          {"max_turn", limits.max_turn_horizontal},
-          {"max_turn_in_space", limits.max_turn_space},
-          {"min_turn_radius_m", limits.min_turn_radius},
-          {"max_climb", limits.max_climb},
-          {"max_descent", limits.max_descent()},
-          {"max_route_m", bound(limits.max_route_length)}};
-}
-
-Json vehicle_of(const Vehicle& vehicle) {
-  Json json = {{"radius_m", vehicle.radius_m},
-               {"speed_mps", vehicle.speed_mps},
-               {"sensing_m", bound(vehicle.sensing_m)},
-               {"wing", Json()}};
-  if (vehicle.wing) {
-    const Wing& wing = *vehicle.wing;
-    json["wing"] = {{"airspeed_mps", wing.airspeed_mps},
-                    {"bank", wing.bank},
-                    {"climb", wing.climb},
-                    {"sink", wing.sink},
-                    {"turn_radius_m", wing.turn_radius()}};
-  }
-  return json;
-}
-
-Json wind_of(const Wind& wind) {
-  Json layers = Json::array();
-  for (const Wind::Layer& layer : wind.layers) {
-    layers.push_back({{"above_m", bound(layer.above_m)}, {"velocity", numbers(layer.velocity)}});
-  }
-  return layers;
-}
-
-Json budget_of(const Budget& budget) {
-  Json json = {{"deadline", Json()}, {"max_iterations", budget.max_iterations}};
-  if (budget.deadline) {  // of the clock that Python calls monotonic
-    json["deadline"] = std::chrono::duration<double>(budget.deadline->time_since_epoch()).count();
-  }
-  return json;
-}
-
-Json values_of(const Request& request) {
-  RandomStream random = request.random;
-  Json layers = Json::array();
-  for (const Layer& layer : request.world->layers()) {
-    layers.push_back(layer.id);
-  }
-  const bool is_moving = !request.start.velocity.isZero(0);
-  return {{"start", numbers(request.start.position)},
-          {"start_velocity", is_moving ? numbers(request.start.velocity) : Json()},
-          {"goal", numbers(request.goal.position)},
-          {"goal_tolerance_m", request.goal.tolerance_m},
-          {"goal_heading", maybe(request.goal.heading)},
-          {"volume",
-           {request.volume.min.x(), request.volume.min.y(), request.volume.min.z(),
-            request.volume.max.x(), request.volume.max.y(), request.volume.max.z()}},
-          {"level_m", maybe(request.level_m)},
-          {"vehicle", vehicle_of(request.vehicle)},
-          {"limits", limits_of(request.limits)},
-          {"wind", wind_of(request.wind)},
-          {"threads", request.threads},
-          {"seed", random()},
-          {"budget", budget_of(request.budget)},
-          {"layers", layers}};
-}
 }  // namespace
 
 ScriptPlan::ScriptPlan(const Request& request, const Polyline* route, ScriptWorker& worker)
@@ -114,7 +26,7 @@ PlanResult ScriptPlan::result() {
   for (const Vec3& point : route_ != nullptr ? *route_ : Polyline()) {
     points.insert(points.end(), point.begin(), point.end());
   }
-  worker_.send({{route_ != nullptr ? "smooth" : "plan", values_of(request_)}}, points);
+  worker_.send({{route_ != nullptr ? "smooth" : "plan", script_values(request_)}}, points);
   while (true) {
     watch_budget();
     const std::optional<ScriptMessage> message = worker_.receive(Clock::now() + kLook);
@@ -161,7 +73,7 @@ void ScriptPlan::watch_memory(Clock::time_point now) {
 }
 
 void ScriptPlan::answer(const ScriptMessage& question) {
-  const ScriptMessage answer = script_answer(question, request_);
+  const ScriptMessage answer = script_answer(question, {request_.world.get(), &request_});
   worker_.send(answer.head, answer.numbers);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/plugins/script_answers.hpp"
+#include "host/scripts/answers.hpp"
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
-#include "host/plugins/asked_world.hpp"
+#include "host/scripts/asked_world.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -30,27 +30,27 @@ class Points {
   std::size_t size_;
 };
 
-std::vector<double> clearances(const Points& points, const Request& request) {
+std::vector<double> clearances(const Points& points, const World& world) {
   std::vector<double> answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    answers.push_back(asked_clearance(*request.world, points.at(0, i)));
+    answers.push_back(asked_clearance(world, points.at(0, i)));
   }
   return answers;
 }
 
-std::vector<double> heights(const std::vector<double>& xy, const Request& request) {
+std::vector<double> heights(const std::vector<double>& xy, const World& world) {
   std::vector<double> answers;
   for (std::size_t i = 0; i + 1 < xy.size(); i += 2) {
-    answers.push_back(asked_ground(*request.world, xy[i], xy[i + 1]));
+    answers.push_back(asked_ground(world, xy[i], xy[i + 1]));
   }
   return answers;
 }
 
-std::vector<double> blocked(const Points& points, double radius, const Request& request) {
+std::vector<double> blocked(const Points& points, double radius, const World& world) {
   std::vector<double> answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool meets =
-        !(radius >= 0) || asked_blocked(*request.world, points.at(0, i), points.at(1, i), radius);
+        !(radius >= 0) || asked_blocked(world, points.at(0, i), points.at(1, i), radius);
     answers.push_back(meets ? 1 : 0);
   }
   return answers;
@@ -94,28 +94,56 @@ Json violations(const Points& points, const Request& request) {
   }
   return sentences;
 }
-}  // namespace
 
-ScriptMessage script_answer(const ScriptMessage& question, const Request& request) {
-  const Json& head = question.head;
+/// Longitudes and latitudes in the frame, x and y in turn.
+std::vector<double> local(const std::vector<double>& lonlat, const Frame& frame) {
+  std::vector<double> answers;
+  for (std::size_t i = 0; i + 1 < lonlat.size(); i += 2) {
+    const auto xy = frame.to_local(lonlat[i], lonlat[i + 1]);
+    answers.insert(answers.end(), xy.begin(), xy.end());
+  }
+  return answers;
+}
+
+ScriptMessage answer_of_world(const std::string& what, const ScriptMessage& question,
+                              const World& world) {
   const std::vector<double>& numbers = question.numbers;
-  const auto what = head.value("ask", "");
   if (what == "clearance") {
-    return {Json::object(), clearances(Points(numbers, 1), request)};
+    return {Json::object(), clearances(Points(numbers, 1), world)};
   }
   if (what == "ground") {
-    return {Json::object(), heights(numbers, request)};
+    return {Json::object(), heights(numbers, world)};
   }
   if (what == "legs_blocked") {
-    return {Json::object(), blocked(Points(numbers, 2), head.value("radius_m", 0.0), request)};
+    const double radius = question.head.value("radius_m", 0.0);
+    return {Json::object(), blocked(Points(numbers, 2), radius, world)};
   }
-  if (what == "legs_ok") {
-    const bool with_before = head.value("before", false);
-    return {Json::object(), admitted(Points(numbers, with_before ? 3 : 2), with_before, request)};
+  Json layers = Json::array();
+  for (const Layer& layer : world.layers()) {
+    layers.push_back(layer.id);
   }
-  if (what == "violations") {
-    return {{{"violations", violations(Points(numbers, 1), request)}}, {}};
+  return {{{"layers", layers}}, {}};
+}
+}  // namespace
+
+ScriptMessage script_answer(const ScriptMessage& question, const ScriptAsked& asked) {
+  const auto what = question.head.value("ask", "");
+  const bool is_of_world =
+      what == "clearance" || what == "ground" || what == "legs_blocked" || what == "layers";
+  if (is_of_world && asked.world != nullptr) {
+    return answer_of_world(what, question, *asked.world);
   }
-  throw PluginError("asks for " + excerpt(what) + ", which no world answers");
+  if (what == "legs_ok" && asked.request != nullptr) {
+    const bool with_before = question.head.value("before", false);
+    const Points points(question.numbers, with_before ? 3 : 2);
+    return {Json::object(), admitted(points, with_before, *asked.request)};
+  }
+  if (what == "violations" && asked.request != nullptr) {
+    return {{{"violations", violations(Points(question.numbers, 1), *asked.request)}}, {}};
+  }
+  if (what == "local" && asked.frame != nullptr) {
+    return {Json::object(), local(question.numbers, *asked.frame)};
+  }
+  throw PluginError("asks for " + excerpt(what) + ", which cannot be answered here");
 }
 }  // namespace altiplan::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/plugins/script_worker.hpp"
+#include "host/scripts/worker.hpp"
 
 #include <csignal>
 #include <cstdlib>
@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "altiplan/error.hpp"
+#include "host/base/install_root.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/plugins/install_root.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -34,7 +34,7 @@ fs::path interpreter() {
   }
   const auto found = find_on_path({"python3"});
   if (!found) {
-    throw PluginError("no python3 is on the PATH, which runs planners written in Python");
+    throw PluginError("no python3 is on the PATH, which runs plugins written in Python");
   }
   return *found;
 }
@@ -42,7 +42,7 @@ fs::path interpreter() {
 std::vector<std::string> command_of(const fs::path& file) {
   const fs::path worker = install_root() / "lib/python3/dist-packages/altiplan/_worker.py";
   if (!is_there(worker)) {
-    throw PluginError("planners written in Python need the package altiplan: " + worker.string() +
+    throw PluginError("plugins written in Python need the package altiplan: " + worker.string() +
                       " is missing");
   }
   // -B: no files are written beside the planner's.

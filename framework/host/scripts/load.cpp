@@ -4,12 +4,11 @@
 #include <deque>
 #include <map>
 #include <mutex>
-#include <tuple>
 #include <utility>
 
 #include "altiplan/error.hpp"
-#include "host/plugins/script.hpp"
-#include "host/plugins/script_object.hpp"
+#include "host/scripts/object.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace fs = std::filesystem;
@@ -20,6 +19,7 @@ using Json = nlohmann::ordered_json;
 /// A plugin of a file of Python; kept to the end of the process, as libraries are.
 struct Script {
   fs::path file;
+  std::string kind;
   std::string name;
   std::string sentence;
   ScriptParams params;
@@ -36,19 +36,24 @@ ParamReport describe(const Script& script, const Value* source, const std::strin
   return bind(params, source, path);
 }
 
-template <class Made>
-std::unique_ptr<Made> make(const Script& script, const Value* source) {
+/// What the plugin is made of; the parameters are checked.
+ScriptSource source_of(const Script& script, const Value* source) {
+  ParamReport report = describe(script, source, "");
+  if (!report.problems.empty()) {
+    throw ConfigError(std::move(report.problems));
+  }
+  Json values = Json::object();
+  for (const BoundField& field : report.fields) {
+    values[field.spec.name] = Json::parse(field.value_json);
+  }
+  return {script.file, script.entry.kind, script.name, std::move(values)};
+}
+
+/// Exceptions that are not the framework's become PluginError.
+template <class Make>
+auto guarded(const Make& make) {
   try {
-    ParamReport report = describe(script, source, "");
-    if (!report.problems.empty()) {
-      throw ConfigError(std::move(report.problems));
-    }
-    Json values = Json::object();
-    for (const BoundField& field : report.fields) {
-      values[field.spec.name] = Json::parse(field.value_json);
-    }
-    return std::make_unique<Made>(
-        ScriptSource{script.file, script.entry.kind, script.name, std::move(values)});
+    return make();
   } catch (const Error&) {
     throw;
   } catch (...) {
@@ -56,50 +61,86 @@ std::unique_ptr<Made> make(const Script& script, const Value* source) {
   }
 }
 
+std::unique_ptr<Environment> make_environment(const Script& script, const Value* source,
+                                              const Site& site) {
+  return guarded([&] { return script_environment(source_of(script, source), site); });
+}
+std::unique_ptr<Constraint> make_constraint(const Script& script, const Value* source) {
+  return guarded([&] { return script_constraint(source_of(script, source)); });
+}
+std::unique_ptr<Planner> make_planner(const Script& script, const Value* source) {
+  return guarded([&] { return std::make_unique<ScriptPlanner>(source_of(script, source)); });
+}
+std::unique_ptr<Smoother> make_smoother(const Script& script, const Value* source) {
+  return guarded([&] { return std::make_unique<ScriptSmoother>(source_of(script, source)); });
+}
+
 template <std::size_t N>
 ParamReport describe_at(const Value* source, const std::string& path) {
   return describe(*the_scripts[N], source, path);
 }
 template <std::size_t N>
+std::unique_ptr<Environment> environment_at(const Value* source, const Site& site) {
+  return make_environment(*the_scripts[N], source, site);
+}
+template <std::size_t N>
+std::unique_ptr<Constraint> constraint_at(const Value* source) {
+  return make_constraint(*the_scripts[N], source);
+}
+template <std::size_t N>
 std::unique_ptr<Planner> planner_at(const Value* source) {
-  return make<ScriptPlanner>(*the_scripts[N], source);
+  return make_planner(*the_scripts[N], source);
 }
 template <std::size_t N>
 std::unique_ptr<Smoother> smoother_at(const Value* source) {
-  return make<ScriptSmoother>(*the_scripts[N], source);
+  return make_smoother(*the_scripts[N], source);
 }
 
-using Factories = std::tuple<decltype(PluginEntry::describe), decltype(PluginEntry::planner),
-                             decltype(PluginEntry::smoother)>;
-template <std::size_t... N>
-constexpr std::array<Factories, sizeof...(N)> factories(std::index_sequence<N...>) {
-  return {Factories{&describe_at<N>, &planner_at<N>, &smoother_at<N>}...};
+/// An entry with the factories of a place, of which a script keeps that of its kind.
+template <std::size_t N>
+constexpr PluginEntry entry_at() {
+  PluginEntry entry{};
+  entry.describe = &describe_at<N>;
+  entry.environment = &environment_at<N>;
+  entry.constraint = &constraint_at<N>;
+  entry.planner = &planner_at<N>;
+  entry.smoother = &smoother_at<N>;
+  return entry;
 }
-constexpr std::array kFactories = factories(std::make_index_sequence<kMaxScripts>());
+template <std::size_t... N>
+constexpr std::array<PluginEntry, sizeof...(N)> entries(std::index_sequence<N...>) {
+  return {entry_at<N>()...};
+}
+constexpr std::array kEntries = entries(std::make_index_sequence<kMaxScripts>());
+
+void keep_factory_of_kind(PluginEntry& entry) {
+  const std::string_view kind = entry.kind;
+  entry.environment = kind == "environment" ? entry.environment : nullptr;
+  entry.constraint = kind == "constraint" ? entry.constraint : nullptr;
+  entry.planner = kind == "planner" ? entry.planner : nullptr;
+  entry.smoother = kind == "smoother" ? entry.smoother : nullptr;
+}
 
 /// Called under the lock of load_script.
-const PluginEntry& enter(const fs::path& file, const Json& told, bool smooths) {
+const PluginEntry& enter(const fs::path& file, const Json& told) {
   static std::deque<Script>& all = *new std::deque<Script>;
   if (all.size() == kMaxScripts) {
     throw PluginError(file.string() + ": a process loads at most " + std::to_string(kMaxScripts) +
                       " plugins written in Python");
   }
   ScriptParams params(told.at("parameters"));
-  const auto& [describes, plans, smoothes] = kFactories[all.size()];
+  const PluginEntry& entry = kEntries[all.size()];
   Script& script = all.emplace_back();
   script.file = fs::absolute(file);
+  script.kind = told.at("kind").get<std::string>();
   script.name = told.at("name").get<std::string>();
   script.sentence = told.at("sentence").get<std::string>();
   script.params = std::move(params);
-  script.entry.kind = smooths ? "smoother" : "planner";
+  script.entry = entry;
+  script.entry.kind = script.kind.c_str();
   script.entry.name = script.name.c_str();
   script.entry.sentence = script.sentence.c_str();
-  script.entry.describe = describes;
-  if (smooths) {
-    script.entry.smoother = smoothes;
-  } else {
-    script.entry.planner = plans;
-  }
+  keep_factory_of_kind(script.entry);
   the_scripts[all.size() - 1] = &script;
   return script.entry;
 }
@@ -119,7 +160,7 @@ std::vector<const PluginEntry*> entries_of(const Library& library) {
       throw PluginError("announces the " + std::string(plugin.kind) + " '" + plugin.name +
                         "', but does not contain it");
     }
-    entries.push_back(&enter(library.file, *told, std::string_view(plugin.kind) == "smoother"));
+    entries.push_back(&enter(library.file, *told));
   }
   return entries;
 }

@@ -3,7 +3,8 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "host/plugins/script.hpp"
+#include "host/base/words.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace {

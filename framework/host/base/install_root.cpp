@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/plugins/install_root.hpp"
+#include "host/base/install_root.hpp"
 
 #include <dlfcn.h>
 #include <link.h>

@@ -8,12 +8,13 @@
 #include <variant>
 #include <vector>
 
-#include "host/plugins/registry.hpp"
+#include "altiplan/params.hpp"
+#include "host/base/plugin_file.hpp"
 
 namespace altiplan::host {
 
-/// True for a file of Python that says `@altiplan.planner(` or `@altiplan.smoother(`. Other files
-/// of Python may lie in the same folder.
+/// True for a file of Python with a line that begins with `@altiplan.planner(`, or likewise with
+/// smoother, environment or constraint. Other files of Python may lie in the same folder.
 bool offers_scripts(const std::filesystem::path& file);
 bool is_script(const std::filesystem::path& file);
 

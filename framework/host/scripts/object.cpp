@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/plugins/script_object.hpp"
+#include "host/scripts/object.hpp"
 
 #include <unistd.h>
 
@@ -7,8 +7,8 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "host/plugins/script.hpp"
-#include "host/plugins/script_plan.hpp"
+#include "host/scripts/plan.hpp"
+#include "host/scripts/script.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -63,28 +63,36 @@ Traits traits_of(const Json& told) {
 void keep_script_processes() { waiting().open(); }
 
 ScriptObject::ScriptObject(ScriptSource source) : source_(std::move(source)), owner_(::getpid()) {
-  idle_.push_back(make_worker(&traits_));
+  idle_.push_back(make_worker(&made_));
 }
 
 ScriptObject::~ScriptObject() {
+  forget_those_of_a_parent();
   for (std::unique_ptr<ScriptWorker>& worker : idle_) {
-    if (::getpid() != owner_) {
-      (void)worker.release();
-    } else {
-      waiting().give(source_.file, std::move(worker));
-    }
+    waiting().give(source_.file, std::move(worker));
   }
 }
 
-std::unique_ptr<ScriptWorker> ScriptObject::make_worker(Traits* traits) const {
+void ScriptObject::forget_those_of_a_parent() const {
+  if (::getpid() == owner_) {
+    return;
+  }
+  for (std::unique_ptr<ScriptWorker>& worker : idle_) {
+    (void)worker.release();
+  }
+  idle_.clear();
+  owner_ = ::getpid();
+}
+
+std::unique_ptr<ScriptWorker> ScriptObject::make_worker(Json* made) const {
   std::unique_ptr<ScriptWorker> worker = waiting().take(source_.file);
   if (worker == nullptr) {
     worker = std::make_unique<ScriptWorker>(source_.file);
   }
-  const ScriptMessage made = worker->answer_to(
+  ScriptMessage answer = worker->answer_to(
       {{"make", source_.name}, {"kind", source_.kind}, {"with", source_.parameters}});
-  if (traits != nullptr) {
-    *traits = traits_of(made.head.value("traits", Json::object()));
+  if (made != nullptr) {
+    *made = std::move(answer.head);
   }
   return worker;
 }
@@ -92,7 +100,8 @@ std::unique_ptr<ScriptWorker> ScriptObject::make_worker(Traits* traits) const {
 std::unique_ptr<ScriptWorker> ScriptObject::take_worker() const {
   {
     const std::lock_guard lock(mutex_);
-    if (!idle_.empty() && ::getpid() == owner_) {
+    forget_those_of_a_parent();
+    if (!idle_.empty()) {
       std::unique_ptr<ScriptWorker> worker = std::move(idle_.back());
       idle_.pop_back();
       return worker;
@@ -101,13 +110,38 @@ std::unique_ptr<ScriptWorker> ScriptObject::take_worker() const {
   return make_worker(nullptr);
 }
 
+void ScriptObject::give_back(std::unique_ptr<ScriptWorker> worker) const {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(worker));
+}
+
 PlanResult ScriptObject::answer(const Request& request, const Polyline* route) const {
   std::unique_ptr<ScriptWorker> worker = take_worker();
   PlanResult result = ScriptPlan(request, route, *worker).result();
-  const std::lock_guard lock(mutex_);
-  if (::getpid() == owner_) {
-    idle_.push_back(std::move(worker));
-  }
+  give_back(std::move(worker));
   return result;
 }
+
+ScriptMessage ScriptObject::answer(const ScriptMessage& call, const ScriptAsked& asked,
+                                   std::chrono::seconds patience) const {
+  std::unique_ptr<ScriptWorker> worker = take_worker();
+  const auto until = ScriptWorker::Clock::now() + patience;
+  worker->send(call.head, call.numbers);
+  while (true) {
+    std::optional<ScriptMessage> message = worker->receive(until);
+    if (!message || ScriptWorker::Clock::now() > until) {
+      throw PluginError("did not answer within " + std::to_string(patience.count()) + " s",
+                        Reason::never_stopped);
+    }
+    if (!message->head.contains("ask")) {
+      give_back(std::move(worker));
+      return *std::move(message);
+    }
+    const ScriptMessage reply = script_answer(*message, asked);
+    worker->send(reply.head, reply.numbers);
+  }
+}
+
+ScriptPlanner::ScriptPlanner(ScriptSource source)
+    : object_(std::move(source)), traits_(traits_of(object_.made().at("traits"))) {}
 }  // namespace altiplan::host

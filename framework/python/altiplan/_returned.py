@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What methods of plugins in Python return, checked, as messages to the program.
+
+Stands alone, as _planner.py does. ValueError and TypeError tell what was expected."""
+import math
+import numbers
+import typing
+from array import array
+
+from . import _planner
+
+_Json = typing.Dict[str, typing.Any]
+_Answer = typing.Tuple[_Json, typing.Iterable[float]]
+_LIMITS = ("min_clearance_m", "min_ground_clearance_m", "min_leg_m", "max_leg_m", "max_turn",
+           "max_turn_in_space", "min_turn_radius_m", "max_climb", "max_descent", "max_route_m")
+_BAND = ("above_ground", "min_m", "max_m")
+_LONGEST = 2000  # characters of a message
+
+
+def text(value: typing.Any) -> str:
+    """A message, in no more characters than anybody reads."""
+    return str(value)[:_LONGEST]
+
+
+def number(value: typing.Any, name: str) -> float:
+    """A finite number."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name}: expected a number, found {type(value).__name__}")
+    if not math.isfinite(value):
+        raise ValueError(f"{name}: expected a finite number, found {value}")
+    return float(value)
+
+
+def numbers_or_one(value: typing.Any, count: int, name: str) -> typing.List[float]:
+    """As many numbers, or one for all."""
+    values = [value] * count if isinstance(value, numbers.Real) else list(value)
+    if len(values) != count:
+        raise ValueError(f"{name}: expected {count} numbers, found {len(values)}")
+    return [number(each, name) for each in values]
+
+
+def _shape(values: typing.Any, dimensions: int, name: str) -> typing.List[int]:
+    """The numbers of rows, columns, …, of which there is at least one."""
+    shape = []
+    for _ in range(dimensions):
+        if not hasattr(values, "__len__") or len(values) == 0:
+            raise ValueError(f"{name}: expected numbers in {dimensions} dimensions")
+        shape.append(len(values))
+        values = values[0]
+    if hasattr(values, "__len__"):
+        raise ValueError(f"{name}: expected numbers in {dimensions} dimensions")
+    return shape
+
+
+def _flat(values: typing.Any, shape: typing.Sequence[int], name: str) -> "array[float]":
+    """The numbers in the order of an array's memory."""
+    if hasattr(values, "tolist"):  # numpy's arrays
+        return array("d", values.astype(float).tobytes())
+    if len(values) != shape[0]:
+        raise ValueError(f"{name}: expected rows of the same length")
+    if len(shape) == 1:
+        return array("d", map(float, values))
+    flat = array("d")
+    for row in values:
+        flat += _flat(row, shape[1:], name)
+    return flat
+
+
+def _ground(ground: typing.Any) -> _Answer:
+    rows, columns = shape = _shape(ground.heights, 2, "heights")
+    heights = _flat(ground.heights, shape, "heights")
+    if not all(map(math.isfinite, heights)):
+        raise ValueError("heights: expected a finite number at each post")
+    spacing = numbers_or_one(ground.spacing_m, 2, "spacing_m")
+    if rows < 2 or columns < 2 or min(spacing) <= 0:
+        raise ValueError("Ground: expected 2 rows and columns or more, and spacings above 0, found "
+                         f"{rows} x {columns} posts of {spacing} m")
+    return {"ground": {"rows": rows, "columns": columns, "spacing_m": spacing,
+                       "origin_m": numbers_or_one(ground.origin_m, 2, "origin_m")}}, heights
+
+
+def _cells(cells: typing.Any) -> _Answer:
+    shape = _shape(cells.blocked, 3, "blocked")
+    edges = numbers_or_one(cells.cell_m, 3, "cell_m")
+    if min(edges) <= 0:
+        raise ValueError(f"cell_m: expected edges above 0, found {edges}")
+    return {"cells": {"counts": shape, "cell_m": edges,
+                      "origin_m": numbers_or_one(cells.origin_m, 3, "origin_m")}}, \
+        _flat(cells.blocked, shape, "blocked")
+
+
+def _plain(value: typing.Any, name: str) -> typing.Any:
+    """A value as a file would have it."""
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers
+        value = value.tolist()
+    if isinstance(value, (bool, str)):
+        return value
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if isinstance(value, numbers.Real):
+        return number(value, name)
+    if isinstance(value, dict):
+        return {str(key): _plain(each, f"{name}.{key}") for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each, name) for each in value]
+    raise TypeError(f"{name}: expected numbers, texts, lists and dicts, found {type(value).__name__}")
+
+
+def built(layer: typing.Any) -> _Answer:
+    """What `build` returns."""
+    if isinstance(layer, _planner.Ground):
+        return _ground(layer)
+    if isinstance(layer, _planner.Cells):
+        return _cells(layer)
+    if not isinstance(layer, (list, tuple)):
+        raise TypeError("build: expected a list of solids, Ground or Cells, found "
+                        f"{type(layer).__name__}")
+    for at, solid in enumerate(layer):
+        if not isinstance(solid, dict) or len(solid) != 1:
+            raise TypeError(f'solid {at}: expected a dict such as {{"box": {{"min_m": …, "max_m": …}}}},'
+                            + text(f" found {solid!r}"))
+    return {"solids": [_plain(solid, f"solid {at}") for at, solid in enumerate(layer)]}, ()
+
+
+def _band(band: typing.Any) -> _Json:
+    """A band of `altitude` with all of its keys."""
+    if not isinstance(band, dict) or not set(band) <= set(_BAND):
+        raise ValueError(f"altitude: expected dicts of {', '.join(_BAND)}, found {band!r}")
+    ends = {key: None if band.get(key) is None else number(band[key], key) for key in _BAND[1:]}
+    return {"above_ground": bool(band.get("above_ground", False)), **ends}
+
+
+def limits(returned: typing.Any) -> _Json:
+    """What `tighten` returns; None of a limit, or of all, tightens nothing."""
+    told: typing.Any = {} if returned is None else returned
+    if not isinstance(told, dict):
+        raise TypeError(f"tighten: expected a dict of limits, found {type(told).__name__}")
+    for name in told:
+        if name not in (*_LIMITS, "altitude"):
+            raise ValueError(f"tighten: there is no limit {name!r}: expected altitude, "
+                             + ", ".join(_LIMITS))
+    values: _Json = {name: number(value, name) for name, value in told.items()
+                     if name != "altitude" and value is not None}
+    return {**values, "altitude": [_band(band) for band in told.get("altitude") or ()]}
+
+
+def violations(returned: typing.Any, count: int) -> typing.List[typing.Any]:
+    """What `violations` returns of a route of as many points."""
+    found = []
+    for one in returned or ():
+        if not isinstance(one, (list, tuple)) or len(one) != 4:
+            raise ValueError(f"violations: expected (at, value, limit, message), found {one!r}")
+        at, value, limit, message = one
+        if not isinstance(at, numbers.Integral) or not 0 <= int(at) < count:
+            raise ValueError(f"violations: expected the index of one of {count} points, found {at!r}")
+        found.append([int(at), number(value, "value"), number(limit, "limit"), text(message)])
+    return found
