@@ -17,18 +17,20 @@ std::string dumped(const Json& json) {
 void add_metrics(py::module_& module) {
   auto metrics = record_class<Metrics>(
       module, "Metrics", "Measures of a route or a track; None where one does not apply.",
-      {{"length_m", "sum of leg lengths (m)"},
-       {"waypoints", "number of points"},
-       {"max_turn_deg", "largest turn at a waypoint, seen from above (degrees)"},
-       {"max_climb_deg", "steepest leg, up or down (degrees)"},
-       {"min_radius_m", "smallest turn radius (m)"},
-       {"min_clearance_m", "minimum distance to an obstacle, in any direction (m)"},
-       {"min_ground_clearance_m", "minimum height above the ground (m)"},
-       {"smoothness_rad", "sum of turns and changes of climb (radians)"},
-       {"duration_s", "flying time by the vehicle's speed model (s)"},
-       {"plan_time_s", "search time of all plan attempts (s); of a whole run only"},
-       {"smooth_time_s", "time of all smoothing (s); of a whole run only"},
-       {"expanded", "sum over all plan attempts; of a whole run only"}});
+      {{"length_m", "Optional[float]", "sum of leg lengths (m)"},
+       {"waypoints", "Optional[int]", "number of points"},
+       {"max_turn_deg", "Optional[float]", "largest turn at a waypoint, seen from above (degrees)"},
+       {"max_climb_deg", "Optional[float]", "steepest leg, up or down (degrees)"},
+       {"min_radius_m", "Optional[float]", "smallest turn radius (m)"},
+       {"min_clearance_m", "Optional[float]",
+        "minimum distance to an obstacle, in any direction (m)"},
+       {"min_ground_clearance_m", "Optional[float]", "minimum height above the ground (m)"},
+       {"smoothness_rad", "Optional[float]", "sum of turns and changes of climb (radians)"},
+       {"duration_s", "Optional[float]", "flying time by the vehicle's speed model (s)"},
+       {"plan_time_s", "Optional[float]",
+        "search time of all plan attempts (s); of a whole run only"},
+       {"smooth_time_s", "Optional[float]", "time of all smoothing (s); of a whole run only"},
+       {"expanded", "Optional[int]", "sum over all plan attempts; of a whole run only"}});
   add_text(metrics, "Metrics");
 }
 
@@ -41,19 +43,20 @@ py::object place_of(const Violation& violation) {
 }
 
 void add_check(py::module_& module) {
-  auto violation =
-      record_class<Violation>(module, "Violation", "What a route violates at one place.",
-                              {{"constraint", "name of the constraint"},
-                               {"at", "index of the waypoint, or of the leg's first waypoint"},
-                               {"value", "in metres or degrees"},
-                               {"limit", "in metres or degrees"},
-                               {"message", "a sentence with the place"}});
-  violation.def_property_readonly("place", &place_of,
-                                  "(3,) float64: the waypoint `at` (m); None of a track's.");
+  auto violation = record_class<Violation>(
+      module, "Violation", "What a route violates at one place.",
+      {{"constraint", "str", "name of the constraint"},
+       {"at", "int", "index of the waypoint, or of the leg's first waypoint"},
+       {"value", "Optional[float]", "in metres or degrees"},
+       {"limit", "Optional[float]", "in metres or degrees"},
+       {"message", "str", "a sentence with the place"}});
+  violation.def_property_readonly(
+      "place", &place_of,
+      "Optional[NDArray[float64]]: (3,), the waypoint `at` (m); None of a track's.");
   add_text(violation, "Violation");
   auto check =
       record_class<Check>(module, "Check", "The judge's verdict on a route; true if it is ok.",
-                          {{"ok", "True if nothing is violated"}});
+                          {{"ok", "bool", "True if nothing is violated"}});
   check.def_property_readonly(
       "violations",
       [](const Check& c) {
@@ -63,7 +66,7 @@ void add_check(py::module_& module) {
         }
         return list;
       },
-      "list of Violation");
+      "list[Violation]: one for each place.");
   add_text(check, "Check");
   check.def("__bool__", [](const Check& c) { return c.json.at("ok").get<bool>(); });
 }
@@ -71,41 +74,44 @@ void add_check(py::module_& module) {
 void add_leg(py::module_& module) {
   auto leg = record_class<LegRecord>(
       module, "Leg", "What joins two waypoints; the turn's attributes are None of a straight leg.",
-      {{"kind", "'straight', 'arc' or 'trochoid'"},
-       {"end", "[x, y, z] in metres of the scenario's frame"},
-       {"turn_deg", "degrees through the air, positive to the left"},
-       {"radius_m", "metres through the air"},
-       {"heading_deg", "at the beginning, through the air, degrees clockwise from north"},
-       {"drift_m", "[east, north] of the air during the leg (m)"}});
+      {{"kind", "str", "'straight', 'arc' or 'trochoid'"},
+       {"end", "list[float]", "[x, y, z] in metres of the scenario's frame"},
+       {"turn_deg", "Optional[float]", "degrees through the air, positive to the left"},
+       {"radius_m", "Optional[float]", "metres through the air"},
+       {"heading_deg", "Optional[float]",
+        "at the beginning, through the air, degrees clockwise from north"},
+       {"drift_m", "Optional[list[float]]", "[east, north] of the air during the leg (m)"}});
   add_text(leg, "Leg");
 }
 
 void add_flight(py::module_& module) {
   auto flight = record_class<Flight>(
       module, "Flight", "The flight of a run, simulated or with a vehicle.",
-      {{"status", "'solved' if it arrived"},
-       {"reason", "its machine-readable cause, or None"},
-       {"message", "a sentence"},
-       {"link", "address of the vehicle, None if simulated"},
-       {"counters", "dict of the pilot's counters"},
-       {"collisions", "number of contacts with obstacles"},
-       {"min_separation_m", "minimum distance from any surface (m), negative inside"},
-       {"reached", "True if it reached the goal"},
-       {"cross_track_max_m", "largest horizontal distance from the route (m)"},
-       {"cross_track_p999_m", "the distance exceeded for 0.1 % of the time (m)"},
-       {"height_error_max_m", "largest height difference from the route (m)"},
-       {"handovers", "list of dicts: at_s, to, why"},
-       {"replans", "list of dicts: at_s, step, status, reason, message, time_s, counters"}});
+      {{"status", "str", "'solved' if it arrived"},
+       {"reason", "Optional[str]", "its machine-readable cause, or None"},
+       {"message", "str", "a sentence"},
+       {"link", "Optional[str]", "address of the vehicle, None if simulated"},
+       {"counters", "dict[str, int]", "the pilot's counters"},
+       {"collisions", "int", "number of contacts with obstacles"},
+       {"min_separation_m", "Optional[float]",
+        "minimum distance from any surface (m), negative inside"},
+       {"reached", "bool", "True if it reached the goal"},
+       {"cross_track_max_m", "Optional[float]", "largest horizontal distance from the route (m)"},
+       {"cross_track_p999_m", "Optional[float]", "the distance exceeded for 0.1 % of the time (m)"},
+       {"height_error_max_m", "Optional[float]", "largest height difference from the route (m)"},
+       {"handovers", "list[dict[str, Any]]", "at_s, to, why"},
+       {"replans", "list[dict[str, Any]]",
+        "at_s, step, status, reason, message, time_s, counters"}});
   add_text(flight, "Flight");
   flight.def_property_readonly(
       "metrics", [](const Flight& f) { return record_or_none<Metrics>(f.json.at("metrics")); },
-      "Metrics of the track");
+      "Metrics: those of the track.");
   flight.def_property_readonly(
       "check", [](const Flight& f) { return check_or_none(f.json.at("check"), nullptr); },
-      "Check of the track");
+      "Check: that of the track.");
   flight.def_property_readonly(
       "track", [](const Flight& f) { return to_array(f.json.at("track"), 4); },
-      "(n, 4) read-only float64 array: seconds, then metres of the scenario's frame");
+      "NDArray[float64]: (n, 4), read-only: seconds, then metres of the scenario's frame.");
 }
 }  // namespace
 

@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "altiplan/route.hpp"
 #include "host/result/result_json.hpp"
@@ -61,18 +60,25 @@ py::object check_or_none(const Json& json, std::shared_ptr<const Route> route);
 /// The legs of a route, as in result.json.
 py::list legs_of(const Route& route);
 
-using Keys = std::initializer_list<std::pair<const char*, const char*>>;
+/// A key of a record that is an attribute. Docstrings of attributes are "TYPE: text", with the type
+/// as Python writes it; the stub _altiplan.pyi is made of them.
+struct Key {
+  const char* name;
+  const char* type;
+  const char* text;
+};
+using Keys = std::initializer_list<Key>;
 
-/// Adds an attribute for each key, with its docstring; a key that is missing is None.
+/// Adds an attribute for each key; a key that is missing is None.
 template <class Class>
 void add_keys(Class& type, const Keys& keys) {
-  for (const auto& [key, doc] : keys) {
+  for (const Key& key : keys) {
     type.def_property_readonly(
-        key,
-        [key = std::string(key)](const typename Class::type& record) {
-          return to_python(record.json.value(key, Json()));
+        key.name,
+        [name = std::string(key.name)](const typename Class::type& record) {
+          return to_python(record.json.value(name, Json()));
         },
-        doc);
+        (std::string(key.type) + ": " + key.text).c_str());
   }
 }
 
@@ -93,7 +99,7 @@ auto record_class(py::module_& module, const char* name, const char* doc, const 
   });
   add_keys(type, keys);
   type.def(
-      "to_dict", [](const T& record) { return to_python(record.json); },
+      "to_dict", [](const T& record) -> Typed<"dict[str, Any]"> { return to_python(record.json); },
       "All of it as a dict, as in result.json.");
   type.def(
       "__eq__", [](const T& a, const T& b) { return a.json == b.json; }, py::is_operator());

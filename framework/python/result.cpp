@@ -130,36 +130,36 @@ std::string framed(const std::string& page) {
 template <class Class>
 void add_outcome(Class& type) {
   using T = typename Class::type;
-  add_keys(type, {{"status", "the outcome; 'solved' only with an accepted route and flight"},
-                  {"reason", "its machine-readable cause, or None"},
-                  {"message", "a sentence"},
-                  {"budget_hit", "True if a budget ended it"},
-                  {"setup_time_s", "wall time of the setup (s)"}});
+  add_keys(type, {{"status", "str", "the outcome; 'solved' only with an accepted route and flight"},
+                  {"reason", "Optional[str]", "its machine-readable cause, or None"},
+                  {"message", "str", "a sentence"},
+                  {"budget_hit", "bool", "True if a budget ended it"},
+                  {"setup_time_s", "float", "wall time of the setup (s)"}});
   type.def_property_readonly(
-      "route", [](const T& t) { return t.route; }, "Route, or None where there is none.");
+      "route", [](const T& t) { return t.route; }, "Optional[Route]: its route, or None.");
   type.def_property_readonly(
       "legs",
       [](const T& t) -> py::object { return t.route ? py::object(legs_of(*t.route)) : py::none(); },
-      "list of Leg of that route, or None.");
+      "Optional[list[Leg]]: the legs of that route.");
   type.def_property_readonly(
       "metrics", [](const T& t) { return record_or_none<Metrics>(t.json.at("metrics")); },
-      "Metrics of that route, or None.");
+      "Optional[Metrics]: the measures of that route.");
   type.def_property_readonly(
       "check", [](const T& t) { return check_or_none(t.json.at("check"), t.route); },
-      "Check of that route, or None.");
+      "Optional[Check]: the verdict on that route.");
 }
 
 void add_step(py::module_& module) {
-  auto step =
-      record_class<Step>(module, "Step", "One attempt of a step of a pipeline.",
-                         {{"id", "name of the step"},
-                          {"verb", "'plan', 'smooth' or 'fly'"},
-                          {"plugin", "name of the plugin"},
-                          {"instead_of", "id of the step that this attempt replaces, or None"},
-                          {"accepted", "True if the route is accepted"},
-                          {"proved", "True if the planner's search space contains no route"},
-                          {"time_s", "wall time of the call (s)"},
-                          {"counters", "dict of the plugin's counters, including 'expanded'"}});
+  auto step = record_class<Step>(
+      module, "Step", "One attempt of a step of a pipeline.",
+      {{"id", "str", "name of the step"},
+       {"verb", "str", "'plan', 'smooth' or 'fly'"},
+       {"plugin", "str", "name of the plugin"},
+       {"instead_of", "Optional[str]", "id of the step that this attempt replaces, or None"},
+       {"accepted", "bool", "True if the route is accepted"},
+       {"proved", "bool", "True if the planner's search space contains no route"},
+       {"time_s", "float", "wall time of the call (s)"},
+       {"counters", "dict[str, int]", "the plugin's counters, including 'expanded'"}});
   add_outcome(step);
   step.def("__repr__", [](const Step& s) {
     const std::string status = s.json.at("accepted").get<bool>() ? "accepted" : s.json.at("status");
@@ -169,30 +169,30 @@ void add_step(py::module_& module) {
 }
 
 void add_result_class(py::module_& module) {
-  auto result = record_class<Result>(module, "Result",
-                                     "What a run gave: its attributes are the keys of result.json.",
-                                     {{"version", "of altiplan"},
-                                      {"folder", "where `out` was written, or None"},
-                                      {"pipeline", "absolute path"},
-                                      {"scenario", "absolute path"},
-                                      {"files", "list of dicts: path, sha256"},
-                                      {"plugins", "list of dicts: kind, name, build, checksum"},
-                                      {"overrides", "dict of what replaced values of the files"},
-                                      {"seed", "the seed"}});
+  auto result = record_class<Result>(
+      module, "Result", "What a run gave: its attributes are the keys of result.json.",
+      {{"version", "str", "of altiplan"},
+       {"folder", "Optional[str]", "where `out` was written, or None"},
+       {"pipeline", "str", "absolute path"},
+       {"scenario", "str", "absolute path"},
+       {"files", "list[dict[str, str]]", "path, sha256"},
+       {"plugins", "list[dict[str, str]]", "kind, name, build, checksum"},
+       {"overrides", "dict[str, Any]", "what replaced values of the files"},
+       {"seed", "int", "the seed"}});
   add_outcome(result);
   result.def_property_readonly(
-      "steps", [](const Result& r) { return r.steps; }, "list of Step: every attempt, in order.");
+      "steps", [](const Result& r) { return r.steps; }, "list[Step]: every attempt, in order.");
   result.def_property_readonly(
       "flight", [](const Result& r) { return record_or_none<Flight>(r.json.at("flight")); },
-      "Flight, or None.");
+      "Optional[Flight]: the flight, None where there is none.");
   result.def_property_readonly(
       "route_lonlat", [](const Result& r) { return to_array(r.json.at("route_lonlat"), 3); },
-      "(m, 3) read-only array of degrees east, degrees north and metres above sea level of\n"
-      "route.chords(); None without a route or a georeference.");
+      "Optional[NDArray[float64]]: (m, 3), read-only: degrees east, degrees north, metres above\n"
+      "sea level of route.chords(); None without a route or a georeference.");
   result.def_property_readonly(
-      "warnings", [](const Result& r) { return r.warnings; }, "list of sentences to check.");
+      "warnings", [](const Result& r) { return r.warnings; }, "list[str]: sentences to check.");
   result.def_property_readonly(
-      "notes", [](const Result& r) { return r.notes; }, "list of sentences on the data read.");
+      "notes", [](const Result& r) { return r.notes; }, "list[str]: sentences on the data read.");
   result.def(
       "to_json", [](const Result& r) { return host::file_text(r.json); },
       "The text of result.json, as `altiplan run --out` writes it.");

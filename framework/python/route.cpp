@@ -21,7 +21,7 @@ Vec3 finite_point(const Rows& rows, py::ssize_t i, const std::string& name) {
   return point;
 }
 
-std::shared_ptr<Route> route_of_points(const py::object& points) {
+std::shared_ptr<Route> route_of_points(const Typed<"ArrayLike">& points) {
   const Rows rows = rows_of(points, 3, "points");
   Polyline waypoints;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
@@ -31,14 +31,14 @@ std::shared_ptr<Route> route_of_points(const py::object& points) {
 }
 
 /// A view of the waypoints themselves: nothing changes a route.
-py::array points_of(const py::object& self) {
+Typed<"NDArray[float64]"> points_of(const py::object& self) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const auto& route = self.cast<const Route&>();
   const double* first = route.empty() ? nullptr : route.front().data();
   return view_of(first, py::ssize_t(route.size()), 3, self);
 }
 
-py::object chords_of(const Route& route, double tolerance_m) {
+Typed<"NDArray[float64]"> chords_of(const Route& route, double tolerance_m) {
   if (!(tolerance_m > 0)) {
     throw py::value_error("tolerance_m: expected a number above 0");
   }
@@ -69,7 +69,8 @@ py::tuple reduced(const py::object& self) {
   return py::make_tuple(make, py::make_tuple(points_of(self).attr("copy")(), legs));
 }
 
-std::shared_ptr<Route> route_of_state(const py::object& points, const py::object& exact_legs) {
+std::shared_ptr<Route> route_of_state(const Typed<"ArrayLike">& points,
+                                      const Typed<"ArrayLike">& exact_legs) {
   const Rows legs = rows_of(exact_legs, kLegNumbers, "legs");
   if (legs.shape(0) == 0) {
     return route_of_points(points);
@@ -101,9 +102,9 @@ std::string text_of(const Route& route) {
 }
 
 /// numpy.asarray(route): numpy would else ask for one point at a time.
-py::object as_array(const py::object& self, const py::object& dtype) {
-  const py::array points = points_of(self);
-  return dtype.is_none() ? py::object(points) : points.attr("astype")(dtype);
+Typed<"NDArray[Any]"> as_array(const py::object& self, const Typed<"Any">& dtype) {
+  const py::object points = points_of(self);
+  return dtype.is_none() ? points : points.attr("astype")(dtype);
 }
 }  // namespace
 
@@ -116,21 +117,25 @@ void add_route(py::module_& module) {
       py::is_final());
   add_constructor(route, &route_of_points, py::arg("points"));
   route.def_property_readonly("points", &points_of,
-                              "(n, 3) read-only float64 view of the waypoints (m).");
+                              "NDArray[float64]: (n, 3), read-only view of the waypoints (m).");
   route.def("to_numpy", &points_of, "The same as `points`.");
   route.def("__array__", &as_array, py::arg("dtype") = py::none());
   route.def(
       "chords", &chords_of, py::arg("tolerance_m") = kChordTolerance,
       "(m, 3) float64: the waypoints, and the ends of chords that lie within this distance of\n"
       "the turns (m). Those within 0.01 m are the `route` of result.json.");
-  route.def_property_readonly("legs", &legs_of, "list of Leg, one fewer than waypoints.");
+  route.def_property_readonly("legs", &legs_of, "list[Leg]: one fewer than waypoints.");
   route.def_property_readonly(
-      "length_m", [](const Route& r) { return length(r); }, "Sum of leg lengths (m).");
+      "length_m", [](const Route& r) { return length(r); }, "float: sum of leg lengths (m).");
   route.def("__len__", &Route::size);
-  route.def("__getitem__", [](const py::object& self, const py::object& index) {
-    return points_of(self).attr("__getitem__")(index);
-  });
-  route.def("__iter__", [](const py::object& self) { return py::iter(points_of(self)); });
+  route.def(
+      "__getitem__", [](const py::object& self, const Typed<"Any">& index) -> Typed<"Any"> {
+        return points_of(self).attr("__getitem__")(index);
+      });
+  route.def(
+      "__iter__", [](const py::object& self) -> Typed<"Iterator[NDArray[float64]]"> {
+        return py::iter(points_of(self));
+      });
   route.def(
       "__eq__", [](const Route& a, const Route& b) { return a == b; }, py::is_operator());
   route.def("__repr__", &text_of);

@@ -56,8 +56,9 @@ WorldPointer build(const fs::path& file, host::Overrides overrides, bool known) 
   return world;
 }
 
-WorldPointer open(const py::object& file, const py::object& set, const py::object& plugin_path,
-                  bool known) {
+WorldPointer open(const Typed<"Union[str, PathLike[str]]">& file,
+                  const Typed<"Mapping[str, Any]">& set,
+                  const Typed<"Sequence[Union[str, PathLike[str]]]">& plugin_path, bool known) {
   const py::module_ values = py::module_::import("altiplan._values");
   const auto path = values.attr("path")(file, "file").cast<std::string>();
   host::Overrides overrides;
@@ -98,7 +99,7 @@ py::list layers_of(const FileWorld& world) {
   return ids;
 }
 
-py::array_t<double> clearance(const FileWorld& world, const py::object& points) {
+Typed<"NDArray[float64]"> clearance(const FileWorld& world, const Typed<"ArrayLike">& points) {
   const Rows rows = rows_of(points, 3, "points");
   py::array_t<double> answers(rows.shape(0));
   double* to = answers.mutable_data();
@@ -108,8 +109,8 @@ py::array_t<double> clearance(const FileWorld& world, const py::object& points) 
   return answers;
 }
 
-py::array_t<bool> legs_blocked(const FileWorld& world, const py::object& a, const py::object& b,
-                               double radius_m) {
+Typed<"NDArray[bool_]"> legs_blocked(const FileWorld& world, const Typed<"ArrayLike">& a,
+                                     const Typed<"ArrayLike">& b, double radius_m) {
   const Rows from = rows_of(a, 3, "a");
   const Rows to = rows_of(b, 3, "b");
   if (from.shape(0) != to.shape(0)) {
@@ -128,7 +129,7 @@ py::array_t<bool> legs_blocked(const FileWorld& world, const py::object& a, cons
   return answers;
 }
 
-py::array_t<double> ground(const FileWorld& world, const py::object& points_xy) {
+Typed<"NDArray[float64]"> ground(const FileWorld& world, const Typed<"ArrayLike">& points_xy) {
   const Rows rows = rows_of(points_xy, 2, "points_xy");
   py::array_t<double> heights(rows.shape(0));
   double* to = heights.mutable_data();
@@ -139,9 +140,9 @@ py::array_t<double> ground(const FileWorld& world, const py::object& points_xy) 
   return heights;
 }
 
-Check check(const FileWorld& world, const py::object& given) {
+Check check(const FileWorld& world, const Typed<"Union[Route, ArrayLike]">& given) {
   const py::object type = py::type::of<Route>();
-  const py::object object = py::isinstance<Route>(given) ? given : type(given);
+  const py::object object = py::isinstance<Route>(given) ? py::object(given) : type(given);
   const auto route = object.cast<std::shared_ptr<const Route>>();
   if (route->empty()) {
     throw py::value_error("route: expected at least one point");
@@ -195,18 +196,19 @@ void add_world(py::module_& module) {
       py::is_final());
   add_constructor(world, &open, py::arg("file"), py::arg("set") = py::dict(),
                   py::arg("plugin_path") = py::tuple(), py::arg("known") = false);
-  world.def_property_readonly("layers", &layers_of, "list of the layers' ids.");
-  world.def_property_readonly("volume", &volume_of,
-                              "(2, 3) float64: lowest and highest corner of the volume (m).");
+  world.def_property_readonly("layers", &layers_of, "list[str]: the layers' ids.");
+  world.def_property_readonly(
+      "volume", &volume_of,
+      "NDArray[float64]: (2, 3), lowest and highest corner of the volume (m).");
   world.def_property_readonly(
       "start", [](const FileWorld& w) { return vector_of(w.mission.request.start.position); },
-      "(3,) float64 (m).");
+      "NDArray[float64]: (3,), the start (m).");
   world.def_property_readonly(
       "goal", [](const FileWorld& w) { return vector_of(w.mission.request.goal.position); },
-      "(3,) float64 (m).");
+      "NDArray[float64]: (3,), the goal (m).");
   world.def_property_readonly(
       "warnings", [](const FileWorld& w) { return w.mission.warnings; },
-      "list of sentences to check.");
+      "list[str]: sentences to check.");
   add_queries(world);
   module.def("kind_of", &kind_of, py::arg("file"));
   world.def("__repr__", [](const FileWorld& w) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Code of a user's, which mypy reads and nothing runs. A comment 'refused' marks what it must refuse."""
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, Dict, List, Optional
 
 import numpy
 from typing_extensions import assert_type
@@ -47,6 +47,14 @@ def verdicts() -> List[str]:
     return [violation.message for violation in check.violations]
 
 
+def planners(name: str, parameters: Dict[str, Any]) -> List[altiplan.Step]:
+    steps = [altiplan.plan("s.yaml", name, step_m=3), altiplan.plan("s.yaml", "my_planner", step_m=3),
+             altiplan.plan("s.yaml", "jps", cell_m=numpy.ones(3), max_memory_mb=numpy.int64(9), costs="integer"),
+             altiplan.plan("s.yaml", "hybrid_astar", radius_m="auto", plugin_path=["plugins"])]
+    with_all: altiplan.Step = altiplan.plan("s.yaml", "astar", **parameters)
+    return [*steps, with_all]
+
+
 def wrong(result: altiplan.Result, world: altiplan.World) -> None:
     altiplan.run(3)  # refused
     altiplan.run("p.yaml", seed="3")  # refused
@@ -57,6 +65,10 @@ def wrong(result: altiplan.Result, world: altiplan.World) -> None:
     world.clearance(None)  # refused
     world.legs_blocked([[1, 2, 3]])  # refused
     altiplan.study("study.yaml")  # refused
+    altiplan.plan(3, "astar")  # refused
+    altiplan.plan("s.yaml", "astar", cell=[1, 2, 3]).route  # refused
+    altiplan.plan("s.yaml", "astar", neighbours="26").route  # refused
+    altiplan.plan("s.yaml", "astar", moves="exactly").route  # refused
     altiplan.Metrics.length_m()  # refused
 
     class Mine(altiplan.World):  # refused

@@ -27,6 +27,7 @@ from ._error import Error
 from ._go import go
 from ._planner import (Cells, Ground, NoRoute, constraint, environment, parameter, parameters,
                        planner, smoother)
+from ._plans import typed as _typed
 from ._study import Study, study
 
 __all__ = ["Cells", "Check", "Error", "Flight", "Ground", "Leg", "Metrics", "NoRoute", "Result",
@@ -72,6 +73,7 @@ def _end(values: "dict[str, _Any]", name: str, end: _Any) -> None:
         values[f"scenario.{name}"] = {"at_m": _values.point(end, name)}
 
 
+@_typed
 def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed: int = 0,
          within_s: _Optional[float] = None, *, set: _Mapping[str, _Any] = {},
          plugin_path: _Sequence[_Path] = (), **parameters: _Any) -> Step:
