@@ -28,8 +28,12 @@ struct Result : Record {
   std::vector<std::string> notes;
 };
 
+/// Of altiplan.plan, a run of one step: the step and the warnings, no more is worked out.
+using Plan = std::pair<std::shared_ptr<Step>, std::vector<std::string>>;
+
 struct RunCall {
-  fs::path pipeline;
+  fs::path file;
+  bool may_be_scenario = false;
   host::Overrides overrides;
   int threads = 1;
   double timeout_s = host::kDefaultStepSeconds;
@@ -51,6 +55,14 @@ void expect_writable(const std::string& out, const host::Config& config) {
   }
 }
 
+std::shared_ptr<Step> step_of(Json json, const host::StepResult& result) {
+  auto step = std::make_shared<Step>(Step{{std::move(json)}, nullptr});
+  if (!result.route.empty()) {
+    step->route = std::make_shared<const Route>(result.route);
+  }
+  return step;
+}
+
 /// The result in Python's form; written to the file first, as `altiplan run --out` does.
 Result hand_over(const RunCall& call, const host::Config& config, const host::RunResult& run) {
   Result result;
@@ -59,11 +71,7 @@ Result hand_over(const RunCall& call, const host::Config& config, const host::Ru
     host::write_file(*call.out, host::file_text(result.json));
   }
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    auto step = std::make_shared<Step>(Step{{result.json.at("steps").at(i)}, nullptr});
-    if (!run.steps[i].route.empty()) {
-      step->route = std::make_shared<const Route>(run.steps[i].route);
-    }
-    result.steps.push_back(std::move(step));
+    result.steps.push_back(step_of(result.json.at("steps").at(i), run.steps[i]));
   }
   if (run.accepted) {
     result.route = result.steps.at(*run.accepted)->route;
@@ -74,34 +82,44 @@ Result hand_over(const RunCall& call, const host::Config& config, const host::Ru
   return result;
 }
 
-Result run(const RunCall& given) {
-  return attended<Result>(
-      [call = given](const std::shared_ptr<Outcome<Result>>& outcome, const std::stop_token& stop) {
-        const host::Config config = host::load_config(call.pipeline, call.overrides);
-        if (call.out) {
-          expect_writable(*call.out, config);
-        }
-        host::RunOptions options;
-        options.threads = call.threads;
-        options.timeout_s = call.timeout_s;
-        options.stop = stop;
-        if (call.out) {
-          options.out = *call.out;
-        }
-        // The program ends itself here. A script goes on, and leaves the step that never stops to
-        // its thread.
-        options.on_stuck = [&](const host::RunResult& so_far) {
-          try {
-            outcome->give(hand_over(call, config, so_far));
-          } catch (...) {
-            outcome->fail(std::current_exception());
-          }
-          while (true) {
-            ::pause();
-          }
-        };
-        return hand_over(call, config, host::run(config, options));
-      });
+Plan plan_of(const RunCall&, const host::Config&, const host::RunResult& run) {
+  if (run.steps.empty()) {
+    throw Error(run.message);  // of a layer that is never built
+  }
+  return {step_of(host::to_json(run.steps[0]), run.steps[0]), run.warnings};
+}
+
+/// `made_of` makes what is handed over.
+template <class T>
+T run(const RunCall& call,
+      T (*made_of)(const RunCall&, const host::Config&, const host::RunResult&)) {
+  return attended<T>([=](const std::shared_ptr<Outcome<T>>& outcome, const std::stop_token& stop) {
+    const host::Config config = call.may_be_scenario ? host::load_plan(call.file, call.overrides)
+                                                     : host::load_config(call.file, call.overrides);
+    if (call.out) {
+      expect_writable(*call.out, config);
+    }
+    host::RunOptions options;
+    options.threads = call.threads;
+    options.timeout_s = call.timeout_s;
+    options.stop = stop;
+    if (call.out) {
+      options.out = *call.out;
+    }
+    // The program ends itself here. A script goes on, and leaves the step that never stops to
+    // its thread.
+    options.on_stuck = [&](const host::RunResult& so_far) {
+      try {
+        outcome->give(made_of(call, config, so_far));
+      } catch (...) {
+        outcome->fail(std::current_exception());
+      }
+      while (true) {
+        ::pause();
+      }
+    };
+    return made_of(call, config, host::run(config, options));
+  });
 }
 
 /// The page of `altiplan view`, of the world built again from the run's files.
@@ -215,13 +233,21 @@ void add_result(py::module_& module) {
       [](const fs::path& pipeline, std::optional<std::int64_t> seed,
          const std::vector<std::string>& set, const std::vector<fs::path>& plugin_path, int threads,
          double timeout_s, const std::optional<std::string>& out) {
-        RunCall call{pipeline, {}, threads, timeout_s, out};
-        call.overrides.seed = seed;
-        call.overrides.set = set;
-        call.overrides.plugin_path = plugin_path;
-        return run(call);
+        return run({pipeline, false, {{}, seed, set, plugin_path}, threads, timeout_s, out},
+                   hand_over);
       },
       py::arg("pipeline"), py::arg("seed"), py::arg("set"), py::arg("plugin_path"),
       py::arg("threads"), py::arg("timeout_s"), py::arg("out"));
+  module.def(
+      "plan",
+      [](const fs::path& file, std::optional<std::int64_t> seed,
+         const std::vector<std::string>& set, const std::vector<fs::path>& plugin_path) {
+        RunCall call;
+        call.file = file;
+        call.may_be_scenario = true;
+        call.overrides = {{}, seed, set, plugin_path};
+        return run(call, plan_of);
+      },
+      py::arg("file"), py::arg("seed"), py::arg("set"), py::arg("plugin_path"));
 }
 }  // namespace altiplan::python

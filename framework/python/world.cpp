@@ -76,21 +76,6 @@ WorldPointer open(const Typed<"Union[str, PathLike[str]]">& file,
   return world;
 }
 
-/// "scenario", "pipeline", "study" or "paper".
-const char* kind_of(const fs::path& file) {
-  switch (host::kind_of(host::load_yaml(file))) {
-    case host::FileKind::scenario:
-      return "scenario";
-    case host::FileKind::study:
-      return "study";
-    case host::FileKind::paper:
-      return "paper";
-    case host::FileKind::pipeline:
-      break;
-  }
-  return "pipeline";
-}
-
 py::list layers_of(const FileWorld& world) {
   py::list ids;
   for (const Layer& layer : world.world().layers()) {
@@ -210,7 +195,6 @@ void add_world(py::module_& module) {
       "warnings", [](const FileWorld& w) { return w.mission.warnings; },
       "list[str]: sentences to check.");
   add_queries(world);
-  module.def("kind_of", &kind_of, py::arg("file"));
   world.def("__repr__", [](const FileWorld& w) {
     const std::size_t count = w.world().layers().size();
     return "<altiplan.World '" + w.config.scenario_path.stem().string() + "' of " +

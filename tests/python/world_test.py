@@ -162,6 +162,18 @@ class Plans(PythonCase):
         with self.assertRaisesRegex(altiplan.Error, "did you mean 'astar'"):
             altiplan.plan(self.scenario, "astra")
 
+    def test_a_scenario_stands_for_its_pipeline(self):
+        with self.assertRaises(altiplan.Error) as caught:
+            altiplan.plan(self.scenario, "astar", cell=1)
+        self.assertEqual((caught.exception.file, caught.exception.key),
+                         (str(self.scenario), "steps.0.with.cell"))
+        (self.folder / "beside").symlink_to(PLUGINS)  # a path in `set` is relative to it
+        self.assertEqual(altiplan.plan(self.scenario, "told", set={"plugins": ["beside"]}).plugin, "told")
+        with self.assertWarnsRegex(UserWarning, "does not touch the volume") as seen:
+            altiplan.plan(self.scenario, "astar", cell_m=[50, 50, 50], set={
+                "scenario.environment.0.box": {"min_m": [5000, 0, 0], "max_m": [5010, 700, 1000]}})
+        self.assertEqual(seen.filename, __file__)
+
     def test_rejected_by_the_judge(self):
         step = altiplan.plan(self.scenario, "told", plugin_path=[PLUGINS])
         self.assertEqual((step.status, step.accepted), ("rejected", False))

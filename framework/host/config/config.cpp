@@ -63,13 +63,16 @@ void expect_kind(const Value& tree, FileKind expected) {
   }
 }
 
-/// False if the file, or a text in its place, cannot be read as YAML: its keys are unknown then.
+/// False if the file, or a text in its place, cannot be read as YAML: its keys are unknown then. A
+/// tree that is there is not read again.
 bool read_scenario(Config& config, Checker& checker,
                    const std::optional<std::string>& text = std::nullopt) {
   std::vector<fs::path> mission;
   try {
-    config.scenario_tree =
-        text ? parse_yaml(*text, config.scenario_path.string()) : load_yaml(config.scenario_path);
+    if (config.scenario_tree.kind != Value::Kind::map) {
+      config.scenario_tree =
+          text ? parse_yaml(*text, config.scenario_path.string()) : load_yaml(config.scenario_path);
+    }
     expect_kind(config.scenario_tree, FileKind::scenario);
     apply_overrides(config.scenario_tree, config.overrides.set, FileOfKey::scenario);
     config.notes = add_mission(config.scenario_tree, mission);
@@ -151,6 +154,37 @@ Config scenario_config(const fs::path& path, const std::optional<std::string>& t
   return config;
 }
 
+/// Of a pipeline whose tree is read.
+Config pipeline_config(Config config, const std::shared_ptr<Registry>& shared) {
+  expect_kind(config.pipeline_tree, FileKind::pipeline);
+  apply_overrides(config.pipeline_tree, config.overrides.set, FileOfKey::pipeline);
+  Checker checker(config);
+  checker.add(bind(config.pipeline, &config.pipeline_tree).problems);
+  if (!config.pipeline_path.empty()) {
+    config.files.push_back(config.pipeline_path);
+  }
+  config.seed = config.overrides.seed.value_or(config.pipeline.seed);
+  const bool read = find_scenario(config, checker) && read_scenario(config, checker);
+  config.registry = make_registry(config, shared);
+  if (read) {
+    check_scenario(checker, config.scenario, config.scenario_tree);
+  }
+  check_constraints(checker, config.pipeline.constraints, config.pipeline_tree);
+  check_steps(checker, config);
+  checker.finish();
+  return config;
+}
+
+/// {altiplan: 1}, at the place of this tree.
+Value empty_pipeline(const Value& at) {
+  Value version;
+  version.text = std::to_string(kFileFormat);
+  version.where = at.where;
+  Value tree = empty_map();
+  tree.where = at.where;
+  tree.entries.push_back({"altiplan", at.where, version});
+  return tree;
+}
 }  // namespace
 
 Config load_scenario(const fs::path& scenario, const Overrides& overrides) {
@@ -168,20 +202,19 @@ Config load_config(const fs::path& pipeline, const Overrides& overrides,
   config.overrides = overrides;
   config.pipeline_path = absolute_file(pipeline);
   config.pipeline_tree = load_yaml(config.pipeline_path);
-  expect_kind(config.pipeline_tree, FileKind::pipeline);
-  apply_overrides(config.pipeline_tree, overrides.set, FileOfKey::pipeline);
-  Checker checker(config);
-  checker.add(bind(config.pipeline, &config.pipeline_tree).problems);
-  config.files.push_back(config.pipeline_path);
-  config.seed = overrides.seed.value_or(config.pipeline.seed);
-  const bool read = find_scenario(config, checker) && read_scenario(config, checker);
-  config.registry = make_registry(config, shared);
-  if (read) {
-    check_scenario(checker, config.scenario, config.scenario_tree);
+  return pipeline_config(std::move(config), shared);
+}
+
+Config load_plan(const fs::path& file, const Overrides& overrides) {
+  Config config;
+  config.overrides = overrides;
+  config.pipeline_path = absolute_file(file);
+  config.pipeline_tree = load_yaml(config.pipeline_path);
+  if (kind_of(config.pipeline_tree) == FileKind::scenario) {
+    config.overrides.scenario = std::exchange(config.pipeline_path, {});
+    config.scenario_tree =
+        std::exchange(config.pipeline_tree, empty_pipeline(config.pipeline_tree));
   }
-  check_constraints(checker, config.pipeline.constraints, config.pipeline_tree);
-  check_steps(checker, config);
-  checker.finish();
-  return config;
+  return pipeline_config(std::move(config), nullptr);
 }
 }  // namespace altiplan::host

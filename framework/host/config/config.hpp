@@ -43,6 +43,10 @@ struct Config {
 Config load_config(const std::filesystem::path& pipeline, const Overrides& overrides,
                    const std::shared_ptr<Registry>& shared = nullptr);
 
+/// The same of a pipeline, or of a scenario alone, to which the overrides add the steps: then there
+/// is no file of a pipeline, and paths are relative to the scenario.
+Config load_plan(const std::filesystem::path& file, const Overrides& overrides);
+
 /// A scenario without a pipeline (`check --route`, `validate`).
 Config load_scenario(const std::filesystem::path& scenario, const Overrides& overrides);
 /// The same from a text in memory, whose paths are absolute; `name` stands for the file in

@@ -37,28 +37,6 @@ std::int64_t expanded(const StepResult& step) {
   return 0;
 }
 
-Json step_json(const StepResult& step) {
-  Json json;
-  json["id"] = step.id;
-  json["verb"] = name(step.verb);
-  json["plugin"] = step.plugin;
-  json["instead_of"] = step.instead_of ? Json(*step.instead_of) : Json(nullptr);
-  json["accepted"] = step.accepted;
-  json["status"] = name(step.status);
-  json["reason"] = reason_json(step.reason);
-  json["message"] = step.message;
-  json["proved"] = step.proved;
-  json["budget_hit"] = step.budget_hit;
-  json["time_s"] = step.time_s;
-  json["setup_time_s"] = step.setup_time_s;
-  json["counters"] = counters_json(step.counters);
-  json["route"] = to_json(step.route);
-  json["legs"] = legs_json(step.route);
-  json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
-  json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
-  return json;
-}
-
 /// Metrics of the whole run: of the accepted route, and of the planning that led to it.
 Json run_metrics(const RunResult& result) {
   Json json = to_json(Measures{});
@@ -251,6 +229,28 @@ Json to_json(const Measures& m) {
           {"duration_s", number(m.duration_s)}};
 }
 
+Json to_json(const StepResult& step) {
+  Json json;
+  json["id"] = step.id;
+  json["verb"] = name(step.verb);
+  json["plugin"] = step.plugin;
+  json["instead_of"] = step.instead_of ? Json(*step.instead_of) : Json(nullptr);
+  json["accepted"] = step.accepted;
+  json["status"] = name(step.status);
+  json["reason"] = reason_json(step.reason);
+  json["message"] = step.message;
+  json["proved"] = step.proved;
+  json["budget_hit"] = step.budget_hit;
+  json["time_s"] = step.time_s;
+  json["setup_time_s"] = step.setup_time_s;
+  json["counters"] = counters_json(step.counters);
+  json["route"] = to_json(step.route);
+  json["legs"] = legs_json(step.route);
+  json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
+  json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
+  return json;
+}
+
 Json result_json(const Config& config, const RunResult& result) {
   Json json;
   json["altiplan"] = kFileFormat;
@@ -274,7 +274,7 @@ Json result_json(const Config& config, const RunResult& result) {
   json["setup_time_s"] = result.setup_time_s;
   json["steps"] = Json::array();
   for (const StepResult& step : result.steps) {
-    json["steps"].push_back(step_json(step));
+    json["steps"].push_back(to_json(step));
   }
   const StepResult* accepted = result.accepted ? &result.steps[*result.accepted] : nullptr;
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);

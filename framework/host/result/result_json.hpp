@@ -26,6 +26,8 @@ Json plugins_json(const Config& config);
 Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
+/// One of `steps`.
+Json to_json(const StepResult& step);
 
 /// The text for files and stdout, indented, with a final line end. Texts of plugins, above all
 /// damaged ones, may be invalid UTF-8: U+FFFD replaces invalid bytes.

@@ -9,9 +9,7 @@
 Points are [x, y, z] in metres of the scenario's frame: x east, y north, z above sea level. What
 altiplan refuses raises altiplan.Error; an argument of the wrong type raises TypeError, one out of
 range or of the wrong shape ValueError. That no route is found is a result, not an error."""
-import json as _json
 import os as _os
-import tempfile as _tempfile
 import warnings as _warnings
 from typing import Any as _Any
 from typing import List as _List
@@ -92,15 +90,11 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
     values = {**set, "steps": [step]}
     _end(values, "start", start)
     _end(values, "goal", goal)
-    file = _os.path.abspath(_values.path(file, "file"))
-    more: _Any = {"set": values, "seed": seed, "plugin_path": plugin_path}
-    if _altiplan.kind_of(file) != "scenario":
-        return run(file, **more).steps[0]
-    with _tempfile.TemporaryDirectory(prefix="altiplan_") as folder:
-        pipeline = _os.path.join(folder, "plan.yaml")
-        with open(pipeline, "w", encoding="utf-8") as stream:
-            _json.dump({"altiplan": 1, "scenario": file}, stream)
-        return run(pipeline, **more).steps[0]
+    found, warnings = _altiplan.plan(
+        _values.path(file, "file"), _values.seed(seed), _values.assignments(values),
+        _values.paths(plugin_path, "plugin_path"))
+    _warn(warnings)
+    return found
 
 
 def check(route: _Union[Route, _Any], file: _Path, set: _Mapping[str, _Any] = {},
