@@ -3,11 +3,14 @@
 table and as JSON, and says what a build has left out.
 """
 import json
+import os
+import struct
 import subprocess
 import sys
+import tempfile
 import unittest
 
-PROGRAM, SOURCES = sys.argv[1:3]
+PROGRAM, SOURCES = map(os.path.abspath, sys.argv[1:3])
 ANTS = f"{SOURCES}/configs/scenarios/ant_colony.yaml"
 # What is measured, and the columns of a table or the names of Google Benchmark's rows.
 CALLS = {
@@ -19,7 +22,11 @@ CALLS = {
     "dubins": (["--benchmark_filter=length/easy", "--benchmark_min_time=0.001"],
                "length/easy/altiplan"),
     "field": (["--passes", "1"], {"steps": "p99_us"}),
+    "legs": ([f"{SOURCES}/configs/scenarios/city_complex.yaml", "legs", "--passes", "1"],
+             {"worlds": "ns_per_leg"}),
     "pilot": (["--flights", "1"], {"steps": "p99.9_us"}),
+    "plan": ([f"{SOURCES}/configs/pipelines/city_astar.yaml", "--passes", "2", "--set",
+              "steps.0.with.cell_m=[20, 20, 20]"], {"calls": "run_ms"}),
     "replan": (["--trials", "1"], {"first_plans": "ms", "repairs": "ratio"}),
     "queries": (["--benchmark_filter=point/", "--benchmark_min_time=0.001"], "point/altiplan"),
     "sampling": (["--benchmark_filter=nearest/scattered/1000/", "--benchmark_min_time=0.001"],
@@ -34,6 +41,15 @@ def bench(*arguments):
     done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                           check=False)
     return done.returncode, done.stdout, done.stderr
+
+
+def setUpModule():
+    """The files that some read are in the current folder."""
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    os.chdir(folder.name)
+    with open("legs", "wb") as stream:
+        stream.write(struct.pack("<6d", 15, 25, 45, 675, 645, 45))
 
 
 class Subcommands(unittest.TestCase):

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """python_queries.py PREFIX [LEGS]: what the Python package costs beyond the library, for a build or an
-installation in PREFIX: leg checks of World.legs_blocked against the same in C++ (altiplan-bench legs),
-and the time of plan() outside the run. Times of checks are the processor's, the least of several."""
+installation in PREFIX: leg checks of World.legs_blocked against the same in C++ (altiplan-bench legs).
+Times are the processor's, the least of several."""
 import json
 import os
 import pathlib
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -57,34 +56,10 @@ def compare(name, folder):
           f"{python_ns / row['ns_per_leg']:6.2f}", flush=True)
 
 
-def overhead(name):
-    """Wall time of plan() outside the run in C++, which reads the files, builds the world, plans, and
-    judges as the program does; and of that run."""
-    inner = altiplan._altiplan.run
-    inside = []
-
-    def timed(*arguments):
-        begin = time.perf_counter()
-        result = inner(*arguments)
-        inside.append(time.perf_counter() - begin)
-        return result
-
-    altiplan._altiplan.run = timed
-    outside = []
-    for _ in range(30):
-        begin = time.perf_counter()
-        altiplan.plan(SCENARIOS / f"{name}.yaml", "astar", cell_m=[1000, 1000, 200])
-        outside.append(time.perf_counter() - begin - inside[-1])
-    altiplan._altiplan.run = inner
-    print(f"{name:20} plan: {1000 * statistics.median(outside):.2f} ms outside a run of "
-          f"{1000 * statistics.median(inside):.2f} ms (medians)")
-
-
 def main():
     with tempfile.TemporaryDirectory() as folder:
         for name in WORLDS:
             compare(name, folder)
-    overhead("random_hills")
 
 
 if __name__ == "__main__":

@@ -58,6 +58,7 @@ void add_grid(Subcommands& all);
 void add_hybrid_astar(Subcommands& all);
 void add_legs(Subcommands& all);
 void add_pilot(Subcommands& all);
+void add_plan(Subcommands& all);
 void add_queries(Subcommands& all);
 void add_replan(Subcommands& all);
 void add_sampling(Subcommands& all);

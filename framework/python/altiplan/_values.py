@@ -15,8 +15,10 @@ _NOT_TEXT = {"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan",
 
 def _plain(value: Any, key: str) -> Any:
     """The value in types of JSON."""
-    if isinstance(value, (bool, str)):
+    if isinstance(value, (str, int)):
         return value
+    if isinstance(value, (list, tuple)):
+        return [_plain(each, key) for each in value]
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
         return _plain(value.tolist(), key)
     if isinstance(value, numbers.Integral):
@@ -27,8 +29,6 @@ def _plain(value: Any, key: str) -> Any:
         return float(value)
     if isinstance(value, Mapping):
         return {str(name): _plain(each, key) for name, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(each, key) for each in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise TypeError(f"{key}: expected a number, a text, a list or a dict, "
