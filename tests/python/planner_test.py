@@ -4,6 +4,7 @@ import contextlib
 import json
 import sqlite3
 
+import case
 from case import SOURCES
 from script_case import AROUND, STEP, ScriptCase, main
 
@@ -209,6 +210,40 @@ class Commands(ScriptCase):
                                           "JOIN pipelines p ON p.id = r.pipeline"))
             self.assertEqual(outcomes, expected, list(store.execute("SELECT message FROM runs")))
         self.assertEqual(self.workers(), [])
+
+    def test_a_tuning(self):
+        self.planner("return [request.start, (300, self.params.y_m, 100), (320, self.params.y_m, 100), "
+                     "request.goal]", parameters="y_m: float = altiplan.parameter(50.0, doc='a detour')")
+        pipeline = self.write("p.yaml", STEP.format(step="{plan: tested, with: {y_m: 90}}"))
+        self.altiplan("tune", pipeline, "--over", "steps.0.with.y_m=50..350", "--metric", "length_m",
+                      "--out", "tuned", "--tuner", "random_search", "--evaluations", "8")
+        rows = (self.folder / "tuned/evaluations.csv").read_text().splitlines()
+        self.assertEqual(len(rows), 1 + 1 + 8)
+        failed = [float(row.split(",")[2]) > 298 for row in rows[1:]]  # there the wall begins
+        self.assertEqual([",inf," in row for row in rows[1:]], failed)
+        tuned = self.result(self.folder / "tuned/tuned.yaml")[0]
+        self.assertLess(tuned["metrics"]["length_m"],
+                        self.result(pipeline)[0]["metrics"]["length_m"])
+        self.expect_no_workers()
+
+    def test_it_replans_in_flight(self):
+        self.planner("for y in (500, 200, 800):\n"
+                     "    via = (550, y, 150)\n"
+                     "    if request.world.legs_ok([request.start, via], [via, request.goal]) == [True] * 2:\n"
+                     "        return [request.start, via, request.goal]")
+        self.write("free.yaml", case.SCENARIO.replace("[310, 700, 1000]", "[310, 310, 1000]") + """events:
+  - {at_s: 3, add: {sphere: {at_m: [600, 500, 150], radius_m: 100}}, id: pop_up, known: true}
+""")
+        for replan in ("tested", "{plan: tested}"):
+            flies = self.write("flies.yaml", STEP.format(step="plan: tested").replace("scenario.y", "free.y")
+                               + f"  - fly: route\n    replan: {replan}\n")
+            result, _ = self.result(flies)
+            flight = result["flight"]
+            self.assertEqual((flight["status"], flight["collisions"]), ("solved", 0), flight["message"])
+            self.assertEqual([(each["step"], each["status"]) for each in flight["replans"]],
+                             [("tested", "solved")])
+            self.assertGreater(max(abs(y - 500) for _, _, y, _ in flight["track"]), 250)
+        self.expect_no_workers()
 
     def test_no_file_of_python_starts_no_python(self):
         self.planner(f"return {AROUND}")

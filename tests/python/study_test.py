@@ -13,7 +13,7 @@ import time
 import unittest
 
 import case
-from case import HANGS_S, PLUGINS, PROGRAM, PythonCase
+from case import HANGS_S, PLUGINS, PROGRAM, PythonCase, untimed
 
 import altiplan
 
@@ -80,6 +80,36 @@ class Runs(StudyCase):
             self.assertRaises(KeyError, study.result, none)
         self.assertRaises(TypeError, study.result, "1")
         self.assertEqual(pickle.loads(pickle.dumps(study)).result(1), study.result(1))
+
+    def test_the_same_result_each_way(self):
+        """Of a random planner, a smoother and a flight: by a study, the program, and altiplan.run."""
+        pipeline = self.write("random.yaml", """altiplan: 1
+scenario: scenario.yaml
+steps:
+  - {plan: rrt_star, within_iterations: 500, with: {range_m: 100}}
+  - smooth: prune
+  - fly: route
+""")
+        file = self.write("study.yaml", "altiplan: 1\nscenarios: [{file: scenario.yaml}]\n"
+                          "pipelines: [{id: random, file: random.yaml}]\nrepetitions: 2\n")
+        study = altiplan.study(file, self.store)
+        routes = []
+        for run in (1, 2):
+            stored = study.result(run)
+            seed = stored["seed"]
+            subprocess.run([PROGRAM, "run", pipeline, f"--seed={seed}", "--out", self.folder / "c.json"],
+                           check=True, stdout=subprocess.DEVNULL, timeout=HANGS_S)
+            result = altiplan.run(pipeline, seed=seed, out=self.folder / "p.json")
+            by_program, by_python = ((self.folder / name).read_text() for name in ("c.json", "p.json"))
+            self.assertEqual(untimed(by_python), untimed(by_program))
+            self.assertEqual(result.to_json(), by_python)
+            # A study writes to no folder, and says which scenario it gives the pipeline.
+            plain = json.loads(by_program)
+            self.assertEqual(plain.pop("folder"), str(self.folder))
+            self.assertEqual(stored["overrides"].pop("scenario"), str(self.scenario))
+            self.assertEqual(untimed(json.dumps(stored)), untimed(json.dumps(plain)))
+            routes.append(stored["steps"][0]["route"])
+        self.assertNotEqual(*routes)
 
     def test_refused(self):
         with self.assertRaisesRegex(altiplan.Error, "did you mean 'metrics'") as caught:
